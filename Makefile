@@ -1,0 +1,67 @@
+# loopsheet: `make report` and `make test` do all of their own setting up. `make help` lists the rest.
+
+PYTHON ?= python3
+OUT ?= out
+UV ?= uv==0.13.8
+
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
+LOCK := .venv-lock/bin/uv pip compile --quiet --universal --python-version 3.11 \
+	--fork-strategy fewest --generate-hashes --custom-compile-command "make lock" $(UPGRADE)
+
+.DEFAULT_GOAL := help
+.PHONY: help report test bench lock clean
+.DELETE_ON_ERROR:
+.NOTPARALLEL:
+
+help:
+	@echo 'make report   build the report of the shipped paper into $(OUT)/'
+	@echo 'make test     ruff, mypy and the whole test suite'
+	@echo 'make bench    the benchmarks'
+	@echo 'make lock     pin the dependencies of pyproject.toml again (UPGRADE=--upgrade: to the newest)'
+	@echo 'make clean    remove all that was made here'
+	@echo 'PYTHON=python3.12 make ... takes another interpreter (3.11 or later) for $(VENV)'
+
+report: $(VENV)/.runtime
+	$(BIN)/loopsheet build --out '$(OUT)'
+	@echo 'Look at $(abspath $(OUT))/report.html'
+
+test: $(VENV)/.test .mypy_root/loopsheet
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy -p loopsheet
+	$(BIN)/python -m pytest
+
+bench: $(VENV)/.bench
+	set -e; for script in benchmarks/bench_*.py; do echo "== $$script"; $(BIN)/python "$$script"; done
+
+# The stamps: an environment is set up once, and again when what it was made from has changed.
+$(VENV)/.made:
+	@$(PYTHON) -c 'import sys; sys.exit("loopsheet needs Python 3.11 or later, $(PYTHON) is %d.%d: make PYTHON=python3.11 ..." % sys.version_info[:2] if sys.version_info < (3, 11) else 0)'
+	$(PYTHON) -m venv --clear $(VENV)
+	@touch $@
+
+# Each lock holds all of the runtime lock, so the larger one serves `make report` as well. The build
+# backend is pinned with the rest: nothing is fetched that is not in the lock.
+$(VENV)/.runtime $(VENV)/.test $(VENV)/.bench: $(VENV)/.%: requirements/%.txt pyproject.toml $(VENV)/.made
+	$(PIP) install --require-hashes -r $<
+	$(PIP) install --no-deps --no-build-isolation --no-index -e .
+	@touch $@ $(VENV)/.runtime
+
+# mypy reads the working files through this link, under the package's own name (see pyproject.toml).
+.mypy_root/loopsheet:
+	@mkdir -p $(@D) && ln -sfn .. $@
+
+lock: .venv-lock/bin/uv
+	$(LOCK) pyproject.toml --group build -o requirements/runtime.txt
+	$(LOCK) pyproject.toml --group build --group test -c requirements/runtime.txt -o requirements/test.txt
+	$(LOCK) pyproject.toml --group build --group bench -c requirements/test.txt -o requirements/bench.txt
+
+.venv-lock/bin/uv:
+	$(PYTHON) -m venv --clear .venv-lock
+	.venv-lock/bin/python -m pip --quiet install '$(UV)'
+
+clean:
+	rm -rf $(VENV) .venv-lock .mypy_root build dist *.egg-info '$(OUT)' .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

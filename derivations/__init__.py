@@ -1,0 +1,1 @@
+"""Physics and algebra: what is true, and the proof of it. sympy only."""

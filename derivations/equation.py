@@ -1,0 +1,193 @@
+"""What a derivation is made of: equations, the steps between them, and the ledger that holds both.
+
+An equation is written once, in its author's order of terms (under ``with evaluate(False)``); what is
+computed is the same expression, evaluated. Nothing here decides whether a claim holds: that is
+:mod:`~loopsheet.derivations.proof`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from enum import Enum
+from typing import Any
+
+from sympy import Basic, Expr, Integral, Rel, Sum, Symbol
+
+__all__ = ["Derivation", "Equation", "Erratum", "Kind", "Ledger", "Step", "evaluated"]
+
+
+class Kind(Enum):
+    """Why an equation stands in the ledger."""
+
+    DEFINITION = "definition"
+    ASSUMPTION = "assumption"
+    CLAIM = "claim"
+
+
+def evaluated(expression: Any) -> Any:
+    """The expression that is computed: the author's, rebuilt with sympy's own evaluation.
+
+    Integrals and sums stay unevaluated; only the order of terms and trivial factors are normalised.
+    """
+    if not isinstance(expression, Basic) or not expression.args or isinstance(expression, Symbol):
+        return expression
+    arguments = [evaluated(argument) for argument in expression.args]
+    if isinstance(expression, (Integral, Sum)):
+        return expression.func(arguments[0], *expression.limits)
+    return expression.func(*arguments)
+
+
+@dataclass(frozen=True)
+class Equation:
+    """A numbered statement that some expressions are equal, in the source's own words.
+
+    Parameters
+    ----------
+    number : str
+        Its number in the source, ``"(11)"``; numbers that begin with L are this project's own.
+    members : tuple of Expr
+        Two or more expressions said to be equal, as the author orders their terms; an inequality is
+        one relation.
+    because : str
+        Why it holds, in a sentence.
+    kind : Kind
+        Definition, assumption, or a claim that needs a derivation.
+    title : str
+        What it is called in prose.
+    part : str
+        Which line of a numbered group, ``"a"`` of ``(12a)``.
+    defines : Expr or None
+        The quantity that this line determines.
+    printed : tuple of Expr or None
+        What the source prints, where that differs from what is meant.
+    conditions : tuple of Rel
+        Relations without which it does not hold.
+    """
+
+    number: str
+    members: tuple[Expr, ...]
+    because: str
+    kind: Kind = Kind.CLAIM
+    title: str = ""
+    part: str = ""
+    defines: Expr | None = None
+    printed: tuple[Expr, ...] | None = None
+    conditions: tuple[Rel, ...] = ()
+    parent: Equation | None = field(default=None, repr=False)
+
+    @property
+    def label(self) -> str:
+        """Number and part: ``(12a)``; the title where there is no number."""
+        if not self.number:
+            return self.title
+        return f"{self.number[:-1]}{self.part})" if self.part else self.number
+
+    @property
+    def own(self) -> bool:
+        """Whether the number is this project's, not the source's."""
+        return self.number.startswith("(L")
+
+    @property
+    def sides(self) -> tuple[Expr, ...]:
+        """The members as they are computed."""
+        return tuple(evaluated(member) for member in self.members)
+
+    @property
+    def residuals(self) -> tuple[Expr, ...]:
+        """Differences of neighbouring sides: the equation says that each is zero."""
+        sides = self.sides
+        return tuple(a - b for a, b in zip(sides, sides[1:], strict=False))
+
+    @property
+    def value(self) -> Expr:
+        """The last side: what a formula for the quantity on the left computes."""
+        return self.sides[-1]
+
+    @property
+    def brief(self) -> Equation:
+        """Only the first and the last member: what a chain of equalities says in the end."""
+        return replace(self, members=(self.members[0], self.members[-1]), parent=self.origin)
+
+    @property
+    def reversed(self) -> Equation:
+        """The same equation read from right to left."""
+        return replace(self, members=self.members[::-1], parent=self.origin)
+
+    def at(self, where: Mapping[Any, Any]) -> Equation:
+        """The same equation for other symbols: one test of all, or the rows of a sheet."""
+        return replace(
+            self,
+            members=tuple(member.xreplace(dict(where)) for member in self.members),
+            defines=None if self.defines is None else self.defines.xreplace(dict(where)),
+            conditions=tuple(condition.xreplace(dict(where)) for condition in self.conditions),
+            printed=None,
+            parent=self.origin,
+        )
+
+    @property
+    def origin(self) -> Equation:
+        """The equation of the ledger that this is an instance of (itself, if it is none)."""
+        return self.parent if self.parent is not None else self
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step: the claim follows when the premises are solved for `eliminate` and put in."""
+
+    claim: Equation
+    premises: tuple[Equation, ...]
+    eliminate: tuple[Expr, ...]
+    """For each premise in turn, what it is solved for."""
+    says: str
+    multiplier: Expr | None = None
+    """Where a premise is not solved: the last premise times this factor, nowhere zero, is the claim."""
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """A chain of steps; the claim of the last is what was to be shown."""
+
+    steps: tuple[Step, ...]
+
+    @property
+    def claim(self) -> Equation:
+        """The equation at the end of the chain."""
+        return self.steps[-1].claim
+
+
+@dataclass(frozen=True)
+class Erratum:
+    """A finding about the printed equations, made by a check; it names its evidence."""
+
+    about: str
+    kind: str
+    sentence: str
+    evidence: str = ""
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """All equations of a source, in its order, each with its derivation, and the checks of the print."""
+
+    entries: tuple[Equation | Derivation, ...]
+    checks: tuple[Callable[[Ledger], Erratum | None], ...] = ()
+
+    def equations(self) -> Iterator[Equation]:
+        """All numbered equations, in order."""
+        for entry in self.entries:
+            yield entry.claim if isinstance(entry, Derivation) else entry
+
+    def derivation(self, equation: Equation) -> Derivation | None:
+        """The chain that ends in this equation."""
+        for entry in self.entries:
+            if isinstance(entry, Derivation) and entry.claim == equation:
+                return entry
+        return None
+
+    def __getitem__(self, label: str) -> Equation:
+        """The equation of a label, ``(12a)``."""
+        for equation in self.equations():
+            if equation.label == label:
+                return equation
+        raise KeyError(label)

@@ -1,0 +1,167 @@
+"""Least-squares fits of F = C x^alpha to points (x_q, F_q): the equations and their derivations.
+
+Two fits are in use and differ: the straight line through the logarithms, which has a closed form, and
+the least squares of the force itself, which leaves one equation for alpha. Both follow from setting the
+derivatives of their sum of squares to zero.
+"""
+
+from __future__ import annotations
+
+from sympy import Integer, Sum, Symbol, diff, exp, log
+from sympy.core.parameters import evaluate
+
+from .equation import Derivation, Equation, Kind, Step
+from .symbols import TABLE, q
+
+__all__ = [
+    "ENTRIES",
+    "alpha_lin",
+    "alpha_log",
+    "intercept",
+    "lin_scale",
+    "log_F",
+    "log_scale",
+    "log_x",
+    "mean_X",
+    "mean_Y",
+    "size",
+]
+
+X, Y, x, F = (TABLE[name] for name in ("X", "Y", "x", "F"))
+a, b, Xmean, Ymean, C, alpha, x_ref, F_ref = (
+    TABLE[name].symbol for name in ("a", "b", "Xmean", "Ymean", "C", "alpha", "x_ref", "F_ref")
+)
+size = Symbol("n_points", integer=True, positive=True)
+"""How many points there are; the sums run over all of them."""
+_all = (q, 1, size)
+
+# --- the straight line through the logarithms ---------------------------------------------------------
+
+_squares_log = Sum((Y[q] - a - b * X[q]) ** 2, _all)
+with evaluate(False):
+    log_x = Equation(
+        "(L13)", (X[q], log(x[q] / x_ref)), "definition", Kind.DEFINITION, "logarithm of the approach", defines=X[q]
+    )
+    log_F = Equation(
+        "(L14)", (Y[q], log(F[q] / F_ref)), "definition", Kind.DEFINITION, "logarithm of the force", defines=Y[q]
+    )
+    mean_X = Equation(
+        "(L15)", (Xmean, Sum(X[q], _all) / size), "definition", Kind.DEFINITION, "mean of X", defines=Xmean
+    )
+    mean_Y = Equation(
+        "(L16)", (Ymean, Sum(Y[q], _all) / size), "definition", Kind.DEFINITION, "mean of Y", defines=Ymean
+    )
+_normal_a = Equation(
+    "",
+    (diff(_squares_log, a), Integer(0)),
+    "the sum of squares is least where its derivative by the intercept vanishes",
+    Kind.DEFINITION,
+    "normal equation of the intercept",
+)
+_normal_b = Equation(
+    "",
+    (diff(_squares_log, b), Integer(0)),
+    "the sum of squares is least where its derivative by the slope vanishes",
+    Kind.DEFINITION,
+    "normal equation of the slope",
+)
+with evaluate(False):
+    # Deviations from the mean, not raw sums: N Sum(XY) - Sum(X) Sum(Y) cancels.
+    alpha_log = Equation(
+        "(L17)",
+        (b, Sum((X[q] - Xmean) * (Y[q] - Ymean), _all) / Sum((X[q] - Xmean) ** 2, _all)),
+        "slope of the least-squares line through the logarithms of the points",
+        title="log-log fit: exponent",
+    )
+    intercept = Equation(
+        "(L18)",
+        (a, Ymean - b * Xmean),
+        "the least-squares line passes through the mean point",
+        title="log-log fit: intercept",
+    )
+    _line = Equation(
+        "",
+        (log(C * x[q] ** b / F_ref), a + b * log(x[q] / x_ref)),
+        "the fitted line, read as a force law",
+        Kind.DEFINITION,
+        "the line as a force law",
+    )
+    log_scale = Equation(
+        "(L19)",
+        (C, F_ref / x_ref**b * exp(a)),
+        "the intercept of the line, turned back into a coefficient",
+        title="log-log fit: coefficient",
+    )
+
+_line_step = "Both normal equations are linear; solve them for the slope and the intercept."
+LOG_FIT = (
+    Derivation(
+        (Step(alpha_log, (mean_X, mean_Y, _normal_a, _normal_b), (Xmean, Ymean, a, b), _line_step),)
+    ),
+    Derivation(
+        (
+            Step(
+                intercept,
+                (mean_X, mean_Y, _normal_a),
+                (Xmean, Ymean, a),
+                "Solve the normal equation of the intercept.",
+            ),
+        )
+    ),
+    Derivation((Step(log_scale, (_line,), (C,), "Solve the line for the coefficient."),)),
+)
+
+# --- least squares of the force -----------------------------------------------------------------------
+
+_squares_lin = Sum((F[q] - C * x[q] ** alpha) ** 2, _all)
+_normal_C = Equation(
+    "",
+    (diff(_squares_lin, C), Integer(0)),
+    "the sum of squares is least where its derivative by the coefficient vanishes",
+    Kind.DEFINITION,
+    "normal equation of the coefficient",
+)
+_normal_alpha = Equation(
+    "",
+    (diff(_squares_lin, alpha), Integer(0)),
+    "the sum of squares is least where its derivative by the exponent vanishes",
+    Kind.DEFINITION,
+    "normal equation of the exponent",
+)
+with evaluate(False):
+    t = x[q] / x_ref
+    _moment = Sum(F[q] * t**alpha, _all) / Sum(t ** (2 * alpha), _all)
+    lin_scale = Equation(
+        "(L20)",
+        (C, _moment / x_ref**alpha),
+        "for a given exponent the best coefficient is a ratio of two sums",
+        title="least squares of force: coefficient",
+    )
+    alpha_lin = Equation(
+        "(L21)",
+        (
+            Sum(F[q] * t**alpha * log(t), _all) * Sum(t ** (2 * alpha), _all)
+            - Sum(F[q] * t**alpha, _all) * Sum(t ** (2 * alpha) * log(t), _all),
+            Integer(0),
+        ),
+        "the best exponent, with the best coefficient already put in",
+        title="least squares of force: exponent",
+    )
+
+LIN_FIT = (
+    Derivation((Step(lin_scale, (_normal_C,), (C,), "The normal equation is linear in C."),)),
+    Derivation(
+        (
+            Step(
+                alpha_lin,
+                (_normal_C, _normal_alpha),
+                (C,),
+                "Put the best C in; what is left is a multiple of the equation.",
+                multiplier=-Sum((x[q] / x_ref) ** (2 * alpha), _all) / (2 * C * x_ref**alpha),
+            ),
+        )
+    ),
+)
+
+ENTRIES = (log_x, log_F, mean_X, mean_Y, *LOG_FIT, *LIN_FIT)
+"""Everything above, in the order of a ledger."""

@@ -1,0 +1,110 @@
+"""The one table of symbols: what each means, its unit, how it is printed, where it is sampled.
+
+A quantity is written in two ways: plain (``x_m.symbol``) and for test number k (``x_m[k]``). Both carry
+the same assumptions, so the algebra of a claim for all k is the algebra of the claim for one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from sympy import Expr, Function, Indexed, IndexedBase, Symbol
+
+__all__ = ["TABLE", "Quantity", "find"]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A physical quantity of the derivations.
+
+    Parameters
+    ----------
+    name : str
+        The name in the field and of its cell, ``x_m``.
+    meaning : str
+        What it is, in words.
+    unit : str
+        SI unit as text; an exponent may be a symbol's name (``N/m^alpha``).
+    latex : str
+        How the source prints it; ``%s`` is where a subscript goes (nothing, or the test's number).
+    span : tuple of float
+        The interval in which proofs sample it, in SI.
+    """
+
+    name: str
+    meaning: str
+    unit: str
+    latex: str
+    span: tuple[float, float] = (0.5, 2.0)
+    positive: bool = True
+    """Whether it is positive on the domain of every model here (a logarithm is not)."""
+
+    @cached_property
+    def symbol(self) -> Symbol:
+        """The plain symbol, with its assumptions."""
+        return Symbol(self.name, positive=True) if self.positive else Symbol(self.name, real=True)
+
+    @cached_property
+    def base(self) -> IndexedBase:
+        """The indexed symbol, with the same assumptions."""
+        return IndexedBase(self.symbol)
+
+    def __getitem__(self, index: Expr | int) -> Indexed:
+        """The quantity of one test (or pair, or point)."""
+        return self.base[index]
+
+
+def _table(*quantities: Quantity) -> dict[str, Quantity]:
+    return {quantity.name: quantity for quantity in quantities}
+
+
+TABLE = _table(
+    Quantity("v", "impact speed, the normal relative velocity before impact", "m/s", "v'%s", (0.5, 8.0)),
+    Quantity("e", "normal coefficient of restitution", "1", "e%s", (0.05, 0.9)),
+    Quantity("x_p", "imprint depth, the permanent deformation", "m", "x_{p%s}", (5e-6, 9e-5)),
+    Quantity("x_m", "maximum normal approach", "m", "x_{m%s}", (1e-5, 1e-4)),
+    Quantity("C", "coefficient of the compression law", "N/m^alpha", "C%s", (1e7, 1e10)),
+    Quantity("Cprime", "force at the maximum approach", "N", "C'%s", (500.0, 5000.0)),
+    Quantity("alpha", "exponent of the compression law", "1", r"\alpha%s", (1.0, 1.5)),
+    Quantity("beta", "exponent of the restitution law", "1", r"\beta%s", (1.0, 2.5)),
+    Quantity("m_red", "reduced mass of the two bodies", "kg", "m_{red%s}", (1e-3, 1e-1)),
+    Quantity("m_1", "mass of the ball", "kg", "m_{1%s}", (1e-3, 1e-1)),
+    Quantity("m_2", "mass of the target", "kg", "m_{2%s}", (1e-3, 1e2)),
+    Quantity("mu", "mass of the ball over the mass of the target", "1", r"\mu%s", (1e-4, 2.0)),
+    Quantity("rho", "density of the ball", "kg/m^3", r"\rho%s", (1e3, 1e4)),
+    Quantity("d", "diameter of the ball", "m", "d%s", (1e-3, 5e-2)),
+    Quantity("x", "normal approach", "m", "x%s", (1e-6, 1e-4)),
+    Quantity("F", "impact force", "N", "F%s", (1.0, 5000.0)),
+    Quantity("z", "height over the ball's centre", "m", "z%s", (1e-4, 1e-3)),
+    Quantity("u", "reciprocal of alpha + 1", "1", "u%s", (0.3, 0.6)),
+    Quantity("v_n1", "normal component of the relative velocity before impact", "m/s", r"\mathbf{v}'\cdot\mathbf{n}%s"),
+    Quantity("v_n2", "normal component of the relative velocity after impact", "m/s", r"\mathbf{v}''\cdot\mathbf{n}%s"),
+    Quantity("Lambda", "logarithm of the ratio of both impact speeds", "1", r"\Lambda%s", (-2.0, 2.0), positive=False),
+    Quantity("n", "exponent of Meyer's law", "1", "n%s", (2.0, 3.0)),
+    Quantity("x_ref", "approach that makes the logarithms pure numbers", "m", r"x_{\mathrm{ref}%s}", (1e-5, 1e-4)),
+    Quantity("F_ref", "force that makes the logarithms pure numbers", "N", r"F_{\mathrm{ref}%s}", (100.0, 5000.0)),
+    Quantity("x_top", "largest approach of the pair", "m", r"x_{\mathrm{top}%s}", (1e-5, 1e-4)),
+    Quantity("X", "logarithm of a point's approach over the reference", "1", "X%s", (-1.0, 1.0), positive=False),
+    Quantity("Y", "logarithm of a point's force over the reference", "1", "Y%s", (-1.0, 1.0), positive=False),
+    Quantity("Xmean", "mean of X over the points", "1", r"\bar{X}%s", (-1.0, 1.0), positive=False),
+    Quantity("Ymean", "mean of Y over the points", "1", r"\bar{Y}%s", (-1.0, 1.0), positive=False),
+    Quantity("a", "intercept of the fitted line", "1", "a%s", (-1.0, 1.0), positive=False),
+    Quantity("b", "slope of the fitted line", "1", "b%s", (-1.0, 1.0), positive=False),
+    Quantity("N", "number of generated points of a pair", "1", "N%s", (5.0, 50.0)),
+)
+
+k = Symbol("k", integer=True, positive=True)
+p = Symbol("p", integer=True, positive=True)
+q = Symbol("q", integer=True, positive=True)
+s = Symbol("s", integer=True, positive=True)
+"""The running numbers: k of a test, p of a pair, q of a point, s of a point within its pair."""
+
+F_of = Function("F")
+"""The force as an unknown function of the approach, before a law is put in."""
+
+
+def find(symbol: Expr) -> Quantity | None:
+    """The table's entry of a plain or an indexed symbol; None if it is not of the table."""
+    name = str(symbol.base.label) if isinstance(symbol, Indexed) else str(symbol)
+    return TABLE.get(name)

@@ -1,0 +1,1 @@
+"""The sheet and all that is made from it."""

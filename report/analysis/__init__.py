@@ -1,0 +1,1 @@
+"""What is concluded from a sheet's values: fits, uncertainty, referee, loops."""

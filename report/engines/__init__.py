@@ -1,0 +1,1 @@
+"""What calculates a sheet: one module a target, each generated from the algebra."""

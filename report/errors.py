@@ -1,0 +1,392 @@
+"""Every sentence a user may read when something is wrong, by its stable code.
+
+A code never changes its meaning and is never used again. LS1xx are about files, LS2xx about report.toml,
+LS3xx about tables, LS4xx about numbers and units, LS5xx about published values, LS6xx about usage and
+outputs. To add one: a line in :data:`CATALOGUE`, and a case in tests/test_errors.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from .diagnostics import Diagnostic, Location, render, render_all, visible
+
+__all__ = [
+    "CATALOGUE",
+    "Diagnostic",
+    "Entry",
+    "Findings",
+    "InputError",
+    "Location",
+    "LoopsheetError",
+    "OutputError",
+    "UnknownWorkbook",
+    "UsageError",
+    "close",
+    "diagnose",
+    "listing",
+    "render",
+    "render_all",
+    "suggest",
+]
+
+
+class Entry(NamedTuple):
+    """A title for lists of codes, and the templates of the sentences."""
+
+    title: str
+    message: str
+    allowed: str = ""
+    hint: str = ""
+
+
+CATALOGUE: dict[str, Entry] = {
+    # Files
+    "LS101": Entry(
+        "no such folder", "no such folder: '{text}'", hint="'loopsheet new FOLDER' makes one to start from"
+    ),
+    "LS102": Entry("not a folder", "'{text}' is not a folder", "a folder that holds a report.toml"),
+    "LS103": Entry(
+        "no report.toml",
+        "the folder has no report.toml",
+        "a folder that holds a report.toml",
+        "'loopsheet new FOLDER' makes a folder to start from",
+    ),
+    "LS104": Entry(
+        "no such file", "no such file: '{text}'", "the name of a file in the report's folder", "{suggestion}"
+    ),
+    "LS105": Entry("not a file", "'{text}' is not a file", "a regular file in the report's folder"),
+    "LS106": Entry(
+        "unreadable file", "'{text}' cannot be read: {reason}", hint="check the permissions of the file"
+    ),
+    "LS107": Entry(
+        "file outside the folder",
+        "'{text}' leads out of the report's folder",
+        "a relative path with forward slashes, without '..'",
+        "copy the file into the folder, so that the report can be moved and repeated",
+    ),
+    "LS108": Entry("file too large", "'{text}' has {size} bytes", "at most {limit} bytes"),
+    "LS109": Entry(
+        "not UTF-8",
+        "byte {offset} of the file (0x{byte}) is not UTF-8 text",
+        "UTF-8, with or without a byte order mark",
+        "save the file again as UTF-8 (in a spreadsheet: 'CSV UTF-8')",
+    ),
+    "LS110": Entry(
+        "binary file",
+        "the file holds a NUL byte, at byte {offset}: it is not text",
+        "a text file in UTF-8",
+        "save the file again as UTF-8 text (in a spreadsheet: 'CSV UTF-8')",
+    ),
+    "LS111": Entry("empty file", "the file is empty", "{allowed}"),
+    "LS112": Entry(
+        "control character", "the control character {text} is in the text", "printable text on one line"
+    ),
+    # report.toml
+    "LS201": Entry("not TOML", "not TOML: {reason}", "TOML 1.0, https://toml.io", "{suggestion}"),
+    "LS202": Entry("TOML too deep", "the file is nested too deeply", "the keys of a report, two levels deep"),
+    "LS203": Entry("unknown key", "unknown key '{text}' in {table}", "{known}", "{suggestion}"),
+    "LS204": Entry("missing key", "the key '{text}' is missing in {table}", hint="write {example}"),
+    "LS205": Entry("wrong type", "'{text}' is {found}", "{wanted}", "write {example}"),
+    "LS206": Entry(
+        "number without quotes",
+        "'{text}' is a bare number: its digits as printed would be lost",
+        "the number as printed and its unit, in quotes",
+        "write {text} = {example}",
+    ),
+    "LS207": Entry("unknown workbook", "no such workbook: '{text}'", "{known}", "{suggestion}"),
+    "LS208": Entry(
+        "unknown way of shortening", "'{text}' is no way to shorten a number", "{known}", "{suggestion}"
+    ),
+    "LS209": Entry("parameters do not fit together", "{reason}", hint="{known}"),
+    "LS210": Entry(
+        "no space before the unit",
+        "no space between number and unit: '{text}'",
+        "the number, a space, the unit",
+        'write "{example}"',
+    ),
+    "LS211": Entry(
+        "parameter without unit",
+        "{name} has no unit: '{text}'",
+        "a unit that converts to {unit}",
+        'write the unit after a space, for example "{example}"',
+    ),
+    # Tables
+    "LS301": Entry(
+        "missing column", "the column '{text}' is missing", hint="add '{example}' to the first line"
+    ),
+    "LS302": Entry(
+        "doubled column",
+        "the column '{text}' is there twice",
+        "each column once",
+        "delete or rename one of them",
+    ),
+    "LS303": Entry("unknown column", "unknown column '{text}'", "{known}", "{suggestion}"),
+    "LS304": Entry(
+        "column without unit",
+        "the column '{text}' does not name its unit",
+        "a unit in square brackets, that converts to {unit}",
+        "write '{example}'",
+    ),
+    "LS305": Entry(
+        "malformed header",
+        "not a column's name and unit: '{text}'",
+        "a name and its unit in square brackets",
+        "write '{example}'",
+    ),
+    "LS306": Entry(
+        "wrong number of fields", "the row has {found} fields, the first line has {wanted}", "{wanted} fields"
+    ),
+    "LS307": Entry(
+        "row widened by decimal commas",
+        "the row has {found} fields, the first line has {wanted}: decimal commas? ({count} such rows)",
+        "a decimal point; the comma separates fields",
+        "write 2.334, not 2,334",
+    ),
+    "LS308": Entry(
+        "wrong separator",
+        "the fields are separated by {text}",
+        "commas between fields and a decimal point in numbers",
+        "export the table again as comma-separated values, with a decimal point",
+    ),
+    "LS309": Entry("no header", "the first line holds numbers instead of the names of columns", "{known}"),
+    "LS310": Entry("fewer than two tests", "the table has {count}", "at least two tests, one a row"),
+    "LS311": Entry(
+        "doubled test number",
+        "test {text} is there twice, first in line {first}",
+        "each test number once",
+        "number the tests 1, 2, 3 ...",
+    ),
+    "LS312": Entry(
+        "not a test number", "not a test number: '{text}'", "a positive whole number such as 1, 2, 3"
+    ),
+    "LS313": Entry(
+        "quote not closed",
+        "the quote that opens here is never closed",
+        'a field in quotes ends with a quote; a quote inside it is doubled ("")',
+    ),
+    "LS314": Entry(
+        "stray quote",
+        "a stray quote in '{text}'",
+        'quotes around the whole field; a quote inside it is doubled ("")',
+    ),
+    "LS315": Entry(
+        "empty line", "an empty line between the rows", "empty lines at the end only", "delete it"
+    ),
+    "LS316": Entry("too many columns", "the first line has {found} fields", "at most {wanted} columns"),
+    # Numbers and units
+    "LS401": Entry(
+        "not a number",
+        "{name} is not a number: '{text}'",
+        "digits with a decimal point, and an exponent such as e-3 if need be",
+        "{suggestion}",
+    ),
+    "LS402": Entry(
+        "decimal comma",
+        "{name} has a decimal comma: '{text}'",
+        "a decimal point, and no marks between thousands",
+        "write '{example}'",
+    ),
+    "LS403": Entry("empty cell", "{name} is empty", "{allowed}"),
+    "LS404": Entry(
+        "not finite",
+        "{name} is not a finite number: '{text}'",
+        "a finite number",
+        "leave out a test that was not measured",
+    ),
+    "LS405": Entry(
+        "number out of reach",
+        "{name} has too many digits, or is too large or too small: '{text}'",
+        "at most 100 characters; in SI, the number and its last digit between 1e-300 and 1e300",
+    ),
+    "LS406": Entry(
+        "out of range",
+        "{name} is out of range: '{text}'",
+        "{allowed}",
+        "check the sign, the decimal point and the unit {unit} that it is read in",
+    ),
+    "LS407": Entry(
+        "uncertainty not positive",
+        "{name} is not positive: '{text}'",
+        "a standard uncertainty greater than 0",
+        "without the column, the uncertainty follows from the printed digits",
+    ),
+    "LS421": Entry("unknown unit", "unknown unit '{text}'", "{known}", "{suggestion}"),
+    "LS422": Entry("wrong dimension", "{name} is in '{text}', which does not convert to {unit}", "{known}"),
+    "LS423": Entry(
+        "unit with an offset or a logarithm",
+        "'{text}' is not a multiple of an SI unit",
+        "units that are plain multiples: no degC, no dB",
+        "convert the numbers first, for example to K",
+    ),
+    "LS424": Entry(
+        "malformed unit",
+        "not a unit: '{text}'",
+        "units with *, /, spaces, parentheses and whole powers up to 12, such as m/s^2 or m·s⁻²",
+        "{suggestion}",
+    ),
+    "LS425": Entry(
+        "ambiguous unit",
+        "'{text}' follows a slash without parentheses: is it above or below the line?",
+        "one meaning, such as J/(kg*K)",
+        "put parentheses around what is below the line",
+    ),
+    # Published values
+    "LS501": Entry(
+        "not an index",
+        "not an index: '{text}'",
+        "1-2 for a pair, 3 for a test, nothing for a single number",
+        "a spreadsheet may have turned 1-2 into a date: format the column as text",
+    ),
+    "LS502": Entry("unknown expectation", "expect is '{text}'", "nothing, or 'differs'", "{suggestion}"),
+    "LS503": Entry(
+        "difference without a reason",
+        "a known difference needs its reason",
+        "a sentence in the column 'reason'",
+        "say why the published value differs from the recomputed one",
+    ),
+    "LS504": Entry(
+        "doubled published value",
+        "{text} is there twice from '{source}', first in line {first}",
+        "each value of a source once",
+    ),
+    "LS505": Entry("unknown cell", "the sheet has no cell '{text}'", "{known}", "{suggestion}"),
+    "LS506": Entry("unknown index", "{name} has no index '{text}'", "{known}"),
+    # Usage and outputs
+    "LS601": Entry(
+        "output not writable",
+        "'{text}' cannot be written: {reason}",
+        "a folder that may be written",
+        "choose another place with --out",
+    ),
+    "LS602": Entry(
+        "output not a folder",
+        "'{text}' is a file, not a folder",
+        "a folder",
+        "choose another place with --out",
+    ),
+    "LS603": Entry(
+        "folder not empty",
+        "'{text}' is not empty",
+        "a folder that does not exist yet, or an empty one",
+        "nothing was written; choose another name",
+    ),
+    "LS604": Entry("unknown word", "unknown {kind} '{text}'", "{known}", "{suggestion}"),
+    "LS605": Entry("program missing", "{kind} needs {text}, which is not installed", hint="install {known}"),
+}
+
+
+def diagnose(code: str, at: Location | None = None, **fields: object) -> Diagnostic:
+    """Make a finding from its code, its place and what its sentences name."""
+    entry = CATALOGUE[code]
+    words = {name: _shorten(str(value), 60 if name == "text" else 400) for name, value in fields.items()}
+    message, allowed, hint = (template.format_map(words) for template in entry[1:])
+    return Diagnostic(code, message, at or Location(), allowed, hint)
+
+
+def _shorten(text: str, limit: int) -> str:
+    return visible(text if len(text) <= limit else text[: limit - 3] + "...")
+
+
+def suggest(word: str, known: Iterable[str]) -> str:
+    """Return "did you mean ...?" for the nearest known word, or nothing.
+
+    >>> suggest("x-p", ["v", "e", "x_p"])
+    "did you mean 'x_p'?"
+    """
+    nearest = close(word, known)
+    return f"did you mean '{nearest}'?" if nearest else ""
+
+
+def close(word: str, known: Iterable[str]) -> str | None:
+    """Return the known word that is nearest to a misspelt one, if one is near."""
+    if len(word) > 60:  # difflib takes quadratic time, and no name of ours is as long
+        return None
+    import difflib  # only errors need it
+
+    by_lower = {name.lower(): name for name in reversed(list(known))}
+    found = difflib.get_close_matches(word.lower(), by_lower, n=1, cutoff=0.6)
+    return by_lower[found[0]] if found else None
+
+
+def listing(words: Iterable[str], most: int = 12) -> str:
+    """Return words for "allowed": ``a, b or c``; past `most` they are cut."""
+    names = list(words)
+    if len(names) > most:
+        return ", ".join(names[:most]) + f" ... ({len(names)} in all)"
+    return " or ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
+
+
+class Findings:
+    """Collects findings, so that a user hears of all of them at once.
+
+    A file of a million wrong cells would fill the memory with sentences that nobody reads: past
+    :attr:`most` they are dropped.
+    """
+
+    most = 1000
+
+    def __init__(self) -> None:
+        self.found: list[Diagnostic] = []
+
+    @property
+    def full(self) -> bool:
+        """Whether there is no use in looking further."""
+        return len(self.found) >= self.most
+
+    def add(self, code: str, at: Location | None = None, **fields: object) -> None:
+        """Keep one finding."""
+        if not self.full:
+            self.found.append(diagnose(code, at, **fields))
+
+    def check(self) -> None:
+        """Raise :class:`InputError` if there are findings."""
+        if self.found:
+            raise InputError(*self.found)
+
+
+class LoopsheetError(Exception):
+    """What the user can put right: it carries findings and ends the run with exit code 2.
+
+    Parameters
+    ----------
+    *diagnostics : Diagnostic
+        One or more; they are kept sorted by file, line and column.
+    """
+
+    exit_code = 2
+
+    def __init__(self, *diagnostics: Diagnostic) -> None:
+        super().__init__(*diagnostics)
+        self.diagnostics = tuple(sorted(diagnostics, key=lambda diagnostic: diagnostic.order))
+
+    def __str__(self) -> str:
+        """Show the findings, without colour."""
+        return render_all(self.diagnostics)
+
+
+class InputError(LoopsheetError):
+    """The files of a report folder are not as they must be."""
+
+
+class OutputError(LoopsheetError):
+    """An output cannot be written where it should go."""
+
+
+class UsageError(LoopsheetError):
+    """A word of the command line is not known."""
+
+
+class UnknownWorkbook(LookupError):
+    """No workbook has this name.
+
+    Parameters
+    ----------
+    known : iterable of str
+        The names there are.
+    """
+
+    def __init__(self, known: Iterable[str] = ()) -> None:
+        self.known = tuple(known)
+        super().__init__(self.known)

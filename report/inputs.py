@@ -1,0 +1,297 @@
+"""From a report folder to typed inputs: everything that is foreign is checked here, and all of it at once."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .errors import Findings, Location, LoopsheetError, UnknownWorkbook, close, listing, suggest
+from .measurements import MODES, Measurements, read_measurements
+from .parameters import read_parameters, wrong_type
+from .published import PublishedValue, check_published, read_published
+from .sources import Source, open_source, read_bytes
+from .tomlfile import TomlFile, read_toml
+
+if TYPE_CHECKING:
+    from .quantity import Printed
+    from .workbook import Workbook
+
+__all__ = ["Inputs", "PublishedValue", "check_published", "load"]
+
+LARGEST_TOML = 1_000_000
+LARGEST_TABLE = 50_000_000
+LARGEST_PUBLISHED = 5_000_000
+"""Bytes. Anything larger is a mistake, and would be held in memory several times over."""
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What a report folder says, checked.
+
+    Parameters
+    ----------
+    folder : Path
+        As it was given.
+    title : str
+        The title of the report; the workbook's, if none is given.
+    workbook : Workbook
+        The method.
+    parameters : dict of str to Printed
+        Those that were given and those that have a default, in the workbook's order.
+    given : frozenset of str
+        The names of those that were really given.
+    tests : tuple of int
+        The test numbers, in the order of the file.
+    measured : dict of str to tuple of Printed
+        One number a test for each measured column.
+    header_units : dict of str to str
+        The unit of each measured column, as written in the header.
+    published : tuple of PublishedValue
+        The values to referee.
+    files : dict of str to bytes
+        The bytes of every file that was read, by its name relative to the folder.
+    """
+
+    folder: Path
+    title: str
+    workbook: Workbook
+    parameters: dict[str, Printed]
+    given: frozenset[str]
+    tests: tuple[int, ...]
+    measured: dict[str, tuple[Printed, ...]]
+    header_units: dict[str, str]
+    published: tuple[PublishedValue, ...]
+    files: dict[str, bytes]
+
+
+def load(folder: Path, find_workbook: Callable[[str, Path], Workbook]) -> Inputs:
+    """Read a report folder.
+
+    Parameters
+    ----------
+    folder : Path
+        It holds report.toml and the files that report.toml names.
+    find_workbook : callable
+        Takes the name in report.toml and the folder; returns the workbook, or raises
+        :class:`UnknownWorkbook`.
+
+    Raises
+    ------
+    InputError
+        With every finding in every file, each with its place.
+    """
+    return _Reader(folder, find_workbook).read()
+
+
+class _Reader:
+    """One reading of a folder: what was found and what was read, so far."""
+
+    def __init__(self, folder: Path, find_workbook: Callable[[str, Path], Workbook]) -> None:
+        self.folder = folder
+        self.find_workbook = find_workbook
+        self.findings = Findings()
+        self.files: dict[str, bytes] = {}
+        self.toml: TomlFile
+        self.workbook: Workbook | None = None
+
+    def read(self) -> Inputs:
+        toml = self.open_toml()
+        if toml is None:
+            self.findings.check()
+            raise AssertionError("a folder was refused without a finding")
+        self.toml = toml
+        self.keys((), ("title", "workbook", "parameters", "measurements", "published"))
+        self.workbook = self.open_workbook()
+        title = self.title()
+        parameters, given = self.parameters()
+        measurements = self.measurements()
+        published = self.published()
+        self.findings.check()
+        if self.workbook is None or measurements is None:
+            raise AssertionError("a folder was refused without a finding")
+        return Inputs(
+            self.folder,
+            title or self.workbook.title,
+            self.workbook,
+            parameters,
+            given,
+            measurements.tests,
+            measurements.measured,
+            measurements.header_units,
+            published,
+            self.files,
+        )
+
+    def open_toml(self) -> TomlFile | None:
+        try:
+            exists, is_folder = self.folder.exists(), self.folder.is_dir()
+            has_toml = is_folder and (self.folder / "report.toml").exists()
+        except (OSError, ValueError):
+            exists = is_folder = has_toml = False
+        if not exists:
+            self.findings.add("LS101", text=self.folder)
+        elif not is_folder:
+            self.findings.add("LS102", text=self.folder)
+        elif not has_toml:
+            self.findings.add("LS103", Location(self.folder.as_posix()))
+        else:
+            source = self.source("report.toml", LARGEST_TOML, "a workbook, parameters and measurements")
+            return read_toml(source, self.findings) if source else None
+        return None
+
+    def source(self, name: str, limit: int, wanted: str, asked: Location | None = None) -> Source | None:
+        data = read_bytes(self.folder, name, limit, self.findings, asked)
+        if data is None:
+            return None
+        self.files[Path(name).as_posix()] = data
+        return open_source(
+            (self.folder / name).as_posix(), Path(name).as_posix(), data, wanted, self.findings
+        )
+
+    # ------------------------------------------------------------------ report.toml
+
+    def keys(self, table: tuple[str, ...], known: Iterable[str]) -> dict[str, Any]:
+        """Return a table after a look at its keys; an absent one, or no table at all, is empty."""
+        data: Any = self.toml.data
+        for name in table:
+            data = data.get(name, {})
+        known = tuple(known)
+        where = "[" + ".".join(table) + "]" if table else "report.toml"
+        if not isinstance(data, dict):
+            # A key above the first table header and a table of the same name look alike to a beginner.
+            wrong_type(self.toml, self.findings, table, f"a table {where}", f"{where} on a line of its own")
+            return {}
+        for key in data:
+            if key not in known:
+                suggestion = suggest(key, known)
+                allowed = listing(known) if known else "no key"
+                self.findings.add(
+                    "LS203",
+                    self.toml.key(*table, key),
+                    text=key,
+                    table=where,
+                    known=allowed,
+                    suggestion=suggestion,
+                )
+        return {key: value for key, value in data.items() if key in known}
+
+    def text(self, table: tuple[str, ...], key: str, example: str, required: bool = False) -> str | None:
+        """Return the text of a key, if it is there and is text on one line."""
+        data: Any = self.toml.data
+        for name in table:
+            data = data.get(name, {})
+            if not isinstance(data, dict):
+                return None  # keys() has reported it
+        line = f'{key} = "{example}"'
+        if key not in data:
+            # A misspelt key is one problem, not two.
+            if required and not any(close(word, [key]) for word in data):
+                where = "[" + ".".join(table) + "]" if table else "report.toml"
+                self.findings.add("LS204", self.toml.key(*table), text=key, table=where, example=line)
+            return None
+        path = (*table, key)
+        value = data[key]
+        if not isinstance(value, str):
+            wrong_type(self.toml, self.findings, path, "text in quotes", line)
+            return None
+        control = re.search("[\x00-\x1f\x7f-\x9f\u2028\u2029\ufffe\uffff]", value)
+        if control:
+            self.findings.add("LS112", self.toml.value(*path), text=f"U+{ord(control.group()):04X}")
+            return None
+        if not value.strip():
+            self.findings.add("LS403", self.toml.value(*path), name=key, allowed=f"text, such as {line}")
+            return None
+        return value.strip()
+
+    def title(self) -> str | None:
+        return self.text((), "title", "Soft steel, ball drop")
+
+    def open_workbook(self) -> Workbook | None:
+        name = self.text((), "workbook", "soft_impact", required=True)
+        if name is None:
+            return None
+        at = self.toml.value("workbook")
+        if name.endswith(".py"):  # the user's own code: it is part of what the report was made from
+            data = read_bytes(self.folder, name, LARGEST_TOML, self.findings, at)
+            if data is None:
+                return None
+            self.files[Path(name).as_posix()] = data
+        try:
+            return self.find_workbook(name, self.folder)
+        except UnknownWorkbook as error:
+            known = ", ".join([*error.known, "or the name of a .py file in the folder"])
+            self.findings.add("LS207", at, text=name, known=known, suggestion=suggest(name, error.known))
+        except LoopsheetError as error:
+            self.findings.found.extend(error.diagnostics)
+        return None
+
+    def parameters(self) -> tuple[dict[str, Printed], frozenset[str]]:
+        data = self.toml.data.get("parameters", {})
+        if self.workbook is None:
+            return {}, frozenset()
+        declared = {parameter.name: parameter for parameter in self.workbook.parameters}
+        before = len(self.findings.found)
+        written = self.keys(("parameters",), declared)
+        printed = read_parameters(self.toml, written, self.workbook.parameters, self.findings)
+        given = frozenset(written)
+        # A misspelt name would also be missing from its combination: that is one problem, not two.
+        if len(self.findings.found) == before and isinstance(data, dict):
+            sentence = self.workbook.check_parameters(given)
+            if sentence:
+                known = f"the parameters are {listing(declared)}"
+                self.findings.add("LS209", self.toml.key("parameters"), reason=sentence, known=known)
+        return printed, given
+
+    # ------------------------------------------------------------------ the tables
+
+    def measurements(self) -> Measurements | None:
+        table = self.keys(("measurements",), ("file", "printed"))
+        above = self.toml.data
+        missing = isinstance(above.get("measurements", {}), dict)
+        if "measurements" not in above:  # a misspelt header is one problem, not two
+            missing = not any(close(word, ["measurements"]) for word in above)
+        name = self.text(("measurements",), "file", "measurements.csv", required=missing)
+        modes = self.modes() if "printed" in table else {}
+        if name is None:
+            return None
+        at = self.toml.value("measurements", "file")
+        source = self.source(
+            name, LARGEST_TABLE, "a first line with names and units, then one row a test", at
+        )
+        if source is None:
+            return None
+        return read_measurements(
+            source, self.workbook.measured if self.workbook else None, modes, self.findings
+        )
+
+    def modes(self) -> dict[str, str]:
+        known = None if self.workbook is None else [column.name for column in self.workbook.measured]
+        path = ("measurements", "printed")
+        written = self.toml.data["measurements"]["printed"]
+        table = self.keys(path, written if known is None and isinstance(written, dict) else known or ())
+        modes = {}
+        for column in table:
+            mode = self.text(path, column, "truncated")
+            if mode is not None and mode not in MODES:
+                at = self.toml.value(*path, column)
+                self.findings.add(
+                    "LS208", at, text=mode, known=listing(MODES), suggestion=suggest(mode, MODES)
+                )
+            elif mode is not None:
+                modes[column] = mode
+        return modes
+
+    def published(self) -> tuple[PublishedValue, ...]:
+        if "published" not in self.toml.data:
+            return ()
+        table = self.keys(("published",), ("file",))
+        is_table = isinstance(self.toml.data["published"], dict)
+        name = self.text(("published",), "file", "published.csv", required=is_table)
+        if name is None or not table:
+            return ()
+        at = self.toml.value("published", "file")
+        source = self.source(name, LARGEST_PUBLISHED, "a first line with the names of the columns", at)
+        return () if source is None else read_published(source, self.findings)

@@ -1,0 +1,118 @@
+"""Numbers as they were printed, and what values a quantity may have.
+
+A printed number is a string first: ``2.940`` says more than ``2.94``. Its value is kept as an exact
+fraction in SI, so that no engine starts from another engine's rounding.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+__all__ = ["Bounds", "Printed"]
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """The values that are allowed for an input, in SI, as data.
+
+    Parameters
+    ----------
+    low, high : float or None
+        The ends of the interval; None is no end.
+    low_open, high_open : bool
+        Whether the end itself is excluded.
+    integer : bool
+        Whether only whole numbers are allowed.
+    """
+
+    low: float | None = None
+    high: float | None = None
+    low_open: bool = False
+    high_open: bool = False
+    integer: bool = False
+
+    def allow(self, value: Fraction) -> bool:
+        """Tell whether a value lies inside."""
+        if self.integer and value.denominator != 1:
+            return False
+        # The ends are meant as they are written: the double 0.1 is a little more than a printed 0.1.
+        low = None if self.low is None else Fraction(repr(self.low))
+        high = None if self.high is None else Fraction(repr(self.high))
+        if low is not None and (value < low or (self.low_open and value == low)):
+            return False
+        return not (high is not None and (value > high or (self.high_open and value == high)))
+
+    def __str__(self) -> str:
+        """Say what is allowed, as the end of the sentence "it must be ..."."""
+        kind = "a whole number " if self.integer else ""
+        low = None if self.low is None else f"{self.low:.15g}"
+        high = None if self.high is None else f"{self.high:.15g}"
+        if low is not None and high is not None and not (self.low_open or self.high_open):
+            return f"{kind}between {low} and {high}"
+        parts = []
+        if low is not None:
+            parts.append(f"greater than {low}" if self.low_open else f"at least {low}")
+        if high is not None:
+            parts.append(f"less than {high}" if self.high_open else f"at most {high}")
+        return kind + " and ".join(parts) if parts else (kind or "any number").strip()
+
+
+@dataclass(frozen=True)
+class Printed:
+    """A number as it was printed: its digits are data.
+
+    Parameters
+    ----------
+    text : str
+        The digits as printed, ``"2.940"``.
+    unit : str
+        The unit as printed, ``"um"``; ``"1"`` for a pure number.
+    value : Fraction
+        The exact value in SI.
+    scale : Fraction
+        One printed unit in SI (1/1000000 for ``um``).
+    mode : str
+        How it was shortened: ``"rounded"`` or ``"truncated"``.
+    given_u : Fraction or None
+        A standard uncertainty in SI that the user gave; without it the digits say it.
+    where : str
+        ``file:line:column``, for messages and for tracing.
+    """
+
+    text: str
+    unit: str
+    value: Fraction
+    scale: Fraction
+    mode: str = "rounded"
+    given_u: Fraction | None = None
+    where: str = ""
+
+    @property
+    def decimals(self) -> int:
+        """Decimal places as printed: 3 for ``2.940``, -2 for ``12e2``."""
+        mantissa, _, exponent = self.text.lower().partition("e")
+        return len(mantissa.partition(".")[2]) - int(exponent or 0)
+
+    @property
+    def digits(self) -> int:
+        """Significant digits as printed: 4 for ``2.940``; zeros count unless they lead."""
+        mantissa = self.text.lower().partition("e")[0]
+        return len(mantissa.replace(".", "").lstrip("+-").lstrip("0")) or 1
+
+    @property
+    def half_unit(self) -> Fraction:
+        """Half a unit of the last printed digit, in SI."""
+        return self.scale * Fraction(1, 2) * Fraction(10) ** -self.decimals
+
+    @property
+    def u(self) -> float:
+        """Standard uncertainty in SI: the given one, else rectangular over the values that print so.
+
+        The printed value stands for an interval one last-digit unit wide, whether it was rounded or
+        truncated, so its standard deviation is half a unit over the square root of three (GUM 4.3.7).
+        """
+        if self.given_u is not None:
+            return float(self.given_u)
+        return float(self.half_unit) / math.sqrt(3)

@@ -1,0 +1,129 @@
+"""A finished report: everything a view shows, computed. Views read this and compute nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..derivations.equation import Erratum, Ledger
+from ..derivations.proof import Proof
+from .inputs import Inputs, PublishedValue
+from .sheet import Sheet
+from .values import Cell, Values
+from .workbook import Workbook
+
+__all__ = ["Comparison", "Curve", "Report", "Shown"]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """How a column is shown.
+
+    Parameters
+    ----------
+    unit : str
+        The unit it is shown in, as text; ``1`` for a pure number.
+    scale : float
+        One such unit in SI.
+    digits : int
+        Significant digits that the inputs warrant: one more than the least precise input behind it.
+    """
+
+    unit: str
+    scale: float
+    digits: int
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A line or a set of points of a figure, in SI.
+
+    Parameters
+    ----------
+    figure : str
+        Which figure it belongs to: the name of its drawing.
+    role : str
+        What it is there: ``compression``, ``restitution``, ``fit``, ``points``, ...
+    label : str
+        What tells it from others of the same role: the test's or the pair's number.
+    x, y : float arrays of the same length
+    """
+
+    figure: str
+    role: str
+    label: str
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A published value beside its recomputation.
+
+    Parameters
+    ----------
+    published : PublishedValue
+        What was printed, and whether a difference is expected.
+    cell : Cell
+        The recomputed cell.
+    again : str
+        The recomputed value, printed as the published one is: same unit, same decimals.
+    distance : float or None
+        Recomputed minus published, in units of the last printed digit; None where there is no value.
+    verdict : str
+        ``same`` (prints the same), ``differs`` or ``not-checkable`` (the cell has no value).
+    as_expected : bool
+        False is a finding: it differs unexpectedly, or no longer differs although that is expected.
+    """
+
+    published: PublishedValue
+    cell: Cell
+    again: str
+    distance: float | None
+    verdict: str
+    as_expected: bool
+
+
+@dataclass(frozen=True)
+class Report:
+    """All that is known after the sheet has been computed.
+
+    Parameters
+    ----------
+    title : str
+    workbook : Workbook
+    inputs : Inputs
+        As the user gave them, with the digits as printed.
+    sheet : Sheet
+    values : Values
+        Every cell, in SI, without a batch dimension.
+    shown : mapping of column name to Shown
+    ledger : Ledger
+    proofs : tuple of Proof
+        One for each equation of the ledger, in its order.
+    errata : tuple of Erratum
+        Findings about the source's print, each made by a check.
+    comparisons : tuple of Comparison
+        In the order of published.csv.
+    curves : tuple of Curve
+        For the figures.
+    """
+
+    title: str
+    workbook: Workbook
+    inputs: Inputs
+    sheet: Sheet
+    values: Values
+    shown: Mapping[str, Shown]
+    ledger: Ledger
+    proofs: tuple[Proof, ...]
+    errata: tuple[Erratum, ...]
+    comparisons: tuple[Comparison, ...]
+    curves: tuple[Curve, ...] = field(default=())
+
+    def proof(self, label: str) -> Proof:
+        """The proof of an equation by its label, ``(12a)``."""
+        return next(proof for proof in self.proofs if proof.equation.label == label)

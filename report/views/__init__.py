@@ -1,0 +1,1 @@
+"""What is read: views get finished values and compute nothing."""

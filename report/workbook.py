@@ -1,0 +1,128 @@
+"""What a workbook declares: its inputs, its algebra, its sheet, and what a reader is shown of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from .quantity import Bounds
+
+if TYPE_CHECKING:
+    from ..derivations.equation import Ledger
+    from .sheet import Sheet
+
+__all__ = ["FigureSpec", "Measured", "Parameter", "TableSpec", "Workbook"]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A measured column of the tests' table, by its cell name.
+
+    Parameters
+    ----------
+    name : str
+        The cell name, and the word in the header: ``x_p`` of ``x_p [um]``.
+    unit : str
+        The SI unit; a header may use any compatible one.
+    meaning : str
+        What it is, for messages and captions.
+    bounds : Bounds
+        What values are allowed, in SI.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    bounds: Bounds = field(default_factory=Bounds)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A scalar of the ``[parameters]`` section, by its cell name.
+
+    Parameters
+    ----------
+    name, unit, meaning, bounds
+        As for :class:`Measured`.
+    default : str or None
+        The printed value with its unit that holds when it is left out; None: no default.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    bounds: Bounds = field(default_factory=Bounds)
+    default: str | None = None
+
+
+@dataclass(frozen=True)
+class TableSpec:
+    """A table of the report: some columns of one axis (or scalars, one a row)."""
+
+    name: str
+    title: str
+    columns: tuple[str, ...]
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class FigureSpec:
+    """A figure of the report: which drawing, its number and its caption."""
+
+    name: str
+    number: str
+    caption: str
+    draw: str
+    """Name of the drawing in :mod:`loopsheet.report.views.figures`."""
+    alt: str = ""
+    """What the picture shows, for those who cannot see it."""
+
+
+@dataclass(frozen=True)
+class Workbook:
+    """One published method, ready to be fed with measurements.
+
+    Parameters
+    ----------
+    name : str
+        The word for ``workbook =`` in report.toml.
+    title : str
+        A short title of the method.
+    source : str
+        The publication, as a reference.
+    ledger : callable
+        Returns the equations with their derivations, in the order of the source.
+    measured, parameters : tuples
+        What the user gives.
+    check_parameters : callable
+        Takes the names that were given; returns None or a sentence that says which combination is
+        missing or contradictory.
+    sheet : callable
+        Takes the names of the given parameters; returns the :class:`Sheet`.
+    headline : tuple of str
+        The cells that are the result, first in every view.
+    tables, figures
+        What a reader is shown.
+    prose : str
+        Name of the narrative template under templates/prose.
+    """
+
+    name: str
+    title: str
+    source: str
+    ledger: Callable[[], Ledger]
+    measured: tuple[Measured, ...]
+    parameters: tuple[Parameter, ...]
+    sheet: Callable[[frozenset[str]], Sheet]
+    check_parameters: Callable[[frozenset[str]], str | None] = lambda given: None
+    headline: tuple[str, ...] = ()
+    tables: tuple[TableSpec, ...] = ()
+    figures: tuple[FigureSpec, ...] = ()
+    prose: str = "generic"
+    published_as: Mapping[str, str] = field(default_factory=dict)
+    """Titles of the published tables, by their ``source`` in published.csv."""
+    example: tuple[tuple[str, ...], ...] = ()
+    """A small table of measurements that ``new`` writes; its first row is the header, with units."""
+    example_parameters: Mapping[str, str] = field(default_factory=dict)
+    """The parameters that go with it, as printed, by name."""

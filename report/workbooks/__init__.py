@@ -1,0 +1,8 @@
+"""The shipped workbooks: one module a method, one line each in the registry."""
+
+from __future__ import annotations
+
+SHIPPED = {
+    "soft_impact": "loopsheet.report.workbooks.soft_impact",
+}
+"""Name in report.toml -> module that has it as ``WORKBOOK``."""

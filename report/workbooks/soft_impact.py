@@ -1,0 +1,278 @@
+"""The workbook of the soft-impact paper: its equations, laid out as a sheet over tests, pairs and points."""
+
+from __future__ import annotations
+
+from sympy import Max, Ne, Or, Piecewise, Rational, Symbol, log, solve
+
+from ...derivations import power_law_fit as fit
+from ...derivations import soft_impact as model
+from ...derivations.equation import Equation, evaluated
+from ...derivations.soft_impact import CP, E, V, XM, XP
+from ...derivations.symbols import TABLE, p, q, s
+from ..quantity import Bounds
+from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
+from ..workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook
+
+__all__ = ["WORKBOOK"]
+
+_POSITIVE = Bounds(low=0, low_open=True)
+
+MEASURED = (
+    Measured("v", "m/s", "impact speed", _POSITIVE),
+    Measured("e", "1", "coefficient of restitution", Bounds(low=0, high=1)),
+    Measured("x_p", "m", "imprint depth", _POSITIVE),
+)
+PARAMETERS = (
+    Parameter("ball_diameter", "m", "diameter of the ball", _POSITIVE),
+    Parameter("ball_density", "kg/m^3", "density of the ball", _POSITIVE),
+    Parameter("ball_mass", "kg", "mass of the ball, instead of its diameter and density", _POSITIVE),
+    Parameter("target_mass", "kg", "mass of the target; left out, the target is immobile", _POSITIVE),
+    Parameter("beta", "1", "exponent of the restitution law", _POSITIVE, default="1.5"),
+    Parameter(
+        "points_per_pair",
+        "1",
+        "how many points of each pair's curve the fits get",
+        Bounds(low=2, high=10000, integer=True),
+        default="50",
+    ),
+)
+
+# --- index sets ------------------------------------------------------------------------------------------
+
+k, i, j = (Symbol(name, integer=True, positive=True) for name in "kij")
+TESTS = Axis("tests", k, Symbol("n_tests", integer=True, positive=True))
+PAIRS = PairAxis("pairs", p, model.n_pairs, of=TESTS, first=i, second=j)
+POINTS = RepeatAxis("points", q, fit.size, of=PAIRS, step=s, count="points_per_pair")
+
+
+def _masses_given(given: frozenset[str]) -> str | None:
+    """Say what is missing or too much among the ball's parameters."""
+    shape = {"ball_diameter", "ball_density"} & given
+    if "ball_mass" in given and shape:
+        return f"ball_mass and {' and '.join(sorted(shape))} say the same thing twice; keep one"
+    if "ball_mass" not in given and len(shape) < 2:
+        return "the mass of the ball is missing: give ball_mass, or ball_diameter and ball_density"
+    return None
+
+
+def _column(name: str, axis: Axis | None, rule: Formula | Root | Given, like: str, **more: object) -> Column:
+    """A column that takes unit and LaTeX of a quantity of the derivations."""
+    quantity = TABLE[like]
+    settings: dict[str, object] = {"unit": quantity.unit, "meaning": quantity.meaning, "latex": quantity.latex}
+    return Column(name, axis, rule, **{**settings, **more})  # type: ignore[arg-type]
+
+
+# Given columns and the cells they lead to, by the symbols of the derivations.
+v, e, x_p = (
+    _column(name, TESTS, Given("measured"), name, display=f"like {name}") for name in ("v", "e", "x_p")
+)
+beta = _column("beta", None, Given("parameter"), "beta", exact=True)
+points_per_pair = Column(
+    "points_per_pair", None, Given("parameter"), meaning="points of each pair's curve", latex="N", exact=True
+)
+
+
+def _pair_symbols() -> dict[object, object]:
+    """What the two tests of the derivations are called in the sheet: rows i and j, cells of the pair."""
+
+    def of_pair(name: str, positive: bool = True) -> object:
+        return Column(name, PAIRS, Given(), positive=positive)[p]
+
+    return {
+        V[1]: v[i], V[2]: v[j], E[1]: e[i], E[2]: e[j], XP[1]: x_p[i], XP[2]: x_p[j],
+        XM[1]: of_pair("x_m1"), XM[2]: of_pair("x_m2"), CP[1]: of_pair("Cprime_1"), CP[2]: of_pair("Cprime_2"),
+        model.C: of_pair("C"), model.alpha: of_pair("alpha"), model.x_top: of_pair("x_top"),
+    }  # fmt: skip
+
+
+def _alpha() -> Root:
+    """The root of (11): in u = 1/(alpha + 1) the equation is smooth, its domain and turning point closed form."""
+    where = _pair_symbols()
+    u = model.u
+    form = model.root_form.at(where)
+    # No test gives back so little that alpha would reach -1: the last term only keeps the end finite.
+    high = 1 / ((beta.symbol + 1) * Max(e[i] ** 2, e[j] ** 2, Rational(1, 10**12)))
+    equal_e = evaluated(model.logarithm).subs(E[2], E[1]).xreplace(where).subs(u, high)
+    (alpha_of_u,) = solve(model.reciprocal.sides[0] - model.reciprocal.sides[1], model.alpha)
+    return Root(
+        equation=model.eq11.at(where),
+        form=form,
+        unknown=u,
+        value=alpha_of_u,
+        low=Rational(0),
+        high=high,
+        # Where u -> 0 the form tends to 1 - x_p1/x_p2. At the other end the factor of the livelier test
+        # vanishes and the other decides; where both vanish, the logarithm of (L6) does.
+        sign_low=x_p[j] - x_p[i],
+        sign_high=Piecewise((e[j] - e[i], Ne(e[i], e[j])), (equal_e, True)),
+        turning=(model.turning.value.subs(model.Lambda, model.log_speeds.value).xreplace(where),),
+        start=model.starting_value().xreplace(where),
+        steps=4,
+        none="no exponent gives both tests a positive approach on one loading curve; "
+        "a faster impact must leave a deeper imprint",
+        two="e rises with the speed, and the two tests alone cannot tell which exponent is meant",
+    )
+
+
+
+def sheet(given: frozenset[str]) -> Sheet:
+    """The sheet for the parameters that were given.
+
+    Parameters
+    ----------
+    given : frozenset of str
+        Names of parameters: they decide between the mass and the diameter, a free and a fixed target.
+    """
+    where = _pair_symbols()
+    alpha = _column("alpha", PAIRS, _alpha(), "alpha", requires=_TWO_TESTS)
+    on_pair = {
+        name: _column(name, PAIRS, Formula(equation.at(where)), like, meaning=meaning, display=shown, latex=latex)
+        for name, equation, like, meaning, shown, latex in (
+            ("x_m2", model.eq12a, "x_m", "approach of the pair's second test", "like x_p", r"x_{m_2%s}"),
+            ("x_m1", model.eq12b, "x_m", "approach of the pair's first test", "like x_p", r"x_{m_1%s}"),
+            ("C", model.eq12c, "C", "coefficient of the compression law", "", "C%s"),
+            ("Cprime_1", model.eq12d, "Cprime", "maximum force of the pair's first test", "", "C'_{1%s}"),
+            ("Cprime_2", model.eq12e, "Cprime", "maximum force of the pair's second test", "", "C'_{2%s}"),
+            ("x_top", model.top, "x_top", "largest approach of the pair", "like x_p", r"x_{\mathrm{top}%s}"),
+        )
+    }
+    x_top, C = on_pair["x_top"], on_pair["C"]
+    x = _column(
+        "x", POINTS, Formula(model.abscissa.at({model.x_top: x_top[p], model.N: points_per_pair.symbol})), "x",
+        meaning="approach of a generated point", display="like x_p",
+    )  # fmt: skip
+    F = _column(
+        "F", POINTS,
+        Formula(model.law_c.at({model.x: x[q], model.C: C[p], model.alpha: alpha[p], model.F: Symbol("F")})), "F",
+        meaning="force of a generated point",
+    )  # fmt: skip
+    return Sheet(
+        (
+            v, e, x_p, beta, *_masses(given), points_per_pair,
+            alpha, *on_pair.values(),
+            Column("alpha_mean", None, Formula(model.mean), meaning="mean exponent", latex=r"\bar{\alpha}"),
+            x, F, *_log_fit(x, F), *_lin_fit(x, F), *_tests_after_fit(),
+        )
+    )  # fmt: skip
+
+
+_TWO_TESTS = (
+    (
+        Or(Ne(v[i], v[j]), Ne(e[i], e[j]), Ne(x_p[i], x_p[j])),
+        "two equal tests are one; every exponent fits them",
+    ),
+)
+
+
+def _masses(given: frozenset[str]) -> tuple[Column, ...]:
+    """The mass of the ball and the reduced mass, from what was given."""
+    mass = {"unit": "kg", "display": "g"}
+    columns: list[Column] = []
+    ball = Column("ball_mass", None, Given("parameter"), meaning="mass of the ball", latex="m_1", **mass)
+    if "ball_mass" not in given:
+        diameter = Column("ball_diameter", None, Given("parameter"), "m", "diameter of the ball", "d", "like ball_diameter")
+        density = Column("ball_density", None, Given("parameter"), "kg/m^3", "density of the ball", r"\rho", "like ball_density")
+        rule = Formula(model.ball_mass.at({model.rho: density.symbol, model.d: diameter.symbol}))
+        ball = Column("ball_mass", None, rule, meaning="mass of the ball", latex="m_1", **mass)
+        columns += [diameter, density]
+    columns.append(ball)
+    reduced = model.immobile_mass.at({model.m_1: ball.symbol})
+    if "target_mass" in given:
+        target = Column("target_mass", None, Given("parameter"), meaning="mass of the target", latex="m_2", **mass)
+        reduced = model.eq8.at({model.m_1: ball.symbol, model.m_2: target.symbol})
+        columns.append(target)
+    columns.append(Column("m_red", None, Formula(reduced), meaning="reduced mass", latex="m_{red}", **mass))
+    return tuple(columns)
+
+
+def _log_fit(x: Column, F: Column) -> tuple[Column, ...]:
+    """The straight line through the logarithms of the generated points."""
+    ref = (
+        _column("x_ref", None, Formula(model.x_scale), "x_ref", display="like x_p"),
+        _column("F_ref", None, Formula(model.F_scale), "F_ref"),
+    )
+    ln_x, ln_F, mean_x, mean_F, line = (
+        Column(name, axis, Given(), positive=False)
+        for name, axis in (("ln_x", POINTS), ("ln_F", POINTS), ("mean_ln_x", None), ("mean_ln_F", None), ("ln_F_at_ref", None))
+    )
+    alpha_log = TABLE["alpha"].symbol.func("alpha_log", positive=True)
+    where = {
+        fit.X[q]: ln_x[q], fit.Y[q]: ln_F[q], fit.Xmean: mean_x.symbol, fit.Ymean: mean_F.symbol,
+        fit.a: line.symbol, fit.b: alpha_log,
+    }  # fmt: skip
+
+    def own(name: str, equation: Equation, latex: str, meaning: str, axis: Axis | None = None, unit: str = "1", positive: bool = False) -> Column:
+        return Column(name, axis, Formula(equation.at(where)), unit, meaning, latex, positive=positive)
+
+    return (
+        *ref,
+        own("ln_x", fit.log_x, "X%s", "logarithm of a point's approach over the reference", POINTS),
+        own("ln_F", fit.log_F, "Y%s", "logarithm of a point's force over the reference", POINTS),
+        own("mean_ln_x", fit.mean_X, r"\bar{X}", "mean of X"),
+        own("mean_ln_F", fit.mean_Y, r"\bar{Y}", "mean of Y"),
+        own("alpha_log", fit.alpha_log, r"\alpha_{\log}", "exponent of the log-log fit", positive=True),
+        own("ln_F_at_ref", fit.intercept, "a", "intercept of the log-log fit"),
+        own("C_log", fit.log_scale, r"C_{\log}", "coefficient of the log-log fit", unit="N/m^alpha_log", positive=True),
+    )
+
+
+def _lin_fit(x: Column, F: Column) -> tuple[Column, ...]:
+    """Least squares of the force: one equation for the exponent, then the coefficient."""
+    alpha = Column("alpha_lin", None, Given()).symbol
+    equation = fit.alpha_lin.at({fit.alpha: alpha})
+    root = Root(
+        equation=equation,
+        form=equation,
+        unknown=alpha,
+        value=alpha,
+        low=Rational(1, 10),
+        high=Rational(5),
+        start=Column("alpha_log", None, Given()).symbol,
+        steps=6,
+        none="the best power of the points lies outside 0.1 to 5",
+    )
+    return (
+        Column("alpha_lin", None, root, "1", "exponent of the least squares of force", r"\alpha_{\mathrm{lin}}"),
+        Column(
+            "C_lin", None, Formula(fit.lin_scale.at({fit.alpha: alpha})), "N/m^alpha_lin",
+            "coefficient of the least squares of force", r"C_{\mathrm{lin}}",
+        ),
+    )  # fmt: skip
+
+
+def _tests_after_fit() -> tuple[Column, ...]:
+    """Table 3: each test's approach and maximum force on the fitted curve."""
+    C_log, alpha_log = (Column(name, None, Given()).symbol for name in ("C_log", "alpha_log"))
+    x_m = Column("x_m", TESTS, Given())
+    seven, nine = (Column(name, TESTS, Given()) for name in ("Cprime_eq7", "Cprime_eq9"))
+    where = {
+        model.v: v[k], model.e: e[k], model.x_p: x_p[k], model.x_m: x_m[k],
+        model.C: C_log, model.alpha: alpha_log,
+    }  # fmt: skip
+    return (
+        _column("x_m", TESTS, Formula(model.x_m_of_test.at(where)), "x_m", display="like x_p"),
+        _column(
+            "Cprime_eq7", TESTS, Formula(model.Cprime_of_test.at({**where, model.Cprime: seven[k]})), "Cprime",
+            meaning="maximum force, from the restitution (7)", latex="C'_{(7)%s}",
+            requires=((x_m[k] > x_p[k], "the imprint is not shallower than the approach"),),
+        ),
+        _column(
+            "Cprime_eq9", TESTS, Formula(model.eq9.reversed.at({**where, model.Cprime: nine[k]})), "Cprime",
+            meaning="maximum force, from the compression (9)", latex="C'_{(9)%s}",
+        ),
+    )  # fmt: skip
+
+
+WORKBOOK = Workbook(
+    name="soft_impact",
+    title="Exponent of the force law from drop tests on a soft target",
+    source="F C Ciornei, S Alaci, I C Romanu, M C Ciornei and G Sopon: Identification of exponent from "
+    "load-deformation relation for soft materials from impact tests",
+    ledger=lambda: model.LEDGER,
+    measured=MEASURED,
+    parameters=PARAMETERS,
+    check_parameters=_masses_given,
+    sheet=sheet,
+    headline=("alpha_mean", "alpha_log", "C_log", "alpha_lin", "C_lin"),
+    prose="soft_impact",
+)

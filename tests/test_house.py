@@ -1,0 +1,325 @@
+"""The house keeps its own rules: arrows between the parts, packaging, locks, lazy imports, doctests."""
+
+import ast
+import doctest
+import importlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+import zipfile
+from collections.abc import Collection, Iterator
+from importlib import metadata
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+PACKAGES: list[str] = PYPROJECT["tool"]["setuptools"]["packages"]
+RUNTIME = {re.split(r"[^\w-]", line)[0].lower() for line in PYPROJECT["project"]["dependencies"]}
+MAX_LINES = 650
+
+# ---------------------------------------------------------------------------------- the arrows
+# Part of the package -> (parts it may import, libraries it may import besides the standard one).
+# The longest name that fits a module is its rule; a part includes all below it. "" is the root.
+WORDS = {
+    "report.diagnostics",
+    "report.errors",
+    "report.number_text",
+    "report.quantity",
+    "report.unit_text",
+}
+SHEET = WORDS | {"derivations", "report.sheet", "report.units", "report.workbook"}
+ALGEBRA = {"sympy", "mpmath"}
+
+MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
+    "": ({"derivations", "report"}, set()),
+    "__main__": ({"report.cli"}, set()),
+    "derivations": ({"derivations"}, ALGEBRA),
+    "report": ({"derivations", "report"}, RUNTIME),
+    **{part: (WORDS, {"pint"} if part == "report.unit_text" else set()) for part in WORDS},
+    "report.sheet": (SHEET, ALGEBRA),
+    "report.units": (SHEET, ALGEBRA | {"pint"}),
+    "report.workbook": (SHEET, ALGEBRA),
+    "report.workbooks": (SHEET | {"report.workbooks"}, ALGEBRA),
+    "report.engines": (SHEET | {"report.engines"}, RUNTIME - {"jinja2", "matplotlib"}),
+    "report.analysis": (SHEET | {"report.engines", "report.analysis"}, RUNTIME - {"jinja2", "matplotlib"}),
+    "report.views": (SHEET | {"report.views"}, RUNTIME - {"scipy", "mpmath"}),
+}
+# Parts that only these modules may import, whatever the table says.
+ONLY_FROM = {"report.cli": {"__main__"}, "report.build": {"report.cli"}}
+# Modules that may import by a name made at run time: the lazy public names.
+MAY_IMPORT_BY_NAME = {""}
+
+
+class Import(NamedTuple):
+    line: int
+    target: str  # "report.sheet" inside, "numpy" outside
+    inside: bool
+    absolute: bool  # written `loopsheet...` where a relative import was meant
+
+
+def imports(source: str, module: str, known: Collection[str], is_package: bool = False) -> Iterator[Import]:
+    """Every import of a module's source, wherever it stands, names resolved to modules."""
+    package = module.split(".") if module else []
+    if not is_package:
+        package = package[:-1]
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                head, _, rest = alias.name.partition(".")
+                inside = head == "loopsheet"
+                yield Import(node.lineno, rest if inside else head, inside, inside)
+        elif isinstance(node, ast.ImportFrom):
+            head, _, rest = (node.module or "").partition(".")
+            if node.level == 0 and head != "loopsheet":
+                yield Import(node.lineno, head, False, False)
+                continue
+            if node.level:
+                assert node.level - 1 <= len(package), f"{module}:{node.lineno}: import from above loopsheet"
+                base = package[: len(package) - node.level + 1] + (node.module or "").split(".")
+                start = ".".join(filter(None, base))
+            else:
+                start = rest
+            for alias in node.names:
+                full = f"{start}.{alias.name}".lstrip(".")
+                # a public name of the root is as good as the module behind it; __version__ is nobody's
+                named = full in known or (start == "" and not alias.name.startswith("__"))
+                yield Import(node.lineno, full if named else start, True, node.level == 0)
+
+
+def covers(part: str, module: str) -> bool:
+    return part == module or module.startswith(f"{part}.")
+
+
+def wrong_imports(source: str, module: str, known: Collection[str], is_package: bool = False) -> list[str]:
+    """Sentences about what breaks the table; an empty list when all is well."""
+    rule = max((part for part in MAY_IMPORT if part == "" or covers(part, module)), key=len)
+    parts, libraries = MAY_IMPORT[rule]
+    found: list[str] = []
+    for line, target, inside, absolute in imports(source, module, known, is_package):
+        where = f"{module or '__init__'}:{line}"
+        if absolute:
+            found.append(f"{where}: write the import of loopsheet.{target} as a relative one")
+        if not inside:
+            if target not in libraries and target not in sys.stdlib_module_names:
+                found.append(f"{where}: {rule or 'the root'} may not import {target}")
+        elif target and not any(covers(part, target) for part in parts):
+            found.append(f"{where}: {rule or 'the root'} may not import {target}")
+        for guarded, importers in ONLY_FROM.items():
+            if inside and covers(guarded, target) and module not in importers:
+                found.append(f"{where}: only {', '.join(importers)} may import {guarded}")
+    if module not in MAY_IMPORT_BY_NAME:
+        for node in ast.walk(ast.parse(source)):
+            name = getattr(node, "id", None) or getattr(node, "attr", None)
+            if name in ("import_module", "__import__"):
+                found.append(f"{module}:{getattr(node, 'lineno', 0)}: import by name hides the arrow")
+    return list(dict.fromkeys(found))
+
+
+def folder_of(package: str) -> Path:
+    return ROOT.joinpath(*package.split(".")[1:])
+
+
+def module_files() -> dict[str, Path]:
+    """Modules of all listed packages, by their name below loopsheet ("" is the root)."""
+    files = {}
+    for package in PACKAGES:
+        inner = package.partition(".")[2]
+        for path in sorted(folder_of(package).glob("*.py")):
+            stem = "" if path.stem == "__init__" else path.stem
+            files[".".join(filter(None, (inner, stem)))] = path
+    return files
+
+
+MODULES = module_files()
+
+
+@pytest.mark.parametrize("module", MODULES, ids=lambda name: name or "loopsheet")
+def test_arrows_run_one_way(module: str) -> None:
+    path = MODULES[module]
+    assert not wrong_imports(
+        path.read_text(encoding="utf-8"), module, MODULES, is_package=path.name == "__init__.py"
+    )
+
+
+@pytest.mark.parametrize(
+    ("module", "source", "complaint"),
+    [
+        ("derivations.hertz", "import numpy", "may not import numpy"),
+        ("derivations.hertz", "def f():\n    from ..report import sheet", "may not import report.sheet"),
+        ("derivations.hertz", "from ..report.sheet import Sheet", "may not import report.sheet"),
+        ("report.engines.numpy", "from ..views.html import page", "may not import report.views.html"),
+        ("report.engines.numpy", "from .. import views", "may not import report.views"),
+        ("report.engines.numpy", "import jinja2", "may not import jinja2"),
+        ("report.analysis.fit", "from ..views import html", "may not import report.views.html"),
+        ("report.views.html", "from ..engines.numpy import solve", "may not import report.engines.numpy"),
+        ("report.views.html", "from ..analysis import fit", "may not import report.analysis.fit"),
+        ("report.views.html", "from scipy import optimize", "may not import scipy"),
+        ("report.views.html", "from ..build import build", "only report.cli may import report.build"),
+        ("report.inputs", "from .cli import main", "only __main__ may import report.cli"),
+        ("report.inputs", "import undeclared", "may not import undeclared"),
+        ("report.inputs", "from loopsheet.report import sheet", "as a relative one"),
+        ("report.inputs", "import loopsheet", "as a relative one"),
+        ("report.inputs", "import importlib\nimportlib.import_module('x')", "hides the arrow"),
+        ("report.inputs", "from .. import Sheet", "may not import Sheet"),
+        ("report.errors", "from . import sheet", "may not import report.sheet"),
+        ("", "import numpy", "the root may not import numpy"),
+    ],
+)
+def test_a_wrong_import_is_seen(module: str, source: str, complaint: str) -> None:
+    known = {
+        "derivations",
+        "report",
+        "report.sheet",
+        "report.views",
+        "report.views.html",
+        "report.analysis",
+        "report.analysis.fit",
+    }
+    found = wrong_imports(source, module, known, is_package=not module)
+    assert any(re.search(complaint, sentence) for sentence in found), found
+
+
+@pytest.mark.parametrize(
+    ("module", "source"),
+    [
+        ("derivations.hertz", "import math\nimport sympy as sp\nfrom .equation import Equation"),
+        ("report.engines.numpy", "import numpy\nfrom ...derivations import proof\nfrom ..sheet import Sheet"),
+        ("report.analysis.fit", "from ..engines import numpy"),
+        ("report.views.html", "import jinja2\nfrom ..sheet import Sheet\nfrom .escape import escape"),
+        ("report.cli", "from .build import build\nfrom .. import __version__"),
+        ("__main__", "from .report.cli import main"),
+    ],
+)
+def test_a_right_import_is_let_through(module: str, source: str) -> None:
+    known = {"derivations", "derivations.proof", "report", "report.engines"}
+    assert wrong_imports(source, module, known) == []
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_init_has_only_names(package: str) -> None:
+    """An __init__.py holds a docstring, imports, literal tables, and the hooks of lazy names."""
+    path = folder_of(package) / "__init__.py"
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    assert ast.get_docstring(tree)
+    names = (ast.Expr, ast.Import, ast.ImportFrom, ast.Assign, ast.AnnAssign, ast.If)
+    for node in tree.body:
+        lazy = isinstance(node, ast.FunctionDef) and node.name in ("__getattr__", "__dir__")
+        assert lazy or isinstance(node, names), f"{path}:{node.lineno}: belongs in a module of its own"
+
+
+# ------------------------------------------------------------------------------- size and doctests
+TESTS = sorted((ROOT / "tests").rglob("*.py"))
+
+
+@pytest.mark.parametrize("path", [str(path.relative_to(ROOT)) for path in (*MODULES.values(), *TESTS)])
+def test_no_module_is_too_long(path: str) -> None:
+    lines = (ROOT / path).read_text(encoding="utf-8").count("\n")
+    assert lines <= MAX_LINES, f"{lines} lines: split it, {MAX_LINES} is the most"
+
+
+@pytest.mark.parametrize("module", MODULES, ids=lambda name: name or "loopsheet")
+def test_doctests(module: str) -> None:
+    imported = importlib.import_module(f"loopsheet.{module}".rstrip("."))
+    found = Path(imported.__file__ or "").resolve()
+    assert found == MODULES[module], "another loopsheet is installed: make clean"
+    result = doctest.testmod(imported, optionflags=doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE)
+    assert result.failed == 0, "see the captured output"
+
+
+# ------------------------------------------------------------------------------------- lazy imports
+HEAVY = sorted(RUNTIME | {"html5lib", "pytest", "hypothesis", "marimo"})
+
+
+@pytest.mark.parametrize("module", ["loopsheet", "loopsheet.report.cli"])
+def test_heavy_libraries_load_when_used(module: str) -> None:
+    code = f"import sys, {module}; print(*[name for name in {HEAVY!r} if name in sys.modules])"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == []
+
+
+# ---------------------------------------------------------------------------------------- packaging
+def test_every_package_is_listed() -> None:
+    apart = {"tests", "benchmarks", "build", "dist", "docs", "out"}
+    found = {"loopsheet"}
+    for init in ROOT.rglob("__init__.py"):
+        parts = init.parent.relative_to(ROOT).parts
+        if parts and parts[0] not in apart and not any(part.startswith(".") for part in parts):
+            found.add(".".join(("loopsheet", *parts)))
+    assert found == set(PACKAGES)
+
+
+def test_command_is_registered() -> None:
+    (command,) = metadata.entry_points(group="console_scripts", name="loopsheet")
+    assert command.value == "loopsheet.report.cli:main"
+
+
+def test_one_version() -> None:
+    import loopsheet
+
+    assert metadata.version("loopsheet") == loopsheet.__version__
+    assert f"\nversion: {loopsheet.__version__}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+
+
+def test_wheel_holds_the_package_and_nothing_else(tmp_path: Path) -> None:
+    """The wheel is built from a copy: `build/` in the checkout would keep deleted modules."""
+    clean, wheels = tmp_path / "clean", tmp_path / "wheels"
+    leave = shutil.ignore_patterns(".*", "build", "dist", "out", "*.egg-info", "__pycache__")
+    shutil.copytree(ROOT, clean, ignore=leave)
+    build = [sys.executable, "-m", "pip", "wheel", "--no-index", "--no-deps", "--no-build-isolation"]
+    env = {name: value for name, value in os.environ.items() if not name.startswith("PIP_")}
+    run = subprocess.run(
+        [*build, "--wheel-dir", wheels, clean], capture_output=True, text=True, check=False, env=env
+    )
+    assert run.returncode == 0, run.stdout + run.stderr
+    (wheel,) = wheels.glob("*.whl")
+    held = {name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name}
+    expected = {f"loopsheet/{path.relative_to(ROOT).as_posix()}" for path in MODULES.values()}
+    for folder in ("templates", "data"):
+        files = {path for path in (clean / folder).rglob("*") if path.is_file()}
+        expected |= {f"loopsheet/{path.relative_to(clean).as_posix()}" for path in files}
+        assert files, f"{folder}/ is empty"
+    assert held == expected
+
+
+# -------------------------------------------------------------------------------------------- locks
+LOCKS = sorted((ROOT / "requirements").glob("*.txt"))
+PIN = re.compile(r"([a-z0-9][a-z0-9-]*)==([\w.!+]+)( ; [^/\\]+)? \\")
+HASH = re.compile(r"    --hash=sha256:[0-9a-f]{64}( \\)?")
+COMMENT = re.compile(r" *#( +(via|make lock|[\w-]+( \(pyproject\.toml(:\w+)?\))?|-c requirements/\w+\.txt))+")
+BANNER = "# This file was autogenerated by uv via the following command:"
+
+
+def pins(lock: Path) -> dict[str, str]:
+    found = (PIN.fullmatch(line) for line in lock.read_text(encoding="utf-8").splitlines())
+    return {match[1]: match[0] for match in found if match}
+
+
+@pytest.mark.parametrize("lock", LOCKS, ids=lambda lock: lock.name)
+def test_lock_holds_pins_and_hashes_and_nothing_else(lock: Path) -> None:
+    """No address, index, host or path: nothing that is not a pin, a hash or the name of who asked."""
+    for number, line in enumerate(lock.read_text(encoding="utf-8").splitlines(), start=1):
+        known = any(form.fullmatch(line) for form in (PIN, HASH, COMMENT)) or line == BANNER
+        assert known, f"{lock.name}:{number}: {line}"
+
+
+def test_locks_agree() -> None:
+    runtime, test, bench = (pins(ROOT / "requirements" / f"{n}.txt") for n in ("runtime", "test", "bench"))
+    assert runtime.items() <= test.items()
+    assert runtime.items() <= bench.items()
+    assert all(test[name] == pin for name, pin in bench.items() if name in test)
+    assert runtime.keys() >= RUNTIME | {"setuptools", "wheel"}
+    groups = PYPROJECT["dependency-groups"]
+    assert test.keys() >= set(groups["test"])
+    assert bench.keys() >= set(groups["bench"])
+
+
+def test_every_installed_pin_is_the_locked_one() -> None:
+    for name, pin in pins(ROOT / "requirements" / "runtime.txt").items():
+        if " ; " not in pin:
+            assert pin.startswith(f"{name}=={metadata.version(name)} ")
