@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any
 
-from sympy import Basic, Expr, Integral, Rel, Sum, Symbol
+from sympy import Add, Basic, Expr, Integral, Mul, Pow, Rel, Sum, Symbol
 
 __all__ = ["Derivation", "Equation", "Erratum", "Kind", "Ledger", "Step", "evaluated"]
 
@@ -35,6 +35,20 @@ def evaluated(expression: Any) -> Any:
     arguments = [evaluated(argument) for argument in expression.args]
     if isinstance(expression, (Integral, Sum)):
         return expression.func(arguments[0], *expression.limits)
+    return expression.func(*arguments)
+
+
+def _replaced(expression: Any, where: Mapping[Any, Any]) -> Any:
+    """Put symbols in without evaluating: the author's order of terms stays."""
+    if expression in where:
+        return where[expression]
+    if not isinstance(expression, Basic) or not expression.args:
+        return expression
+    arguments = [_replaced(argument, where) for argument in expression.args]
+    if all(new is old for new, old in zip(arguments, expression.args, strict=True)):
+        return expression
+    if isinstance(expression, (Add, Mul, Pow)):
+        return expression.func(*arguments, evaluate=False)
     return expression.func(*arguments)
 
 
@@ -118,7 +132,7 @@ class Equation:
         """The same equation for other symbols: one test of all, or the rows of a sheet."""
         return replace(
             self,
-            members=tuple(member.xreplace(dict(where)) for member in self.members),
+            members=tuple(_replaced(member, where) for member in self.members),
             defines=None if self.defines is None else self.defines.xreplace(dict(where)),
             conditions=tuple(condition.xreplace(dict(where)) for condition in self.conditions),
             printed=None,

@@ -412,11 +412,20 @@ def prove_equation(entry: Equation | Derivation, known: frozenset[Equation] = fr
     return Proof(entry.claim, Status.CORRECTED if remark else Status.PROVED, tuple(steps), remark)
 
 
-def prove(ledger: Ledger) -> tuple[Proof, ...]:
-    """Decide every equation of a ledger, in its order; nothing may rest on what comes later."""
+def prove(ledger: Ledger, begin: Callable[[Equation], None] | None = None) -> tuple[Proof, ...]:
+    """Decide every equation of a ledger, in its order; nothing may rest on what comes later.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    begin : callable, optional
+        Told of each equation before it is decided: proofs take seconds.
+    """
     proofs: list[Proof] = []
     known: set[Equation] = set()
     for entry in ledger.entries:
+        if begin is not None:
+            begin(entry.claim if isinstance(entry, Derivation) else entry)
         proof = prove_equation(entry, frozenset(known))
         proofs.append(proof)
         if proof.status.passes:

@@ -110,6 +110,8 @@ class Report:
         In the order of published.csv.
     curves : tuple of Curve
         For the figures.
+    versions : mapping of str to str
+        What computed it: this program and its libraries.
     """
 
     title: str
@@ -122,7 +124,8 @@ class Report:
     proofs: tuple[Proof, ...]
     errata: tuple[Erratum, ...]
     comparisons: tuple[Comparison, ...]
-    curves: tuple[Curve, ...] = field(default=())
+    curves: tuple[Curve, ...] = ()
+    versions: Mapping[str, str] = field(default_factory=dict)
 
     def proof(self, label: str) -> Proof:
         """The proof of an equation by its label, ``(12a)``."""

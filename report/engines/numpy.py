@@ -59,6 +59,8 @@ class Kernel:
     """One printed function: what it is called with, its text, and the function itself."""
 
     arguments: tuple[Expr, ...]
+    totals: tuple[str, ...]
+    """The axes it sums over."""
     source: str
     run: Callable[..., tuple[Array, ...]]
 
@@ -76,11 +78,14 @@ def kernel(expressions: Sequence[Basic], sums: Mapping[Symbol, Axis], extra: Seq
         Arguments that are always there, such as the unknown of a root.
     """
     leaves: dict[Expr, Symbol] = {}
+    totals: dict[str, str] = {}
 
     def arrays(expression: Any) -> Any:
         if isinstance(expression, Sum):
             # In array language a sum is a function of the array of its terms.
-            return Function(f"total_{sums[expression.limits[0][0]].name}")(arrays(expression.function))
+            axis = sums[expression.limits[0][0]].name
+            totals[axis] = f"total_{axis}"
+            return Function(totals[axis])(arrays(expression.function))
         if isinstance(expression, Indexed):
             plain = Symbol(f"{name_of(expression)}_of_{expression.indices[0]}", **expression.base.label.assumptions0)
             return leaves.setdefault(expression, plain)
@@ -89,7 +94,6 @@ def kernel(expressions: Sequence[Basic], sums: Mapping[Symbol, Axis], extra: Seq
         return expression.func(*map(arrays, expression.args)) if expression.args else expression
 
     bodies = [arrays(expression) for expression in expressions]
-    totals = {axis.name: f"total_{axis.name}" for axis in sums.values()}
     printer = Printer({"user_functions": {name: name for name in totals.values()}, "allow_unknown_functions": True})
     common, bodies = cse(bodies, symbols=numbered_symbols("t_"), order="none", list=True)
     arguments = sorted(set(leaves) | set(extra), key=str)
@@ -100,7 +104,7 @@ def kernel(expressions: Sequence[Basic], sums: Mapping[Symbol, Axis], extra: Seq
     source = "\n".join(lines)
     namespace: dict[str, Any] = {"numpy": np}
     exec(compile(source, "<generated>", "exec"), namespace)  # printed from our own expressions, never foreign text
-    return Kernel(tuple(arguments), source, namespace["kernel"])
+    return Kernel(tuple(arguments), tuple(totals), source, namespace["kernel"])
 
 
 @dataclass(frozen=True)
@@ -260,7 +264,7 @@ class _Run:
     def _call(self, function: Kernel, column: Column, kept: Mapping[str, Any], *unknown: Any) -> tuple[Array, ...]:
         own = column.rule.unknown if isinstance(column.rule, Root) else None
         arguments = [unknown[0] if a == own else self._argument(a, column, kept) for a in function.arguments]
-        totals = [self._total(kept.get(axis.name)) for axis in self.sheet.indices.values()]
+        totals = [self._total(kept.get(axis)) for axis in function.totals]
         return tuple(np.asarray(out) for out in function.run(*arguments, *totals))
 
     @staticmethod

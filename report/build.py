@@ -1,0 +1,366 @@
+"""The one visible place where the parts are wired: inputs -> sheet -> values -> proofs -> views -> files."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import os
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .errors import InputError, Location, OutputError, UnknownWorkbook, UsageError, close, diagnose, listing
+from .inputs import Inputs, check_published, load
+from .unit_text import UnitError as NotAUnit
+from .unit_text import parse_unit
+from .workbooks import SHIPPED
+
+if TYPE_CHECKING:
+    from .result import Report, Shown
+    from .sheet import Column, Sheet
+    from .workbook import Workbook
+
+__all__ = ["FORMATS", "PAPER", "Step", "build", "compute", "find_workbook", "given_data", "prepare", "versions"]
+
+PAPER = Path(__file__).resolve().parent.parent / "data" / "soft_steel"
+"""The shipped campaign."""
+
+FORMATS = ("html", "latex", "json", "pdf")
+DEFAULT_FORMATS = ("html", "latex", "json")
+
+Step = Callable[[str], None]
+"""Told what is begun, for whoever watches."""
+
+
+def _silent(_: str) -> None:
+    """Nobody watches."""
+
+
+# --- workbooks -------------------------------------------------------------------------------------------
+
+
+def find_workbook(name: str, folder: Path) -> Workbook:
+    """The workbook of a name: a shipped one, or the user's own ``NAME.py`` in the folder.
+
+    Raises
+    ------
+    UnknownWorkbook
+        With the names there are.
+    InputError
+        The user's own workbook cannot be imported, or declares none.
+    """
+    if name in SHIPPED:
+        workbook: Workbook = importlib.import_module(SHIPPED[name]).WORKBOOK
+        return workbook
+    path = folder / name
+    if name.endswith(".py") and Path(name).name == name and path.is_file():
+        return _own_workbook(path)
+    raise UnknownWorkbook([*SHIPPED, *sorted(p.name for p in folder.glob("*.py"))])
+
+
+def _own_workbook(path: Path) -> Workbook:
+    """Import the user's own code; what it raises is told with its line."""
+    from .workbook import Workbook
+
+    spec = importlib.util.spec_from_file_location(f"loopsheet_workbook_{path.stem}", path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    try:
+        spec.loader.exec_module(module)
+        found = module.WORKBOOK
+    except Exception as error:
+        raise InputError(_own_code_failed(path, error)) from error
+    if not isinstance(found, Workbook):
+        raise InputError(diagnose("LS213", Location(path.name), text=path.name, reason="WORKBOOK is no Workbook"))
+    return found
+
+
+def _own_code_failed(path: Path, error: Exception) -> Any:
+    """A finding at the last line of the user's file that the error passed through."""
+    line = getattr(error, "lineno", None) if isinstance(error, SyntaxError) else None
+    traceback = error.__traceback__
+    while traceback is not None:
+        if Path(traceback.tb_frame.f_code.co_filename) == path:
+            line = traceback.tb_lineno
+        traceback = traceback.tb_next
+    source = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    shown = source[line - 1] if line is not None and line <= len(source) else ""
+    at = Location(path.name, line, 1 + len(shown) - len(shown.lstrip()) if shown else None, shown, len(shown.strip()))
+    return diagnose("LS213", at, text=path.name, reason=f"{type(error).__name__}: {error}")
+
+
+# --- from inputs to values --------------------------------------------------------------------------------
+
+
+def given_data(inputs: Inputs) -> dict[str, Any]:
+    """The given columns in SI as exact fractions: a list for a measured column, one for a parameter."""
+    data: dict[str, Any] = {name: [p.value for p in column] for name, column in inputs.measured.items()}
+    data |= {name: printed.value for name, printed in inputs.parameters.items()}
+    return data
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A folder that was read, with its sheet, checked and ready to be computed."""
+
+    inputs: Inputs
+    sheet: Sheet
+
+    @property
+    def labels(self) -> dict[str, tuple[int, ...]]:
+        """Row numbers of the axes that come with the data."""
+        return {axis.name: self.inputs.tests for axis in self.sheet.axes if not axis.parents}
+
+    @property
+    def exact_data(self) -> dict[str, Any]:
+        """What the exact engine starts from."""
+        needed = {c.name for c in self.sheet.columns}
+        return {name: value for name, value in given_data(self.inputs).items() if name in needed}
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """What the other engines start from: the nearest doubles."""
+        return {n: [float(x) for x in v] if isinstance(v, list) else float(v) for n, v in self.exact_data.items()}
+
+
+def prepare(folder: Path) -> Prepared:
+    """Read a folder, lay out its sheet, check dimensions and published cells.
+
+    Raises
+    ------
+    InputError
+        With every finding.
+    """
+    inputs = load(folder, find_workbook)
+    from . import units
+    from .sheet import SheetError
+
+    try:
+        sheet = inputs.workbook.sheet(inputs.given)
+        units.check(sheet)
+    except SheetError as error:
+        if inputs.workbook.name in SHIPPED:
+            raise  # ours, and our bug
+        raise InputError(diagnose("LS213", text=inputs.workbook.name, reason=str(error))) from error
+    return Prepared(inputs, sheet)
+
+
+def compute(folder: Path, step: Step = _silent, prove: bool = True) -> Report:
+    """Compute a whole report.
+
+    Parameters
+    ----------
+    folder : Path
+        A report folder.
+    step : callable
+        Told what is begun.
+    prove : bool
+        Whether to check the algebra too.
+    """
+    step("reading the folder")
+    prepared = prepare(folder)
+    inputs, sheet = prepared.inputs, prepared.sheet
+    from .analysis.referee import compare
+    from .engines import numpy as engine
+    from .result import Report
+
+    step("computing the sheet")
+    values = engine.evaluate(sheet, prepared.labels, prepared.data)
+    check_published(inputs, {c.name: (c.unit, set(values.labels(c))) for c in sheet.columns})
+    workbook = inputs.workbook
+    curves = workbook.curves(sheet, values) if workbook.curves is not None else ()
+    ledger = workbook.ledger()
+    return Report(
+        title=inputs.title,
+        workbook=workbook,
+        inputs=inputs,
+        sheet=sheet,
+        values=values,
+        shown={column.name: shown(column, sheet, inputs) for column in sheet.columns},
+        ledger=ledger,
+        proofs=_proofs(ledger, step) if prove else (),
+        errata=tuple(found for check in ledger.checks if (found := check(ledger)) is not None) if prove else (),
+        comparisons=compare(inputs.published, values),
+        curves=curves,
+        versions=versions(),
+    )
+
+
+def _proofs(ledger: Any, step: Step) -> tuple[Any, ...]:
+    from ..derivations.proof import prove
+
+    return prove(ledger, lambda equation: step(f"proving {equation.label}"))
+
+
+def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
+    """In which unit a column is shown, and with how many digits.
+
+    The digits follow from the inputs: one more than the least precise measured number that the column
+    rests on, so that rounding for the reader loses nothing that was measured.
+    """
+    from .result import Shown
+    from .sheet import Given
+
+    unit = column.display or column.unit
+    if unit.startswith("like "):
+        name = unit.removeprefix("like ")
+        unit = inputs.header_units.get(name) or inputs.parameters[name].unit
+    try:
+        scale = float(parse_unit(unit).scale)
+    except NotAUnit:
+        unit, scale = column.unit, 1.0  # an exponent that is a symbol: SI
+    digits = []
+    for given in (*sheet.ancestors(column), column):
+        if isinstance(given.rule, Given) and not given.exact:
+            measured = inputs.measured.get(given.name) or (inputs.parameters[given.name],)
+            digits.append(min(printed.digits for printed in measured))
+    return Shown(unit, scale, min(digits, default=5) + 1)
+
+
+def versions() -> dict[str, str]:
+    """What computed: this program, its libraries and the interpreter's minor version."""
+    from importlib.metadata import version
+
+    libraries = ("numpy", "sympy", "mpmath", "jinja2", "matplotlib", "latex2mathml")
+    from .. import __version__
+
+    python = f"{sys.version_info.major}.{sys.version_info.minor}"
+    return {"loopsheet": __version__, "python": python, **{name: version(name) for name in libraries}}
+
+
+# --- from values to files ---------------------------------------------------------------------------------
+
+
+def parse_formats(words: str) -> tuple[str, ...]:
+    """Read ``html,latex``.
+
+    Raises
+    ------
+    UsageError
+        A word is no format.
+    """
+    wanted = [word.strip() for word in words.split(",") if word.strip()]
+    for word in wanted:
+        if word not in FORMATS:
+            known = close(word, FORMATS)
+            hint = f"did you mean '{known}'?" if known else ""
+            raise UsageError(diagnose("LS604", kind="format", text=word, known=listing(FORMATS), suggestion=hint))
+    return tuple(f for f in FORMATS if f in wanted)
+
+
+def build(
+    folder: Path, out: Path, formats: Collection[str] = DEFAULT_FORMATS, step: Step = _silent
+) -> tuple[Report, list[Path]]:
+    """Compute a report and write it.
+
+    Everything is written to a temporary folder first and moved in when all of it is there, so that a
+    failure leaves an existing output as it was.
+
+    Parameters
+    ----------
+    folder : Path
+        A report folder.
+    out : Path
+        Where the report goes; made if it does not exist. Other files in it are left alone.
+    formats : collection of str
+        Of :data:`FORMATS`.
+    step : callable
+        Told what is begun.
+
+    Returns
+    -------
+    Report
+    list of Path
+        The files that were written.
+    """
+    with _staged(out) as stage:
+        report = compute(folder, step)
+        _write(report, stage, formats, step)
+        names = sorted(p.relative_to(stage) for p in stage.rglob("*") if p.is_file())
+    return report, [out / name for name in names]
+
+
+def _write(report: Report, stage: Path, formats: Collection[str], step: Step) -> None:
+    from .views import json
+
+    pictures = [figure.name for figure in report.workbook.figures]
+    if "html" in formats:
+        from .views import figures, html
+
+        drawn = {}
+        for name in pictures:
+            step(f"drawing {name}")
+            drawn[name] = figures.svg(report, name)
+            _put(stage / "figures" / f"{name}.svg", drawn[name])
+        step("writing report.html")
+        _put(stage / "report.html", html.render(report, drawn))
+    if "latex" in formats or "pdf" in formats:
+        from .views import figures, latex
+
+        for name in pictures:
+            step(f"drawing {name}.pdf")
+            _put(stage / "figures" / f"{name}.pdf", figures.pdf(report, name))
+        step("writing report.tex")
+        _put(stage / "report.tex", latex.render(report, pictures))
+        if "pdf" in formats:
+            step("running latexmk")
+            latex.compile(stage)
+    if "json" in formats:
+        _put(stage / "values.json", json.values(report))
+    outputs = {p.relative_to(stage).as_posix(): p.read_bytes() for p in sorted(stage.rglob("*")) if p.is_file()}
+    _put(stage / "manifest.json", json.manifest(report.inputs.files, outputs, report.versions))
+
+
+def _put(path: Path, content: str | bytes) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
+
+
+@contextmanager
+def _staged(out: Path) -> Iterator[Path]:
+    """A temporary folder beside the output, moved in whole when the block ends well."""
+    made: list[Path] = []
+    try:
+        if out.exists() and not out.is_dir():
+            raise OutputError(diagnose("LS602", text=str(out)))
+        made = [p for p in (out, *out.parents) if not p.exists()]
+        out.mkdir(parents=True, exist_ok=True)
+        stage = Path(tempfile.mkdtemp(prefix=".loopsheet-", dir=out))
+    except OSError as error:
+        _remove(made)
+        raise OutputError(diagnose("LS601", text=str(out), reason=error.strerror or str(error))) from error
+    try:
+        yield stage
+        _move_in(stage, out)
+    except BaseException:
+        shutil.rmtree(stage, ignore_errors=True)
+        _remove(made)
+        raise
+    shutil.rmtree(stage, ignore_errors=True)
+
+
+def _remove(made: list[Path]) -> None:
+    """Take back the empty folders that were made."""
+    for folder in made:
+        try:
+            folder.rmdir()
+        except OSError:
+            return
+
+
+def _move_in(stage: Path, out: Path) -> None:
+    """Replace file by file, each at once; the manifest comes last, so that it never speaks of half an output."""
+    files = sorted((p for p in stage.rglob("*") if p.is_file()), key=lambda p: (p.name == "manifest.json", p))
+    try:
+        for path in files:
+            target = out / path.relative_to(stage)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            os.replace(path, target)
+    except OSError as error:
+        raise OutputError(diagnose("LS601", text=str(out), reason=error.strerror or str(error))) from error

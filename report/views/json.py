@@ -1,0 +1,121 @@
+"""values.json and manifest.json: the results for programs."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from ..result import Report
+from ..sheet import Column, Given
+from ..values import Status
+
+__all__ = ["manifest", "proof_statuses", "values"]
+
+SCHEMA = 1
+
+
+def values(report: Report) -> str:
+    """All cells in SI, unrounded, with their statuses; the proofs; the published values."""
+    return _text(
+        {
+            "schema": SCHEMA,
+            "workbook": report.workbook.name,
+            "title": report.title,
+            "cells": {column.name: _column(report, column) for column in report.sheet.columns},
+            "proofs": proof_statuses(report),
+            "errata": [{"about": e.about, "kind": e.kind, "sentence": e.sentence} for e in report.errata],
+            "published": [_published(comparison) for comparison in report.comparisons],
+        }
+    )
+
+
+def _column(report: Report, column: Column) -> dict[str, Any]:
+    values, statuses = report.values.value[column.name], report.values.status[column.name]
+    numbers = [float(v) if s == Status.OK else None for v, s in zip(values, statuses, strict=True)]
+    codes = [Status(int(s)).code for s in statuses]
+    entry: dict[str, Any] = {"axis": None, "unit": column.unit}
+    if column.axis is None:
+        entry |= {"value": numbers[0], "status": codes[0]}
+    else:
+        labels = report.values.layouts[column.axis.name].labels.tolist()
+        index = [label[0] for label in labels] if len(labels[0]) == 1 else labels
+        entry |= {"axis": column.axis.name, "index": index, "value": numbers, "status": codes}
+    if isinstance(column.rule, Given):
+        entry["u"] = _given_uncertainty(report, column)
+    if column.name in report.values.counted:
+        entry["rows"] = dict(report.values.counted[column.name])
+    return entry
+
+
+def _given_uncertainty(report: Report, column: Column) -> Any:
+    if column.name in report.inputs.measured:
+        return [printed.u for printed in report.inputs.measured[column.name]]
+    return None if column.exact else report.inputs.parameters[column.name].u
+
+
+def proof_statuses(report: Report) -> dict[str, str]:
+    """Status by number; a number with several lines also has the worst status of its lines."""
+    order = ["refuted", "undecided", "proved with a correction of the print", "proved", "assumption", "definition"]
+    found: dict[str, str] = {}
+    for proof in report.proofs:
+        equation, status = proof.equation, proof.status.value
+        if equation.part:
+            known = found.get(equation.number, status)
+            found[equation.number] = min(known, status, key=order.index)
+    for proof in report.proofs:
+        found[proof.equation.label] = proof.status.value
+    return dict(sorted(found.items(), key=lambda item: _natural(item[0])))
+
+
+def _natural(label: str) -> tuple[bool, int, str]:
+    digits = "".join(c for c in label if c.isdigit())
+    return (label.startswith("(L"), int(digits or 0), label)
+
+
+def _published(comparison: Any) -> dict[str, Any]:
+    value = comparison.published
+    return {
+        "source": value.source,
+        "cell": value.cell,
+        "index": list(value.index),
+        "printed": value.printed.text,
+        "unit": value.printed.unit,
+        "value": comparison.cell.value,
+        "again": comparison.again,
+        "distance": comparison.distance,
+        "verdict": comparison.verdict,
+        "expected": comparison.as_expected,
+    }
+
+
+def manifest(inputs: Mapping[str, bytes], outputs: Mapping[str, bytes], versions: Mapping[str, str]) -> str:
+    """What went in, what came out and what computed it, by content; no clock and no place."""
+
+    def hashes(files: Mapping[str, bytes]) -> dict[str, str]:
+        return {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
+
+    return _text({"schema": SCHEMA, "inputs": hashes(inputs), "outputs": hashes(outputs), "versions": dict(versions)})
+
+
+def _text(content: dict[str, Any]) -> str:
+    """JSON with a line for each entry of the second level: small, and still good to compare line by line.
+
+    A NaN is no JSON and must not occur: the encoder raises.
+    """
+
+    def dump(value: Any) -> str:
+        return json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(", ", ": "))
+
+    parts = []
+    for key, value in content.items():
+        if isinstance(value, dict) and value:
+            inner = ",\n".join(f"  {dump(k)}: {dump(v)}" for k, v in value.items())
+            parts.append(f" {dump(key)}: {{\n{inner}\n }}")
+        elif isinstance(value, list) and value:
+            inner = ",\n".join(f"  {dump(v)}" for v in value)
+            parts.append(f" {dump(key)}: [\n{inner}\n ]")
+        else:
+            parts.append(f" {dump(key)}: {dump(value)}")
+    return "{\n" + ",\n".join(parts) + "\n}\n"
