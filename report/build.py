@@ -91,7 +91,8 @@ def _own_code_failed(path: Path, error: Exception) -> Any:
         traceback = traceback.tb_next
     source = path.read_text(encoding="utf-8", errors="replace").splitlines()
     shown = source[line - 1] if line is not None and line <= len(source) else ""
-    at = Location(path.name, line, 1 + len(shown) - len(shown.lstrip()) if shown else None, shown, len(shown.strip()))
+    text = shown.strip()
+    at = Location(path.name, line, shown.index(text) + 1, len(text), shown) if text else Location(path.name)
     return diagnose("LS213", at, text=path.name, reason=f"{type(error).__name__}: {error}")
 
 

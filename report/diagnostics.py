@@ -13,8 +13,8 @@ _BEFORE = 40
 """Terminal columns kept before the caret when a line is too long to be shown whole."""
 _WIDEST = 100
 """Terminal columns of a source line at most."""
-_HIDDEN = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
-"""Unicode categories that steer a terminal (or turn its text around) instead of showing a glyph."""
+_HIDDEN = frozenset({"Cc", "Cf", "Cn", "Co", "Cs", "Zl", "Zp"})
+"""Unicode categories that steer a terminal (or turn its text around) or have no glyph to show."""
 
 
 @dataclass(frozen=True)

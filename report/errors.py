@@ -112,6 +112,12 @@ CATALOGUE: dict[str, Entry] = {
         "a unit that converts to {unit}",
         'write the unit after a space, for example "{example}"',
     ),
+    "LS213": Entry(
+        "workbook fails",
+        "{text} cannot be used: {reason}",
+        "a Python file that declares WORKBOOK, a loopsheet.report.workbook.Workbook",
+        "the shipped workbooks are examples to start from",
+    ),
     # Tables
     "LS301": Entry(
         "missing column", "the column '{text}' is missing", hint="add '{example}' to the first line"
@@ -156,7 +162,7 @@ CATALOGUE: dict[str, Entry] = {
         "doubled test number",
         "test {text} is there twice, first in line {first}",
         "each test number once",
-        "number the tests 1, 2, 3 ...",
+        "give each test a number of its own",
     ),
     "LS312": Entry(
         "not a test number", "not a test number: '{text}'", "a positive whole number such as 1, 2, 3"
@@ -258,13 +264,13 @@ CATALOGUE: dict[str, Entry] = {
         "output not writable",
         "'{text}' cannot be written: {reason}",
         "a folder that may be written",
-        "choose another place with --out",
+        "choose another place, or check the permissions",
     ),
     "LS602": Entry(
         "output not a folder",
         "'{text}' is a file, not a folder",
         "a folder",
-        "choose another place with --out",
+        "choose another name",
     ),
     "LS603": Entry(
         "folder not empty",

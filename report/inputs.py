@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Inputs", "PublishedValue", "check_published", "load"]
 
-LARGEST_TOML = 1_000_000
+LARGEST_TOML = 250_000
 LARGEST_TABLE = 50_000_000
 LARGEST_PUBLISHED = 5_000_000
 """Bytes. Anything larger is a mistake, and would be held in memory several times over."""
@@ -238,10 +238,12 @@ class _Reader:
         printed = read_parameters(self.toml, written, self.workbook.parameters, self.findings)
         given = frozenset(written)
         # A misspelt name would also be missing from its combination: that is one problem, not two.
-        if len(self.findings.found) == before and isinstance(data, dict):
+        above = self.toml.data
+        misspelt = "parameters" not in above and any(close(word, ["parameters"]) for word in above)
+        if len(self.findings.found) == before and isinstance(data, dict) and not misspelt:
             sentence = self.workbook.check_parameters(given)
             if sentence:
-                known = f"the parameters are {listing(declared)}"
+                known = f"the parameters are {', '.join(declared)}"
                 self.findings.add("LS209", self.toml.key("parameters"), reason=sentence, known=known)
         return printed, given
 

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from .quantity import Printed
 from .unit_text import parse_unit
 
 if TYPE_CHECKING:
     from .errors import Findings, Location
+    from .quantity import Bounds
     from .unit_text import Unit
-    from .workbook import Measured, Parameter
 
-__all__ = ["NumberError", "read_number", "read_printed", "read_value"]
+__all__ = ["Declared", "NumberError", "read_number", "read_printed", "read_value"]
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE](?P<exponent>[+-]?[0-9]+))?")
 _COMMA = re.compile(
@@ -27,6 +27,26 @@ _LONGEST = 100
 _TOP = 300
 _LARGEST = Fraction(10) ** _TOP
 _SMALLEST = 1 / _LARGEST
+
+
+class Declared(Protocol):
+    """What a workbook says of an input."""
+
+    @property
+    def name(self) -> str:
+        """The cell name."""
+
+    @property
+    def unit(self) -> str:
+        """The SI unit."""
+
+    @property
+    def meaning(self) -> str:
+        """What it is."""
+
+    @property
+    def bounds(self) -> Bounds:
+        """What values are allowed, in SI."""
 
 
 class NumberError(ValueError):
@@ -104,7 +124,7 @@ def read_printed(text: str, unit: Unit, *, mode: str = "rounded", where: str = "
 def read_value(
     text: str,
     unit: Unit | None,
-    declared: Measured | Parameter,
+    declared: Declared,
     at: Location,
     findings: Findings,
     *,
@@ -119,8 +139,8 @@ def read_value(
         The number.
     unit : Unit or None
         Its unit; None if that is not known, and then the range is not looked at.
-    declared : Measured or Parameter
-        What it is.
+    declared : Declared
+        What it is: a measured column or a parameter.
     at : Location
         Where it stands.
     findings : Findings

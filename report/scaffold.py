@@ -106,7 +106,7 @@ def _report(workbook: Workbook) -> str:
 
 def _lines(workbook: Workbook) -> Iterator[str]:
     yield from (
-        "# A campaign of your own. Put your numbers where the example's are, then:  loopsheet build THIS_FOLDER",
+        "# A campaign of your own: put your numbers where the example's are, then 'loopsheet build FOLDER'.",
         "# Numbers are written in quotes, as they were printed: the digits say how sure they are.",
         "",
         'title = "My campaign"',
@@ -125,7 +125,7 @@ def _lines(workbook: Workbook) -> Iterator[str]:
         return
     last = workbook.measured[-1].name
     yield from (
-        f"# Its first line names each column and a unit: any that converts to {workbook.measured[0].unit} ...",
+        "# Its first line names each column and its unit, which may be any that converts to the one above.",
         f"# A column u({last}) [unit] gives standard uncertainties; without it the printed digits do.",
         "",
         "# [measurements.printed]",

@@ -28,6 +28,9 @@ _ERROR = re.compile(
 )
 _PLAIN = re.compile(r"\"[^\"\\\n]*\"|'[^'\n]*'")
 
+_MOST_DOTS = 200
+"""In a line: a key a.b.c... of thousands of parts costs tomllib quadratic memory."""
+
 Path = tuple[str, ...]
 
 
@@ -79,6 +82,9 @@ class TomlFile:
 
 def read_toml(source: Source, findings: Findings) -> TomlFile | None:
     """Read a TOML file; None, with a finding, if it is none."""
+    if any(line.count(".") > _MOST_DOTS for line in source.text.split("\n")):
+        findings.add("LS202", Location(source.path))
+        return None
     try:
         return TomlFile(source, tomllib.loads(source.text))
     except RecursionError:

@@ -10,7 +10,9 @@ from .quantity import Bounds
 
 if TYPE_CHECKING:
     from ..derivations.equation import Ledger
+    from .result import Curve
     from .sheet import Sheet
+    from .values import Values
 
 __all__ = ["FigureSpec", "Measured", "Parameter", "TableSpec", "Workbook"]
 
@@ -58,12 +60,17 @@ class Parameter:
 
 @dataclass(frozen=True)
 class TableSpec:
-    """A table of the report: some columns of one axis (or scalars, one a row)."""
+    """A table of the report: some columns of one axis (or scalars, one a row).
+
+    Columns that the sheet does not have are left out: which parameters there are depends on the data.
+    """
 
     name: str
     title: str
     columns: tuple[str, ...]
     note: str = ""
+    number: str = ""
+    """Its number; that of the source's table, where it corresponds to one."""
 
 
 @dataclass(frozen=True)
@@ -104,6 +111,8 @@ class Workbook:
         The cells that are the result, first in every view.
     tables, figures
         What a reader is shown.
+    curves : callable or None
+        Takes the sheet and its values; returns what the figures draw.
     prose : str
         Name of the narrative template under templates/prose.
     """
@@ -126,3 +135,4 @@ class Workbook:
     """A small table of measurements that ``new`` writes; its first row is the header, with units."""
     example_parameters: Mapping[str, str] = field(default_factory=dict)
     """The parameters that go with it, as printed, by name."""
+    curves: Callable[[Sheet, Values], tuple[Curve, ...]] | None = None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from sympy import Max, Ne, Or, Piecewise, Rational, Symbol, log, solve
 
 from ...derivations import power_law_fit as fit
@@ -12,6 +14,10 @@ from ...derivations.symbols import TABLE, p, q, s
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
 from ..workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook
+
+if TYPE_CHECKING:
+    from ..result import Curve
+    from ..values import Values
 
 __all__ = ["WORKBOOK"]
 
@@ -263,6 +269,13 @@ def _tests_after_fit() -> tuple[Column, ...]:
     )  # fmt: skip
 
 
+def _curves(sheet: Sheet, values: Values) -> tuple[Curve, ...]:
+    """What the figures draw; loaded only when they are drawn."""
+    from ..analysis.loops import curves
+
+    return curves(sheet, values)
+
+
 WORKBOOK = Workbook(
     name="soft_impact",
     title="Exponent of the force law from drop tests on a soft target",
@@ -275,4 +288,92 @@ WORKBOOK = Workbook(
     sheet=sheet,
     headline=("alpha_mean", "alpha_log", "C_log", "alpha_lin", "C_lin"),
     prose="soft_impact",
+    tables=(
+        TableSpec("measured", "Impact parameters, as measured", ("v", "e", "x_p"), number="1"),
+        TableSpec("alpha", "Exponent of every pair of tests", ("alpha",), number="2"),
+        TableSpec(
+            "tests",
+            "Maximum approach and maximum force of each test on the fitted curve",
+            ("x_m", "Cprime_eq7", "Cprime_eq9"),
+            number="3",
+        ),
+        TableSpec(
+            "given",
+            "Ball, target and settings",
+            (
+                "ball_diameter",
+                "ball_density",
+                "ball_mass",
+                "target_mass",
+                "m_red",
+                "beta",
+                "points_per_pair",
+            ),
+            number="L1",
+        ),
+        TableSpec(
+            "pairs",
+            "What else follows from each pair",
+            ("x_m1", "x_m2", "x_top", "C", "Cprime_1", "Cprime_2"),
+            number="L2",
+        ),
+        TableSpec(
+            "fit",
+            "One curve for all tests: the mean and the two fits",
+            (
+                *("alpha_mean", "alpha_log", "C_log", "alpha_lin", "C_lin"),
+                *("x_ref", "F_ref", "mean_ln_x", "mean_ln_F", "ln_F_at_ref"),
+            ),
+            number="L3",
+        ),
+    ),
+    figures=(
+        FigureSpec(
+            "hysteresis",
+            "1",
+            "Hysteresis loop of an impact. The hatched areas are lost to internal friction, while loading and "
+            "while unloading; the grey area between them is the work of plastic deformation. The model has "
+            "the grey loop alone.",
+            "hysteresis",
+            "A loop of force over approach: up along the loading curve, down along the unloading curve to the "
+            "imprint depth. Two hatched areas, the works of friction, enclose a grey one, the plastic work.",
+        ),
+        FigureSpec(
+            "lankarani",
+            "2",
+            "Force in the model of Lankarani and Nikravesh (2): loading and unloading with the exponent 3/2.",
+            "lankarani",
+            "Force over approach: the loading curve rises from zero to the maximum approach, the unloading "
+            "curve falls from there to the imprint depth.",
+        ),
+        FigureSpec(
+            "loops",
+            "4",
+            "Generated points, the curve fitted through their logarithms, and the restitution curve of each test.",
+            "loops",
+            "Force over approach: the generated points of all pairs lie along one fitted loading curve; from it "
+            "one steep unloading curve for each test falls to its imprint depth.",
+        ),
+        FigureSpec(
+            "alpha_pairs",
+            "L1",
+            "Exponent of every pair over the mean speed of its two tests.",
+            "alpha_pairs",
+            "One dot for each pair of tests, its exponent over its mean speed; a line marks the mean exponent.",
+        ),
+    ),
+    published_as={
+        "Table 2": "exponent of every pair",
+        "Table 3": "maximum approach and maximum force",
+        "text": "the two averages in the text",
+    },
+    # Made from (6), (7) and (9) with alpha = 1.3, C = 9.6e8 N/m^1.3 and 8.366 g, then printed.
+    example=(
+        ("test", "v [m/s]", "e [1]", "x_p [um]"),
+        ("1", "2.200", "0.5350", "22.58"),
+        ("2", "3.100", "0.5050", "31.92"),
+        ("3", "4.300", "0.4700", "44.61"),
+    ),
+    example_parameters={"ball_mass": "8.366 g", "beta": "1.5"},
+    curves=_curves,
 )

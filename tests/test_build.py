@@ -1,0 +1,182 @@
+"""Building: what is written, that it is the same bytes everywhere, that nothing is lost or half-written."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report import build
+from loopsheet.report.errors import InputError, OutputError
+
+
+def copy_paper(folder: Path) -> Path:
+    """A folder of one's own, a copy of the shipped one."""
+    shutil.copytree(build.PAPER, folder)
+    return folder
+
+
+def hashes(folder: Path) -> dict[str, str]:
+    """Every file's content, by its relative name."""
+    return {
+        p.relative_to(folder).as_posix(): hashlib.sha256(p.read_bytes()).hexdigest()
+        for p in sorted(folder.rglob("*"))
+        if p.is_file()
+    }
+
+
+def test_default_outputs(tmp_path: Path) -> None:
+    _, files = build.build(build.PAPER, tmp_path / "out")
+    names = {p.relative_to(tmp_path / "out").as_posix() for p in files}
+    assert {"report.html", "report.tex", "values.json", "manifest.json"} <= names
+    assert {n for n in names if n.startswith("figures/")} >= {"figures/loops.svg", "figures/loops.pdf"}
+    assert all(p.stat().st_size for p in files)
+
+
+def test_same_bytes_everywhere(tmp_path: Path) -> None:
+    """Hash seed, time zone, locale, folder and working directory must not show."""
+    found = []
+    for number, (seed, zone, locale) in enumerate((("0", "UTC", "C"), ("4711", "Asia/Tokyo", "C.UTF-8"))):
+        home = tmp_path / f"place {number}"
+        home.mkdir()
+        folder = copy_paper(home / "in put")
+        environment = {**os.environ, "PYTHONHASHSEED": seed, "TZ": zone, "LC_ALL": locale, "HOME": str(home)}
+        subprocess.run(
+            [sys.executable, "-m", "loopsheet", "build", str(folder), "--out", "o"],
+            cwd=home, env=environment, check=True, capture_output=True,
+        )  # fmt: skip
+        found.append(hashes(home / "o"))
+    assert found[0] == found[1]
+    assert len(found[0]) > 8
+
+
+def test_outputs_name_no_place_of_the_machine(tmp_path: Path) -> None:
+    folder = copy_paper(tmp_path / "here")
+    build.build(folder, tmp_path / "out")
+    for path in (tmp_path / "out").rglob("*"):
+        if path.is_file():
+            assert str(tmp_path).encode() not in path.read_bytes(), path
+
+
+def test_manifest_names_every_output_by_its_content(tmp_path: Path) -> None:
+    build.build(build.PAPER, tmp_path / "out", ("json",))
+    manifest = json.loads((tmp_path / "out" / "manifest.json").read_text())
+    assert manifest["outputs"] == {"values.json": hashes(tmp_path / "out")["values.json"]}
+    assert set(manifest["inputs"]) == {"report.toml", "measurements.csv", "published.csv"}
+    assert manifest["inputs"] == hashes(build.PAPER)
+    assert manifest["versions"]["loopsheet"]
+
+
+def test_other_files_in_the_output_folder_stay(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "notes.txt").write_text("mine")
+    build.build(build.PAPER, out, ("json",))
+    assert (out / "notes.txt").read_text() == "mine"
+    assert sorted(p.name for p in out.iterdir()) == ["manifest.json", "notes.txt", "values.json"]
+
+
+def test_a_failure_while_writing_leaves_everything_as_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from loopsheet.report.views import json as view
+
+    out = tmp_path / "out"
+    build.build(build.PAPER, out, ("json",))
+    before = hashes(out)
+
+    def breaks(*_: object) -> str:
+        raise RuntimeError("while writing")
+
+    monkeypatch.setattr(view, "manifest", breaks)
+    with pytest.raises(RuntimeError, match="while writing"):
+        build.build(build.PAPER, out, ("json",))
+    assert hashes(out) == before
+    with pytest.raises(RuntimeError, match="while writing"):
+        build.build(build.PAPER, tmp_path / "fresh" / "deep", ("json",))
+    assert not (tmp_path / "fresh").exists()
+
+
+def test_an_output_that_cannot_be_written_is_refused_before_any_work(tmp_path: Path) -> None:
+    taken = tmp_path / "taken"
+    taken.write_text("a file")
+    with pytest.raises(OutputError, match="LS602"):
+        build.build(build.PAPER, taken)
+    with pytest.raises(OutputError, match="LS60"):
+        build.build(build.PAPER, taken / "below")
+    assert taken.read_text() == "a file"
+    with pytest.raises(OutputError, match="LS601"):
+        build.build(build.PAPER, Path("/proc/loopsheet"))
+
+
+OWN = """
+from loopsheet.report.workbook import Workbook
+{body}
+"""
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ("WORKBOOK = 1 / 0", "ZeroDivisionError"),
+        ("WORKBOOK = 7", "WORKBOOK is no Workbook"),
+        ("def (", "SyntaxError"),
+        ("", "AttributeError"),
+    ],
+)
+def test_a_workbook_of_ones_own_that_fails_is_told_with_its_line(tmp_path: Path, body: str, said: str) -> None:
+    folder = copy_paper(tmp_path / "own")
+    toml = folder / "report.toml"
+    toml.write_text(toml.read_text().replace('"soft_impact"', '"workbook.py"'))
+    (folder / "workbook.py").write_text(OWN.format(body=body))
+    with pytest.raises(InputError, match=said) as refused:
+        build.compute(folder)
+    assert "workbook.py" in str(refused.value)
+    if said in ("ZeroDivisionError", "SyntaxError"):
+        assert "workbook.py:3" in str(refused.value)
+
+
+def test_a_workbook_whose_columns_go_in_a_circle_shows_the_path(tmp_path: Path) -> None:
+    folder = copy_paper(tmp_path / "own")
+    toml = folder / "report.toml"
+    toml.write_text(toml.read_text().replace('"soft_impact"', '"workbook.py"'))
+    (folder / "workbook.py").write_text(
+        "from dataclasses import replace\n"
+        "from sympy import Symbol\n"
+        "from loopsheet.derivations.equation import Equation, Kind\n"
+        "from loopsheet.report.sheet import Column, Formula, Sheet\n"
+        "from loopsheet.report.workbooks.soft_impact import WORKBOOK as paper\n"
+        "a, b = (Symbol(n, positive=True) for n in 'ab')\n"
+        "one = Formula(Equation('(1)', (a, b), 'x', Kind.DEFINITION))\n"
+        "two = Formula(Equation('(2)', (b, a), 'x', Kind.DEFINITION))\n"
+        "WORKBOOK = replace(paper, name='own', sheet=lambda given: Sheet((Column('a', None, one), Column('b', None, two))))\n"
+    )
+    with pytest.raises(InputError, match="a -> b -> a"):
+        build.compute(folder)
+
+
+def test_other_units_other_masses_and_other_numbers_of_tests(tmp_path: Path) -> None:
+    """The same campaign in other units gives the same numbers; a finite target scales the forces only."""
+    paper = build.compute(build.PAPER, prove=False)
+    folder = copy_paper(tmp_path / "units")
+    (folder / "report.toml").write_text(
+        'title = "other units"\nworkbook = "soft_impact"\n[parameters]\nball_mass = "8.365741 g"\n'
+        'target_mass = "8.365741 kg"\n[measurements]\nfile = "m.csv"\n'
+    )
+    rows = [line.split(",") for line in (folder / "measurements.csv").read_text().splitlines()[1:]]
+    lines = ["test,x_p [mm],e [%],v [cm/s]"]
+    for number, v, e, x in rows[:3]:
+        lines.append(f"{int(number) * 10},{float(x) / 1000:.6f},{float(e) * 100:.4f},{float(v) * 100:.4f}")
+    (folder / "m.csv").write_text("\n".join(lines) + "\n")
+    other = build.compute(folder, prove=False)
+    assert [c.label for c in other.values.cells("alpha")] == [(10, 20), (10, 30), (20, 30)]
+    for mine, theirs in (((10, 20), (1, 2)), ((10, 30), (1, 3)), ((20, 30), (2, 3))):
+        a, b = other.values.cell("alpha", mine).value, paper.values.cell("alpha", theirs).value
+        assert a == pytest.approx(b, rel=1e-13)
+        c, d = other.values.cell("C", mine).value, paper.values.cell("C", theirs).value
+        assert c == pytest.approx(d * 1000 / 1001, rel=1e-6)
+    assert other.shown["x_m"].unit == "mm"

@@ -1,0 +1,174 @@
+"""The command line as a user has it: real processes, real exit codes."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report.build import PAPER
+from loopsheet.report.cli import main
+
+
+def run(*arguments: str, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run the command in a process of its own."""
+    return subprocess.run(
+        [sys.executable, "-m", "loopsheet", *arguments],
+        cwd=cwd,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.fixture
+def campaign(tmp_path: Path) -> Path:
+    """A folder of one's own, a copy of the shipped one."""
+    folder = tmp_path / "campaign"
+    folder.mkdir()
+    for file in PAPER.iterdir():
+        (folder / file.name).write_bytes(file.read_bytes())
+    return folder
+
+
+def test_help_answers_without_loading_anything_heavy() -> None:
+    code = "import sys; from loopsheet.report.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass\n"
+    code += "print(sorted(m for m in ('numpy', 'sympy', 'scipy', 'matplotlib', 'jinja2', 'pint') if m in sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+    for verb in ("build", "check", "prove", "show", "new"):
+        assert f"  {verb} " in done.stdout
+    assert "exit codes" in done.stdout
+
+
+def test_every_verb_has_help(capsys: pytest.CaptureFixture[str]) -> None:
+    for verb in ("build", "check", "prove", "show", "new"):
+        with pytest.raises(SystemExit) as stopped:
+            main([verb, "--help"])
+        assert stopped.value.code == 0
+        assert f"usage: loopsheet {verb}" in capsys.readouterr().out
+
+
+def test_no_command_is_a_usage_error(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main([])
+    assert stopped.value.code == 2
+    assert "COMMAND" in capsys.readouterr().err
+
+
+def test_show_tells_value_equation_and_precedents(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "alpha[1-2]"]) == 0
+    out = capsys.readouterr().out
+    assert "alpha[1-2]" in out
+    assert "1.25799697873" in out
+    assert "(11)" in out
+    assert "computed from v, e, x_p, beta" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["show", "alhpa"], "did you mean 'alpha'?"),
+        (["show", "alpha[1-9]"], "unknown row of alpha '1-9'"),
+        (["prove", "(99)"], "unknown equation '(99)'"),
+        (["build", "--to", "htlm"], "did you mean 'html'?"),
+        (["build", "no-such-folder"], "no-such-folder"),
+        (["new", "x", "--workbook", "soft_inpact"], "did you mean 'soft_impact'?"),
+    ],
+)
+def test_wrong_words_are_answered_with_what_was_meant(
+    arguments: list[str], said: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 2
+    captured = capsys.readouterr()
+    assert said in captured.err
+    assert captured.out == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_prove_prints_the_ledger_and_passes() -> None:
+    done = run("prove")
+    assert done.returncode == 0
+    lines = done.stdout.splitlines()
+    for number in ("(6)", "(7)", "(9)", "(10a)", "(11)", "(12a)"):
+        assert any(line.startswith(f"{number} ") and " proved " in line for line in lines), number
+    assert any(line.startswith("(12e)") and "proved with a correction of the print" in line for line in lines)
+    assert "Traceback" not in done.stderr
+
+
+def test_prove_one_equation_shows_its_steps(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["prove", "11"]) == 0
+    out = capsys.readouterr().out
+    assert "from " in out
+    assert "50 digits agree" in out
+    assert out.count("residual 0") == 4
+
+
+def test_check_of_the_paper_is_as_expected() -> None:
+    done = run("check")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "everything as expected" in done.stdout
+    assert "numpy agrees with 50 digits" in done.stdout
+
+
+def test_a_known_difference_that_vanishes_is_a_finding(campaign: Path) -> None:
+    path = campaign / "published.csv"
+    path.write_text(path.read_text().replace("1-2,1.234,", "1-2,1.258,"))
+    done = run("check", str(campaign))
+    assert done.returncode == 1
+    assert "published.csv:2" in done.stdout
+    assert "no longer differs" in done.stdout
+
+
+def test_an_unexpected_difference_is_a_finding(campaign: Path) -> None:
+    path = campaign / "published.csv"
+    path.write_text(path.read_text().replace("1-2,1.234,1,differs,", "1-2,1.234,1,,"))
+    done = run("check", str(campaign), "--format", "json")
+    assert done.returncode == 1
+    assert "prints 1.234, recomputed 1.258" in done.stdout
+
+
+def test_bad_input_gives_one_located_message_and_leaves_out_as_it_was(campaign: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert main(["build", str(campaign), "--out", str(out), "--to", "json"]) == 0
+    before = {p.name: p.read_bytes() for p in out.iterdir()}
+    path = campaign / "measurements.csv"
+    path.write_text(path.read_text().replace("0.512", "abc"))
+    done = run("build", str(campaign), "--out", str(out), "--to", "json")
+    assert done.returncode == 2
+    assert "measurements.csv:3:9" in done.stderr
+    assert "^^^" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert {p.name: p.read_bytes() for p in out.iterdir()} == before
+
+
+def test_our_own_bug_is_told_from_the_users_error(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from loopsheet.report import build
+
+    def broken(*_: object, **__: object) -> None:
+        raise RuntimeError("a wheel came off")
+
+    monkeypatch.setattr(build, "compute", broken)
+    assert main(["show", "alpha"]) == 3
+    assert "bug: RuntimeError: a wheel came off" in capsys.readouterr().err
+
+
+def test_new_makes_a_folder_that_builds(tmp_path: Path) -> None:
+    folder = tmp_path / "mine"
+    assert run("new", str(folder)).returncode == 0
+    done = run("build", str(folder), "--out", str(tmp_path / "out"), "--to", "json")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out" / "values.json").is_file()
+
+
+def test_a_closed_pipe_is_no_error() -> None:
+    command = f"{sys.executable} -m loopsheet show x | head -1"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
+    assert done.stderr == ""

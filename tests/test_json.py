@@ -1,0 +1,63 @@
+"""values.json as programs read it."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report import build
+from loopsheet.report.views import json as view
+
+
+@pytest.fixture(scope="module")
+def paper() -> dict[str, object]:
+    return json.loads(view.values(build.compute(build.PAPER)))  # type: ignore[no-any-return]
+
+
+def test_shape(paper: dict) -> None:  # type: ignore[type-arg]
+    assert paper["schema"] == 1
+    assert paper["workbook"] == "soft_impact"
+    alpha = paper["cells"]["alpha"]
+    assert alpha["axis"] == "pairs"
+    assert alpha["index"][:2] == [[1, 2], [1, 3]]
+    assert alpha["unit"] == "1"
+    assert alpha["status"] == ["ok"] * 10
+    assert alpha["value"][0] == 1.2579969787312368
+    assert paper["cells"]["alpha_mean"]["axis"] is None
+    assert paper["cells"]["v"]["index"] == [1, 2, 3, 4, 5]
+    assert paper["cells"]["v"]["u"][0] == pytest.approx(0.0005 / 3**0.5)
+    assert {c["axis"] for c in paper["cells"].values()} == {"tests", "pairs", "points", None}
+
+
+def test_cells_of_the_design_are_there(paper: dict) -> None:  # type: ignore[type-arg]
+    names = "v e x_p m_red beta alpha x_m1 x_m2 C Cprime_1 Cprime_2 alpha_mean alpha_log C_log alpha_lin C_lin"
+    assert set(f"{names} x_m Cprime_eq7 Cprime_eq9".split()) <= set(paper["cells"])
+
+
+def test_proofs_by_number(paper: dict) -> None:  # type: ignore[type-arg]
+    assert paper["proofs"]["(11)"] == "proved"
+    assert paper["proofs"]["(12)"] == "proved with a correction of the print"
+    assert paper["proofs"]["(8)"] == "definition"
+
+
+def test_published(paper: dict) -> None:  # type: ignore[type-arg]
+    first = paper["published"][0]
+    assert (first["cell"], first["index"], first["printed"], first["verdict"]) == ("alpha", [1, 2], "1.234", "differs")
+
+
+def test_an_error_is_null_with_its_code(tmp_path: Path) -> None:
+    """A pair without a root is a cell's error; the mean goes on and says over how many."""
+    folder = shutil.copytree(build.PAPER, tmp_path / "f")
+    table = folder / "measurements.csv"
+    table.write_text(table.read_text().replace("29.7", "23.4"))
+    toml = folder / "report.toml"
+    toml.write_text(toml.read_text().replace('[published]\nfile = "published.csv"', ""))
+    cells = json.loads(view.values(build.compute(folder, prove=False)))["cells"]
+    assert cells["alpha"]["value"][0] is None
+    assert cells["alpha"]["status"][0] == "#NOROOT!"
+    assert cells["C"]["status"][0] == "#NOROOT!"
+    assert cells["alpha_mean"]["status"] == "ok"
+    assert cells["alpha_mean"]["rows"] == {"pairs": 9}

@@ -1,0 +1,155 @@
+"""`new`: a folder that builds at once, or nothing at all."""
+
+import os
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report.errors import OutputError
+from loopsheet.report.inputs import load
+from loopsheet.report.quantity import Bounds
+from loopsheet.report.scaffold import new
+from loopsheet.report.workbook import Measured, Parameter, Workbook
+
+POSITIVE = Bounds(low=0, low_open=True)
+WORKBOOK = Workbook(
+    name="impact",
+    title='Impact of a "ball"',
+    source="A paper,\non two lines",
+    ledger=lambda: None,
+    measured=(Measured("v", "m/s", "impact speed", POSITIVE), Measured("x_p", "m", "imprint depth")),
+    parameters=(
+        Parameter("ball_mass", "kg", "mass of the ball", POSITIVE),
+        Parameter("beta", "1", "exponent of restitution", Bounds(1, 2), default="1.5"),
+        Parameter("target_mass", "kg", "mass of the target;\nimmobile if left out"),
+    ),
+    sheet=lambda given: None,
+    example=(("test", "v [m/s]", "x_p [um]"), ("1", "2.000", "19.82"), ("2", "3.000", "29.61")),
+    example_parameters={"ball_mass": "8.366 g"},
+)
+REPORT = """\
+# A campaign of your own: put your numbers where the example's are, then 'loopsheet build FOLDER'.
+# Numbers are written in quotes, as they were printed: the digits say how sure they are.
+
+title = "My campaign"
+workbook = "impact"
+# Impact of a "ball"
+# A paper, on two lines
+
+[parameters]
+ball_mass = "8.366 g"                   # mass of the ball; greater than 0 kg
+# beta = "1.5"                          # exponent of restitution; between 1 and 2; 1.5 if left out
+# target_mass = "... kg"                # mass of the target; immobile if left out
+
+[measurements]
+file = "measurements.csv"
+# v: impact speed; greater than 0 m/s
+# x_p: imprint depth
+# Its first line names each column and its unit, which may be any that converts to the one above.
+# A column u(x_p) [unit] gives standard uncertainties; without it the printed digits do.
+
+# [measurements.printed]
+# x_p = "truncated"                    # if digits were cut off; without this, "rounded"
+
+# [published]                            # values to compare with, if there are any
+# file = "published.csv"                 # source,cell,index,value,unit,expect,reason
+"""
+
+
+def tree(folder: Path) -> list[str]:
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*"))
+
+
+def test_the_files_are_these(tmp_path: Path) -> None:
+    folder = tmp_path / "campaign"
+    assert new(folder, WORKBOOK) == [folder / "report.toml", folder / "measurements.csv"]
+    assert tree(tmp_path) == ["campaign", "campaign/measurements.csv", "campaign/report.toml"]
+    assert (folder / "report.toml").read_text() == REPORT
+    assert (
+        folder / "measurements.csv"
+    ).read_text() == "test,v [m/s],x_p [um]\n1,2.000,19.82\n2,3.000,29.61\n"
+
+
+@pytest.mark.parametrize("where", [".", "deep/down/campaign", "empty"])
+def test_the_folder_is_read_without_findings(
+    where: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    Path("empty").mkdir() if where == "empty" else None
+    inputs = load(new(Path(where), WORKBOOK)[0].parent, lambda name, folder: WORKBOOK)
+    assert inputs.tests == (1, 2)
+    assert inputs.given == {"ball_mass"}
+    assert inputs.title == "My campaign"
+    assert not [name for name in tree(tmp_path) if name.endswith(".new")]
+
+
+def test_every_comment_that_is_a_key_may_be_switched_on(tmp_path: Path) -> None:
+    text = new(tmp_path / "c", WORKBOOK)[0].read_text()
+    on = "\n".join(
+        line.removeprefix("# ") if " = " in line or line.startswith("# [") else line
+        for line in text.split("\n")
+    )
+    data = tomllib.loads(on)
+    assert data["parameters"] == {"ball_mass": "8.366 g", "beta": "1.5", "target_mass": "... kg"}
+    assert data["measurements"] == {"file": "measurements.csv", "printed": {"x_p": "truncated"}}
+    assert data["published"] == {"file": "published.csv"}
+
+
+def test_without_an_example_there_is_a_header(tmp_path: Path) -> None:
+    bare = Workbook("w", "t", "s", lambda: None, WORKBOOK.measured, (), lambda given: None)
+    assert new(tmp_path / "c", bare)[1].read_text() == "test,v [m/s],x_p [m]\n"
+
+
+@pytest.mark.parametrize("used", [True, False])
+def test_if_writing_fails_nothing_is_left(
+    used: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "a" / "b" / "campaign"
+    if used:
+        folder.mkdir(parents=True)
+    before = tree(tmp_path)
+    real = Path.write_text
+
+    def fail(path: Path, *args: str, **more: str) -> int:
+        if "measurements" in path.name:
+            raise OSError(28, "No space left on device")
+        return real(path, *args, **more)
+
+    monkeypatch.setattr(Path, "write_text", fail)
+    with pytest.raises(OutputError) as caught:
+        new(folder, WORKBOOK)
+    assert caught.value.diagnostics[0].code == "LS601"
+    assert "No space left on device" in str(caught.value)
+    assert tree(tmp_path) == before
+
+
+def test_if_moving_fails_nothing_is_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    real = Path.replace
+
+    def fail(path: Path, target: Path) -> Path:
+        if "measurements" in path.name:
+            raise OSError(5, "Input/output error")
+        return real(path, target)
+
+    monkeypatch.setattr(Path, "replace", fail)
+    with pytest.raises(OutputError):
+        new(tmp_path, WORKBOOK)
+    assert tree(tmp_path) == []
+
+
+@pytest.mark.parametrize("name", ["x" * 300, "nul\0"])
+def test_a_name_that_no_folder_can_have_is_refused(name: str, tmp_path: Path) -> None:
+    with pytest.raises(OutputError):
+        new(tmp_path / name, WORKBOOK)
+    assert tree(tmp_path) == []
+
+
+def test_a_used_folder_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "report.toml").write_text("mine")
+    with pytest.raises(OutputError) as caught:
+        new(tmp_path, WORKBOOK)
+    assert caught.value.diagnostics[0].code == "LS603"
+    assert (tmp_path / "report.toml").read_text() == "mine"
+    assert os.listdir(tmp_path) == ["report.toml"]
