@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 from sympy import Add, Basic, Expr, Integral, Mul, Pow, Rel, Sum, Symbol
@@ -89,6 +91,8 @@ class Equation:
     printed: tuple[Expr, ...] | None = None
     conditions: tuple[Rel, ...] = ()
     parent: Equation | None = field(default=None, repr=False)
+    renamed: tuple[tuple[tuple[Any, Any], ...], ...] = field(default=(), repr=False)
+    """What `at` put in, call by call: a proof makes the instance again from the parent."""
 
     @property
     def label(self) -> str:
@@ -102,7 +106,7 @@ class Equation:
         """Whether the number is this project's, not the source's."""
         return self.number.startswith("(L")
 
-    @property
+    @cached_property
     def sides(self) -> tuple[Expr, ...]:
         """The members as they are computed."""
         return tuple(evaluated(member) for member in self.members)
@@ -111,7 +115,7 @@ class Equation:
     def residuals(self) -> tuple[Expr, ...]:
         """Differences of neighbouring sides: the equation says that each is zero."""
         sides = self.sides
-        return tuple(a - b for a, b in zip(sides, sides[1:], strict=False))
+        return tuple(a - b for a, b in pairwise(sides))
 
     @property
     def value(self) -> Expr:
@@ -137,12 +141,28 @@ class Equation:
             conditions=tuple(condition.xreplace(dict(where)) for condition in self.conditions),
             printed=None,
             parent=self.origin,
+            renamed=(*self.renamed, tuple(where.items())),
         )
+
+    def branch(self, number: int, because: str) -> Equation:
+        """One branch of a law by cases, as an equation of its own."""
+        law = self.members[-1].args[number].expr
+        return replace(self, members=(self.members[0], law), because=because, parent=self.origin)
 
     @property
     def origin(self) -> Equation:
         """The equation of the ledger that this is an instance of (itself, if it is none)."""
         return self.parent if self.parent is not None else self
+
+    @property
+    def follows_from_origin(self) -> bool:
+        """Whether its members are the origin's, with positive quantities put in for positive ones."""
+        made = self.origin
+        for where in self.renamed:
+            if any(old.is_positive and not new.is_positive for old, new in where):
+                return False
+            made = made.at(dict(where))
+        return set(self.members) <= set(made.members) and set(made.conditions) <= set(self.conditions)
 
 
 @dataclass(frozen=True)
@@ -163,6 +183,13 @@ class Derivation:
     """A chain of steps; the claim of the last is what was to be shown."""
 
     steps: tuple[Step, ...]
+
+    @classmethod
+    def of(
+        cls, claim: Equation, premises: tuple[Equation, ...], eliminate: tuple[Expr, ...], says: str
+    ) -> Derivation:
+        """Make a chain of one step."""
+        return cls((Step(claim, premises, eliminate, says),))
 
     @property
     def claim(self) -> Equation:

@@ -1,22 +1,24 @@
 """Checks of how a source prints its equations: each looks for one kind of slip and names its evidence.
 
 Every function here returns a check; a check takes the ledger and returns an :class:`Erratum`, or None
-where the print is right. What an erratum says is put together from what was found, never written by hand.
+where the print is right. What an erratum says is put together from what was found.
 """
 
 from __future__ import annotations
 
-import random
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import mpmath
-from sympy import And, Expr, Indexed, Piecewise, Symbol, lambdify, sstr
+from sympy import And, Expr, Indexed, Integer, Piecewise, Symbol, expand
 
 from . import symbols
+from .dimensions import Dimensions, dimension_of_unit, power, product
 from .equation import Equation, Erratum, Kind, Ledger
-from .proof import DIGITS
+from .evaluation import UNDEFINED, Program, is_real
+from .sampling import AGREES, DIGITS, Space, said, short
+from .text import text
 
 __all__ = [
     "Check",
@@ -24,9 +26,11 @@ __all__ = [
     "check_citation",
     "check_count",
     "check_determined",
+    "check_missing",
     "check_overlap",
     "check_range",
     "check_spurious",
+    "check_units",
     "check_whose",
 ]
 
@@ -43,57 +47,60 @@ class Citation:
     quantity: Expr
 
 
-def _sample(expressions: list[Any], seed: str) -> Any:
-    """Yield seeded points of the symbols' spans with the expressions' values there."""
-    flat = {
-        cell: Symbol(f"{cell.base.label}_{cell.indices[0]}", **cell.base.label.assumptions0)
-        for expression in expressions
-        for cell in expression.atoms(Indexed)
-    }
+def _listed(names: Iterable[str]) -> str:
+    """Write names as a sentence does: a, b and c."""
+    *most, last = names
+    return f"{', '.join(most)} and {last}" if most else last
+
+
+def _values(expressions: list[Any], seed: str) -> Iterator[tuple[dict[str, str], list[Any]]]:
+    """Yield seeded points of the symbols' spans, with the expressions' values there."""
+    cells = {cell for expression in expressions for cell in expression.atoms(Indexed)}
+    flat = {cell: Symbol(str(cell), **cell.base.label.assumptions0) for cell in cells}
     plain = [expression.xreplace(flat) for expression in expressions]
-    free = sorted({s for expression in plain for s in expression.free_symbols}, key=str)
-    cells = {symbol: cell for cell, symbol in flat.items()}
-    evaluate = lambdify(free, plain, modules="mpmath")
-    rng = random.Random(seed)
+    space = Space(plain, {symbol: cell for cell, symbol in flat.items()})
     with mpmath.workdps(DIGITS):
-        for _ in range(_TRIES):
-            point = []
-            for symbol in free:
-                quantity = symbols.find(cells.get(symbol, symbol))
-                low, high = (0.5, 2.0) if quantity is None else quantity.span
-                point.append(mpmath.mpf(low) + mpmath.mpf(high - low) * mpmath.mpf(rng.random()))
-            names = {str(cells.get(s, s)): mpmath.nstr(x, 4) for s, x in zip(free, point, strict=True)}
-            yield names, evaluate(*point)
-
-
-def _said(point: dict[str, str]) -> str:
-    return ", ".join(f"{name} = {value}" for name, value in point.items())
+        program = Program(space.symbols)
+        group = program.add(plain)
+        for point in space.points(seed, _TRIES):
+            program.start(point)
+            try:
+                values = program.values(group)
+            except UNDEFINED:
+                continue
+            if all(isinstance(value, bool) or is_real(value) for value in values):
+                yield space.describe(point), values
 
 
 def check_overlap(equation: Equation) -> Check:
-    """Look for an approach at which two branches of a law both apply and differ."""
+    """Look for an approach at which two branches of a law both apply and differ.
+
+    Kind ``overlap``.
+    """
 
     def check(ledger: Ledger) -> Erratum | None:
         law = next(side for side in equation.members if isinstance(side, Piecewise))
         (first, when_first), (second, when_second) = law.args[:2]
-        for point, (a, b, both) in _sample([first, second, And(when_first, when_second)], equation.label):
-            if both and abs(a - b) > mpmath.mpf(10) ** (10 - DIGITS) * max(abs(a), abs(b)):
+        for point, (a, b, both) in _values([first, second, And(when_first, when_second)], equation.label):
+            if both and abs(a - b) > AGREES * max(abs(a), abs(b)):
                 return Erratum(
                     equation.label,
-                    "overlapping branches",
-                    f"The branches of {equation.label} overlap on [x_p, x_m]: without saying which phase is meant "
-                    "the force has two values there.",
-                    f"at {_said(point)} the branches give {mpmath.nstr(a, 4)} and {mpmath.nstr(b, 4)}",
+                    "overlap",
+                    f"The branches of {equation.label} overlap: both {text(when_first)} and "
+                    f"{text(when_second)} hold on a whole interval, and without saying which phase is meant "
+                    f"{text(equation.members[0])} has two values there.",
+                    f"at {said(point)} the branches give {short(a)} and {short(b)}",
                 )
         return None
 
     return check
 
 
-def check_range(
-    equation: Equation, scale: int, symbol: Symbol, known: tuple[str, Any, Any]
-) -> Check:
-    """Compare a printed range with a published one of the same quantity times `scale`."""
+def check_range(equation: Equation, scale: int, symbol: Symbol, known: tuple[str, Any, Any]) -> Check:
+    """Compare a printed range with a published one of the same quantity times `scale`.
+
+    Kind ``range``.
+    """
 
     def check(ledger: Ledger) -> Erratum | None:
         low_side, high_side = equation.members[0].args
@@ -101,61 +108,67 @@ def check_range(
         name, known_low, known_high = known
         if (low, high) == (known_low, known_high):
             return None
-        quantity = high_side.lhs
+        quantity = text(high_side.lhs)
+        meant_low, meant_high = (text(end / Integer(scale)) for end in (known_low, known_high))
         return Erratum(
             equation.label,
             "range",
-            f"The range in {equation.label} is that of Meyer's exponent {symbol} = {scale} {quantity} in "
-            f"[{low}, {high}]. {name} is [{known_low}, {known_high}], so {quantity} <= {known_high / scale}.",
-            f"{symbol} = {scale} {quantity} at both ends of {equation.label}",
+            f"The range in {equation.label} is that of Meyer's exponent {text(symbol)} = {scale} {quantity} "
+            f"in [{text(low)}, {text(high)}]. {name} is [{text(known_low)}, {text(known_high)}], which would "
+            f"mean {meant_low} <= {quantity} <= {meant_high}.",
+            f"{equation.label} prints {text(equation.members[0])}",
         )
 
     return check
 
 
-def check_count(
-    group: tuple[Equation, ...], unknowns: tuple[Expr, ...], claimed: tuple[Expr, Expr]
-) -> Check:
-    """Count equations and unknowns of a system written for k = 1, 2, ...; compare with what is said."""
+def check_count(group: tuple[Equation, ...], unknowns: tuple[Expr, ...], claimed: tuple[Expr, Expr]) -> Check:
+    """Count equations and unknowns of a system written for k = 1, 2, ...; compare with what is said.
+
+    Kind ``count``.
+    """
     k = symbols.k
 
     def check(ledger: Ledger) -> Erratum | None:
         equations = len(group) * k
         present = [u for u in unknowns if any(side.has(u) for equation in group for side in equation.sides)]
         counted = sum(k if u.has(k) else 1 for u in present)
-        if (equations - claimed[0], counted - claimed[1]) == (0, 0) and len(present) == len(unknowns):
+        if (equations - claimed[0], counted - claimed[1]) == (0, 0):
             return None
         return Erratum(
             group[0].number,
             "count",
-            f"{group[0].number} has {equations} equations and {counted} unknowns, "
-            f"not {claimed[0]} and {claimed[1]} as is said.",
+            f"{group[0].number} has {text(equations)} equations and {text(counted)} unknowns, "
+            f"not {text(claimed[0])} and {text(claimed[1])} as is said.",
+            f"the unknowns are {', '.join(map(text, present))}",
         )
 
     return check
 
 
 def check_spurious(equation: Equation, solve_for: Expr, approach: Equation, condition: Expr) -> Check:
-    """Look for a point where the equation holds but the approach it stands for is negative.
+    """Look for a point where an equation holds but the approach it stands for is negative.
 
-    `condition` is what must be positive and is not said to be.
+    Kind ``condition``. The equation is linear in `solve_for`; `condition` is what must be positive and is
+    not said to be.
     """
 
     def check(ledger: Ledger) -> Erratum | None:
+        if any(expand(stated.gts - stated.lts - condition) == 0 for stated in equation.conditions):
+            return None
         residual = equation.sides[0] - equation.sides[1]
-        root = -residual.subs(solve_for, 0) / residual.diff(solve_for)
-        put_in = {solve_for: root}
-        for point, (value, depth, margin) in _sample(
-            [root, approach.value.xreplace(put_in), condition], equation.label
-        ):
+        root = -residual.xreplace({solve_for: Integer(0)}) / residual.diff(solve_for)
+        depth_there = approach.value.xreplace({solve_for: root})
+        for point, (value, depth, margin) in _values([root, depth_there, condition], equation.label):
             if value > 0 and depth < 0 and margin < 0:
-                found = {**point, str(solve_for): mpmath.nstr(value, 4)}
                 return Erratum(
                     equation.label,
-                    "unstated condition",
-                    f"{equation.label} also vanishes where {sstr(condition)} is negative. {approach.label} then gives "
-                    f"a negative approach, so such a root belongs to no impact. The condition is not printed.",
-                    f"at {_said(found)} {equation.label} holds and {approach.label} gives {mpmath.nstr(depth, 4)}",
+                    "condition",
+                    f"{equation.label} also vanishes where {text(condition)} is negative. There "
+                    f"{approach.label} gives a negative approach, so such a root belongs to no impact. "
+                    "The condition is not printed.",
+                    f"at {said({**point, text(solve_for): short(value)})} {equation.label} holds, and "
+                    f"{approach.label} gives {text(approach.members[0])} = {short(depth)}",
                 )
         return None
 
@@ -163,29 +176,41 @@ def check_spurious(equation: Equation, solve_for: Expr, approach: Equation, cond
 
 
 def check_determined(number: str, unknowns: tuple[Expr, ...]) -> Check:
-    """Look whether the printed lines of a numbered group determine every unknown once."""
+    """Look whether the printed lines of a numbered group determine every unknown once.
+
+    Kind ``determined``.
+    """
 
     def check(ledger: Ledger) -> Erratum | None:
         lines = [equation for equation in ledger.equations() if equation.number == number]
         left = [(line.printed or line.members)[0] for line in lines]
         missing = [u for u in unknowns if u not in left]
-        twice = sorted({str(u) for u in left if left.count(u) > 1})
+        twice = [text(u) for n, u in enumerate(left) if u in left[:n]]
         if not missing:
             return None
         meant = [line.label for line in lines if line.defines in missing]
+        repeats = f"prints {_listed(twice)} twice and " if twice else ""
+        advice = f"; what is meant is {_listed(meant)}" if meant else ""
         return Erratum(
             number,
-            "undetermined",
-            f"{number} prints {', '.join(twice) or 'no line'} twice and never {', '.join(map(str, missing))}; "
-            f"what is meant is {', '.join(meant)}.",
-            f"left-hand sides as printed: {', '.join(map(str, left))}",
+            "determined",
+            f"{number} {repeats}does not give {_listed(map(text, missing))}{advice}.",
+            f"left-hand sides as printed: {', '.join(map(text, left))}",
         )
 
     return check
 
 
+def _holds(equation: Equation, quantity: Expr) -> bool:
+    """Whether an equation is about the quantity of one test, not of test k."""
+    return any(quantity in side.free_symbols and not side.atoms(Indexed) for side in equation.sides)
+
+
 def check_citation(citation: Citation) -> Check:
-    """Look whether the equation that a place names contains the quantity that is said to come from it."""
+    """Look whether the equation that a place names contains the quantity that is said to come from it.
+
+    Kind ``citation``.
+    """
 
     def check(ledger: Ledger) -> Erratum | None:
         lines = [equation for equation in ledger.equations() if equation.number == citation.number]
@@ -194,36 +219,109 @@ def check_citation(citation: Citation) -> Check:
         holders = [
             equation.label
             for equation in ledger.equations()
-            if equation.kind is Kind.CLAIM
-            and not equation.own
-            and any(side.has(citation.quantity) for side in equation.sides)
+            if equation.kind is Kind.CLAIM and not equation.own and _holds(equation, citation.quantity)
         ]
+        where = f"the claims that do are {_listed(holders)}" if holders else "no claim does"
+        inside = sorted({text(s) for line in lines for side in line.sides for s in side.free_symbols})
         return Erratum(
             citation.where,
-            "wrong number",
-            f"{citation.where}: {citation.number} does not contain {citation.quantity}. "
-            f"The claims that do are {' and '.join(holders)}.",
-            f"symbols of {citation.number}: "
-            + ", ".join(sorted({str(s) for line in lines for side in line.sides for s in side.free_symbols})),
+            "citation",
+            f"{citation.where}: {citation.number} does not contain {text(citation.quantity)}; {where}.",
+            f"{citation.number} holds {_listed(inside)}" if inside else f"there is no {citation.number}",
         )
 
     return check
 
 
 def check_whose(law: Equation, symbol: Symbol, where: str, said: str) -> Check:
-    """Look which branch of the law holds a symbol that a passage attributes to the `said` phase."""
+    """Look which branch of a law holds a symbol that a passage attributes to the `said` phase.
+
+    Kind ``attribution``.
+    """
     phases = ("compression", "restitution")
 
     def check(ledger: Ledger) -> Erratum | None:
         branches = next(side for side in law.members if isinstance(side, Piecewise)).args
-        holders = [phase for phase, (body, _) in zip(phases, branches, strict=False) if body.has(symbol)]
+        laws = dict(zip(phases, (body for body, _ in branches), strict=False))
+        holders = [phase for phase, body in laws.items() if body.has(symbol)]
         if said in holders:
             return None
         return Erratum(
             where,
             "attribution",
-            f"The {where} attribute the exponent that is found to the {said} phase. {symbol} occurs only in the "
-            f"{' and '.join(holders)} branch of {law.label}.",
+            f"The {where} attribute the exponent that is found to the {said} phase. It is {text(symbol)}, "
+            f"which stands only in the {_listed(holders)} branch of {law.label}.",
+            f"{said}: {text(laws[said])}",
+        )
+
+    return check
+
+
+def check_units(law: Equation, printed: Mapping[Symbol, str | None]) -> Check:
+    """Find the units of a law's coefficients from the law; compare with those that are printed, if any are.
+
+    Kind ``unit``. `law` says force = branches, each with one of the coefficients as a factor.
+    """
+
+    def check(ledger: Ledger) -> Erratum | None:
+        branches = next(side for side in law.members if isinstance(side, Piecewise)).args
+        dimensions = Dimensions()
+        force = dimension_of_unit(symbols.TABLE["F"].unit)
+        found = {}
+        for symbol in printed:
+            (body,) = (body for body, _ in branches if body.has(symbol))
+            rest = dimensions.of(body.xreplace({symbol: Integer(1)}))
+            found[symbol] = product(force, power(rest, Integer(-1)))
+        names = {str(s): s for body, _ in branches for s in body.free_symbols}
+        wrong = [
+            s for s, unit in printed.items() if unit is None or dimension_of_unit(unit, names) != found[s]
+        ]
+        if not wrong:
+            return None
+        units = {s: _unit(s, found[s]) for s in wrong}
+        prints = [f"{text(s)} in {printed[s] or 'no unit'}" for s in wrong]
+        return Erratum(
+            law.label,
+            "unit",
+            f"By {law.label} {_listed(f'{text(s)} has the unit {unit}' for s, unit in units.items())}"
+            + (", so that they are not of one kind" if len(set(units.values())) > 1 else "")
+            + f". The source prints {_listed(prints)}.",
+            f"F is in {symbols.TABLE['F'].unit} and x is in {symbols.TABLE['x'].unit}",
+        )
+
+    return check
+
+
+def _unit(symbol: Symbol, found: Any) -> str:
+    """The table's name for a dimension that was found; the table must agree with the law."""
+    quantity = symbols.find(symbol)
+    if quantity is None or Dimensions().of_cell(symbol) != found:
+        raise ValueError(f"the table of symbols gives {symbol} another unit than its law does")
+    return quantity.unit
+
+
+def check_missing(where: str, formulas: tuple[Equation, ...], printed: tuple[Symbol, ...]) -> Check:
+    """Look whether a place can be computed from what is printed.
+
+    Kind ``missing``. `formulas` compute what the place shows, the later ones from the earlier ones.
+    """
+
+    def check(ledger: Ledger) -> Erratum | None:
+        known = set(printed)
+        needs: dict[Symbol, list[str]] = {}
+        for formula in formulas:
+            for symbol in sorted(formula.value.free_symbols - known, key=str):
+                needs.setdefault(symbol, []).append(formula.label)
+            known.add(formula.members[0])
+        if not needs:
+            return None
+        by = _listed(f"{text(symbol)} by {_listed(labels)}" for symbol, labels in needs.items())
+        return Erratum(
+            where,
+            "missing",
+            f"{where} cannot be computed from what is printed: it needs {by}, and the source gives no value "
+            f"of {'it' if len(needs) == 1 else 'either' if len(needs) == 2 else 'any of them'}.",
+            f"printed are {_listed(map(text, printed))}",
         )
 
     return check

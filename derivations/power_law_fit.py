@@ -7,7 +7,7 @@ derivatives of their sum of squares to zero.
 
 from __future__ import annotations
 
-from sympy import Integer, Sum, Symbol, diff, exp, log
+from sympy import Expr, Integer, Sum, Symbol, diff, exp, log
 from sympy.core.parameters import evaluate
 
 from .equation import Derivation, Equation, Kind, Step
@@ -35,37 +35,56 @@ size = Symbol("n_points", integer=True, positive=True)
 """How many points there are; the sums run over all of them."""
 _all = (q, 1, size)
 
-# --- the straight line through the logarithms ---------------------------------------------------------
+# --- what a fit minimises -----------------------------------------------------------------------------
 
 _squares_log = Sum((Y[q] - a - b * X[q]) ** 2, _all)
+_squares_lin = Sum((F[q] - C * x[q] ** alpha) ** 2, _all)
+
+
+def _normal(squares: Expr, parameter: Expr, name: str) -> Equation:
+    """The sum of squares is least where its derivative by a parameter vanishes."""
+    because = f"the sum of squares is least where its derivative by the {name} vanishes"
+    return Equation(
+        "", (diff(squares, parameter), Integer(0)), because, Kind.DEFINITION, f"normal equation of the {name}"
+    )
+
+
+_normal_a = _normal(_squares_log, a, "intercept")
+_normal_b = _normal(_squares_log, b, "slope")
+_normal_C = _normal(_squares_lin, C, "coefficient")
+_normal_alpha = _normal(_squares_lin, alpha, "exponent")
+
+# --- the equations, in the order of terms in which they are shown -----------------------------------------
+
 with evaluate(False):
+    # The straight line through the logarithms.
+
     log_x = Equation(
-        "(L13)", (X[q], log(x[q] / x_ref)), "definition", Kind.DEFINITION, "logarithm of the approach", defines=X[q]
+        "(L13)",
+        (X[q], log(x[q] / x_ref)),
+        "definition",
+        Kind.DEFINITION,
+        "logarithm of the approach",
+        defines=X[q],
     )
+
     log_F = Equation(
-        "(L14)", (Y[q], log(F[q] / F_ref)), "definition", Kind.DEFINITION, "logarithm of the force", defines=Y[q]
+        "(L14)",
+        (Y[q], log(F[q] / F_ref)),
+        "definition",
+        Kind.DEFINITION,
+        "logarithm of the force",
+        defines=Y[q],
     )
+
     mean_X = Equation(
         "(L15)", (Xmean, Sum(X[q], _all) / size), "definition", Kind.DEFINITION, "mean of X", defines=Xmean
     )
+
     mean_Y = Equation(
         "(L16)", (Ymean, Sum(Y[q], _all) / size), "definition", Kind.DEFINITION, "mean of Y", defines=Ymean
     )
-_normal_a = Equation(
-    "",
-    (diff(_squares_log, a), Integer(0)),
-    "the sum of squares is least where its derivative by the intercept vanishes",
-    Kind.DEFINITION,
-    "normal equation of the intercept",
-)
-_normal_b = Equation(
-    "",
-    (diff(_squares_log, b), Integer(0)),
-    "the sum of squares is least where its derivative by the slope vanishes",
-    Kind.DEFINITION,
-    "normal equation of the slope",
-)
-with evaluate(False):
+
     # Deviations from the mean, not raw sums: N Sum(XY) - Sum(X) Sum(Y) cancels.
     alpha_log = Equation(
         "(L17)",
@@ -73,12 +92,14 @@ with evaluate(False):
         "slope of the least-squares line through the logarithms of the points",
         title="log-log fit: exponent",
     )
+
     intercept = Equation(
         "(L18)",
         (a, Ymean - b * Xmean),
         "the least-squares line passes through the mean point",
         title="log-log fit: intercept",
     )
+
     _line = Equation(
         "",
         (log(C * x[q] ** b / F_ref), a + b * log(x[q] / x_ref)),
@@ -86,6 +107,7 @@ with evaluate(False):
         Kind.DEFINITION,
         "the line as a force law",
     )
+
     log_scale = Equation(
         "(L19)",
         (C, F_ref / x_ref**b * exp(a)),
@@ -93,63 +115,47 @@ with evaluate(False):
         title="log-log fit: coefficient",
     )
 
-_line_step = "Both normal equations are linear; solve them for the slope and the intercept."
-LOG_FIT = (
-    Derivation(
-        (Step(alpha_log, (mean_X, mean_Y, _normal_a, _normal_b), (Xmean, Ymean, a, b), _line_step),)
-    ),
-    Derivation(
-        (
-            Step(
-                intercept,
-                (mean_X, mean_Y, _normal_a),
-                (Xmean, Ymean, a),
-                "Solve the normal equation of the intercept.",
-            ),
-        )
-    ),
-    Derivation((Step(log_scale, (_line,), (C,), "Solve the line for the coefficient."),)),
-)
+    # Least squares of the force.
 
-# --- least squares of the force -----------------------------------------------------------------------
-
-_squares_lin = Sum((F[q] - C * x[q] ** alpha) ** 2, _all)
-_normal_C = Equation(
-    "",
-    (diff(_squares_lin, C), Integer(0)),
-    "the sum of squares is least where its derivative by the coefficient vanishes",
-    Kind.DEFINITION,
-    "normal equation of the coefficient",
-)
-_normal_alpha = Equation(
-    "",
-    (diff(_squares_lin, alpha), Integer(0)),
-    "the sum of squares is least where its derivative by the exponent vanishes",
-    Kind.DEFINITION,
-    "normal equation of the exponent",
-)
-with evaluate(False):
-    t = x[q] / x_ref
-    _moment = Sum(F[q] * t**alpha, _all) / Sum(t ** (2 * alpha), _all)
+    _t = x[q] / x_ref
+    _moment = Sum(F[q] * _t**alpha, _all) / Sum(_t ** (2 * alpha), _all)
     lin_scale = Equation(
         "(L20)",
         (C, _moment / x_ref**alpha),
         "for a given exponent the best coefficient is a ratio of two sums",
         title="least squares of force: coefficient",
     )
+
     alpha_lin = Equation(
         "(L21)",
         (
-            Sum(F[q] * t**alpha * log(t), _all) * Sum(t ** (2 * alpha), _all)
-            - Sum(F[q] * t**alpha, _all) * Sum(t ** (2 * alpha) * log(t), _all),
+            Sum(F[q] * _t**alpha * log(_t), _all) * Sum(_t ** (2 * alpha), _all)
+            - Sum(F[q] * _t**alpha, _all) * Sum(_t ** (2 * alpha) * log(_t), _all),
             Integer(0),
         ),
         "the best exponent, with the best coefficient already put in",
         title="least squares of force: exponent",
     )
 
+# --- why they hold ------------------------------------------------------------------------------------
+
+LOG_FIT = (
+    Derivation.of(
+        alpha_log,
+        (mean_X, mean_Y, _normal_a, _normal_b),
+        (Xmean, Ymean, a, b),
+        "Both normal equations are linear; solve them for the slope and the intercept.",
+    ),
+    Derivation.of(
+        intercept,
+        (mean_X, mean_Y, _normal_a),
+        (Xmean, Ymean, a),
+        "Solve the normal equation of the intercept.",
+    ),
+    Derivation.of(log_scale, (_line,), (C,), "Solve the line for the coefficient."),
+)
 LIN_FIT = (
-    Derivation((Step(lin_scale, (_normal_C,), (C,), "The normal equation is linear in C."),)),
+    Derivation.of(lin_scale, (_normal_C,), (C,), "The normal equation is linear in C."),
     Derivation(
         (
             Step(

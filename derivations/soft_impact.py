@@ -7,94 +7,121 @@ numbers and its order of terms; those that begin with L are this project's own a
 
 from __future__ import annotations
 
-from sympy import And, Expr, Integer, Integral, Le, Max, Piecewise, Rational, Sum, Symbol, exp, log, pi, sqrt
+from sympy import And, Expr, Integer, Integral, Le, Piecewise, Rational, pi
 from sympy.core.parameters import evaluate
 
-from . import power_law_fit
+from . import alpha_root, errata, generated_points, power_law_fit
+from .alpha_root import Lambda, log_speeds, logarithm, reciprocal, root_form, starting_value, turning, u
 from .equation import Derivation, Equation, Kind, Ledger, Step
-from .errata import (
-    Citation,
-    check_citation,
-    check_count,
-    check_determined,
-    check_overlap,
-    check_range,
-    check_spurious,
-    check_whose,
-)
-from .symbols import TABLE, F_of, k, p, s
+from .generated_points import F_scale, N, abscissa, mean, n_pairs, top, x_scale, x_top
+from .symbols import TABLE, F_of, k, plain
 
-V, E, XP, XM, CP, ALPHA, CC, XTOP = (
-    TABLE[name] for name in ("v", "e", "x_p", "x_m", "Cprime", "alpha", "C", "x_top")
-)
-v, e, x_p, x_m, Cprime = (quantity.symbol for quantity in (V, E, XP, XM, CP))
-C, alpha, beta, m_red, m_1, m_2, mu, x, u, d, rho, z, n, x_top, N, Lambda, x_ref, F_ref = (
-    TABLE[name].symbol
-    for name in (
-        "C", "alpha", "beta", "m_red", "m_1", "m_2", "mu", "x", "u", "d", "rho", "z", "n", "x_top", "N", "Lambda",
-        "x_ref", "F_ref",
-    )
-)
-v_n1, v_n2 = TABLE["v_n1"].symbol, TABLE["v_n2"].symbol
+# fmt: off
+__all__ = [  # noqa: RUF022 - symbols, the equations in their order, what other modules add, the ledger
+    "V", "E", "XP", "XM", "CP", "v", "e", "x_p", "x_m", "Cprime", "C", "F", "alpha", "beta", "m_red",
+    "m_1", "m_2", "mu", "x", "d", "rho", "n",
+    "eq1", "eq2", "eq3", "law_c", "law_r", "eq4", "eq5", "energy_c", "eq6", "energy_r", "eq7", "eq8",
+    "continuity", "eq9", "eq10a", "eq10b", "eq10c", "ratio", "eq11", "eq12a", "eq12b", "eq12c", "eq12d",
+    "eq12e", "volume", "ball_mass", "mass_ratio", "immobile", "reduced_by_ratio", "immobile_mass",
+    "x_m_of_test", "Cprime_of_test",
+    "u", "Lambda", "reciprocal", "root_form", "logarithm", "log_speeds", "turning", "starting_value",
+    "N", "n_pairs", "x_top", "top", "abscissa", "mean", "x_scale", "F_scale",
+    "LEDGER",
+]
+# fmt: on
+
+V, E, XP, XM, CP = (TABLE[name] for name in ("v", "e", "x_p", "x_m", "Cprime"))
+v, e, x_p, x_m, Cprime = plain("v e x_p x_m Cprime")
+C, alpha, beta, m_red, m_1, m_2, mu, x, d, rho, z, n = plain("C alpha beta m_red m_1 m_2 mu x d rho z n")
+v_n1, v_n2 = plain("v_n1 v_n2")
 F = F_of(x)
 half = Rational(1, 2)
-n_pairs = Symbol("n_pairs", integer=True, positive=True)
 
 # --- definitions and assumptions of the paper ----------------------------------------------------------
 
 with evaluate(False):
     eq1 = Equation(
-        "(1)", (e, -(v_n2 / v_n1)), "definition of the coefficient of restitution",
-        Kind.DEFINITION, "coefficient of restitution", defines=e,
-    )
-    eq2 = Equation(
-        "(2)",
-        (F, Piecewise(
-            (C * x ** Rational(3, 2), And(Le(0, x), Le(x, x_m))),
-            (Cprime * ((x - x_p) / (x_m - x_p)) ** Rational(3, 2), And(Le(x_p, x), Le(x, x_m))),
-        )),
-        "model of Lankarani and Nikravesh (1994), quoted for comparison",
-        Kind.ASSUMPTION, "Lankarani's force law",
-    )
-    _compression = C * x**alpha
-    _restitution = Cprime * ((x - x_p) / (x_m - x_p)) ** beta
-    eq3 = Equation(
-        "(3)",
-        (F, Piecewise(
-            (_compression, And(Le(0, x), Le(x, x_m))),
-            (_restitution, And(Le(x_p, x), Le(x, x_m))),
-        )),
-        "the model: Meyer's law while loading, an elastic law while unloading",
-        Kind.ASSUMPTION, "force law of the model",
-    )
-    law_c = Equation("(3)", (F, _compression), "compression branch of (3)", Kind.ASSUMPTION, parent=eq3)
-    law_r = Equation("(3)", (F, _restitution), "restitution branch of (3)", Kind.ASSUMPTION, parent=eq3)
-    eq4 = Equation(
-        "(4)", (And(Le(1, alpha), Le(alpha, Rational(3, 2))),),
-        "Meyer's law for loading: 1 perfectly plastic, 3/2 perfectly elastic",
-        Kind.ASSUMPTION, "range of the exponent",
-    )
-    eq5 = Equation(
-        "(5)", (beta, Rational(3, 2)), "no plastic deformation while unloading: Hertz's exponent",
-        Kind.ASSUMPTION, "exponent of restitution", defines=beta,
+        "(1)",
+        (e, -(v_n2 / v_n1)),
+        "definition of the coefficient of restitution",
+        Kind.DEFINITION,
+        "coefficient of restitution",
+        defines=e,
     )
 
-    # --- work and energy of one test ---------------------------------------------------------------
-    energy_c = Equation(
-        "", (-(half * m_red * v**2), -Integral(F, (x, 0, x_m))),
-        "the kinetic energy at impact is the work done up to the maximum approach",
-        Kind.ASSUMPTION, "theorem of kinetic energy, compression",
+    eq2 = Equation(
+        "(2)",
+        (
+            F,
+            Piecewise(
+                (C * x ** Rational(3, 2), And(Le(0, x), Le(x, x_m))),
+                (Cprime * ((x - x_p) / (x_m - x_p)) ** Rational(3, 2), And(Le(x_p, x), Le(x, x_m))),
+            ),
+        ),
+        "model of Lankarani and Nikravesh (1994), quoted for comparison",
+        Kind.ASSUMPTION,
+        "Lankarani's force law",
     )
+
+    _compression = C * x**alpha
+    _restitution = Cprime * ((x - x_p) / (x_m - x_p)) ** beta
+
+    eq3 = Equation(
+        "(3)",
+        (
+            F,
+            Piecewise((_compression, And(Le(0, x), Le(x, x_m))), (_restitution, And(Le(x_p, x), Le(x, x_m)))),
+        ),
+        "the model: Meyer's law while loading, an elastic law while unloading",
+        Kind.ASSUMPTION,
+        "force law of the model",
+    )
+
+    law_c = eq3.branch(0, "compression branch of (3)")
+    law_r = eq3.branch(1, "restitution branch of (3)")
+
+    eq4 = Equation(
+        "(4)",
+        (And(Le(1, alpha), Le(alpha, Rational(3, 2))),),
+        "Meyer's law for loading: 1 perfectly plastic, 3/2 perfectly elastic",
+        Kind.ASSUMPTION,
+        "range of the exponent",
+    )
+
+    eq5 = Equation(
+        "(5)",
+        (beta, Rational(3, 2)),
+        "no plastic deformation while unloading: Hertz's exponent",
+        Kind.ASSUMPTION,
+        "exponent of restitution",
+        defines=beta,
+    )
+
+    # --- work and energy of one test, then of test k ---------------------------------------------
+
+    energy_c = Equation(
+        "",
+        (-(half * m_red * v**2), -Integral(F, (x, 0, x_m))),
+        "the kinetic energy at impact is the work done up to the maximum approach",
+        Kind.ASSUMPTION,
+        "theorem of kinetic energy, compression",
+    )
+
     eq6 = Equation(
         "(6)",
         (-(half * m_red * v**2), -Integral(F, (x, 0, x_m)), -(C * x_m ** (alpha + 1) / (alpha + 1))),
-        "work of the compression branch", title="work of compression",
+        "work of the compression branch",
+        title="work of compression",
     )
+
     energy_r = Equation(
-        "", (half * m_red * (e * v) ** 2, -Integral(F, (x, x_m, x_p))),
+        "",
+        (half * m_red * (e * v) ** 2, -Integral(F, (x, x_m, x_p))),
         "the kinetic energy at rebound is the work given back down to the imprint depth",
-        Kind.ASSUMPTION, "theorem of kinetic energy, restitution",
+        Kind.ASSUMPTION,
+        "theorem of kinetic energy, restitution",
     )
+
     eq7 = Equation(
         "(7)",
         (
@@ -102,37 +129,59 @@ with evaluate(False):
             -Integral(_restitution, (x, x_m, x_p)),
             Cprime * (x_m - x_p) / (beta + 1),
         ),
-        "work of the restitution branch", title="work of restitution",
+        "work of the restitution branch",
+        title="work of restitution",
     )
+
     eq8 = Equation(
-        "(8)", (m_red, m_1 * m_2 / (m_1 + m_2)), "definition of the reduced mass",
-        Kind.DEFINITION, "reduced mass", defines=m_red,
+        "(8)",
+        (m_red, m_1 * m_2 / (m_1 + m_2)),
+        "definition of the reduced mass",
+        Kind.DEFINITION,
+        "reduced mass",
+        defines=m_red,
     )
+
     continuity = Equation(
-        "", (_compression.xreplace({x: x_m}), _restitution.xreplace({x: x_m})),
+        "",
+        (_compression.xreplace({x: x_m}), _restitution.xreplace({x: x_m})),
         "both branches of (3) meet at the maximum approach",
-        Kind.ASSUMPTION, "continuity of (3) at the maximum approach", parent=eq3,
+        Kind.ASSUMPTION,
+        "continuity of (3) at the maximum approach",
+        parent=eq3,
     )
+
     eq9 = Equation("(9)", (C * x_m**alpha, Cprime), "continuity of the force", title="common maximum force")
 
-    # --- all tests ---------------------------------------------------------------------------------
     eq10a = Equation(
-        "(10)", (C * XM[k] ** (alpha + 1) / (alpha + 1), half * m_red * V[k] ** 2), "(6) for test k",
-        title="work of compression, test k", part="a",
+        "(10)",
+        (C * XM[k] ** (alpha + 1) / (alpha + 1), half * m_red * V[k] ** 2),
+        "(6) for test k",
+        title="work of compression, test k",
+        part="a",
     )
+
     eq10b = Equation(
-        "(10)", (CP[k] * (XM[k] - XP[k]) / (beta + 1), half * m_red * (E[k] * V[k]) ** 2), "(7) for test k",
-        title="work of restitution, test k", part="b",
+        "(10)",
+        (CP[k] * (XM[k] - XP[k]) / (beta + 1), half * m_red * (E[k] * V[k]) ** 2),
+        "(7) for test k",
+        title="work of restitution, test k",
+        part="b",
     )
+
     eq10c = Equation(
         "(10)", (C * XM[k] ** alpha, CP[k]), "(9) for test k", title="common maximum force, test k", part="c"
     )
 
     # --- two tests ---------------------------------------------------------------------------------
+
     ratio = Equation(
-        "", ((alpha + 1) / (beta + 1) * ((XM[k] - XP[k]) / XM[k]), E[k] ** 2),
-        "share of the energy that is given back", title="energy ratio of test k",
+        "",
+        ((alpha + 1) / (beta + 1) * ((XM[k] - XP[k]) / XM[k]), E[k] ** 2),
+        "share of the energy that is given back",
+        title="energy ratio of test k",
     )
+
     eq11 = Equation(
         "(11)",
         (
@@ -141,134 +190,103 @@ with evaluate(False):
             - E[1] ** 2,
             Integer(0),
         ),
-        "the one equation for alpha that is left of (10) for two tests", title="equation for alpha",
+        "the one equation for alpha that is left of (10) for two tests",
+        title="equation for alpha",
         defines=alpha,
     )
+
+    _margin = (alpha + 1) - (beta + 1) * E[2] ** 2
+
     eq12a = Equation(
-        "(12)", (XM[2], XP[2] * (1 / (1 - (beta + 1) / (alpha + 1) * E[2] ** 2))), "(10) for test 2",
-        title="approach of the second test", part="a", defines=XM[2],
+        "(12)",
+        (XM[2], XP[2] * (1 / (1 - (beta + 1) / (alpha + 1) * E[2] ** 2))),
+        "(10) for test 2",
+        title="approach of the second test",
+        part="a",
+        defines=XM[2],
     )
+
     eq12b = Equation(
-        "(12)", (XM[1], XM[2] * (V[1] / V[2]) ** (2 / (alpha + 1))), "both tests load along one curve",
-        title="approach of the first test", part="b", defines=XM[1],
+        "(12)",
+        (XM[1], XM[2] * (V[1] / V[2]) ** (2 / (alpha + 1))),
+        "both tests load along one curve",
+        title="approach of the first test",
+        part="b",
+        defines=XM[1],
     )
+
     eq12c = Equation(
-        "(12)", (C, m_red * V[2] ** 2 / 2 * ((alpha + 1) / XM[2] ** (alpha + 1))), "(10a) for test 2",
-        title="coefficient of the pair", part="c", defines=C,
+        "(12)",
+        (C, m_red * V[2] ** 2 / 2 * ((alpha + 1) / XM[2] ** (alpha + 1))),
+        "(10a) for test 2",
+        title="coefficient of the pair",
+        part="c",
+        defines=C,
     )
+
     eq12d = Equation(
-        "(12)", (CP[1], C * XM[1] ** alpha), "(10c) for test 1",
-        title="maximum force of the first test", part="d", defines=CP[1],
+        "(12)",
+        (CP[1], C * XM[1] ** alpha),
+        "(10c) for test 1",
+        title="maximum force of the first test",
+        part="d",
+        defines=CP[1],
     )
+
     eq12e = Equation(
-        "(12)", (CP[2], C * XM[2] ** alpha), "(10c) for test 2",
-        title="maximum force of the second test", part="e", defines=CP[2],
+        "(12)",
+        (CP[2], C * XM[2] ** alpha),
+        "(10c) for test 2",
+        title="maximum force of the second test",
+        part="e",
+        defines=CP[2],
         printed=(CP[1], C * XM[1] ** alpha),
     )
 
     # --- this project's own: the mass, and each test after the fit -----------------------------------
+
     volume = Equation(
-        "", (m_1, rho * Integral(pi * ((d / 2) ** 2 - z**2), (z, -d / 2, d / 2))),
-        "the mass of a homogeneous ball, slice by slice", Kind.DEFINITION, "mass of a homogeneous ball",
+        "",
+        (m_1, rho * Integral(pi * ((d / 2) ** 2 - z**2), (z, -d / 2, d / 2))),
+        "the mass of a homogeneous ball, slice by slice",
+        Kind.DEFINITION,
+        "mass of a homogeneous ball",
     )
+
     ball_mass = Equation("(L1)", (m_1, rho * pi * d**3 / 6), "volume of a ball", title="mass of the ball")
+
     mass_ratio = Equation("", (mu, m_1 / m_2), "definition", Kind.DEFINITION, "mass ratio", defines=mu)
+
     immobile = Equation(
-        "", (mu, Integer(0)), "the target does not move: its mass is beyond all bounds",
-        Kind.ASSUMPTION, "immobile target",
+        "",
+        (mu, Integer(0)),
+        "the target does not move: its mass is beyond all bounds",
+        Kind.ASSUMPTION,
+        "immobile target",
     )
-    reduced_by_ratio = Equation("", (m_red, m_1 / (1 + mu)), "(8) in terms of the mass ratio", title="reduced mass by ratio")
-    immobile_mass = Equation("(L2)", (m_red, m_1), "(8) for an immobile target", title="reduced mass, immobile target")
+
+    reduced_by_ratio = Equation(
+        "", (m_red, m_1 / (1 + mu)), "(8) in terms of the mass ratio", title="reduced mass by ratio"
+    )
+
+    immobile_mass = Equation(
+        "(L2)", (m_red, m_1), "(8) for an immobile target", title="reduced mass, immobile target"
+    )
+
     x_m_of_test = Equation(
-        "(L3)", (x_m, ((alpha + 1) * m_red * v**2 / (2 * C)) ** (1 / (alpha + 1))),
-        "(6) solved for the maximum approach", title="approach of a test",
+        "(L3)",
+        (x_m, ((alpha + 1) * m_red * v**2 / (2 * C)) ** (1 / (alpha + 1))),
+        "(6) solved for the maximum approach",
+        title="approach of a test",
     )
+
     Cprime_of_test = Equation(
-        "(L4)", (Cprime, (beta + 1) * m_red * (e * v) ** 2 / (2 * (x_m - x_p))),
-        "(7) solved for the maximum force", title="maximum force from the restitution",
+        "(L4)",
+        (Cprime, (beta + 1) * m_red * (e * v) ** 2 / (2 * (x_m - x_p))),
+        "(7) solved for the maximum force",
+        title="maximum force from the restitution",
         conditions=(x_m > x_p,),
     )
-
-    # --- this project's own: how (11) is solved without a spurious root ------------------------------
-    reciprocal = Equation("", (u, 1 / (alpha + 1)), "definition", Kind.DEFINITION, "reciprocal of alpha + 1")
-    root_form = Equation(
-        "(L5)",
-        (
-            (1 - (beta + 1) * E[1] ** 2 * u)
-            - XP[1] / XP[2] * (1 - (beta + 1) * E[2] ** 2 * u) * (V[2] / V[1]) ** (2 * u),
-            Integer(0),
-        ),
-        "(11) times (beta + 1) u, which is positive: smooth on the whole domain", title="(11) in u = 1/(alpha + 1)",
-    )
-    logarithm = (
-        log(1 - (beta + 1) * E[1] ** 2 * u) - log(XP[1] / XP[2])
-        - log(1 - (beta + 1) * E[2] ** 2 * u) - 2 * u * log(V[2] / V[1])
-    )
-    log_form = Equation(
-        "(L6)",
-        (root_form.members[0], (1 - (beta + 1) * E[1] ** 2 * u) * (1 - exp(-logarithm))),
-        "where both factors 1 - (beta + 1) e^2 u are positive, (L5) has the sign of this logarithm",
-        title="sign of (L5)",
-        conditions=(1 - (beta + 1) * E[1] ** 2 * u > 0, 1 - (beta + 1) * E[2] ** 2 * u > 0),
-    )
-    _a1, _a2 = (beta + 1) * E[1] ** 2, (beta + 1) * E[2] ** 2
-    log_speeds = Equation(
-        "(L7)", (Lambda, log(V[2] / V[1])), "definition", Kind.DEFINITION, "logarithm of the speed ratio",
-        defines=Lambda,
-    )
-    turning = Equation(
-        "(L8)",
-        (
-            u,
-            2 * (1 - (_a2 - _a1) / (2 * Lambda))
-            / (_a1 + _a2 + sqrt((_a1 - _a2) ** 2 + 2 * _a1 * _a2 * (_a2 - _a1) / Lambda)),
-        ),
-        "where the logarithm of (L6) turns, if it does",
-        Kind.DEFINITION, "turning point", defines=u,
-        conditions=(1 - _a1 * u > 0, 1 - _a2 * u > 0),
-    )
-    slope = Equation(
-        "(L9)", (_a2 / (1 - _a2 * u) - _a1 / (1 - _a1 * u) - 2 * Lambda, Integer(0)),
-        "the slope of the logarithm vanishes at (L8); the quadratic's other zero lies outside the domain, "
-        "so (11) has at most one root on each side of (L8)", title="slope of the logarithm at (L8)",
-    )
-
-    # --- this project's own: points and mean -----------------------------------------------------------
-    top = Equation(
-        "(L10)", (x_top, Max(XM[1], XM[2])), "the paper generates points up to the pair's largest approach",
-        Kind.DEFINITION, "largest approach of the pair", defines=x_top,
-    )
-    abscissa = Equation(
-        "(L11)", (x, x_top * s / N), "equally spaced up to the largest approach; the paper does not say how many",
-        Kind.DEFINITION, "abscissae of the generated points", defines=x,
-    )
-    mean = Equation(
-        "(L12)", (Symbol(r"alpha_mean", positive=True), Sum(ALPHA[p], (p, 1, n_pairs)) / n_pairs),
-        "arithmetic mean over the pairs", Kind.DEFINITION, "mean exponent",
-    )
-    x_scale = Equation(
-        "(L22)", (x_ref, Sum(XTOP[p], (p, 1, n_pairs)) / n_pairs),
-        "a typical approach, so that logarithms are taken of pure numbers; any would do",
-        Kind.DEFINITION, "reference approach", defines=x_ref,
-    )
-    F_scale = Equation(
-        "(L23)", (F_ref, Sum(CC[p] * XTOP[p] ** ALPHA[p], (p, 1, n_pairs)) / n_pairs),
-        "a typical force, so that logarithms are taken of pure numbers; any would do",
-        Kind.DEFINITION, "reference force", defines=F_ref,
-    )
-
-
-def starting_value() -> Expr:
-    """u near the root of (11), within 3e-4 on the paper: it costs steps, never truth.
-
-    In the logarithm of (L6), log(1 - y) is replaced by its expansion about the mean of the two y; a
-    quadratic in 1/u is left. Not a claim, so not in the ledger: the solver's bracket decides.
-    """
-    a1, a2 = E[1] ** 2, E[2] ** 2
-    middle, gap = (a1 + a2) / 2, a1 - a2
-    pull, log_depths = 2 * log(V[2] / V[1]) / (beta + 1), log(XP[2] / XP[1])
-    t = pull + log_depths * middle + gap
-    return 2 * log_depths / ((beta + 1) * (t + sqrt(t**2 - 4 * log_depths * pull * middle)))
 
 
 def _one_test(equation: Equation, number: int | Expr) -> Equation:
@@ -276,19 +294,20 @@ def _one_test(equation: Equation, number: int | Expr) -> Equation:
     return equation.at({v: V[number], e: E[number], x_p: XP[number], x_m: XM[number], Cprime: CP[number]})
 
 
-def _chain(claim: Equation, premises: tuple[Equation, ...], eliminate: tuple[Expr, ...], says: str) -> Derivation:
-    return Derivation((Step(claim, premises, eliminate, says),))
-
-
 _ratio_step = Step(
-    ratio, (eq10a, eq10c, eq10b), (m_red, CP[k], XP[k]),
+    ratio,
+    (eq10a, eq10c, eq10b),
+    (m_red, CP[k], XP[k]),
     "Divide (10b) by (10a); with (10c) the coefficient, the mass and the speed cancel.",
 )
 _ratio_1, _ratio_2 = ratio.at({k: Integer(1)}), ratio.at({k: Integer(2)})
 _work_1, _work_2 = eq10a.at({k: Integer(1)}), eq10a.at({k: Integer(2)})
 
 _law_work_1 = Step(
-    eq12b, (_work_2, _work_1), (m_red, V[1]), "Divide (10a) of test 1 by (10a) of test 2: mass and coefficient cancel."
+    eq12b,
+    (_work_2, _work_1),
+    (m_red, XM[1]),
+    "Divide (10a) of test 1 by (10a) of test 2: mass and coefficient cancel.",
 )
 _approach_2 = Step(eq12a, (_ratio_2,), (XP[2],), "Solve the energy ratio of test 2 for its approach.")
 
@@ -299,65 +318,83 @@ LEDGER = Ledger(
         eq3,
         eq4,
         eq5,
-        _chain(eq6, (law_c, energy_c), (F, m_red), "Put the compression branch of (3) under the integral and integrate."),
-        _chain(eq7, (law_r, energy_r), (F, m_red), "Put the restitution branch of (3) under the integral and integrate."),
+        Derivation.of(
+            eq6,
+            (law_c, energy_c),
+            (F, m_red),
+            "Put the compression branch of (3) under the integral and integrate.",
+        ),
+        Derivation.of(
+            eq7,
+            (law_r, energy_r),
+            (F, m_red),
+            "Put the restitution branch of (3) under the integral and integrate.",
+        ),
         eq8,
-        _chain(eq9, (continuity,), (C,), "At x = x_m the bracket of the restitution branch is 1."),
-        _chain(eq10a, (_one_test(eq6.brief, k),), (m_red,), "Write (6) for test k."),
-        _chain(eq10b, (_one_test(eq7.brief, k),), (m_red,), "Write (7) for test k."),
-        _chain(eq10c, (_one_test(eq9, k),), (C,), "Write (9) for test k."),
+        Derivation.of(eq9, (continuity,), (C,), "At x = x_m the bracket of the restitution branch is 1."),
+        Derivation.of(eq10a, (_one_test(eq6.brief, k),), (m_red,), "Write (6) for test k."),
+        Derivation.of(eq10b, (_one_test(eq7.brief, k),), (m_red,), "Write (7) for test k."),
+        Derivation.of(eq10c, (_one_test(eq9, k),), (C,), "Write (9) for test k."),
         Derivation(
             (
                 _ratio_step,
                 _approach_2,
                 _law_work_1,
                 Step(
-                    eq11, (eq12b, eq12a, _ratio_1), (XM[1], XM[2], XP[1]),
-                    "Put both approaches into the energy ratio of test 1 and divide by the approach: only alpha is left.",
+                    eq11,
+                    (eq12b, eq12a, _ratio_1),
+                    (XM[1], XM[2], XP[1]),
+                    "Put both approaches into the energy ratio of test 1 and divide by the approach: only "
+                    "alpha is left.",
                 ),
             )
         ),
         Derivation((_ratio_step, _approach_2)),
         Derivation((_law_work_1,)),
-        _chain(eq12c, (_work_2,), (m_red,), "Solve (10a) of test 2 for the coefficient."),
-        _chain(eq12d, (eq10c.at({k: Integer(1)}),), (CP[1],), "Read (10c) for test 1."),
-        _chain(eq12e, (eq10c.at({k: Integer(2)}),), (CP[2],), "Read (10c) for test 2."),
-        _chain(ball_mass, (volume,), (m_1,), "Integrate."),
-        Derivation(
-            (
-                Step(reduced_by_ratio, (eq8, mass_ratio), (m_red, m_1), "Divide (8) by the mass of the target."),
-                Step(immobile_mass, (reduced_by_ratio, immobile), (m_red, mu), "Let the mass ratio be zero."),
-            )
-        ),
-        _chain(x_m_of_test, (eq6.brief,), (m_red,), "Solve (6) for the maximum approach."),
-        _chain(Cprime_of_test, (eq7.brief,), (m_red,), "Solve (7) for the maximum force."),
+        Derivation.of(eq12c, (_work_2,), (m_red,), "Solve (10a) of test 2 for the coefficient."),
+        Derivation.of(eq12d, (eq10c.at({k: Integer(1)}),), (CP[1],), "Read (10c) for test 1."),
+        Derivation.of(eq12e, (eq10c.at({k: Integer(2)}),), (CP[2],), "Read (10c) for test 2."),
+        Derivation.of(ball_mass, (volume,), (m_1,), "Integrate."),
         Derivation(
             (
                 Step(
-                    root_form, (reciprocal, eq11), (u,), "Multiply (11) by (beta + 1) u.", multiplier=(beta + 1) * u
+                    reduced_by_ratio, (eq8, mass_ratio), (m_red, m_1), "Divide (8) by the mass of the target."
+                ),
+                Step(immobile_mass, (reduced_by_ratio, immobile), (m_red, mu), "Let the mass ratio be zero."),
+            )
+        ),
+        Derivation.of(x_m_of_test, (eq6.brief,), (m_red,), "Solve (6) for the maximum approach."),
+        Derivation.of(Cprime_of_test, (eq7.brief,), (m_red,), "Solve (7) for the maximum force."),
+        Derivation(
+            (
+                Step(
+                    root_form,
+                    (reciprocal, eq11),
+                    (u,),
+                    "Multiply (11) by (beta + 1) u.",
+                    multiplier=(beta + 1) * u,
                 ),
             )
         ),
-        _chain(log_form, (), (), "Expand the right-hand side."),
-        log_speeds,
-        turning,
-        _chain(slope, (turning,), (u,), "Put (L8) in; the numerator is a quadratic in u with this zero."),
-        top,
-        abscissa,
-        mean,
-        x_scale,
-        F_scale,
+        *alpha_root.ENTRIES,
+        *generated_points.ENTRIES,
         *power_law_fit.ENTRIES,
     ),
     checks=(
-        check_overlap(eq2),
-        check_overlap(eq3),
-        check_range(eq4, scale=2, symbol=n, known=("Tabor's plastic range of Meyer's exponent", 2, Rational(5, 2))),
-        check_count((eq10a, eq10b, eq10c), unknowns=(C, alpha, XM[k], CP[k]), claimed=(3 * k, 2 * k + 2)),
-        check_spurious(eq11, solve_for=XP[1], approach=eq12a, condition=(alpha + 1) - (beta + 1) * E[2] ** 2),
-        check_determined("(12)", unknowns=(C, XM[1], XM[2], CP[1], CP[2])),
-        check_citation(Citation("Table 3, row C', (eq. 6)", "(6)", Cprime)),
-        check_citation(Citation("Table 3, row C', (eq. 8)", "(8)", Cprime)),
-        check_whose(eq3, alpha, "conclusions", said="restitution"),
+        errata.check_overlap(eq2),
+        errata.check_overlap(eq3),
+        errata.check_range(
+            eq4, scale=2, symbol=n, known=("Tabor's plastic range of Meyer's exponent", 2, Rational(5, 2))
+        ),
+        errata.check_count(
+            (eq10a, eq10b, eq10c), unknowns=(C, alpha, XM[k], CP[k]), claimed=(3 * k, 2 * k + 2)
+        ),
+        errata.check_spurious(eq11, solve_for=XP[1], approach=eq12a, condition=_margin),
+        errata.check_determined("(12)", unknowns=(C, XM[1], XM[2], CP[1], CP[2])),
+        errata.check_citation(errata.Citation("Table 3, row C', (eq. 6)", "(6)", Cprime)),
+        errata.check_citation(errata.Citation("Table 3, row C', (eq. 8)", "(8)", Cprime)),
+        errata.check_units(eq3, printed={C: None, Cprime: None}),
+        errata.check_missing("Table 3", (x_m_of_test, Cprime_of_test), printed=(alpha, beta, v, e, x_p)),
+        errata.check_whose(eq3, alpha, "conclusions", said="restitution"),
     ),
 )

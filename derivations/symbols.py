@@ -11,7 +11,7 @@ from functools import cached_property
 
 from sympy import Expr, Function, Indexed, IndexedBase, Symbol
 
-__all__ = ["TABLE", "Quantity", "find"]
+__all__ = ["TABLE", "F_of", "Quantity", "find", "k", "p", "plain", "q", "s"]
 
 
 @dataclass(frozen=True)
@@ -39,6 +39,8 @@ class Quantity:
     span: tuple[float, float] = (0.5, 2.0)
     positive: bool = True
     """Whether it is positive on the domain of every model here (a logarithm is not)."""
+    text: str = ""
+    """How a terminal shows it; ``%s`` is where a subscript goes. Left out: the name, then the subscript."""
 
     @cached_property
     def symbol(self) -> Symbol:
@@ -60,32 +62,69 @@ def _table(*quantities: Quantity) -> dict[str, Quantity]:
 
 
 TABLE = _table(
-    Quantity("v", "impact speed, the normal relative velocity before impact", "m/s", "v'%s", (0.5, 8.0)),
+    Quantity(
+        "v",
+        "impact speed, the normal relative velocity before impact",
+        "m/s",
+        "v'%s",
+        (0.5, 8.0),
+        text="v'%s",
+    ),
     Quantity("e", "normal coefficient of restitution", "1", "e%s", (0.05, 0.9)),
     Quantity("x_p", "imprint depth, the permanent deformation", "m", "x_{p%s}", (5e-6, 9e-5)),
     Quantity("x_m", "maximum normal approach", "m", "x_{m%s}", (1e-5, 1e-4)),
     Quantity("C", "coefficient of the compression law", "N/m^alpha", "C%s", (1e7, 1e10)),
-    Quantity("Cprime", "force at the maximum approach", "N", "C'%s", (500.0, 5000.0)),
+    Quantity("Cprime", "force at the maximum approach", "N", "C'%s", (500.0, 5000.0), text="C'%s"),
     Quantity("alpha", "exponent of the compression law", "1", r"\alpha%s", (1.0, 1.5)),
     Quantity("beta", "exponent of the restitution law", "1", r"\beta%s", (1.0, 2.5)),
     Quantity("m_red", "reduced mass of the two bodies", "kg", "m_{red%s}", (1e-3, 1e-1)),
     Quantity("m_1", "mass of the ball", "kg", "m_{1%s}", (1e-3, 1e-1)),
     Quantity("m_2", "mass of the target", "kg", "m_{2%s}", (1e-3, 1e2)),
-    Quantity("mu", "mass of the ball over the mass of the target", "1", r"\mu%s", (1e-4, 2.0)),
+    Quantity(
+        "mu", "mass of the ball over the mass of the target", "1", r"\mu%s", (1e-4, 2.0), positive=False
+    ),
     Quantity("rho", "density of the ball", "kg/m^3", r"\rho%s", (1e3, 1e4)),
     Quantity("d", "diameter of the ball", "m", "d%s", (1e-3, 5e-2)),
     Quantity("x", "normal approach", "m", "x%s", (1e-6, 1e-4)),
     Quantity("F", "impact force", "N", "F%s", (1.0, 5000.0)),
-    Quantity("z", "height over the ball's centre", "m", "z%s", (1e-4, 1e-3)),
+    Quantity("z", "height over the ball's centre", "m", "z%s", (-1e-3, 1e-3), positive=False),
     Quantity("u", "reciprocal of alpha + 1", "1", "u%s", (0.3, 0.6)),
-    Quantity("v_n1", "normal component of the relative velocity before impact", "m/s", r"\mathbf{v}'\cdot\mathbf{n}%s"),
-    Quantity("v_n2", "normal component of the relative velocity after impact", "m/s", r"\mathbf{v}''\cdot\mathbf{n}%s"),
-    Quantity("Lambda", "logarithm of the ratio of both impact speeds", "1", r"\Lambda%s", (-2.0, 2.0), positive=False),
+    Quantity(
+        "u_turn", "u at which the logarithm turns", "1", r"u_{\mathrm{turn}%s}", (0.05, 0.95), positive=False
+    ),
+    Quantity(
+        "v_n1",
+        "normal component of the relative velocity before impact",
+        "m/s",
+        r"\mathbf{v}'\cdot\mathbf{n}%s",
+        text="v'.n%s",
+    ),
+    Quantity(
+        "v_n2",
+        "normal component of the relative velocity after impact",
+        "m/s",
+        r"\mathbf{v}''\cdot\mathbf{n}%s",
+        text="v''.n%s",
+    ),
+    Quantity(
+        "Lambda",
+        "logarithm of the ratio of both impact speeds",
+        "1",
+        r"\Lambda%s",
+        (-2.0, 2.0),
+        positive=False,
+    ),
     Quantity("n", "exponent of Meyer's law", "1", "n%s", (2.0, 3.0)),
-    Quantity("x_ref", "approach that makes the logarithms pure numbers", "m", r"x_{\mathrm{ref}%s}", (1e-5, 1e-4)),
-    Quantity("F_ref", "force that makes the logarithms pure numbers", "N", r"F_{\mathrm{ref}%s}", (100.0, 5000.0)),
+    Quantity(
+        "x_ref", "approach that makes the logarithms pure numbers", "m", r"x_{\mathrm{ref}%s}", (1e-5, 1e-4)
+    ),
+    Quantity(
+        "F_ref", "force that makes the logarithms pure numbers", "N", r"F_{\mathrm{ref}%s}", (100.0, 5000.0)
+    ),
     Quantity("x_top", "largest approach of the pair", "m", r"x_{\mathrm{top}%s}", (1e-5, 1e-4)),
-    Quantity("X", "logarithm of a point's approach over the reference", "1", "X%s", (-1.0, 1.0), positive=False),
+    Quantity(
+        "X", "logarithm of a point's approach over the reference", "1", "X%s", (-1.0, 1.0), positive=False
+    ),
     Quantity("Y", "logarithm of a point's force over the reference", "1", "Y%s", (-1.0, 1.0), positive=False),
     Quantity("Xmean", "mean of X over the points", "1", r"\bar{X}%s", (-1.0, 1.0), positive=False),
     Quantity("Ymean", "mean of Y over the points", "1", r"\bar{Y}%s", (-1.0, 1.0), positive=False),
@@ -93,6 +132,12 @@ TABLE = _table(
     Quantity("b", "slope of the fitted line", "1", "b%s", (-1.0, 1.0), positive=False),
     Quantity("N", "number of generated points of a pair", "1", "N%s", (5.0, 50.0)),
 )
+
+
+def plain(names: str) -> tuple[Symbol, ...]:
+    """The plain symbols of some quantities of the table, by their names with spaces between."""
+    return tuple(TABLE[name].symbol for name in names.split())
+
 
 k = Symbol("k", integer=True, positive=True)
 p = Symbol("p", integer=True, positive=True)

@@ -8,54 +8,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
 
-from sympy import (
-    Add,
-    Basic,
-    Expr,
-    Indexed,
-    Integer,
-    Integral,
-    Max,
-    Min,
-    Mul,
-    Number,
-    NumberSymbol,
-    Piecewise,
-    Pow,
-    Rational,
-    Rel,
-    Sum,
-    Symbol,
-    expand,
-    sstr,
-)
-from sympy.functions.elementary.exponential import exp, log
-from sympy.logic.boolalg import BooleanFunction
+from sympy import Basic, Expr, Indexed, sstr
 
+from ..derivations import dimensions
+from ..derivations.dimensions import PURE, Dimension, DimensionError, Dimensions, text_of
 from .sheet import Column, Formula, Given, Root, Sheet, SheetError, name_of
 
 __all__ = ["Dimension", "UnitError", "check", "dimension_of_unit"]
-
-Dimension = Mapping[str, Expr]
-"""Exponents of the base units; one that is zero is left out."""
-
-_ONE: Dimension = {}
-_DERIVED: dict[str, dict[str, int]] = {
-    "kg": {"kg": 1},
-    "m": {"m": 1},
-    "s": {"s": 1},
-    "K": {"K": 1},
-    "A": {"A": 1},
-    "mol": {"mol": 1},
-    "cd": {"cd": 1},
-    "N": {"kg": 1, "m": 1, "s": -2},
-    "J": {"kg": 1, "m": 2, "s": -2},
-    "Pa": {"kg": 1, "m": -1, "s": -2},
-    "W": {"kg": 1, "m": 2, "s": -3},
-    "Hz": {"s": -1},
-}
 
 
 class UnitError(SheetError):
@@ -72,68 +32,39 @@ def dimension_of_unit(text: str, exponents: Mapping[str, Expr] | None = None) ->
     exponents : mapping of str to Expr
         What the names in exponents stand for.
 
+    Raises
+    ------
+    UnitError
+        Names the unit or the exponent that is not known.
+
     Examples
     --------
     >>> dimension_of_unit("N*s/m") == dimension_of_unit("kg/s")
     True
     """
-    total: Dimension = _ONE
-    for sign, factor in re.findall(r"(^|[*/])([^*/]+)", text.strip()):
-        name, _, power = factor.partition("^")
-        if name.strip() == "1":
-            continue
-        base = _DERIVED.get(name.strip())
-        if base is None:
-            raise UnitError(f"unknown unit {name.strip()!r} in {text!r}; known are {', '.join(_DERIVED)}")
-        exponent = _exponent(power.strip() or "1", text, exponents or {})
-        step = _power({unit: Integer(p) for unit, p in base.items()}, exponent if sign != "/" else -exponent)
-        total = _product(total, step)
-    return total
+    try:
+        return dimensions.dimension_of_unit(text, exponents)
+    except DimensionError as problem:
+        raise UnitError(str(problem)) from None
 
 
-def _exponent(power: str, text: str, names: Mapping[str, Expr]) -> Expr:
-    if re.fullmatch(r"-?\d+(/\d+)?", power):
-        return Rational(power)
-    if power not in names:
-        raise UnitError(f"unknown exponent {power!r} in the unit {text!r}")
-    return names[power]
-
-
-def _product(a: Dimension, b: Dimension) -> Dimension:
-    total = dict(a)
-    for unit, power in b.items():
-        summed = expand(total.get(unit, Integer(0)) + power)
-        if summed == 0:
-            total.pop(unit, None)
-        else:
-            total[unit] = summed
-    return total
-
-
-def _power(a: Dimension, exponent: Expr) -> Dimension:
-    return {unit: power for unit, old in a.items() if (power := expand(old * exponent)) != 0}
-
-
-def text_of(dimension: Dimension) -> str:
-    """Write a dimension for people, ``kg^1 m^2 s^-2``."""
-    return " ".join(f"{unit}^{sstr(power)}" for unit, power in sorted(dimension.items())) or "1"
-
-
-class _Checker:
+class _Checker(Dimensions):
     """Finds the dimension of an expression; remembers which column it works for, for its messages."""
 
     def __init__(self, sheet: Sheet, column: Column) -> None:
         self.sheet, self.column = sheet, column
 
     def fail(self, expression: Basic, problem: str) -> UnitError:
+        """The complaint names the column and its equation."""
         return UnitError(f"{self.column.name} {self.column.source}: {problem} in {sstr(expression)}")
 
     def of_cell(self, cell: Expr) -> Dimension:
+        """The dimension of a cell of the sheet."""
         if isinstance(self.column.rule, Root) and cell == self.column.rule.unknown:
             return self.of_unknown()
         name = name_of(cell)
         if name not in self.sheet:
-            return _ONE  # a running number or a size
+            return PURE  # a running number or a size
         column = self.sheet[name]
         index = cell.indices[0] if isinstance(cell, Indexed) else None
         return dimension_of_unit(column.unit, exponents(self.sheet, column, index))
@@ -143,64 +74,7 @@ class _Checker:
         rule = self.column.rule
         assert isinstance(rule, Root)
         own = dimension_of_unit(self.column.unit, exponents(self.sheet, self.column, None))
-        return own if rule.value == rule.unknown else _ONE
-
-    def same(self, parts: list[Any], expression: Basic, verb: str) -> Dimension:
-        """All parts must agree; a zero agrees with everything."""
-        found: Dimension | None = None
-        for part in parts:
-            if part == 0:
-                continue
-            dimension = self.of(part)
-            if found is None:
-                found = dimension
-            elif dict(found) != dict(dimension):
-                raise self.fail(expression, f"cannot {verb} {text_of(found)} and {text_of(dimension)}")
-        return found or _ONE
-
-    def pure(self, part: Any, expression: Basic, what: str) -> Dimension:
-        dimension = self.of(part)
-        if dimension:
-            raise self.fail(expression, f"{what} must be a pure number, not {text_of(dimension)},")
-        return _ONE
-
-    def of(self, expression: Any) -> Dimension:
-        match expression:
-            case Number() | NumberSymbol():
-                return _ONE
-            case Indexed() | Symbol():
-                return self.of_cell(expression)
-            case Add():
-                return self.same(list(expression.args), expression, "add")
-            case Max() | Min():
-                return self.same(list(expression.args), expression, "compare")
-            case Mul():
-                total: Dimension = _ONE
-                for factor in expression.args:
-                    total = _product(total, self.of(factor))
-                return total
-            case exp() | log():
-                return self.pure(expression.args[0], expression, "the argument of a function")
-            case Pow():
-                self.pure(expression.exp, expression, "an exponent")
-                return _power(self.of(expression.base), expression.exp)
-            case Sum() | Integral():
-                return self.of(expression.function)
-            case Piecewise():
-                for _, condition in expression.args:
-                    self.relation(condition)
-                return self.same([body for body, _ in expression.args], expression, "choose between")
-            case _:
-                for argument in expression.args:
-                    self.pure(argument, expression, "the argument of a function")
-                return _ONE
-
-    def relation(self, condition: Any) -> None:
-        if isinstance(condition, Rel):
-            self.same([condition.lhs, condition.rhs], condition, "compare")
-        elif isinstance(condition, BooleanFunction):
-            for part in condition.args:
-                self.relation(part)
+        return own if rule.value == rule.unknown else PURE
 
 
 def exponents(sheet: Sheet, column: Column, index: Expr | None) -> dict[str, Expr]:
@@ -235,9 +109,9 @@ def check(sheet: Sheet) -> None:
             for place in (rule.low, rule.high, rule.start, *rule.turning):
                 if place != 0 and place.is_finite is not False:
                     _expect(checker, place, checker.of_unknown())
-            for sign in (rule.sign_low, rule.sign_high):
-                if sign is not None:
-                    checker.of(sign)
+            for end in (rule.sign_low, rule.sign_high):
+                if end is not None:
+                    checker.of(end)
         elif not isinstance(rule, Given):
             raise SheetError(f"{column.name}: unknown kind of rule {rule!r}")
         for condition, _ in column.requires:

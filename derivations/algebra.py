@@ -1,0 +1,252 @@
+"""The symbolic half of a proof: solving a premise, integrating, seeing that a residual is zero.
+
+Each function here either returns what is right wherever the symbols' assumptions hold, or says that it
+cannot; none of them guesses. What a result needs beyond the assumptions is returned with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+from sympy import (
+    Add,
+    Basic,
+    Expr,
+    Integer,
+    Integral,
+    Mul,
+    Pow,
+    Sum,
+    exp,
+    expand,
+    expand_log,
+    expand_power_base,
+    fraction,
+    log,
+    nan,
+    oo,
+    powsimp,
+    simplify,
+    together,
+    zoo,
+)
+
+__all__ = ["Solved", "definite", "settle", "solve_for", "vanishes"]
+
+
+@dataclass(frozen=True)
+class Solved:
+    """The only positive solution of an equation for one of its symbols.
+
+    Parameters
+    ----------
+    value : Expr
+        What the symbol is.
+    pivots : tuple of Expr
+        What was divided by: where one is zero the equation does not determine the symbol.
+    powers : tuple of Expr
+        What must be positive for a solution to exist: each is the value of a power with a positive base.
+    """
+
+    value: Expr
+    pivots: tuple[Expr, ...] = ()
+    powers: tuple[Expr, ...] = ()
+
+
+def solve_for(unknown: Expr, left: Expr, right: Expr) -> Solved | None:
+    """Solve left = right for a positive unknown; None where the solution was not seen to be the only one.
+
+    Two kinds of equation are solved. One is linear in the unknown after its denominators are cleared.
+    In the other the unknown stands in one place, under products, powers and logarithms, each of which takes
+    a value once where its argument is positive.
+    """
+    for here, there in ((left, right), (right, left)):
+        if here == unknown and not there.has(unknown):
+            return Solved(there)
+    for cleared in (False, True):
+        difference = left - right
+        difference = _linear_sums(_numerator(difference) if cleared else difference)
+        if difference.has(Sum):
+            difference = expand(difference)
+        slope = _slope(difference, unknown)
+        if slope is not None:
+            return Solved(-difference.xreplace({unknown: Integer(0)}) / slope, pivots=(slope,))
+        if not difference.has(unknown):
+            return None
+    if left.has(unknown) and right.has(unknown):
+        return None
+    return _undo(unknown, *((left, right) if left.has(unknown) else (right, left)))
+
+
+def _slope(expression: Expr, unknown: Expr) -> Expr | None:
+    """The factor of the unknown in an expression that is linear in it; None where it is not seen to be."""
+    slope = Integer(0)
+    for term in Add.make_args(expression):
+        if term.has(unknown):
+            factor = _slope_of_product(term, unknown)
+            if factor is None:
+                return None
+            slope += factor
+    return slope if slope != 0 else None
+
+
+def _slope_of_product(term: Expr, unknown: Expr) -> Expr | None:
+    if term == unknown:
+        return Integer(1)
+    if not isinstance(term, Mul):
+        return None
+    with_it = [factor for factor in term.args if factor.has(unknown)]
+    if len(with_it) != 1:
+        return None
+    inner = (
+        _slope(with_it[0], unknown) if isinstance(with_it[0], Add) else _slope_of_product(with_it[0], unknown)
+    )
+    return (
+        None if inner is None else inner * Mul(*(factor for factor in term.args if factor is not with_it[0]))
+    )
+
+
+def _undo(unknown: Expr, here: Expr, there: Expr) -> Solved | None:
+    """Undo what was done to the unknown, the outermost operation first."""
+    pivots: list[Expr] = []
+    powers: list[Expr] = []
+    while here != unknown:
+        holders = [argument for argument in here.args if argument.has(unknown)]
+        if len(holders) != 1:
+            return None
+        (inner,) = holders
+        rest = [argument for argument in here.args if argument is not inner]
+        match here:
+            case Add():
+                there -= Add(*rest)
+            case Mul():
+                pivots.append(Mul(*rest))
+                there /= Mul(*rest)
+            case Pow() if here.base == inner and inner.is_positive:
+                pivots.append(here.exp)
+                powers.append(there)
+                there = there ** (1 / here.exp)
+            case log() if inner.is_positive:
+                there = exp(there)
+            case exp():
+                powers.append(there)
+                there = log(there)
+            case _:
+                return None
+        here = inner
+    return Solved(there, tuple(pivots), tuple(powers))
+
+
+def _numerator(expression: Expr) -> Expr:
+    return fraction(together(expression))[0]
+
+
+def settle(expression: Any, solution: Mapping[Expr, Expr]) -> Any:
+    """Put a solution in and integrate; sums stay (sympy would search closed forms for them)."""
+    settled = expression.xreplace(dict(solution))
+    integrals = settled.atoms(Integral)
+    return (
+        settled.xreplace({integral: _integrate(integral) for integral in integrals}) if integrals else settled
+    )
+
+
+@lru_cache(maxsize=64)
+def _integrate(integral: Integral) -> Expr:
+    """Integrate a sum of powers of linear functions; leave anything else to sympy."""
+    if len(integral.limits) != 1 or len(integral.limits[0]) != 3:
+        return integral.doit()
+    variable, low, high = integral.limits[0]
+    total = Integer(0)
+    for term in Add.make_args(expand(integral.function)):
+        part = _integrated(term, variable, low, high)
+        if part is None:
+            return integral.doit()
+        total += part
+    return total
+
+
+def _integrated(term: Expr, variable: Expr, low: Expr, high: Expr) -> Expr | None:
+    """Integrate a factor times (a x + b)^p, p > -1, where a x + b is not negative from end to end."""
+    outer, inner = term.as_independent(variable, as_Add=False)
+    if inner == 1:
+        return outer * (high - low)
+    base, power = inner.as_base_exp()
+    slope = _slope(base, variable)
+    if slope is None or power.has(variable) or not (power + 1).is_positive:
+        return None
+    at_low, at_high = (together(base.xreplace({variable: end})) for end in (low, high))
+    if not (power.is_integer or (at_low.is_nonnegative and at_high.is_nonnegative)):
+        return None
+    return outer * (at_high ** (power + 1) - at_low ** (power + 1)) / (power + 1) / slope
+
+
+def _linear_sums(expression: Any) -> Any:
+    """Split every sum into terms and take out what does not run with its index."""
+    if not isinstance(expression, Basic) or not expression.has(Sum):
+        return expression
+    if isinstance(expression, Sum) and len(expression.limits) == 1:
+        index, low, high = expression.limits[0]
+        total = Add()
+        body = expand(expand_log(expand_power_base(_linear_sums(expression.function))))
+        for term in Add.make_args(body):
+            outer, inner = term.as_independent(index, as_Add=False)
+            inner = powsimp(inner)
+            total += outer * ((high - low + 1) if inner == 1 else Sum(inner, (index, low, high)))
+        return total
+    return expression.func(*(_linear_sums(argument) for argument in expression.args))
+
+
+def _powers(expression: Expr) -> Expr:
+    """Write exp(c log y + ...) as y^c ..., which is what the power means."""
+    if not expression.has(exp):
+        return expression
+
+    def product(argument: Expr) -> Expr:
+        total: Expr = Integer(1)
+        for term in Add.make_args(expand(expand_log(argument))):
+            logs = [factor for factor in Mul.make_args(term) if isinstance(factor, log)]
+            total *= logs[0].args[0] ** (term / logs[0]) if len(logs) == 1 else exp(term)
+        return total
+
+    return expression.replace(exp, product)
+
+
+def vanishes(residual: Expr) -> bool:
+    """Whether the residual is identically zero; False means only that it was not seen to be.
+
+    The numerator over one denominator settles what the algebra of a model asks for; what comes after it
+    is dearer.
+    """
+    if residual.has(nan, zoo, oo):
+        return False
+    residual = _powers(_linear_sums(residual))
+    if residual == 0:
+        return True
+    numerator = expand(_numerator(expand_power_base(residual)))
+    attempts: tuple[Callable[[], Any], ...] = (
+        lambda: numerator,
+        lambda: expand(powsimp(numerator)),
+        lambda: simplify(numerator),
+        lambda: simplify(residual),
+    )
+    return any(attempt() == 0 for attempt in attempts)
+
+
+def definite(expression: Expr) -> bool:
+    """Whether an expression is finite and of one sign wherever its symbols' assumptions hold."""
+    if expression.is_positive or expression.is_negative:
+        return True
+    if isinstance(expression, Sum):
+        _, low, high = expression.limits[0]
+        return low == 1 and bool(high.is_positive and expression.function.is_positive)
+    if isinstance(expression, Mul):
+        return all(map(definite, expression.args))
+    return (
+        isinstance(expression, Pow)
+        and bool(expression.exp.is_real)
+        and definite(expression.base)
+        and (bool(expression.exp.is_integer) or bool(expression.base.is_positive))
+    )

@@ -1,0 +1,136 @@
+"""How equation (11) is solved: a form without spurious roots, and where it can change its direction.
+
+Equation (11) as printed also vanishes where an approach would be negative. Written in u = 1/(alpha + 1) it
+is smooth on the interval where both approaches are positive, its sign is that of a logarithm, and the
+logarithm turns at most once there: its roots can be told apart without a search.
+"""
+
+from __future__ import annotations
+
+from sympy import Expr, Integer, exp, log, sqrt
+from sympy.core.parameters import evaluate
+
+from .equation import Derivation, Equation, Kind, Step, evaluated
+from .symbols import TABLE, plain
+
+__all__ = [
+    "ENTRIES",
+    "Lambda",
+    "log_form",
+    "log_speeds",
+    "logarithm",
+    "reciprocal",
+    "root_form",
+    "slope",
+    "slope_law",
+    "starting_value",
+    "turning",
+    "u",
+    "u_turn",
+]
+
+V, E, XP = (TABLE[name] for name in ("v", "e", "x_p"))
+alpha, beta, u, u_turn, Lambda = plain("alpha beta u u_turn Lambda")
+
+with evaluate(False):
+    reciprocal = Equation("", (u, 1 / (alpha + 1)), "definition", Kind.DEFINITION, "reciprocal of alpha + 1")
+
+    root_form = Equation(
+        "(L5)",
+        (
+            (1 - (beta + 1) * E[1] ** 2 * u)
+            - XP[1] / XP[2] * (1 - (beta + 1) * E[2] ** 2 * u) * (V[2] / V[1]) ** (2 * u),
+            Integer(0),
+        ),
+        "(11) times (beta + 1) u, which is positive: smooth on the whole domain",
+        title="(11) in u = 1/(alpha + 1)",
+    )
+
+    logarithm = (
+        log(1 - (beta + 1) * E[1] ** 2 * u)
+        - log(XP[1] / XP[2])
+        - log(1 - (beta + 1) * E[2] ** 2 * u)
+        - 2 * u * log(V[2] / V[1])
+    )
+
+    log_form = Equation(
+        "(L6)",
+        (root_form.members[0], (1 - (beta + 1) * E[1] ** 2 * u) * (1 - exp(-logarithm))),
+        "where both factors 1 - (beta + 1) e^2 u are positive, (L5) has the sign of this logarithm",
+        title="sign of (L5)",
+        conditions=(1 - (beta + 1) * E[1] ** 2 * u > 0, 1 - (beta + 1) * E[2] ** 2 * u > 0),
+    )
+
+    _a1, _a2 = (beta + 1) * E[1] ** 2, (beta + 1) * E[2] ** 2
+
+    log_speeds = Equation(
+        "(L7)",
+        (Lambda, log(V[2] / V[1])),
+        "definition",
+        Kind.DEFINITION,
+        "logarithm of the speed ratio",
+        defines=Lambda,
+    )
+
+    turning = Equation(
+        "(L8)",
+        (
+            u_turn,
+            2
+            * (1 - (_a2 - _a1) / (2 * Lambda))
+            / (_a1 + _a2 + sqrt((_a1 - _a2) ** 2 + 2 * _a1 * _a2 * (_a2 - _a1) / Lambda)),
+        ),
+        "where the logarithm of (L6) turns, if it does",
+        Kind.DEFINITION,
+        "turning point",
+        defines=u_turn,
+        conditions=(1 - _a1 * u_turn > 0, 1 - _a2 * u_turn > 0),
+    )
+
+    _slope = _a2 / (1 - _a2 * u) - _a1 / (1 - _a1 * u) - 2 * Lambda
+
+    slope = Equation(
+        "(L9)",
+        (_a2 / (1 - _a2 * u_turn) - _a1 / (1 - _a1 * u_turn) - 2 * Lambda, Integer(0)),
+        "the slope of the logarithm vanishes at (L8); the quadratic's other zero lies outside the domain, "
+        "so (11) has at most one root on each side of (L8)",
+        title="slope of the logarithm at (L8)",
+        conditions=(1 - _a1 * u_turn > 0, 1 - _a2 * u_turn > 0),
+    )
+
+
+def starting_value() -> Expr:
+    """u near the root of (11), within 3e-4 on the paper: it costs steps, never truth.
+
+    In the logarithm of (L6), log(1 - y) is replaced by its expansion about the mean of the two y; a
+    quadratic in 1/u is left. Not a claim, so not in the ledger: the solver's bracket decides.
+    """
+    a1, a2 = E[1] ** 2, E[2] ** 2
+    middle, gap = (a1 + a2) / 2, a1 - a2
+    pull, log_depths = 2 * log(V[2] / V[1]) / (beta + 1), log(XP[2] / XP[1])
+    t = pull + log_depths * middle + gap
+    return 2 * log_depths / ((beta + 1) * (t + sqrt(t**2 - 4 * log_depths * pull * middle)))
+
+
+slope_law = Equation(
+    "",
+    (evaluated(logarithm).diff(u), _slope),
+    "definition of the slope",
+    title="slope of the logarithm of (L6)",
+    conditions=log_form.conditions,
+)
+
+ENTRIES = (
+    Derivation.of(log_form, (), (), "Expand the right-hand side."),
+    log_speeds,
+    turning,
+    Derivation(
+        (
+            Step(slope_law, (log_speeds,), (Lambda,), "Differentiate the logarithm of (L6) by u."),
+            Step(
+                slope, (turning,), (u_turn,), "Put (L8) in; the numerator is a quadratic in u with this zero."
+            ),
+        )
+    ),
+)
+"""What follows (L5) in the ledger; (L5) itself follows from (11)."""

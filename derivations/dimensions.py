@@ -1,0 +1,248 @@
+"""Dimensions of expressions: which may be added, and what a product has.
+
+A dimension maps base units to exponents, and an exponent may be an expression: the coefficient of a power
+law F = C x^alpha has the unit N/m^alpha, whatever alpha turns out to be.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from sympy import (
+    Abs,
+    Add,
+    Basic,
+    Expr,
+    Indexed,
+    Integer,
+    Integral,
+    Max,
+    Min,
+    Mul,
+    Number,
+    NumberSymbol,
+    Piecewise,
+    Pow,
+    Rational,
+    Rel,
+    Sum,
+    Symbol,
+    cancel,
+    exp,
+    expand,
+    log,
+    sign,
+    sstr,
+)
+from sympy.core.function import AppliedUndef
+from sympy.logic.boolalg import BooleanFunction
+
+from . import symbols
+
+__all__ = [
+    "PURE",
+    "Dimension",
+    "DimensionError",
+    "Dimensions",
+    "dimension_of_unit",
+    "power",
+    "product",
+    "text_of",
+]
+
+Dimension = Mapping[str, Expr]
+"""Exponents of the base units; one that is zero is left out."""
+
+PURE: Dimension = {}
+"""The dimension of a pure number."""
+
+_UNITS: dict[str, dict[str, int]] = {
+    "kg": {"kg": 1},
+    "m": {"m": 1},
+    "s": {"s": 1},
+    "K": {"K": 1},
+    "A": {"A": 1},
+    "mol": {"mol": 1},
+    "cd": {"cd": 1},
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "J": {"kg": 1, "m": 2, "s": -2},
+    "Pa": {"kg": 1, "m": -1, "s": -2},
+    "W": {"kg": 1, "m": 2, "s": -3},
+    "Hz": {"s": -1},
+}
+
+
+class DimensionError(ValueError):
+    """An expression adds, compares or raises what cannot be, or a unit cannot be read."""
+
+
+def dimension_of_unit(text: str, exponents: Mapping[str, Expr] | None = None) -> Dimension:
+    """Read a unit such as ``kg/m^3``, ``m/s^2`` or ``N/m^alpha``.
+
+    Parameters
+    ----------
+    text : str
+        Unit names of SI, multiplied by ``*`` and divided by ``/``, raised by ``^`` to a number or a name.
+    exponents : mapping of str to Expr
+        What the names in exponents stand for.
+
+    Raises
+    ------
+    DimensionError
+        Names the unit or the exponent that is not known.
+
+    Examples
+    --------
+    >>> dimension_of_unit("N*s/m") == dimension_of_unit("kg/s")
+    True
+    """
+    if not re.fullmatch(r"[^*/]+([*/][^*/]+)*", text):
+        raise DimensionError(f"{text!r} is no unit: write names, multiplied by * and divided by /")
+    total = PURE
+    for divided, factor in re.findall(r"(^|[*/])([^*/]+)", text):
+        name, _, raised = (part.strip() for part in factor.partition("^"))
+        if name == "1":
+            continue
+        if name not in _UNITS:
+            raise DimensionError(f"unknown unit {name!r} in {text!r}; known are {', '.join(_UNITS)}")
+        exponent = _exponent(raised or "1", text, exponents or {})
+        step = power({unit: Integer(p) for unit, p in _UNITS[name].items()}, exponent)
+        total = product(total, step if divided != "/" else power(step, Integer(-1)))
+    return total
+
+
+def _exponent(raised: str, text: str, names: Mapping[str, Expr]) -> Expr:
+    if re.fullmatch(r"-?\d+(/\d+)?", raised):
+        return Rational(raised)
+    if raised not in names:
+        raise DimensionError(f"unknown exponent {raised!r} in the unit {text!r}")
+    return names[raised]
+
+
+def _tidy(exponent: Expr) -> Expr:
+    exponent = expand(exponent)
+    return exponent if exponent.is_polynomial() else cancel(exponent)
+
+
+def product(a: Dimension, b: Dimension) -> Dimension:
+    """The dimension of a product."""
+    total = dict(a)
+    for unit, exponent in b.items():
+        summed = _tidy(total.get(unit, Integer(0)) + exponent)
+        if summed == 0:
+            total.pop(unit, None)
+        else:
+            total[unit] = summed
+    return total
+
+
+def power(a: Dimension, exponent: Expr) -> Dimension:
+    """The dimension of a power."""
+    return {unit: raised for unit, old in a.items() if (raised := _tidy(old * exponent)) != 0}
+
+
+def text_of(dimension: Dimension) -> str:
+    """Write a dimension for people, ``kg m^2 s^-2``."""
+
+    def written(exponent: Expr) -> str:
+        text = sstr(exponent)
+        return "" if text == "1" else f"^{text}" if re.fullmatch(r"-?\w+", text) else f"^({text})"
+
+    return " ".join(unit + written(exponent) for unit, exponent in sorted(dimension.items())) or "1"
+
+
+class Dimensions:
+    """Finds dimensions of expressions in the symbols of the derivations' table.
+
+    A subclass that knows other cells says so in `of_cell`, and how it complains in `fail`.
+    """
+
+    def of_cell(self, cell: Expr) -> Dimension:
+        """The dimension of a symbol; what is not of the table is a pure number."""
+        quantity = symbols.find(cell)
+        if quantity is None:
+            return PURE
+        names = re.findall(r"\^([A-Za-z_]\w*)", quantity.unit)
+        others = {name: symbols.TABLE[name] for name in names}
+        if isinstance(cell, Indexed):
+            return dimension_of_unit(quantity.unit, {name: q[cell.indices[0]] for name, q in others.items()})
+        return dimension_of_unit(quantity.unit, {name: q.symbol for name, q in others.items()})
+
+    def fail(self, expression: Basic, problem: str) -> Exception:
+        """The complaint about an expression."""
+        return DimensionError(f"{problem} in {sstr(expression)}")
+
+    def of(self, expression: Any) -> Dimension:
+        """The dimension of an expression, checked from the inside out."""
+        match expression:
+            case Number() | NumberSymbol():
+                return PURE
+            case Indexed() | Symbol():
+                return self.of_cell(expression)
+            case AppliedUndef():
+                return self.of_cell(Symbol(expression.func.__name__))
+            case Add():
+                return self.same(list(expression.args), expression, "add")
+            case Max() | Min():
+                return self.same(list(expression.args), expression, "compare")
+            case Mul():
+                total = PURE
+                for factor in expression.args:
+                    total = product(total, self.of(factor))
+                return total
+            case exp() | log():
+                return self.pure(expression.args[0], expression, "the argument of a function")
+            case Pow():
+                self.pure(expression.exp, expression, "an exponent")
+                return power(self.of(expression.base), expression.exp)
+            case Abs():
+                return self.of(expression.args[0])
+            case sign():
+                self.of(expression.args[0])
+                return PURE
+            case Sum():
+                return self.of(expression.function)
+            case Integral():
+                total = self.of(expression.function)
+                for variable, *ends in expression.limits:
+                    self.same([variable, *ends], expression, "compare")
+                    total = product(total, self.of(variable))
+                return total
+            case Piecewise():
+                for _, condition in expression.args:
+                    self.relation(condition)
+                return self.same([body for body, _ in expression.args], expression, "choose between")
+            case _:
+                for argument in expression.args:
+                    self.pure(argument, expression, "the argument of a function")
+                return PURE
+
+    def same(self, parts: list[Any], expression: Basic, verb: str) -> Dimension:
+        """All parts must agree; a zero agrees with everything."""
+        found: Dimension | None = None
+        for part in parts:
+            if part == 0:
+                continue
+            dimension = self.of(part)
+            if found is None:
+                found = dimension
+            elif dict(found) != dict(dimension):
+                raise self.fail(expression, f"cannot {verb} {text_of(found)} and {text_of(dimension)}")
+        return found or PURE
+
+    def pure(self, part: Any, expression: Basic, what: str) -> Dimension:
+        """What may only be a pure number."""
+        dimension = self.of(part)
+        if dimension:
+            raise self.fail(expression, f"{what} must be a pure number, not {text_of(dimension)},")
+        return PURE
+
+    def relation(self, condition: Any) -> None:
+        """Both sides of every comparison must agree."""
+        if isinstance(condition, Rel):
+            self.same([condition.lhs, condition.rhs], condition, "compare")
+        elif isinstance(condition, BooleanFunction):
+            for part in condition.args:
+                self.relation(part)

@@ -1,0 +1,75 @@
+"""The points that the paper generates on each pair's loading curve, and means over the pairs."""
+
+from __future__ import annotations
+
+from sympy import Max, Sum, Symbol
+from sympy.core.parameters import evaluate
+
+from .equation import Equation, Kind
+from .symbols import TABLE, p, plain, s
+
+__all__ = [
+    "ENTRIES",
+    "F_ref",
+    "F_scale",
+    "N",
+    "abscissa",
+    "mean",
+    "n_pairs",
+    "top",
+    "x_ref",
+    "x_scale",
+    "x_top",
+]
+
+XM, ALPHA, CC, XTOP = (TABLE[name] for name in ("x_m", "alpha", "C", "x_top"))
+x, x_top, N, x_ref, F_ref = plain("x x_top N x_ref F_ref")
+n_pairs = Symbol("n_pairs", integer=True, positive=True)
+
+with evaluate(False):
+    top = Equation(
+        "(L10)",
+        (x_top, Max(XM[1], XM[2])),
+        "the paper generates points up to the pair's largest approach",
+        Kind.DEFINITION,
+        "largest approach of the pair",
+        defines=x_top,
+    )
+
+    abscissa = Equation(
+        "(L11)",
+        (x, x_top * s / N),
+        "equally spaced up to the largest approach; the paper does not say how many",
+        Kind.DEFINITION,
+        "abscissae of the generated points",
+        defines=x,
+    )
+
+    mean = Equation(
+        "(L12)",
+        (Symbol(r"alpha_mean", positive=True), Sum(ALPHA[p], (p, 1, n_pairs)) / n_pairs),
+        "arithmetic mean over the pairs",
+        Kind.DEFINITION,
+        "mean exponent",
+    )
+
+    x_scale = Equation(
+        "(L22)",
+        (x_ref, Sum(XTOP[p], (p, 1, n_pairs)) / n_pairs),
+        "a typical approach, so that logarithms are taken of pure numbers; any would do",
+        Kind.DEFINITION,
+        "reference approach",
+        defines=x_ref,
+    )
+
+    F_scale = Equation(
+        "(L23)",
+        (F_ref, Sum(CC[p] * XTOP[p] ** ALPHA[p], (p, 1, n_pairs)) / n_pairs),
+        "a typical force, so that logarithms are taken of pure numbers; any would do",
+        Kind.DEFINITION,
+        "reference force",
+        defines=F_ref,
+    )
+
+ENTRIES = (top, abscissa, mean, x_scale, F_scale)
+"""Everything above, in the order of a ledger."""

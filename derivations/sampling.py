@@ -1,0 +1,314 @@
+"""The numerical half of a proof: the claim is evaluated with 50 digits where its premises hold."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import mpmath
+from sympy import Abs, Add, Expr, Indexed, Integral, Mul, Pow, Sum, Symbol
+
+from . import symbols
+from .evaluation import UNDEFINED, Program, is_real
+from .system import Refused, System
+from .text import text
+
+__all__ = ["DIGITS", "POINTS", "Outcome", "Space", "examine", "short"]
+
+DIGITS = 50
+POINTS = 20
+"""How many seeded points of the domain every claim is evaluated at."""
+AGREES = mpmath.mpf(10) ** (10 - DIGITS)
+"""Largest relative residual that counts as zero: ten guard digits for the arithmetic in between."""
+DETERMINES = mpmath.mpf(10) ** (-DIGITS // 2)
+"""Smallest relative divisor that counts as not zero."""
+_TRIES = 60 * POINTS
+_MOST_TERMS = 5
+"""The size of a sum is drawn from two to this number."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the numbers say of a claim: a counterexample, or how many points agree how well."""
+
+    points: int
+    worst: float
+    counterexample: Mapping[str, str] | None = None
+    sides: tuple[str, str] = ("", "")
+
+
+class Space:
+    """Where symbols are drawn from: sizes of sums, columns under sums, and free symbols.
+
+    Parameters
+    ----------
+    expressions : sequence of Expr
+        What is to be evaluated.
+    names : mapping
+        The cell or the quantity that a symbol stands for, where it is not its own name.
+    fixed : collection of Expr
+        Symbols that are not drawn.
+    """
+
+    def __init__(self, expressions: Any, names: Mapping[Any, Any], fixed: Any = ()) -> None:
+        self.names = names
+        sums = [total for e in expressions for total in e.atoms(Sum)]
+        columns = {cell.base.label for e in expressions for cell in e.atoms(Indexed)}
+        sizes = {
+            s for total in sums for limit in total.limits for place in limit[1:] for s in place.free_symbols
+        }
+        free = {s for e in expressions for s in e.free_symbols if isinstance(s, Symbol)}
+        self.sizes = sorted(sizes, key=self.name)
+        self.columns = sorted(columns, key=self.name)
+        self.scalars = sorted(free - sizes - columns - set(fixed), key=self.name)
+
+    @property
+    def symbols(self) -> list[Any]:
+        """All that is drawn, in the order of a point's values."""
+        return [*self.sizes, *self.columns, *self.scalars]
+
+    def name(self, symbol: Any) -> str:
+        """How a reader knows the symbol."""
+        return text(self.names.get(symbol, symbol))
+
+    def points(self, seed: str, count: int) -> Iterator[list[Any]]:
+        """Draw points; the same seed always gives the same ones."""
+        rng = random.Random(seed)
+        columns = [self._span(column) for column in self.columns]
+        scalars = [self._span(symbol) for symbol in self.scalars]
+
+        def number(low: Any, width: Any, whole: bool) -> Any:
+            value = low + width * rng.random()
+            return mpmath.floor(value) if whole else value
+
+        for _ in range(count):
+            yield [
+                *(mpmath.mpf(rng.randint(2, _MOST_TERMS)) for _ in self.sizes),
+                *([number(*span) for _ in range(_MOST_TERMS + 1)] for span in columns),
+                *(number(*span) for span in scalars),
+            ]
+
+    def _span(self, symbol: Any) -> tuple[Any, Any, bool]:
+        """Where the interval of a symbol begins, how wide it is, and whether only whole numbers count.
+
+        It is the table's, where the table's symbol is no freer than this one.
+        """
+        quantity = symbols.find(self.names.get(symbol, symbol))
+        if quantity is not None and (quantity.positive or not symbol.is_positive):
+            low, high = quantity.span
+        elif symbol.is_integer:
+            low, high = (1.0 if symbol.is_positive else -9.0), 9.0
+        else:
+            low, high = (0.5 if symbol.is_positive else -2.0), 2.0
+        return mpmath.mpf(low), mpmath.mpf(high) - mpmath.mpf(low), bool(symbol.is_integer)
+
+    def describe(self, point: list[Any], more: Mapping[Any, Any] | None = None) -> dict[str, str]:
+        """Say where a point lies; of a column, the terms that the sums use."""
+        most = max((int(value) for value in point[: len(self.sizes)]), default=0)
+        found = {}
+        for symbol, value in [*zip(self.symbols, point, strict=True), *(more or {}).items()]:
+            found[self.name(symbol)] = (
+                f"({', '.join(map(short, value[1 : most + 1]))})" if isinstance(value, list) else short(value)
+            )
+        return found
+
+
+def short(value: Any) -> str:
+    """Write a number for a reader."""
+    return str(mpmath.nstr(value, 6))
+
+
+class _Trial:
+    """The operations of one step, and how to judge them at a point."""
+
+    def __init__(self, system: System) -> None:
+        self.unknowns = [unknown for unknown, _ in system.chain]
+        self.space = Space(system.expressions, system.names, self.unknowns)
+        self.labels = [label for label, _, _ in system.premises]
+        self.program = program = Program(self.space.symbols)
+        self.found = [program.define(unknown, solved.value) for unknown, solved in system.chain]
+        self.powers = program.add(power for _, solved in system.chain for power in solved.powers)
+        self.conditions = program.add(system.conditions)
+        pivots = [pivot for _, solved in system.chain for pivot in solved.pivots]
+        self.pivots = list(map(self.add, pivots))
+        self.premises = [(self.add(left), self.add(right)) for _, left, right in system.premises]
+        self.claim = list(map(self.add, system.claim))
+        self.multiplied = None if system.multiplied is None else list(map(self.add, system.multiplied))
+        self.magnitudes: dict[Expr, Any] = {}
+
+    def add(self, side: Expr) -> tuple[Expr, Any]:
+        """An expression, and the group that computes it."""
+        return side, self.program.add([side])
+
+    def value(self, side: tuple[Expr, Any]) -> Any:
+        return self.program.values(side[1])[0]
+
+    def size(self, *sides: tuple[Expr, Any]) -> Any:
+        """What rounding errors of the sides are small against; computed only where it is asked for."""
+        for side, _ in sides:
+            if side not in self.magnitudes:
+                self.magnitudes[side] = self.program.add([_magnitude(side)])
+        return max(abs(self.program.values(self.magnitudes[side])[0]) for side, _ in sides)
+
+    def gap(self, *sides: tuple[Expr, Any]) -> Iterator[tuple[Any, Any, Any]]:
+        """Neighbouring sides and their relative difference."""
+        values = [self.value(side) for side in sides]
+        size = max(map(abs, values))
+        if any(not abs(a - b) <= AGREES * size for a, b in pairwise(values)):
+            size = self.size(*sides)  # a sum that cancels is small against its terms
+        for a, b in pairwise(values):
+            yield a, b, abs(a - b) / size if size else mpmath.mpf(0)
+
+    def lies_in_domain(self, point: list[Any]) -> bool:
+        """Begin at a point; whether the premises have a positive solution there and the conditions hold."""
+        self.program.start(point)
+        for unknown, group in zip(self.unknowns, self.found, strict=True):
+            value = self.program.values(group)
+            if not is_real(value) or (unknown.is_positive and value <= 0):
+                return False
+        powers = self.program.values(self.powers)
+        return all(is_real(power) and power > 0 for power in powers) and all(
+            self.program.values(self.conditions)
+        )
+
+    def check_premises(self) -> None:
+        """The solution must be one, and the only one."""
+        for pivot in self.pivots:
+            if not abs(self.value(pivot)) > DETERMINES * self.size(pivot):
+                raise Refused("a premise does not determine what it is solved for")
+        for label, (left, right) in zip(self.labels, self.premises, strict=True):
+            if any(not residual <= AGREES for _, _, residual in self.gap(left, right)):
+                raise Refused(f"what {label} was solved for does not satisfy it")
+
+    def residuals(self) -> Iterator[tuple[Any, Any, Any]]:
+        """Neighbouring sides of the claim and their relative difference."""
+        if self.multiplied is None:
+            yield from self.gap(*self.claim)
+            return
+        multiple, size = self.multiple()
+        difference = self.value(self.claim[0]) - self.value(self.claim[1])
+        yield difference, multiple, abs(difference - multiple) / max(size, self.size(*self.claim))
+
+    def multiple(self) -> tuple[Any, Any]:
+        """The unsolved premise times its factor, and the size of its terms."""
+        assert self.multiplied is not None
+        factor, left, right = self.multiplied
+        scale = self.value(factor)
+        return scale * (self.value(left) - self.value(right)), abs(scale) * self.size(left, right)
+
+    def describe(self, point: list[Any]) -> dict[str, str]:
+        solved = {u: self.program.values(group) for u, group in zip(self.unknowns, self.found, strict=True)}
+        return self.space.describe(point, solved)
+
+
+def _magnitude(expression: Any) -> Any:
+    """The expression with every term taken positive: its rounding errors are small against this."""
+    match expression:
+        case Add() | Mul():
+            return expression.func(*map(_magnitude, expression.args), evaluate=False)
+        case Integral():
+            return Abs(Integral(_magnitude(expression.function), *expression.limits), evaluate=False)
+        case Sum():
+            return Sum(_magnitude(expression.function), *expression.limits)
+        case Pow() if expression.exp.is_Integer and expression.exp.is_positive:
+            return Pow(_magnitude(expression.base), expression.exp, evaluate=False)
+        case Symbol() | Indexed() if expression.is_positive:
+            return expression
+    return Abs(expression, evaluate=False)
+
+
+def examine(system: System, seed: str) -> Outcome:
+    """Evaluate a claim at seeded points where its premises hold, until one disagrees.
+
+    Raises
+    ------
+    Refused
+        Where the points cannot decide: too few of them, a premise that its solution does not satisfy, or a
+        claim that is not real.
+    """
+    with mpmath.workdps(DIGITS):
+        trial = _Trial(system)
+        counted, worst = 0, mpmath.mpf(0)
+        undefined: dict[str, str] = {}
+        for point in trial.space.points(seed, _TRIES):
+            try:
+                if not trial.lies_in_domain(point):
+                    continue
+            except UNDEFINED:
+                continue
+            try:
+                trial.check_premises()
+                found = list(trial.residuals())
+            except UNDEFINED:
+                found = [(mpmath.nan,) * 3]
+            if not all(mpmath.isfinite(side) for pair in found for side in pair[:2]):
+                undefined = undefined or trial.describe(point)
+                continue
+            for a, b, residual in found:
+                if not residual <= AGREES:  # also where it is not a number
+                    if trial.multiplied is not None:
+                        return _witness(trial, point, counted)
+                    return Outcome(counted, float(residual), trial.describe(point), (short(a), short(b)))
+                if not (is_real(a) and is_real(b)):
+                    raise Refused(f"its sides are not real at {said(trial.describe(point))}")
+                worst = max(worst, residual)
+            counted += 1
+            if counted == POINTS:
+                break
+    if undefined:
+        raise Refused(f"it has no value at {said(undefined)}")
+    if counted == POINTS:
+        return Outcome(counted, float(worst))
+    raise Refused(
+        f"only {counted} points of its domain were found"
+        if counted
+        else "no point satisfies its premises and conditions"
+    )
+
+
+def said(point: Mapping[str, str]) -> str:
+    """Write a point as a list of values."""
+    return ", ".join(f"{name} = {value}" for name, value in point.items())
+
+
+def _witness(trial: _Trial, point: list[Any], counted: int) -> Outcome:
+    """Where a premise is not solved: move one value until it holds, and look at the claim there."""
+    for place in range(len(trial.space.sizes), len(point)):
+        moved = _solved_for(trial, point, place)
+        if moved is None:
+            continue
+        ((*sides, residual),) = trial.gap(*trial.claim)
+        if not residual <= AGREES:
+            return Outcome(
+                counted, float(residual), trial.describe(moved), (short(sides[0]), short(sides[1]))
+            )
+    raise Refused("the premise times the factor is not the claim")
+
+
+def _solved_for(trial: _Trial, point: list[Any], place: int) -> list[Any] | None:
+    """The point with one value (of a column, its first term) moved by secants to where the premise holds."""
+    steps: list[tuple[Any, Any]] = []
+    for _ in range(40):
+        if len(steps) < 2:
+            scale = mpmath.mpf(1) + mpmath.mpf(len(steps)) / 8
+        else:
+            (s, f), (t, g) = steps[-2:]
+            if f == g:
+                return None
+            scale = t - g * (t - s) / (g - f)
+        old = point[place]
+        new = [old[0], old[1] * scale, *old[2:]] if isinstance(old, list) else old * scale
+        moved = [*point[:place], new, *point[place + 1 :]]
+        try:
+            if not scale > 0 or not trial.lies_in_domain(moved):
+                return None
+            multiple, size = trial.multiple()
+        except UNDEFINED:
+            return None
+        if abs(multiple) <= AGREES * size:
+            return moved
+        steps.append((scale, multiple))
+    return None
