@@ -44,13 +44,22 @@ def main() -> None:
         commands = {"build": [loopsheet, "build", "--out", "out"]}
         if (binaries / "marimo").exists():
             shutil.copy(HERE / "notebook_marimo.py", cwd / "notebook.py")
-            commands["marimo"] = [str(binaries / "marimo"), "export", "html", "notebook.py", "-o", "notebook.html"]
+            commands["marimo"] = [
+                str(binaries / "marimo"),
+                "export",
+                "html",
+                "notebook.py",
+                "-o",
+                "notebook.html",
+            ]
         medians = interleaved(commands, cwd)
         for name, taken in medians.items():
             print(f"{name:8} {taken:6.2f} s")
         if "marimo" in medians:
             print(f"build / marimo export: {medians['build'] / medians['marimo']:.2f} (aim: 0.6 or less)")
-        medians = interleaved({"python": [sys.executable, "-c", "pass"], "--help": [loopsheet, "--help"]}, cwd)
+        medians = interleaved(
+            {"python": [sys.executable, "-c", "pass"], "--help": [loopsheet, "--help"]}, cwd
+        )
         for name, taken in medians.items():
             print(f"{name:8} {1000 * taken:6.1f} ms")
         print(f"--help / bare interpreter: {medians['--help'] / medians['python']:.2f}")

@@ -23,16 +23,17 @@ def _():
 
 @app.cell
 def _(mo, sp):
-    a, b, x, xm, xp, C, Cp, m, v, e = sp.symbols("alpha beta x x_m x_p C C' m v e", positive=True)
-    work_c = sp.integrate(C * x**a, (x, 0, xm))
-    work_r = sp.simplify(-sp.integrate(Cp * ((x - xp) / (xm - xp)) ** b, (x, xm, xp)))
+    a, b, x, sxm, sxp, C, Cp = sp.symbols("alpha beta x x_m x_p C C'", positive=True)
+    work_c = sp.integrate(C * x**a, (x, 0, sxm))
+    work_r = sp.simplify(-sp.integrate(Cp * ((x - sxp) / (sxm - sxp)) ** b, (x, sxm, sxp)))
     e1, e2, v1, v2, p1, p2 = sp.symbols("e_1 e_2 v_1 v_2 x_p1 x_p2", positive=True)
     q = (a + 1) / (b + 1)
     xm2 = p2 / (1 - e2**2 / q)
     xm1 = xm2 * (v1 / v2) ** (2 / (a + 1))
     eq11 = q + p1 / p2 * (e2**2 - q) * (v2 / v1) ** (2 / (a + 1)) - e1**2
     residual = sp.simplify(sp.together(eq11.subs(p1, xm1 * (1 - e1**2 / q))))
-    mo.md(rf"$$ {sp.latex(work_c)} \qquad {sp.latex(work_r)} \qquad {sp.latex(eq11)} = 0 $$ residual: {residual}")
+    works = rf"{sp.latex(work_c)} \qquad {sp.latex(work_r)}"
+    mo.md(rf"$$ {works} \qquad {sp.latex(eq11)} = 0 $$ residual: {residual}")
     return a, b, e1, e2, eq11, p1, p2, v1, v2
 
 
@@ -48,7 +49,12 @@ def _(a, b, brentq, e1, e2, eq11, itertools, mo, np, p1, p2, sp, v1, v2):
     second = np.array([j for _, j in pairs])
     xm2_n = XP[second] / (1 - 2.5 / (alpha + 1) * E[second] ** 2)
     C_n = mass * V[second] ** 2 / 2 * (alpha + 1) / xm2_n ** (alpha + 1)
-    mo.ui.table([{"pair": f"{i + 1}-{j + 1}", "alpha": al, "C": c} for (i, j), al, c in zip(pairs, alpha, C_n)])
+    mo.ui.table(
+        [
+            {"pair": f"{i + 1}-{j + 1}", "alpha": al, "C": c}
+            for (i, j), al, c in zip(pairs, alpha, C_n, strict=True)
+        ]
+    )
     return C_n, E, V, XP, alpha, mass, pairs, xm2_n
 
 
@@ -68,12 +74,17 @@ def _(C_n, E, V, XP, alpha, least_squares, mass, mo, np, xm2_n):
 
 @app.cell
 def _(Cp7, Cp9, mo, xm):
-    mo.ui.table([{"k": k + 1, "x_m": a_, "C' (7)": b_, "C' (9)": c_} for k, (a_, b_, c_) in enumerate(zip(xm, Cp7, Cp9))])
+    mo.ui.table(
+        [
+            {"k": k + 1, "x_m": a_, "C' (7)": b_, "C' (9)": c_}
+            for k, (a_, b_, c_) in enumerate(zip(xm, Cp7, Cp9, strict=True))
+        ]
+    )
     return
 
 
 @app.cell
-def _(C_log, Cp9, F, X, XP, np, plt, slope, xm):
+def _(C_log, Cp9, F, X, XP, mo, np, plt, slope, xm):
     fig1, ax1 = plt.subplots()
     ax1.plot(X, F, ".")
     grid = np.linspace(0, xm.max(), 200)
@@ -81,35 +92,35 @@ def _(C_log, Cp9, F, X, XP, np, plt, slope, xm):
     for k in range(5):
         r = np.linspace(XP[k], xm[k], 100)
         ax1.plot(r, Cp9[k] * ((r - XP[k]) / (xm[k] - XP[k])) ** 1.5)
-    fig1
-    return (fig1,)
+    mo.as_html(fig1)
+    return
 
 
 @app.cell
-def _(np, plt):
+def _(mo, np, plt):
     fig2, ax2 = plt.subplots()
     u = np.linspace(0, 1, 200)
     ax2.plot(u, u**1.5)
     w = np.linspace(0.6, 1, 200)
     ax2.plot(w, ((w - 0.6) / 0.4) ** 1.5)
-    fig2
+    mo.as_html(fig2)
     return
 
 
 @app.cell
-def _(np, plt):
+def _(mo, np, plt):
     fig3, ax3 = plt.subplots()
     s = np.linspace(0, 1, 200)
     ax3.fill_between(s, s**1.3, 1.1 * s**1.3)
-    fig3
+    mo.as_html(fig3)
     return
 
 
 @app.cell
-def _(V, alpha, pairs, plt):
+def _(V, alpha, mo, pairs, plt):
     fig4, ax4 = plt.subplots()
     ax4.plot([(V[i] + V[j]) / 2 for i, j in pairs], alpha, "o")
-    fig4
+    mo.as_html(fig4)
     return
 
 

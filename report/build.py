@@ -10,10 +10,11 @@ import sys
 import tempfile
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .background import Background
 from .errors import InputError, Location, OutputError, UnknownWorkbook, UsageError, close, diagnose, listing
 from .inputs import Inputs, check_published, load
 from .unit_text import UnitError as NotAUnit
@@ -25,7 +26,17 @@ if TYPE_CHECKING:
     from .sheet import Column, Sheet
     from .workbook import Workbook
 
-__all__ = ["FORMATS", "PAPER", "Step", "build", "compute", "find_workbook", "given_data", "prepare", "versions"]
+__all__ = [
+    "FORMATS",
+    "PAPER",
+    "Step",
+    "build",
+    "compute",
+    "find_workbook",
+    "given_data",
+    "prepare",
+    "versions",
+]
 
 PAPER = Path(__file__).resolve().parent.parent / "data" / "soft_steel"
 """The shipped campaign."""
@@ -68,7 +79,8 @@ def _own_workbook(path: Path) -> Workbook:
     from .workbook import Workbook
 
     spec = importlib.util.spec_from_file_location(f"loopsheet_workbook_{path.stem}", path)
-    assert spec is not None and spec.loader is not None
+    assert spec is not None
+    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
     try:
@@ -77,7 +89,9 @@ def _own_workbook(path: Path) -> Workbook:
     except Exception as error:
         raise InputError(_own_code_failed(path, error)) from error
     if not isinstance(found, Workbook):
-        raise InputError(diagnose("LS213", Location(path.name), text=path.name, reason="WORKBOOK is no Workbook"))
+        raise InputError(
+            diagnose("LS213", Location(path.name), text=path.name, reason="WORKBOOK is no Workbook")
+        )
     return found
 
 
@@ -127,7 +141,9 @@ class Prepared:
     @property
     def data(self) -> dict[str, Any]:
         """What the other engines start from: the nearest doubles."""
-        return {n: [float(x) for x in v] if isinstance(v, list) else float(v) for n, v in self.exact_data.items()}
+        return {
+            n: [float(x) for x in v] if isinstance(v, list) else float(v) for n, v in self.exact_data.items()
+        }
 
 
 def prepare(folder: Path) -> Prepared:
@@ -164,6 +180,12 @@ def compute(folder: Path, step: Step = _silent, prove: bool = True) -> Report:
     prove : bool
         Whether to check the algebra too.
     """
+    report = _evaluated(folder, step)
+    return _proved(report, step) if prove else report
+
+
+def _evaluated(folder: Path, step: Step) -> Report:
+    """Everything but the proofs."""
     step("reading the folder")
     prepared = prepare(folder)
     inputs, sheet = prepared.inputs, prepared.sheet
@@ -175,8 +197,6 @@ def compute(folder: Path, step: Step = _silent, prove: bool = True) -> Report:
     values = engine.evaluate(sheet, prepared.labels, prepared.data)
     check_published(inputs, {c.name: (c.unit, set(values.labels(c))) for c in sheet.columns})
     workbook = inputs.workbook
-    curves = workbook.curves(sheet, values) if workbook.curves is not None else ()
-    ledger = workbook.ledger()
     return Report(
         title=inputs.title,
         workbook=workbook,
@@ -184,19 +204,23 @@ def compute(folder: Path, step: Step = _silent, prove: bool = True) -> Report:
         sheet=sheet,
         values=values,
         shown={column.name: shown(column, sheet, inputs) for column in sheet.columns},
-        ledger=ledger,
-        proofs=_proofs(ledger, step) if prove else (),
-        errata=tuple(found for check in ledger.checks if (found := check(ledger)) is not None) if prove else (),
+        ledger=workbook.ledger(),
+        proofs=(),
+        errata=(),
         comparisons=compare(inputs.published, values),
-        curves=curves,
+        curves=workbook.curves(sheet, values) if workbook.curves is not None else (),
         versions=versions(),
     )
 
 
-def _proofs(ledger: Any, step: Step) -> tuple[Any, ...]:
+def _proved(report: Report, step: Step) -> Report:
+    """The report with its algebra checked."""
     from ..derivations.proof import prove
 
-    return prove(ledger, lambda equation: step(f"proving {equation.label}"))
+    ledger = report.ledger
+    proofs = prove(ledger, lambda equation: step(f"proving {equation.label}"))
+    errata = tuple(found for check in ledger.checks if (found := check(ledger)) is not None)
+    return replace(report, proofs=proofs, errata=errata)
 
 
 def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
@@ -251,7 +275,9 @@ def parse_formats(words: str) -> tuple[str, ...]:
         if word not in FORMATS:
             known = close(word, FORMATS)
             hint = f"did you mean '{known}'?" if known else ""
-            raise UsageError(diagnose("LS604", kind="format", text=word, known=listing(FORMATS), suggestion=hint))
+            raise UsageError(
+                diagnose("LS604", kind="format", text=word, known=listing(FORMATS), suggestion=hint)
+            )
     return tuple(f for f in FORMATS if f in wanted)
 
 
@@ -281,40 +307,64 @@ def build(
         The files that were written.
     """
     with _staged(out) as stage:
-        report = compute(folder, step)
-        _write(report, stage, formats, step)
+        report = _evaluated(folder, step)
+        drawing = Background(lambda: _pictures(report, formats))
+        try:
+            report = _proved(report, step)
+            _write(report, stage, formats, drawing, step)
+        finally:
+            drawing.cancel()
         names = sorted(p.relative_to(stage) for p in stage.rglob("*") if p.is_file())
     return report, [out / name for name in names]
 
 
-def _write(report: Report, stage: Path, formats: Collection[str], step: Step) -> None:
+def _pictures(report: Report, formats: Collection[str]) -> dict[str, bytes]:
+    """The files of all figures, by name."""
+    if not {"html", "latex", "pdf"} & set(formats) or not report.workbook.figures:
+        return {}
+    from .views import figures
+
+    drawn: dict[str, bytes] = {}
+    for figure in report.workbook.figures:
+        if "html" in formats:
+            drawn[f"{figure.name}.svg"] = figures.svg(report, figure.draw).encode()
+        if "latex" in formats or "pdf" in formats:
+            drawn[f"{figure.name}.pdf"] = figures.pdf(report, figure.draw)
+    return drawn
+
+
+def _write(
+    report: Report, stage: Path, formats: Collection[str], drawing: Background[dict[str, bytes]], step: Step
+) -> None:
     from .views import json
 
-    pictures = [figure.name for figure in report.workbook.figures]
-    if "html" in formats:
-        from .views import figures, html
-
-        drawn = {}
-        for name in pictures:
-            step(f"drawing {name}")
-            drawn[name] = figures.svg(report, name)
-            _put(stage / "figures" / f"{name}.svg", drawn[name])
-        step("writing report.html")
-        _put(stage / "report.html", html.render(report, drawn))
-    if "latex" in formats or "pdf" in formats:
-        from .views import figures, latex
-
-        for name in pictures:
-            step(f"drawing {name}.pdf")
-            _put(stage / "figures" / f"{name}.pdf", figures.pdf(report, name))
-        step("writing report.tex")
-        _put(stage / "report.tex", latex.render(report, pictures))
-        if "pdf" in formats:
-            step("running latexmk")
-            latex.compile(stage)
     if "json" in formats:
         _put(stage / "values.json", json.values(report))
-    outputs = {p.relative_to(stage).as_posix(): p.read_bytes() for p in sorted(stage.rglob("*")) if p.is_file()}
+    if "latex" in formats or "pdf" in formats:
+        from .views import latex
+
+        step("writing report.tex")
+        _put(stage / "report.tex", latex.render(report, [figure.name for figure in report.workbook.figures]))
+    step("drawing the figures")
+    drawn = drawing.result()
+    for name, content in drawn.items():
+        _put(stage / "figures" / name, content)
+    if "html" in formats:
+        from .views import html
+
+        step("writing report.html")
+        svg = {
+            name.removesuffix(".svg"): content.decode()
+            for name, content in drawn.items()
+            if name.endswith(".svg")
+        }
+        _put(stage / "report.html", html.render(report, svg))
+    if "pdf" in formats:
+        step("running latexmk")
+        latex.compile(stage)
+    outputs = {
+        p.relative_to(stage).as_posix(): p.read_bytes() for p in sorted(stage.rglob("*")) if p.is_file()
+    }
     _put(stage / "manifest.json", json.manifest(report.inputs.files, outputs, report.versions))
 
 
@@ -356,7 +406,7 @@ def _remove(made: list[Path]) -> None:
 
 
 def _move_in(stage: Path, out: Path) -> None:
-    """Replace file by file, each at once; the manifest comes last, so that it never speaks of half an output."""
+    """Replace file by file, each at once; the manifest comes last and never speaks of half an output."""
     files = sorted((p for p in stage.rglob("*") if p.is_file()), key=lambda p: (p.name == "manifest.json", p))
     try:
         for path in files:

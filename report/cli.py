@@ -18,7 +18,9 @@ __all__ = ["main"]
 
 OK, FINDINGS, USAGE, BUG = 0, 1, 2, 3
 
-_DESCRIPTION = "Reports whose every number is traced to an equation, recomputed and compared with its publication."
+_DESCRIPTION = (
+    "Reports whose every number is traced to an equation, recomputed and compared with its publication."
+)
 _EPILOG = """\
 Without FOLDER, every command works on the shipped paper.
 
@@ -57,11 +59,18 @@ def _parser() -> argparse.ArgumentParser:
 
     build = verb("build", _build, "compute a report and write it")
     _folder(build)
-    build.add_argument("--out", metavar="DIR", type=Path, default=Path("out"), help="where it goes (default: out)")
     build.add_argument(
-        "--to", metavar="FORMATS", default="html,latex,json", help="html, latex, json, pdf (default: html,latex,json)"
+        "--out", metavar="DIR", type=Path, default=Path("out"), help="where it goes (default: out)"
     )
-    check = verb("check", _check, "check the proofs, the engines against each other, and the published values")
+    build.add_argument(
+        "--to",
+        metavar="FORMATS",
+        default="html,latex,json",
+        help="html, latex, json, pdf (default: html,latex,json)",
+    )
+    check = verb(
+        "check", _check, "check the proofs, the engines against each other, and the published values"
+    )
     _folder(check)
     check.add_argument("--format", choices=("text", "json"), default="text", help="how findings are printed")
     prove = verb("prove", _prove, "prove the algebra of a workbook, or show the proof of one equation")
@@ -72,7 +81,9 @@ def _parser() -> argparse.ArgumentParser:
     _folder(show)
     new = verb("new", _new, "make a folder to start a campaign from")
     new.add_argument("folder", metavar="FOLDER", type=Path)
-    new.add_argument("--workbook", metavar="NAME", default="soft_impact", help="the method (default: soft_impact)")
+    new.add_argument(
+        "--workbook", metavar="NAME", default="soft_impact", help="the method (default: soft_impact)"
+    )
     return parser
 
 
@@ -102,7 +113,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if options.traceback:
             raise
         print(f"bug: {type(error).__name__}: {error}", file=sys.stderr)
-        print("This is a fault of loopsheet, not of your input. 'loopsheet --traceback ...' shows where.", file=sys.stderr)
+        print(
+            "This is a fault of loopsheet, not of your input. 'loopsheet --traceback ...' shows where.",
+            file=sys.stderr,
+        )
         return BUG
     return code
 
@@ -115,24 +129,24 @@ class _Progress:
     """Says what is being done once it has taken longer than a second; on a terminal in one moving line."""
 
     def __init__(self, stream: TextIO) -> None:
-        self.stream, self.begun, self.width = stream, time.monotonic(), 0
+        self.stream, self.begun, self.shown = stream, time.monotonic(), ""
 
     def __call__(self, text: str) -> None:
         if time.monotonic() - self.begun < 1:
             return
         if self.stream.isatty():
-            self.stream.write("\r" + text.ljust(self.width))
-            self.width = len(text)
-        elif text.split()[0] != self.width:
+            self.stream.write("\r" + text.ljust(len(self.shown)))
+            self.shown = text
+        elif (stage := text.split(maxsplit=1)[0]) != self.shown:
             # Not a terminal: one line a stage, however many steps the stage has.
-            self.stream.write(text.split()[0] + " ...\n")
-            self.width = text.split()[0]  # type: ignore[assignment]
+            self.stream.write(f"{stage} ...\n")
+            self.shown = stage
         self.stream.flush()
 
     def done(self) -> None:
         """Clear the moving line."""
-        if self.stream.isatty() and self.width:
-            self.stream.write("\r" + " " * self.width + "\r")
+        if self.stream.isatty() and self.shown:
+            self.stream.write("\r" + " " * len(self.shown) + "\r")
             self.stream.flush()
 
 
@@ -155,7 +169,12 @@ def _build(options: argparse.Namespace) -> int:
     findings = _findings(report.proofs, report.comparisons)
     for finding in findings:
         print(f"finding: {finding}")
-    first = next((f for f in files if f.suffix in {".html", ".pdf", ".tex"}), files[0])
+    names = {path.name: path for path in files}
+    first = next(
+        names[n]
+        for n in ("report.html", "report.pdf", "report.tex", "values.json", "manifest.json")
+        if n in names
+    )
     print(f"{len(files)} files in {options.out}; look at {first}")
     return FINDINGS if findings else OK
 
@@ -178,9 +197,23 @@ def _check(options: argparse.Namespace) -> int:
         import json
 
         proofs = {p.equation.label: p.status.value for p in report.proofs}
-        compared = [{"cell": c.cell.address, "printed": c.published.printed.text, "again": c.again, "verdict": c.verdict,
-                     "expected": c.as_expected} for c in report.comparisons]  # fmt: skip
-        print(json.dumps({"findings": findings, "proofs": proofs, "engines": agreement.summary, "published": compared}, indent=1))
+        compared = [
+            {
+                "source": c.published.source,
+                "cell": c.cell.address,
+                "printed": c.published.printed.text,
+                "again": c.again,
+                "verdict": c.verdict,
+                "expected": c.as_expected,
+            }
+            for c in report.comparisons
+        ]
+        print(
+            json.dumps(
+                {"findings": findings, "proofs": proofs, "engines": agreement.summary, "published": compared},
+                indent=1,
+            )
+        )
         return FINDINGS if findings else OK
     passed = sum(p.status.passes for p in report.proofs)
     print(f"proofs     {passed} of {len(report.proofs)} equations stand")
@@ -193,7 +226,8 @@ def _check(options: argparse.Namespace) -> int:
     for comparison in report.comparisons:
         if comparison.verdict != "same":
             where = f"{comparison.published.source} {comparison.cell.address}"
-            print(f"  {where:28} {comparison.published.printed.text:>8} -> {comparison.again:>8}  {comparison.published.reason}")
+            printed, reason = comparison.published.printed.text, comparison.published.reason
+            print(f"  {where:28} {printed:>8} -> {comparison.again:>8}  {reason}")
     for finding in findings:
         print(f"finding: {finding}")
     print(f"{len(findings)} findings" if findings else "everything as expected")
@@ -211,7 +245,9 @@ def _findings(proofs: Sequence[Proof], comparisons: Sequence[Comparison]) -> lis
         if not c.as_expected:
             where = f"{c.published.where}: {c.published.source} {c.cell.address}"
             if c.verdict == "same":
-                found.append(f"{where} prints {c.published.printed.text} and no longer differs; drop its 'differs'")
+                found.append(
+                    f"{where} prints {c.published.printed.text} and no longer differs; drop its 'differs'"
+                )
             elif c.verdict == "differs":
                 found.append(f"{where} prints {c.published.printed.text}, recomputed {c.again}")
             else:
@@ -225,7 +261,11 @@ def _prove(options: argparse.Namespace) -> int:
     from .errors import UsageError, close, diagnose
 
     folder = options.folder or build.PAPER
-    workbook = build.prepare(folder).inputs.workbook if options.folder else build.find_workbook("soft_impact", folder)
+    workbook = (
+        build.prepare(folder).inputs.workbook
+        if options.folder
+        else build.find_workbook("soft_impact", folder)
+    )
     ledger = workbook.ledger()
     labels = [equation.label for equation in ledger.equations()]
     wanted: list[str] = labels
@@ -236,7 +276,9 @@ def _prove(options: argparse.Namespace) -> int:
             near = close(f"({number})", labels)
             hint = f"did you mean '{near}'?" if near else ""
             known = ", ".join(labels)
-            raise UsageError(diagnose("LS604", kind="equation", text=options.equation, known=known, suggestion=hint))
+            raise UsageError(
+                diagnose("LS604", kind="equation", text=options.equation, known=known, suggestion=hint)
+            )
     progress = _Progress(sys.stderr)
     try:
         proofs = prove(ledger, lambda equation: progress(f"proving {equation.label}"))
@@ -256,19 +298,17 @@ def _prove(options: argparse.Namespace) -> int:
 
 
 def _print_proof(proof: Proof, steps: bool) -> None:
-    from sympy import sstr
+    from ..derivations.text import text_of_equation
 
-    def text(equation: Any) -> str:
-        return " = ".join(sstr(member, order="none") for member in equation.members)
-
-    print(f"{proof.equation.label:6} {proof.status.value:12} {text(proof.equation)}")
+    print(f"{proof.equation.label:6} {proof.status.value:12} {text_of_equation(proof.equation)}")
     if steps:
         print(f"       {proof.equation.because}")
     for n, found in enumerate(proof.steps, start=1):
         if steps:
             print(f"  {n}.   {found.step.says}")
-            print(f"       from  {'; '.join(premise.label for premise in found.step.premises) or 'nothing: an identity'}")
-            print(f"       holds {text(found.step.claim)}")
+            premises = "; ".join(premise.label for premise in found.step.premises)
+            print(f"       from  {premises or 'nothing: an identity'}")
+            print(f"       holds {text_of_equation(found.step.claim)}")
         if steps or not found.status.passes:
             print(f"       {found.status.value}: {found.sentence}")
     if proof.remark:
@@ -276,8 +316,7 @@ def _print_proof(proof: Proof, steps: bool) -> None:
 
 
 def _show(options: argparse.Namespace) -> int:
-    from sympy import sstr
-
+    from ..derivations.text import text_of_equation
     from . import build
     from .errors import UsageError, diagnose, listing, suggest
 
@@ -297,7 +336,7 @@ def _show(options: argparse.Namespace) -> int:
         labels = wanted
     print(f"{name}  {column.meaning}  [{report.shown[name].unit}]  {column.source}")
     if column.equation is not None:
-        print("  " + " = ".join(sstr(member, order="none") for member in column.equation.members))
+        print(f"  {text_of_equation(column.equation)}")
         precedents = ", ".join(precedent.name for precedent in report.sheet.precedents(column))
         print(f"  computed from {precedents or 'nothing'}")
     wanted_labels = set(labels)
@@ -329,7 +368,9 @@ def _new(options: argparse.Namespace) -> int:
         workbook = build.find_workbook(options.workbook, Path())
     except UnknownWorkbook as error:
         known, hint = listing(error.known), suggest(options.workbook, error.known)
-        raise UsageError(diagnose("LS604", kind="workbook", text=options.workbook, known=known, suggestion=hint)) from error
+        raise UsageError(
+            diagnose("LS604", kind="workbook", text=options.workbook, known=known, suggestion=hint)
+        ) from error
     for path in scaffold.new(options.folder, workbook):
         print(path)
     print(f"edit them, then: loopsheet build {options.folder}")

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Symbol
+from sympy import Expr, Indexed, Symbol
 
-from .sheet import Axis, PairAxis, RepeatAxis, Sheet
+from .sheet import Axis, Column, PairAxis, RepeatAxis, Sheet, name_of
 
-__all__ = ["Layout", "lay_out"]
+__all__ = ["Layout", "Precedent", "lay_out", "precedents"]
 
 
 @dataclass(frozen=True)
@@ -37,7 +36,9 @@ class Layout:
     labels: NDArray[np.int64]
 
 
-def lay_out(sheet: Sheet, labels: Mapping[str, Sequence[int]], counts: Mapping[str, int]) -> dict[str, Layout]:
+def lay_out(
+    sheet: Sheet, labels: Mapping[str, Sequence[int]], counts: Mapping[str, int]
+) -> dict[str, Layout]:
     """Lay out every axis of a sheet.
 
     Parameters
@@ -47,6 +48,11 @@ def lay_out(sheet: Sheet, labels: Mapping[str, Sequence[int]], counts: Mapping[s
         The rows' numbers of the axes that come with the data.
     counts : mapping of column name to int
         Values of the scalars that say how often an axis repeats another.
+
+    Raises
+    ------
+    ValueError
+        A count is not a whole number of at least 1.
     """
     layouts: dict[str, Layout] = {}
     for axis in sheet.axes:
@@ -71,10 +77,57 @@ def _pairs(axis: PairAxis, parent: Layout) -> Layout:
 
 
 def _repeats(axis: RepeatAxis, parent: Layout, count: int) -> Layout:
-    which = np.repeat(np.arange(parent.size), count)
-    step = np.tile(np.arange(1, count + 1), parent.size)
-    rows: dict[Symbol, Any] = {index: named[which] for index, named in parent.rows.items()}
+    if count < 1 or count != int(count):
+        raise ValueError(f"{axis.count} must be a whole number of at least 1, not {count}")
+    which = np.repeat(np.arange(parent.size), int(count))
+    step = np.tile(np.arange(1, int(count) + 1), parent.size)
+    rows = {index: named[which] for index, named in parent.rows.items()}
     rows[axis.index] = np.arange(which.size)
-    return Layout(
-        which.size, rows, {axis.step: step.astype(float)}, np.hstack([parent.labels[which], step.reshape(-1, 1)])
+    ordinals = {symbol: number[which] for symbol, number in parent.ordinals.items()}
+    ordinals[axis.step] = step.astype(np.float64)
+    return Layout(which.size, rows, ordinals, np.hstack([parent.labels[which], step.reshape(-1, 1)]))
+
+
+@dataclass(frozen=True)
+class Precedent:
+    """A cell that a rule names, with the rows it stands for.
+
+    Parameters
+    ----------
+    column : Column
+        The column it belongs to.
+    over : Axis or None
+        The axis it is summed over; None if a row names it itself.
+    rows : integer array or None
+        For each row of the naming column's axis, or of the summed one, the row it names. None: each
+        names the row of the same number, or the only one.
+    """
+
+    column: Column
+    over: Axis | None
+    rows: NDArray[np.intp] | None
+
+    def row(self, row: int) -> int:
+        """The row that a row names."""
+        if self.rows is not None:
+            return int(self.rows[row])
+        return 0 if self.column.axis is None else row
+
+    def take(self, array: NDArray[np.generic]) -> NDArray[np.generic]:
+        """From an array (..., rows) of the column, what each naming row names."""
+        return array if self.rows is None else array.take(self.rows, axis=-1)
+
+
+def precedents(sheet: Sheet, layouts: Mapping[str, Layout], column: Column) -> tuple[Precedent, ...]:
+    """Everything that a column's rule names; columns declared first come first."""
+    return tuple(
+        Precedent(sheet[name_of(r.cell)], r.over, rows_of(r.cell, r.over or column.axis, layouts))
+        for r in sheet.named(column)
     )
+
+
+def rows_of(cell: Expr, axis: Axis | None, layouts: Mapping[str, Layout]) -> NDArray[np.intp] | None:
+    """The rows that a cell names for each row of an axis; None where they are the same, or a scalar's."""
+    if axis is None or not isinstance(cell, Indexed) or cell.indices[0] == axis.index:
+        return None
+    return layouts[axis.name].rows[cell.indices[0]]

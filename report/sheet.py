@@ -6,14 +6,27 @@ columns' names, so the graph of what depends on what is read from the algebra an
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from keyword import iskeyword
 
-from sympy import Basic, Expr, Indexed, IndexedBase, Rel, Sum, Symbol
+from sympy import Basic, Expr, Indexed, Sum, Symbol
 
-from ..derivations.equation import Equation
+from .column import (
+    Axis,
+    Column,
+    Formula,
+    Given,
+    PairAxis,
+    Reference,
+    RepeatAxis,
+    Root,
+    Rule,
+    name_of,
+    references,
+)
+from .errors import close
 
 __all__ = [
     "Axis",
@@ -22,11 +35,13 @@ __all__ = [
     "Formula",
     "Given",
     "PairAxis",
+    "Reference",
     "RepeatAxis",
     "Root",
     "Rule",
     "Sheet",
     "SheetError",
+    "name_of",
 ]
 
 
@@ -40,246 +55,6 @@ class CycleError(SheetError):
     def __init__(self, path: tuple[str, ...]) -> None:
         self.path = path
         super().__init__("columns depend on one another in a circle: " + " -> ".join(path))
-
-
-# --- index sets ------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Axis:
-    """An index set whose rows come with the data, such as the tests of a campaign.
-
-    Parameters
-    ----------
-    name : str
-        ``tests``, ``pairs``, ``points``.
-    index : Symbol
-        The running number of a row in formulas, ``k``.
-    size : Symbol
-        How many rows there are: the upper limit of sums over the axis.
-    """
-
-    name: str
-    index: Symbol
-    size: Symbol
-
-    @property
-    def maps(self) -> dict[Symbol, Axis]:
-        """For every index that may be used in a formula on this axis, the axis whose rows it names."""
-        return {self.index: self}
-
-    @property
-    def ordinals(self) -> tuple[Symbol, ...]:
-        """Running numbers that a formula on this axis may use as values."""
-        return ()
-
-    @property
-    def parents(self) -> tuple[Axis, ...]:
-        """The axes that its rows are made of."""
-        return ()
-
-
-@dataclass(frozen=True)
-class PairAxis(Axis):
-    """Every pair i < j of another axis' rows, in lexical order."""
-
-    of: Axis
-    first: Symbol
-    second: Symbol
-
-    @property
-    def maps(self) -> dict[Symbol, Axis]:
-        """The pair's own number and those of its two members."""
-        return {self.index: self, self.first: self.of, self.second: self.of}
-
-    @property
-    def parents(self) -> tuple[Axis, ...]:
-        """The axis that is paired."""
-        return (self.of,)
-
-
-@dataclass(frozen=True)
-class RepeatAxis(Axis):
-    """A number of rows, counted by `step` = 1, 2, ..., for each row of another axis."""
-
-    of: Axis
-    step: Symbol
-    count: str
-    """Name of the given scalar that says how many."""
-
-    @property
-    def maps(self) -> dict[Symbol, Axis]:
-        """The row's own number, and all that its parent's row may name."""
-        return {self.index: self, **self.of.maps}
-
-    @property
-    def ordinals(self) -> tuple[Symbol, ...]:
-        """The running number within the parent's row."""
-        return (self.step,)
-
-    @property
-    def parents(self) -> tuple[Axis, ...]:
-        """The axis that is repeated."""
-        return (self.of,)
-
-
-# --- rules -----------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Given:
-    """The value comes from the user, as printed."""
-
-    source: str = "given"
-
-
-@dataclass(frozen=True)
-class Formula:
-    """The last side of an equation of the ledger, in the sheet's symbols."""
-
-    equation: Equation
-
-    @property
-    def expression(self) -> Expr:
-        """What is computed."""
-        return self.equation.value
-
-
-@dataclass(frozen=True)
-class Root:
-    """The only root of an equation in an interval; that it is the only one is decided before it is sought.
-
-    Parameters
-    ----------
-    equation : Equation
-        What the root satisfies, as published.
-    form : Equation
-        What is solved: equivalent on the interval, its left side smooth, its right side zero.
-    unknown : Symbol
-        The unknown of `form`.
-    value : Expr
-        The cell's value in terms of the unknown.
-    low, high : Expr
-        The open interval of the unknown.
-    sign_low, sign_high : Expr or None
-        Expressions with the sign of `form` at the ends of the interval, where it cannot be evaluated or
-        where rounding would decide; None evaluates it.
-    turning : tuple of Expr
-        Increasing points of the interval between which `form` changes sign at most once; one that is not
-        a number, or lies outside, does not count.
-    start : Expr
-        A first guess. It costs steps, never truth: the bracket decides.
-    steps : int
-        How many fourth-order steps every cell gets.
-    none : str
-        What it means when there is no root, for the reader.
-    two : str
-        What it means when there are several.
-    """
-
-    equation: Equation
-    form: Equation
-    unknown: Symbol
-    value: Expr
-    low: Expr
-    high: Expr
-    start: Expr
-    sign_low: Expr | None = None
-    sign_high: Expr | None = None
-    turning: tuple[Expr, ...] = ()
-    steps: int = 4
-    none: str = "no value of the interval satisfies the equation"
-    two: str = "several values of the interval satisfy the equation"
-
-    @property
-    def expression(self) -> Expr:
-        """What must vanish."""
-        sides = self.form.sides
-        return sides[0] - sides[1]
-
-    @property
-    def expressions(self) -> tuple[Expr, ...]:
-        """Everything that is evaluated, in terms of other columns and the unknown."""
-        signs = tuple(s for s in (self.sign_low, self.sign_high) if s is not None)
-        return (self.expression, self.value, self.low, self.high, self.start, *signs, *self.turning)
-
-
-Rule = Given | Formula | Root
-
-
-@dataclass(frozen=True)
-class Column:
-    """One quantity over one index set.
-
-    Parameters
-    ----------
-    name : str
-        The cell name, ``x_m1``.
-    axis : Axis or None
-        None for a scalar.
-    rule : Given, Formula or Root
-        Where its values come from.
-    unit : str
-        SI unit; an exponent may be another column's name (``N/m^alpha``).
-    meaning : str
-        What it is.
-    latex : str
-        How it is printed; ``%s`` is where an index goes.
-    display : str
-        The unit it is shown in; ``like x_p`` follows the unit that the user wrote for a given column.
-    positive : bool
-        Whether it is positive wherever it has a value.
-    requires : tuple
-        Relations that must hold for a row, each with the sentence that explains a ``#DOMAIN!``.
-    exact : bool
-        Whether a given value is a choice or a convention, so that its digits say nothing of precision.
-    """
-
-    name: str
-    axis: Axis | None
-    rule: Rule
-    unit: str = "1"
-    meaning: str = ""
-    latex: str = ""
-    display: str = ""
-    positive: bool = True
-    requires: tuple[tuple[Rel, str], ...] = ()
-    exact: bool = False
-
-    @cached_property
-    def symbol(self) -> Symbol:
-        """The name as a sympy symbol, with its assumptions."""
-        return Symbol(self.name, positive=True) if self.positive else Symbol(self.name, real=True)
-
-    def __getitem__(self, index: Any) -> Indexed:
-        """The cell of a row."""
-        return IndexedBase(self.symbol)[index]
-
-    @property
-    def cell(self) -> Expr:
-        """The column as it stands in formulas on its own axis."""
-        return self.symbol if self.axis is None else self[self.axis.index]
-
-    @property
-    def equation(self) -> Equation | None:
-        """The published equation behind it."""
-        return None if isinstance(self.rule, Given) else self.rule.equation
-
-    @property
-    def source(self) -> str:
-        """Number of its equation, or where it was given."""
-        return self.rule.source if isinstance(self.rule, Given) else self.rule.equation.label
-
-    @property
-    def expressions(self) -> tuple[Basic, ...]:
-        """All expressions that its rule and its conditions evaluate."""
-        conditions = tuple(condition for condition, _ in self.requires)
-        if isinstance(self.rule, Formula):
-            return (self.rule.expression, *conditions)
-        return (*self.rule.expressions, *conditions) if isinstance(self.rule, Root) else conditions
-
-
-# --- the sheet -------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -303,6 +78,7 @@ class Sheet:
     by_name: Mapping[str, Column] = field(init=False, repr=False)
     order: tuple[Column, ...] = field(init=False, repr=False)
     """Order of evaluation; ties break by declaration."""
+    _named: Mapping[str, tuple[Reference, ...]] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         names: dict[str, Column] = {}
@@ -311,8 +87,10 @@ class Sheet:
                 raise SheetError(f"the column {column.name!r} has two rules; a name has exactly one")
             names[column.name] = column
         object.__setattr__(self, "by_name", names)
+        _check_names(self)
         for column in self.columns:
-            self._check_symbols(column)
+            _check_symbols(self, column)
+        object.__setattr__(self, "_named", {c.name: tuple(self._read(c)) for c in self.columns})
         object.__setattr__(self, "order", tuple(self._sorted()))
 
     def __getitem__(self, name: str) -> Column:
@@ -320,6 +98,8 @@ class Sheet:
 
     def __contains__(self, name: object) -> bool:
         return name in self.by_name
+
+    # --- index sets -----------------------------------------------------------------------------------
 
     @cached_property
     def axes(self) -> tuple[Axis, ...]:
@@ -329,7 +109,8 @@ class Sheet:
         def add(axis: Axis) -> None:
             for parent in axis.parents:
                 add(parent)
-            found.setdefault(axis.name, axis)
+            if found.setdefault(axis.name, axis) != axis:
+                raise SheetError(f"two different index sets are called {axis.name!r}")
 
         for column in self.columns:
             if column.axis is not None:
@@ -346,95 +127,66 @@ class Sheet:
         """The axis that a sum over a running number runs over."""
         return {axis.index: axis for axis in self.axes}
 
+    # --- the graph ------------------------------------------------------------------------------------
+
+    def named(self, column: Column) -> tuple[Reference, ...]:
+        """The cells that a column's rule names, each once; those of columns declared first come first."""
+        return self._named[column.name]
+
     def references(self, column: Column) -> tuple[Expr, ...]:
         """The cells that a column's rule names, ``x_p[i]`` and ``beta``, sorted by name."""
-        own = {column.rule.unknown} if isinstance(column.rule, Root) else set()
-        found: set[Expr] = set()
-        for expression in column.expressions:
-            found |= cells_of(expression) - own
-        counts = {a.count for a in self._used_axes(column) if isinstance(a, RepeatAxis)}
-        found |= {self.by_name[name].symbol for name in counts if name in self.by_name}
-        running = {symbol for axis in self.axes for symbol in (*axis.maps, *axis.ordinals)} | set(self.sizes)
-        return tuple(sorted(found - running, key=str))
+        return tuple(sorted({reference.cell for reference in self.named(column)}, key=str))
 
     def precedents(self, column: Column) -> tuple[Column, ...]:
         """The columns that a column is computed from, in the order they were declared."""
-        names = {name_of(cell) for cell in self.references(column)}
-        return tuple(c for c in self.columns if c.name in names)
+        return tuple(
+            self.by_name[name] for name in dict.fromkeys(name_of(r.cell) for r in self.named(column))
+        )
 
     def dependents(self, column: Column) -> tuple[Column, ...]:
         """The columns that are computed from a column directly."""
-        return tuple(c for c in self.columns if column in self.precedents(c))
+        return tuple(c for c in self.columns if any(p.name == column.name for p in self.precedents(c)))
 
     def ancestors(self, column: Column) -> tuple[Column, ...]:
         """All columns that a column rests on, in order of evaluation."""
         seen: set[str] = set()
-
-        def visit(current: Column) -> None:
-            for precedent in self.precedents(current):
-                if precedent.name not in seen:
-                    seen.add(precedent.name)
-                    visit(precedent)
-
-        visit(column)
+        waiting = [column]
+        while waiting:
+            new = [p for p in self.precedents(waiting.pop()) if p.name not in seen]
+            seen |= {precedent.name for precedent in new}
+            waiting += new
         return tuple(c for c in self.order if c.name in seen)
 
     def summed_axes(self, column: Column) -> tuple[Axis, ...]:
         """The axes that its rule sums over."""
-        over = {
-            limit[0]
-            for expression in column.expressions
-            for total in expression.atoms(Sum)
-            for limit in total.limits
-        }
+        over = {total.limits[0][0] for expression in column.expressions for total in expression.atoms(Sum)}
         return tuple(axis for axis in self.axes if axis.index in over)
 
-    def _used_axes(self, column: Column) -> Iterator[Axis]:
-        for axis in (column.axis, *self.summed_axes(column)):
-            while axis is not None:
-                yield axis
-                axis = axis.parents[0] if axis.parents else None
-
-    def _check_symbols(self, column: Column) -> None:
-        """Every symbol is a column, a size, or a running number that means something on this axis."""
+    def _read(self, column: Column) -> Iterator[Reference]:
+        """The cells that a column names, in the order of declaration."""
+        unknown = column.rule.unknown if isinstance(column.rule, Root) else None
+        found: set[Reference] = set()
         for expression in column.expressions:
-            self._check_scope(column, expression, {} if column.axis is None else column.axis.maps)
-
-    def _check_scope(self, column: Column, expression: Basic, maps: Mapping[Symbol, Axis]) -> None:
-        if isinstance(expression, Sum):
-            index = expression.limits[0][0]
-            axis = self.indices.get(index)
-            if axis is None or len(expression.limits) != 1 or expression.limits[0][2] != axis.size:
-                raise SheetError(f"{column.name}: a sum must run over all rows of one axis, not {expression.limits}")
-            self._check_scope(column, expression.function, axis.maps)
-            return
-        if isinstance(expression, Indexed):
-            self._check_cell(column, expression, maps)
-            return
-        if isinstance(expression, Symbol):
-            own = column.rule.unknown if isinstance(column.rule, Root) else None
-            if expression == own or expression in self.sizes:
-                return
-            if any(expression in axis.ordinals for axis in maps.values()):
-                return
-            other = self.by_name.get(expression.name)
-            if other is None:
-                raise SheetError(f"{column.name}: no column is called {expression.name!r}")
-            if other.axis is not None:
-                raise SheetError(f"{column.name}: {expression.name} has one value for each of {other.axis.name}; say which")
-        for argument in expression.args:
-            self._check_scope(column, argument, maps)
-
-    def _check_cell(self, column: Column, cell: Indexed, maps: Mapping[Symbol, Axis]) -> None:
-        name, index = name_of(cell), cell.indices[0]
-        other = self.by_name.get(name)
-        if other is None:
-            raise SheetError(f"{column.name}: no column is called {name!r}")
-        where = maps.get(index)
-        if where is None or other.axis != where:
-            place = "a scalar" if other.axis is None else f"on {other.axis.name}"
-            allowed = ", ".join(f"{i} ({axis.name})" for i, axis in maps.items()) or "none"
-            raise SheetError(f"{column.name}: {cell} names a row of nothing: {name} is {place}; indices here: {allowed}")
+            for reference in references(expression, self.indices):
+                if reference.cell == unknown or reference.cell in self.sizes:
+                    continue
+                if isinstance(reference.cell, Indexed):
+                    found.add(reference)
+                elif name_of(reference.cell) in self.by_name:
+                    found.add(Reference(reference.cell))  # a scalar is the same inside and outside of sums
+        for axis in _with_parents((column.axis, *self.summed_axes(column))):
+            if isinstance(axis, RepeatAxis):
+                found.add(Reference(self.by_name[axis.count].symbol))
+        declared = {c.name: n for n, c in enumerate(self.columns)}
+        order = {axis.name: n for n, axis in enumerate(self.axes)}
+        yield from sorted(
+            found,
+            key=lambda r: (
+                declared[name_of(r.cell)],
+                str(r.cell),
+                -1 if r.over is None else order[r.over.name],
+            ),
+        )
 
     def _sorted(self) -> Iterator[Column]:
         """Depth first in the order of declaration; a cycle is shown as the path that closes it."""
@@ -457,18 +209,102 @@ class Sheet:
             yield from visit(column)
 
 
-def name_of(cell: Expr) -> str:
-    """The column's name in a cell, plain or indexed."""
-    return str(cell.base.label) if isinstance(cell, Indexed) else str(cell)
+def _with_parents(axes: Iterable[Axis | None]) -> Iterator[Axis]:
+    """Axes and all they are made of."""
+    for axis in axes:
+        if axis is not None:
+            yield axis
+            yield from _with_parents(axis.parents)
 
 
-def cells_of(expression: Basic) -> set[Expr]:
-    """The cells in an expression: indexed ones, and plain symbols that are no part of them."""
-    if isinstance(expression, (Indexed, Symbol)):
-        return {expression}
+# --- what makes a sheet ----------------------------------------------------------------------------------
+
+
+def _check_names(sheet: Sheet) -> None:
+    """A symbol means one thing: a column, an index, a size, a running number or an unknown."""
+    taken: dict[str, str] = {}
+    for axis in sheet.axes:
+        own = {axis.index: "the index", axis.size: "the size"}
+        if isinstance(axis, PairAxis):
+            own |= {axis.first: "the first member", axis.second: "the second member"}
+        elif isinstance(axis, RepeatAxis):
+            own |= {axis.step: "the running number"}
+            count = sheet.by_name.get(axis.count)
+            if count is None or count.axis is not None or not isinstance(count.rule, Given):
+                raise SheetError(
+                    f"{axis.name}: {axis.count!r} must be a given scalar; it says how many rows there are"
+                )
+        for symbol, what in own.items():
+            if symbol.name in taken:
+                raise SheetError(
+                    f"the symbol {symbol.name!r} is {taken[symbol.name]} and {what} of {axis.name}"
+                )
+            taken[symbol.name] = f"{what} of {axis.name}"
+    for column in sheet.columns:
+        if not column.name.isidentifier() or iskeyword(column.name):
+            raise SheetError(f"{column.name!r} cannot be a column's name: letters, digits and _ make a name")
+        if column.name in taken:
+            raise SheetError(f"the column {column.name!r} is called as {taken[column.name]} is; rename one")
+        unknown = column.rule.unknown.name if isinstance(column.rule, Root) else column.name
+        if unknown != column.name and (unknown in sheet.by_name or unknown in taken):
+            raise SheetError(
+                f"{column.name}: its unknown {unknown!r} is called as something else of the sheet is"
+            )
+
+
+def _check_symbols(sheet: Sheet, column: Column) -> None:
+    """Every symbol is a column, a size, or a running number that means something on this axis."""
+    for expression in column.expressions:
+        _check_scope(sheet, column, expression, column.axis)
+
+
+def _check_scope(sheet: Sheet, column: Column, expression: Basic, axis: Axis | None) -> None:
     if isinstance(expression, Sum):
-        return cells_of(expression.function) - {expression.limits[0][0]}
-    found: set[Expr] = set()
-    for argument in expression.args:
-        found |= cells_of(argument)
-    return found
+        limits = expression.limits
+        over = sheet.indices.get(limits[0][0])
+        if over is None or len(limits) != 1 or limits[0][1:] != (1, over.size):
+            known = ", ".join(f"({a.index}, 1, {a.size})" for a in sheet.axes) or "none"
+            shown = ", ".join(map(str, limits))
+            raise SheetError(
+                f"{column.name}: a sum runs over all rows of one index set ({known}), not over {shown}"
+            )
+        _check_scope(sheet, column, expression.function, over)
+    elif isinstance(expression, Indexed):
+        _check_cell(sheet, column, expression, axis)
+    elif isinstance(expression, Symbol):
+        _check_symbol(sheet, column, expression, axis)
+    else:
+        for argument in expression.args:
+            _check_scope(sheet, column, argument, axis)
+
+
+def _check_symbol(sheet: Sheet, column: Column, symbol: Symbol, axis: Axis | None) -> None:
+    own = column.rule.unknown if isinstance(column.rule, Root) else None
+    if symbol == own or symbol in sheet.sizes or (axis is not None and symbol in axis.ordinals):
+        return
+    other = _find(sheet, column, symbol.name)
+    if other.axis is not None:
+        raise SheetError(
+            f"{column.name}: {symbol.name} has one value for each of {other.axis.name}; say which"
+        )
+
+
+def _check_cell(sheet: Sheet, column: Column, cell: Indexed, axis: Axis | None) -> None:
+    other = _find(sheet, column, name_of(cell))
+    maps = {} if axis is None else axis.maps
+    where = maps.get(cell.indices[0])
+    if where is None or other.axis != where or len(cell.indices) != 1:
+        place = "a scalar" if other.axis is None else f"on {other.axis.name}"
+        allowed = ", ".join(f"{i} ({a.name})" for i, a in maps.items()) or "none"
+        raise SheetError(
+            f"{column.name}: {cell} names a row of nothing: {other.name} is {place}; indices here: {allowed}"
+        )
+
+
+def _find(sheet: Sheet, column: Column, name: str) -> Column:
+    other = sheet.by_name.get(name)
+    if other is None:
+        near = close(name, sheet.by_name)
+        hint = f"; did you mean {near!r}?" if near else ""
+        raise SheetError(f"{column.name}: no column is called {name!r}{hint}")
+    return other

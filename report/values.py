@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Indexed
 
-from .layout import Layout
-from .sheet import Column, Root, Sheet, name_of
+from .layout import Layout, Precedent, precedents
+from .sheet import Column, Formula, Root, Sheet
 
-__all__ = ["CODES", "Cell", "Status", "Values"]
+__all__ = ["CODES", "Cell", "Status", "Values", "inherited", "rows_kept"]
+
+Codes = NDArray[np.uint8]
+Mask = NDArray[np.bool_]
 
 
 class Status(IntEnum):
@@ -38,6 +41,69 @@ CODES = {
     Status.NOROOT: "#NOROOT!",
     Status.TWOROOTS: "#TWOROOTS!",
 }
+
+
+# --- how errors spread: the same for every engine ---------------------------------------------------------
+
+
+def rows_kept(
+    named: Sequence[Precedent], layouts: Mapping[str, Layout], status: Mapping[str, Codes]
+) -> dict[str, Mask]:
+    """For every axis that a column sums over, the rows whose cells all have values.
+
+    A pair without a root must not take the mean of all others with it. The rows that are left out are
+    counted, and every view says so.
+
+    Parameters
+    ----------
+    named : sequence of Precedent
+        What the column names.
+    layouts : mapping of axis name to Layout
+    status : mapping of column name to integer array (..., rows)
+
+    Returns
+    -------
+    mapping of axis name to boolean array (..., rows)
+    """
+    kept: dict[str, Mask] = {}
+    for precedent in named:
+        if precedent.over is not None:
+            axis = precedent.over.name
+            mask = kept.get(axis, np.ones(layouts[axis].size, dtype=bool))
+            kept[axis] = mask & (precedent.take(status[precedent.column.name]) == Status.OK)
+    return kept
+
+
+def inherited(
+    named: Sequence[Precedent], kept: Mapping[str, Mask], status: Mapping[str, Codes], size: int
+) -> Codes:
+    """The first error among a column's precedents; a sum has one only if none of its rows has a value.
+
+    Parameters
+    ----------
+    named, kept, status
+        As for, and from, :func:`rows_kept`.
+    size : int
+        How many rows the column has.
+
+    Returns
+    -------
+    integer array (..., rows)
+        What a sum of no rows at all becomes is ``#DOMAIN!``.
+    """
+    found: Codes = np.zeros(size, dtype=np.uint8)
+    for precedent in named:
+        theirs = precedent.take(status[precedent.column.name])
+        if precedent.over is not None:
+            mask = kept[precedent.over.name]
+            # Its first row tells why: some cell of it is in error.
+            first = theirs[..., :1] if mask.shape[-1] else np.full((*mask.shape[:-1], 1), Status.DOMAIN)
+            theirs = np.where(mask.any(axis=-1, keepdims=True), Status.OK, first)
+        found = np.where(found == Status.OK, theirs, found).astype(np.uint8)
+    return found
+
+
+# --- cells ------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -71,18 +137,23 @@ class Cell:
 class Values:
     """Values and statuses of every column.
 
+    Arrays have the dimensions (..., rows), the batch first; a scalar has one row. A column that rests on
+    nothing with a batch has none. Cells, their labels and reasons are of values without a batch.
+
     Parameters
     ----------
     sheet : Sheet
     layouts : mapping of axis name to Layout
     value : mapping of column name to float array (..., rows)
-        SI; NaN where the status is not OK. A scalar has one row.
+        SI; NaN where the status is not OK.
     status : mapping of column name to integer array (..., rows)
         :class:`Status`.
     roots : mapping of column name to mapping of row to tuple of float
-        For ambiguous cells, all the roots that were found.
+        For ambiguous cells, all the roots that were found; without a batch.
     counted : mapping of column name to mapping of axis name to int
-        How many rows the sums of a column ran over, where some were left out.
+        How many rows the sums of a column ran over, where some were left out; without a batch.
+    broken : mapping of column name to integer array (..., rows)
+        Which of the column's conditions a row breaks first, from 1; 0 for none.
     """
 
     sheet: Sheet
@@ -91,12 +162,11 @@ class Values:
     status: Mapping[str, NDArray[np.uint8]]
     roots: Mapping[str, Mapping[int, tuple[float, ...]]] = field(default_factory=dict)
     counted: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    broken: Mapping[str, NDArray[np.uint8]] = field(default_factory=dict)
 
     def labels(self, column: Column) -> list[tuple[int, ...]]:
         """How the rows of a column are called; one empty label for a scalar."""
-        if column.axis is None:
-            return [()]
-        return [tuple(map(int, label)) for label in self.layouts[column.axis.name].labels]
+        return [()] if column.axis is None else self._labels(column.axis.name)
 
     def row(self, column: Column, label: tuple[int, ...]) -> int:
         """The row of a label.
@@ -106,10 +176,14 @@ class Values:
         KeyError
             There is no such row.
         """
-        labels = self.labels(column)
-        if label not in labels:
-            raise KeyError(label)
-        return labels.index(label)
+        if column.axis is None:
+            if label:
+                raise KeyError(label)
+            return 0
+        known = self._rows_by_label
+        if column.axis.name not in known:
+            known[column.axis.name] = {own: row for row, own in enumerate(self._labels(column.axis.name))}
+        return known[column.axis.name][label]
 
     def cells(self, name: str) -> Iterator[Cell]:
         """All cells of a column, in the order of its rows."""
@@ -134,6 +208,35 @@ class Values:
                 if cell.culprit is None:
                     yield cell
 
+    # --- what is looked up again and again -------------------------------------------------------------
+
+    @cached_property
+    def _labels_by_axis(self) -> dict[str, list[tuple[int, ...]]]:
+        return {}
+
+    @cached_property
+    def _rows_by_label(self) -> dict[str, dict[tuple[int, ...], int]]:
+        return {}
+
+    @cached_property
+    def _precedents(self) -> dict[str, tuple[tuple[Precedent, ...], dict[str, Mask]]]:
+        return {}
+
+    def _labels(self, axis: str) -> list[tuple[int, ...]]:
+        known = self._labels_by_axis
+        if axis not in known:
+            known[axis] = [tuple(label) for label in self.layouts[axis].labels.tolist()]
+        return known[axis]
+
+    def _named(self, column: Column) -> tuple[tuple[Precedent, ...], dict[str, Mask]]:
+        known = self._precedents
+        if column.name not in known:
+            named = precedents(self.sheet, self.layouts, column)
+            known[column.name] = named, rows_kept(named, self.layouts, self.status)
+        return known[column.name]
+
+    # --- why a cell has no value -----------------------------------------------------------------------
+
     def _cell(self, column: Column, row: int, label: tuple[int, ...]) -> Cell:
         status = Status(int(self.status[column.name][row]))
         if status is Status.OK:
@@ -145,33 +248,18 @@ class Values:
 
     def _culprit(self, column: Column, row: int) -> Cell | None:
         """Follow the first precedent that is in error to where the error began."""
-        for other, other_row in self._precedent_rows(column, row):
-            if self.status[other.name][other_row] != Status.OK:
-                deeper = self._culprit(other, other_row)
-                if deeper is not None:
-                    return deeper
-                return self._cell(other, other_row, self.labels(other)[other_row])
+        named, kept = self._named(column)
+        for precedent in named:
+            if precedent.over is not None:
+                mask = kept[precedent.over.name]
+                if mask.any() or not mask.size:
+                    continue  # a sum is in error only if no row of its axis has a value
+            other, its_row = precedent.column, precedent.row(0 if precedent.over is not None else row)
+            if self.status[other.name][its_row] != Status.OK:
+                return self._culprit(other, its_row) or self._cell(
+                    other, its_row, self.labels(other)[its_row]
+                )
         return None
-
-    def _precedent_rows(self, column: Column, row: int) -> Iterator[tuple[Column, int]]:
-        """The cells that a cell is computed from; for a sum, those of its first rows that are in error."""
-        references = self.sheet.references(column)
-        declared = {c.name: i for i, c in enumerate(self.sheet.columns)}
-        for cell in sorted(references, key=lambda c: (declared[name_of(c)], str(c))):
-            other = self.sheet[name_of(cell)]
-            if not isinstance(cell, Indexed):
-                yield other, 0
-                continue
-            index = cell.indices[0]
-            if column.axis is not None and index in column.axis.maps:
-                yield other, int(self.layouts[column.axis.name].rows[index][row])
-                continue
-            for axis in self.sheet.summed_axes(column):
-                if index in axis.maps:
-                    named = self.layouts[axis.name].rows[index]
-                    # A sum is in error only if no row of its axis has a value: the first one tells why.
-                    for candidate in named[:1]:
-                        yield other, int(candidate)
 
     def _why(self, column: Column, row: int, status: Status) -> str:
         rule = column.rule
@@ -181,6 +269,16 @@ class Values:
             return f"{column.source} has no root here: {rule.none}"
         if isinstance(rule, Root) and status is Status.TWOROOTS:
             found = " and ".join(f"{root:.6g}" for root in self.roots.get(column.name, {}).get(row, ()))
-            return f"{column.source} has more than one root here: {found or rule.two}" + (f" ({rule.two})" if found else "")
-        stated = "; ".join(sentence for _, sentence in column.requires)
-        return f"outside the domain of {column.source}" + (f": {stated}" if stated else "")
+            return f"{column.source} has more than one root here: {found or rule.two}" + (
+                f" ({rule.two})" if found else ""
+            )
+        outside = f"outside the domain of {column.source}"
+        broken = self.broken.get(column.name)
+        if broken is not None and broken[row]:
+            return f"{outside}: {column.requires[broken[row] - 1][1]}"
+        empty = [axis for axis, mask in self._named(column)[1].items() if not mask.size]
+        if empty:
+            return f"{outside}: {empty[0]} has no rows"
+        if isinstance(rule, Formula):
+            return f"{outside}: it gives no {'positive' if column.positive else 'finite'} number here"
+        return outside

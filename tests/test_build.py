@@ -82,7 +82,9 @@ def test_other_files_in_the_output_folder_stay(tmp_path: Path) -> None:
     assert sorted(p.name for p in out.iterdir()) == ["manifest.json", "notes.txt", "values.json"]
 
 
-def test_a_failure_while_writing_leaves_everything_as_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failure_while_writing_leaves_everything_as_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     from loopsheet.report.views import json as view
 
     out = tmp_path / "out"
@@ -128,7 +130,9 @@ from loopsheet.report.workbook import Workbook
         ("", "AttributeError"),
     ],
 )
-def test_a_workbook_of_ones_own_that_fails_is_told_with_its_line(tmp_path: Path, body: str, said: str) -> None:
+def test_a_workbook_of_ones_own_that_fails_is_told_with_its_line(
+    tmp_path: Path, body: str, said: str
+) -> None:
     folder = copy_paper(tmp_path / "own")
     toml = folder / "report.toml"
     toml.write_text(toml.read_text().replace('"soft_impact"', '"workbook.py"'))
@@ -153,7 +157,8 @@ def test_a_workbook_whose_columns_go_in_a_circle_shows_the_path(tmp_path: Path) 
         "a, b = (Symbol(n, positive=True) for n in 'ab')\n"
         "one = Formula(Equation('(1)', (a, b), 'x', Kind.DEFINITION))\n"
         "two = Formula(Equation('(2)', (b, a), 'x', Kind.DEFINITION))\n"
-        "WORKBOOK = replace(paper, name='own', sheet=lambda given: Sheet((Column('a', None, one), Column('b', None, two))))\n"
+        "own = Sheet, (Column('a', None, one), Column('b', None, two))\n"
+        "WORKBOOK = replace(paper, name='own', sheet=lambda given: own[0](own[1]))\n"
     )
     with pytest.raises(InputError, match="a -> b -> a"):
         build.compute(folder)

@@ -36,8 +36,11 @@ def campaign(tmp_path: Path) -> Path:
 
 
 def test_help_answers_without_loading_anything_heavy() -> None:
-    code = "import sys; from loopsheet.report.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass\n"
-    code += "print(sorted(m for m in ('numpy', 'sympy', 'scipy', 'matplotlib', 'jinja2', 'pint') if m in sys.modules))"
+    code = (
+        "import sys; from loopsheet.report.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass\n"
+    )
+    code += "heavy = {'numpy', 'sympy', 'scipy', 'matplotlib', 'jinja2', 'pint'}\n"
+    code += "print(sorted(heavy & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
     for verb in ("build", "check", "prove", "show", "new"):
@@ -81,7 +84,11 @@ def test_show_tells_value_equation_and_precedents(capsys: pytest.CaptureFixture[
     ],
 )
 def test_wrong_words_are_answered_with_what_was_meant(
-    arguments: list[str], said: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    arguments: list[str],
+    said: str,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(arguments) == 2

@@ -33,7 +33,16 @@ WORDS = {
     "report.quantity",
     "report.unit_text",
 }
-SHEET = WORDS | {"derivations", "report.sheet", "report.units", "report.workbook"}
+SHEET = WORDS | {
+    "derivations",
+    "report.column",
+    "report.grid",
+    "report.sheet",
+    "report.units",
+    "report.workbook",
+}
+VALUES = SHEET | {"report.layout", "report.values"}
+RESULT = VALUES | {"report.published", "report.result"}
 ALGEBRA = {"sympy", "mpmath"}
 
 MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
@@ -44,16 +53,16 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     **{part: (WORDS, {"pint"} if part == "report.unit_text" else set()) for part in WORDS},
     "report.sheet": (SHEET, ALGEBRA),
     "report.units": (SHEET, ALGEBRA | {"pint"}),
-    "report.workbook": (SHEET, ALGEBRA),
-    "report.workbooks": (SHEET | {"report.workbooks"}, ALGEBRA),
-    "report.engines": (SHEET | {"report.engines"}, RUNTIME - {"jinja2", "matplotlib"}),
-    "report.analysis": (SHEET | {"report.engines", "report.analysis"}, RUNTIME - {"jinja2", "matplotlib"}),
-    "report.views": (SHEET | {"report.views"}, RUNTIME - {"scipy", "mpmath"}),
+    "report.workbook": (RESULT, ALGEBRA),
+    "report.workbooks": (RESULT | {"report.workbooks", "report.analysis"}, ALGEBRA),
+    "report.engines": (VALUES | {"report.engines"}, RUNTIME - {"jinja2", "matplotlib"}),
+    "report.analysis": (RESULT | {"report.engines", "report.analysis"}, RUNTIME - {"jinja2", "matplotlib"}),
+    "report.views": (RESULT | {"report.views"}, RUNTIME - {"scipy", "mpmath"}),
 }
 # Parts that only these modules may import, whatever the table says.
 ONLY_FROM = {"report.cli": {"__main__"}, "report.build": {"report.cli"}}
-# Modules that may import by a name made at run time: the lazy public names.
-MAY_IMPORT_BY_NAME = {""}
+# Modules that may import by a name made at run time: the lazy public names, the registry of workbooks.
+MAY_IMPORT_BY_NAME = {"", "report.build"}
 
 
 class Import(NamedTuple):

@@ -33,7 +33,9 @@ def test_shape(paper: dict) -> None:  # type: ignore[type-arg]
 
 
 def test_cells_of_the_design_are_there(paper: dict) -> None:  # type: ignore[type-arg]
-    names = "v e x_p m_red beta alpha x_m1 x_m2 C Cprime_1 Cprime_2 alpha_mean alpha_log C_log alpha_lin C_lin"
+    names = (
+        "v e x_p m_red beta alpha x_m1 x_m2 C Cprime_1 Cprime_2 alpha_mean alpha_log C_log alpha_lin C_lin"
+    )
     assert set(f"{names} x_m Cprime_eq7 Cprime_eq9".split()) <= set(paper["cells"])
 
 
@@ -45,7 +47,12 @@ def test_proofs_by_number(paper: dict) -> None:  # type: ignore[type-arg]
 
 def test_published(paper: dict) -> None:  # type: ignore[type-arg]
     first = paper["published"][0]
-    assert (first["cell"], first["index"], first["printed"], first["verdict"]) == ("alpha", [1, 2], "1.234", "differs")
+    assert (first["cell"], first["index"], first["printed"], first["verdict"]) == (
+        "alpha",
+        [1, 2],
+        "1.234",
+        "differs",
+    )
 
 
 def test_an_error_is_null_with_its_code(tmp_path: Path) -> None:

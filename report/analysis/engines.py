@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..engines import exact
-from ..values import Status, Values
+from ..values import Values
 
 __all__ = ["Agreement", "compare"]
 
@@ -24,8 +24,8 @@ class Agreement:
     cells : int
         How many were compared.
     worst : float
-        Largest difference, relative to the cell, or to the largest of its column where that is larger
-        (a logarithm near zero has no relative precision).
+        Largest difference, relative to the largest cell of its column, and for a pure number that may
+        vanish to 1 at least: a logarithm near zero has no relative precision.
     where : str
         The cell of the largest difference.
     findings : tuple of str
@@ -54,20 +54,20 @@ def compare(values: Values, labels: Mapping[str, Sequence[int]], exact_data: Map
         As for :func:`loopsheet.report.engines.exact.evaluate`.
     """
     judged = exact.evaluate(values.sheet, labels, exact_data)
-    count, worst, where, findings = 0, 0.0, "all equal", []
+    cells, worst, where, findings = 0, 0.0, "all equal", []
     for column in values.sheet.order:
-        known = [abs(x) for x in judged.value[column.name] if x is not None]
-        scale = max(known, default=0)
-        for row, (label, true) in enumerate(zip(values.labels(column), judged.value[column.name], strict=True)):
-            status = Status(int(values.status[column.name][row]))
-            address = column.name + (f"[{'-'.join(map(str, label))}]" if label else "")
-            count += 1
-            if status is not judged.status[column.name][row]:
-                findings.append(f"{address}: numpy says {status.code}, 50 digits say {judged.status[column.name][row].code}")
+        exactly, codes = judged.value[column.name], judged.status[column.name]
+        scale = max((abs(x) for x in exactly if x is not None), default=0)
+        if column.unit == "1" and not column.positive:
+            scale = max(scale, 1)
+        for cell, true, code in zip(values.cells(column.name), exactly, codes, strict=True):
+            cells += 1
+            if cell.status is not code:
+                findings.append(f"{cell.address}: numpy says {cell.status.code}, 50 digits say {code.code}")
             elif true is not None and scale:
-                difference = float(abs(float(values.value[column.name][row]) - true) / scale)
+                difference = float(abs(cell.value - true) / scale)
                 if difference > worst:
-                    worst, where = difference, address
+                    worst, where = difference, cell.address
                 if difference > LARGEST:
-                    findings.append(f"{address}: numpy is off by {difference:.1e}")
-    return Agreement(count, worst, where, tuple(findings))
+                    findings.append(f"{cell.address}: numpy is off by {difference:.1e}")
+    return Agreement(cells, worst, where, tuple(findings))

@@ -49,5 +49,10 @@ def _compare(published: PublishedValue, values: Values) -> Comparison:
     distance = float((Fraction(cell.value) - printed.value) / (2 * printed.half_unit))
     verdict = "same" if Decimal(again) == Decimal(printed.text) else "differs"
     return Comparison(
-        published, cell, again, distance, verdict, as_expected=(verdict == "differs") == (published.expect == "differs")
+        published,
+        cell,
+        again,
+        distance,
+        verdict,
+        as_expected=(verdict == "differs") == (published.expect == "differs"),
     )

@@ -9,22 +9,23 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import mpmath
+import numpy as np
+from numpy.typing import NDArray
 from sympy import Basic, Expr, Indexed, Sum, Symbol, lambdify
 
-from ..layout import Layout, lay_out
-from ..sheet import Column, Formula, Given, RepeatAxis, Root, Sheet, name_of
-from ..values import Status
+from ..layout import Layout, lay_out, precedents, rows_of
+from ..sheet import Axis, Column, Formula, Given, RepeatAxis, Root, Sheet, name_of
+from ..values import Status, inherited, rows_kept
 
 __all__ = ["DIGITS", "ExactValues", "evaluate"]
 
 DIGITS = 50
 _GUARD = 15
 """Digits carried beyond those that are promised: sums and differences eat some."""
-_HALVINGS = 24
-"""Bisections before the secant method: the bracket is then a millionth of the interval."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,8 @@ class _Failed(Exception):
 
 def _number(value: Any) -> Any:
     """A datum as mpf: fractions and strings exactly, doubles as the doubles they are."""
+    if value is None:
+        return mpmath.nan
     if isinstance(value, Fraction):
         return mpmath.mpf(value.numerator) / value.denominator
     return mpmath.mpf(value)
@@ -67,11 +70,11 @@ def evaluate(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[st
     sheet : Sheet
     labels : mapping of axis name to sequence of int
     data : mapping of column name to a number, or a sequence of numbers, in SI
-        Fractions are taken exactly; None is a missing datum.
+        Fractions are taken exactly; None or NaN is a missing datum.
     """
     with mpmath.workdps(DIGITS + _GUARD):
         given = {
-            name: [None if x is None else _number(x) for x in (v if isinstance(v, (list, tuple)) else [v])]
+            name: [_number(x) for x in (v if isinstance(v, (list, tuple, np.ndarray)) else [v])]
             for name, v in data.items()
         }
         counts = {a.count: int(given[a.count][0]) for a in sheet.axes if isinstance(a, RepeatAxis)}
@@ -84,207 +87,246 @@ class _Exact:
     def __init__(self, sheet: Sheet, layouts: Mapping[str, Layout], given: Mapping[str, list[Any]]) -> None:
         self.sheet, self.layouts, self.given = sheet, layouts, given
         self.value: dict[str, list[Any]] = {}
-        self.status: dict[str, list[Status]] = {}
+        self.status: dict[str, NDArray[np.uint8]] = {}
         self.roots: dict[str, dict[int, tuple[Any, ...]]] = {}
-        self.rows_kept: dict[tuple[str, str], list[int]] = {}
 
     def run(self) -> ExactValues:
         for column in self.sheet.order:
-            self.value[column.name], self.status[column.name] = [], []
-            compute = self._rule(column)
-            for row in range(1 if column.axis is None else self.layouts[column.axis.name].size):
+            size = 1 if column.axis is None else self.layouts[column.axis.name].size
+            status, compute = self._rule(column, size)
+            self.value[column.name] = values = [None] * size
+            for row in np.flatnonzero(status == Status.OK).tolist():
                 try:
-                    value, status = compute(row), Status.OK
+                    values[row] = compute(row)
                 except _Failed as failed:
-                    value, status = None, failed.status
-                self.value[column.name].append(value)
-                self.status[column.name].append(status)
-        return ExactValues(self.value, self.status, self.roots)
+                    status[row] = failed.status
+            self.status[column.name] = status
+        codes = {name: [Status(code) for code in status.tolist()] for name, status in self.status.items()}
+        return ExactValues(self.value, codes, self.roots)
 
     # --- rules ----------------------------------------------------------------------------------------
 
-    def _rule(self, column: Column) -> Callable[[int], Any]:
+    def _rule(self, column: Column, size: int) -> tuple[NDArray[np.uint8], Callable[[int], Any]]:
+        """The errors that the rows inherit, and what computes the others."""
         rule = column.rule
         if isinstance(rule, Given):
-            return lambda row: self._given(column, row)
-        conditions = [self._function(condition, column) for condition, _ in column.requires]
-        if isinstance(rule, Formula):
-            body = self._function(rule.expression, column)
-        else:
-            body = self._root(rule, column)
-        inherit = self._inheritance(column)
+            return np.zeros(size, dtype=np.uint8), lambda row: self._given(column, row)
+        named = precedents(self.sheet, self.layouts, column)
+        kept = rows_kept(named, self.layouts, self.status)
+        status = inherited(named, kept, self.status, size)
+        scope = _Scope(self, column, {axis: np.flatnonzero(mask).tolist() for axis, mask in kept.items()})
+        conditions = [scope.function(condition) for condition, _ in column.requires]
+        body = (
+            scope.function(rule.expression) if isinstance(rule, Formula) else self._root(rule, column, scope)
+        )
+        positive = isinstance(rule, Formula) and column.positive
 
         def compute(row: int) -> Any:
-            inherit(row)
             if not all(condition(row) for condition in conditions):
-                # A condition may rest on the value's own domain; what fails first is the domain.
                 raise _Failed(Status.DOMAIN)
-            return self._finite(body(row))
+            value = body(row)
+            if isinstance(value, mpmath.mpc) or not mpmath.isfinite(value) or (positive and not value > 0):
+                raise _Failed(Status.DOMAIN)
+            return value
 
-        return compute
+        return status, compute
 
     def _given(self, column: Column, row: int) -> Any:
         value = self.given[column.name][row]
-        if value is None or not mpmath.isfinite(value):
+        if not mpmath.isfinite(value):
             raise _Failed(Status.INPUT)
         return value
 
-    @staticmethod
-    def _finite(value: Any) -> Any:
-        if isinstance(value, mpmath.mpc) or not mpmath.isfinite(value):
-            raise _Failed(Status.DOMAIN)
-        return value
+    # --- roots ----------------------------------------------------------------------------------------
 
-    def _inheritance(self, column: Column) -> Callable[[int], None]:
-        """Carry the first error of the precedents on; a sum has one only if none of its rows has a value."""
-        declared = {c.name: n for n, c in enumerate(self.sheet.columns)}
-        sources: list[tuple[list[Status], Any]] = []
-        for cell in sorted(self.sheet.references(column), key=lambda c: (declared[name_of(c)], str(c))):
-            status = self.status[name_of(cell)]
-            if not isinstance(cell, Indexed):
-                sources.append((status, None))
-            elif column.axis is not None and cell.indices[0] in column.axis.maps:
-                sources.append((status, self.layouts[column.axis.name].rows[cell.indices[0]]))
-            else:
-                axis = next(a for a in self.sheet.summed_axes(column) if cell.indices[0] in a.maps)
-                if not self._kept(column, axis.name):
-                    first = int(self.layouts[axis.name].rows[cell.indices[0]][0])
-                    sources.append((status[first : first + 1], None))
+    def _root(self, rule: Root, column: Column, scope: _Scope) -> Callable[[int], Any]:
+        """Count the sign changes between turning points, then narrow the only bracket down."""
+        form, value = (scope.function(e, rule.unknown) for e in (rule.expression, rule.value))
+        low, high = scope.function(rule.low), scope.function(rule.high)
+        given = [None if end is None else scope.function(end) for end in (rule.sign_low, rule.sign_high)]
+        turning = [scope.function(point) for point in rule.turning]
 
-        def inherit(row: int) -> None:
-            for status, rows in sources:
-                theirs = status[0 if rows is None else int(rows[row])]
-                if theirs is not Status.OK:
-                    raise _Failed(theirs)
+        def solve(row: int) -> Any:
+            points, right = [low(row)], high(row)
+            for point in turning:
+                place = point(row)
+                if not isinstance(place, mpmath.mpc) and points[-1] < place < right:
+                    points.append(place)
+            points.append(right)
+            inner = [form(row, point) for point in points[1:-1]]
+            first, last = (
+                form(row, end) if sign is None else sign(row)
+                for end, sign in zip((points[0], right), given, strict=True)
+            )
+            signs = [mpmath.sign(f) for f in (first, *inner, last)]
+            if any(mpmath.isnan(sign) for sign in signs):
+                raise _Failed(Status.DOMAIN)
+            roots = [
+                value(row, _narrow(lambda u: form(row, u), a, b, rising))
+                for (a, b), (falling, rising) in zip(pairwise(points), pairwise(signs), strict=True)
+                if falling * rising < 0
+            ]
+            if len(roots) == 1:
+                return roots[0]
+            if not roots:
+                raise _Failed(Status.NOROOT)
+            self.roots.setdefault(column.name, {})[row] = tuple(sorted(roots))
+            raise _Failed(Status.TWOROOTS)
 
-        return inherit
+        return solve
 
-    def _kept(self, column: Column, axis_name: str) -> list[int]:
-        """The rows of a summed axis whose cells all have values."""
-        known = self.rows_kept.get((column.name, axis_name))
-        if known is not None:
-            return known
-        axis = next(a for a in self.sheet.axes if a.name == axis_name)
-        layout = self.layouts[axis_name]
-        kept = list(range(layout.size))
-        for cell in self.sheet.references(column):
-            if isinstance(cell, Indexed) and cell.indices[0] in axis.maps:
-                named = layout.rows[cell.indices[0]]
-                status = self.status[name_of(cell)]
-                kept = [row for row in kept if status[int(named[row])] is Status.OK]
-        self.rows_kept[column.name, axis_name] = kept
-        return kept
 
-    # --- expressions ----------------------------------------------------------------------------------
+def _narrow(form: Callable[[Any], Any], left: Any, right: Any, rising: Any) -> Any:
+    """The sign change between two points, to working precision.
 
-    def _function(self, expression: Basic, column: Column, unknown: Symbol | None = None) -> Callable[..., Any]:
-        """An expression as a function of the row (and of the unknown of a root)."""
-        totals = sorted(expression.atoms(Sum), key=str)
-        stand_ins = {total: Symbol(f"total_{n}") for n, total in enumerate(totals)}
-        outer = expression.xreplace(stand_ins)
-        inner = [self._terms(total, column, unknown) for total in totals]
-        cells = sorted(outer.atoms(Indexed), key=str)
-        plain = {cell: Symbol(f"cell_{n}") for n, cell in enumerate(cells)}
-        body = outer.xreplace(plain)
-        symbols = sorted(body.free_symbols - set(plain.values()) - set(stand_ins.values()) - {unknown}, key=str)
-        arguments = [*plain.values(), *symbols, *stand_ins.values()] + ([] if unknown is None else [unknown])
-        function = lambdify(arguments, body, modules="mpmath")
-        axis = None if column.axis is None else self.layouts[column.axis.name]
+    Halving until the equation itself has been seen with either sign, so that it need not have one at the
+    ends; then Anderson and Björck's regula falsi, which keeps the bracket and gains digits fast.
+
+    Source: N. Anderson and Å. Björck, A new high order method of regula falsi type for computing a root of
+    an equation, BIT 13 (1973) 253-264.
+    """
+    close = mpmath.mpf(10) ** -(DIGITS + 5)
+    at_left = at_right = None
+    while at_left is None or at_right is None:
+        here = (left + right) / 2
+        f = form(here) * rising
+        if f == 0 or mpmath.isnan(f) or right - left <= abs(here) * close:
+            return here if f == f else f
+        if f > 0:
+            right, at_right = here, f
+        else:
+            left, at_left = here, f
+    before, kept = None, 0
+    while True:
+        here = right - at_right * (right - left) / (at_right - at_left)
+        f = form(here) * rising
+        if f == 0 or mpmath.isnan(f) or (before is not None and abs(here - before) <= abs(here) * close):
+            return here if f == f else f
+        # An end that is kept twice has its value reduced, or it would be kept for ever.
+        if f > 0:
+            at_left *= _share(f, at_right) if kept < 0 else 1
+            right, at_right, kept = here, f, -1
+        else:
+            at_right *= _share(f, at_left) if kept > 0 else 1
+            left, at_left, kept = here, f, 1
+        before = here
+
+
+def _share(new: Any, old: Any) -> Any:
+    """What is left of the value of an end that is kept twice, from the values at the other end."""
+    share = 1 - new / old
+    return share if share > 0 else mpmath.mpf(1) / 2
+
+
+class _Scope:
+    """Turns the expressions of a column into functions of a row (and of the unknown of a root).
+
+    Parameters
+    ----------
+    engine : _Exact
+    column : Column
+    kept : mapping of axis name to list of int
+        The rows that sums over an axis run over.
+    """
+
+    def __init__(self, engine: _Exact, column: Column, kept: Mapping[str, list[int]]) -> None:
+        self.engine, self.column, self.kept = engine, column, kept
+
+    def function(self, expression: Basic, unknown: Symbol | None = None) -> Callable[..., Any]:
+        """An expression of the column's own row."""
+        compute = self._many([expression], self.column.axis, unknown)
 
         def run(row: int, *at: Any) -> Any:
-            values = [self._cell(cell, axis, row) for cell in cells]
-            values += [self._plain(symbol, column, axis, row) for symbol in symbols]
-            values += [total(*at) for total in inner]
             try:
-                return function(*values, *at)
+                return compute(row, *at)[0]
             except (ZeroDivisionError, ValueError):
                 return mpmath.nan
 
         return run
 
-    def _terms(self, total: Sum, column: Column, unknown: Symbol | None) -> Callable[..., Any]:
-        """A sum as a function of the unknown: its terms, row by row of its axis, added without loss."""
-        axis = self.sheet.indices[total.limits[0][0]]
-        layout = self.layouts[axis.name]
-        expression = total.function
-        cells = sorted(expression.atoms(Indexed), key=str)
+    def _many(
+        self, expressions: Sequence[Basic], axis: Axis | None, unknown: Symbol | None
+    ) -> Callable[..., Sequence[Any]]:
+        """Several expressions of a row of an axis at once, so that their common parts are computed once."""
+        outermost = _sums(expressions)
+        totals = {total: Symbol(f"total_{n}") for n, total in enumerate(outermost)}
+        outer = [expression.xreplace(totals) for expression in expressions]
+        cells = sorted(set().union(*(e.atoms(Indexed) for e in outer)), key=str)
         plain = {cell: Symbol(f"cell_{n}") for n, cell in enumerate(cells)}
-        body = expression.xreplace(plain)
-        symbols = sorted(body.free_symbols - set(plain.values()) - {unknown}, key=str)
-        arguments = [*plain.values(), *symbols] + ([] if unknown is None else [unknown])
-        function = lambdify(arguments, body, modules="mpmath")
-        rows = [
-            [self._cell(c, layout, r) for c in cells] + [self._plain(s, column, layout, r) for s in symbols]
-            for r in self._kept(column, axis.name)
-        ]
+        bodies = [expression.xreplace(plain) for expression in outer]
+        named = {*plain.values(), *totals.values(), unknown}
+        symbols = sorted(set().union(*(body.free_symbols for body in bodies)) - named, key=str)
+        arguments = [*plain.values(), *symbols, *totals.values()] + ([] if unknown is None else [unknown])
+        function = lambdify(arguments, bodies, modules="mpmath", cse=len(bodies) > 1)
+        readers = [self._reader(cell, axis) for cell in (*cells, *symbols)]
+        sums = self._totals(outermost, unknown)
 
-        def run(*at: Any) -> Any:
-            return mpmath.fsum(function(*values, *at) for values in rows)
+        def run(row: int, *at: Any) -> Sequence[Any]:
+            computed: Sequence[Any] = function(*(read(row) for read in readers), *sums(*at), *at)
+            return computed
 
         return run
 
-    def _cell(self, cell: Indexed, layout: Layout | None, row: int) -> Any:
-        assert layout is not None
-        return self.value[name_of(cell)][int(layout.rows[cell.indices[0]][row])]
+    def _totals(self, totals: Sequence[Sum], unknown: Symbol | None) -> Callable[..., list[Any]]:
+        """All sums, those over one axis in one pass; one that the unknown does not move is taken once."""
+        passes = []
+        for axis in self.engine.sheet.axes:
+            for moving in (False, True):
+                mine = [
+                    n
+                    for n, total in enumerate(totals)
+                    if total.limits[0][0] == axis.index and total.has(unknown or Symbol("")) is moving
+                ]
+                if mine:
+                    terms = self._many([totals[n].function for n in mine], axis, unknown)
+                    passes.append((mine, terms, self.kept.get(axis.name, range(self._size(axis))), moving))
+        fixed: dict[int, list[Any]] = {}
 
-    def _plain(self, symbol: Symbol, column: Column, layout: Layout | None, row: int) -> Any:
-        if symbol in self.sheet.sizes:
-            axis = self.sheet.sizes[symbol]
-            return mpmath.mpf(len(self._kept(column, axis.name)))
-        if layout is not None and symbol in layout.ordinals:
-            return mpmath.mpf(layout.ordinals[symbol][row])
-        return self.value[symbol.name][0]
+        def run(*at: Any) -> list[Any]:
+            found: list[Any] = [None] * len(totals)
+            for number, (mine, terms, rows, moving) in enumerate(passes):
+                sums = fixed.get(number)
+                if sums is None:
+                    sums = [
+                        mpmath.fsum(column) for column in zip(*(terms(row, *at) for row in rows), strict=True)
+                    ]
+                    if not moving:
+                        fixed[number] = sums
+                for n, total in zip(mine, sums or [mpmath.mpf(0)] * len(mine), strict=True):
+                    found[n] = total
+            return found
 
-    # --- roots ----------------------------------------------------------------------------------------
+        return run
 
-    def _root(self, rule: Root, column: Column) -> Callable[[int], Any]:
-        """Count the sign changes between turning points, then narrow the only bracket down."""
-        form = self._function(rule.expression, column, rule.unknown)
-        low, high = self._function(rule.low, column), self._function(rule.high, column)
-        signs = [None if s is None else self._function(s, column) for s in (rule.sign_low, rule.sign_high)]
-        turning = [self._function(point, column) for point in rule.turning]
-        value = self._function(rule.value, column, rule.unknown)
+    def _size(self, axis: Axis) -> int:
+        return self.engine.layouts[axis.name].size
 
-        def solve(row: int) -> Any:
-            left, right = low(row), high(row)
-            points = [left]
-            for point in turning:
-                place = point(row)
-                if not isinstance(place, mpmath.mpc) and mpmath.isfinite(place) and points[-1] < place < right:
-                    points.append(place)
-            points.append(right)
-            at = [form(row, point) for point in points]
-            at[0] = at[0] if signs[0] is None else signs[0](row)
-            at[-1] = at[-1] if signs[1] is None else signs[1](row)
-            brackets = [(a, b, y) for a, b, x, y in zip(points, points[1:], at, at[1:], strict=False) if x * y < 0]
-            if not brackets:
-                raise _Failed(Status.NOROOT)
-            roots = [value(row, _narrow(lambda u: form(row, u), *bracket)) for bracket in brackets]
-            if len(roots) > 1:
-                self.roots.setdefault(column.name, {})[row] = tuple(sorted(roots))
-                raise _Failed(Status.TWOROOTS)
-            return roots[0]
-
-        return solve
+    def _reader(self, cell: Expr, axis: Axis | None) -> Callable[[int], Any]:
+        """What gives a cell's value for a row of the axis."""
+        sheet, layouts = self.engine.sheet, self.engine.layouts
+        if cell in sheet.sizes:
+            counted = sheet.sizes[cell]
+            number = mpmath.mpf(len(self.kept.get(counted.name, range(self._size(counted)))))
+            return lambda _: number
+        if axis is not None and cell in axis.ordinals:
+            ordinals = [mpmath.mpf(n) for n in layouts[axis.name].ordinals[cell].tolist()]
+            return ordinals.__getitem__
+        values = self.engine.value[name_of(cell)]
+        if not isinstance(cell, Indexed):
+            return lambda _: values[0]
+        rows = rows_of(cell, axis, layouts)
+        if rows is None:
+            return values.__getitem__
+        table = rows.tolist()
+        return lambda row: values[table[row]]
 
 
-def _narrow(form: Callable[[Any], Any], left: Any, right: Any, at_right: Any) -> Any:
-    """The sign change between two points, to working precision.
-
-    Bisection until the secant method, which gains digits faster than any derivative costs, is safe; the
-    result must still lie in the bracket.
-    """
-    for _ in range(_HALVINGS):
-        middle = (left + right) / 2
-        if form(middle) * at_right > 0:
-            right = middle
+def _sums(expressions: Sequence[Basic]) -> list[Sum]:
+    """The sums in expressions that stand in no other sum."""
+    found: dict[Sum, None] = {}
+    for expression in expressions:
+        if isinstance(expression, Sum):
+            found[expression] = None
         else:
-            left = middle
-    previous, here = left, right
-    f_previous, f_here = form(previous), form(here)
-    while f_here != f_previous and abs(here - previous) > abs(here) * mpmath.mpf(10) ** -(DIGITS + 5):
-        previous, here = here, here - f_here * (here - previous) / (f_here - f_previous)
-        f_previous, f_here = f_here, form(here)
-    if not left <= here <= right:
-        raise ArithmeticError("the 50-digit root left its bracket")
-    return here
+            found.update(dict.fromkeys(_sums(expression.args)))
+    return list(found)

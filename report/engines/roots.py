@@ -1,4 +1,4 @@
-"""The step towards a root, as algebra: every engine prints the same one.
+"""The step towards a root and what rounding leaves of its equation, as algebra: every engine prints the same.
 
 Householder's method of order four needs three derivatives of the equation; sympy makes them, so that no
 engine and no model types a derivative.
@@ -6,9 +6,36 @@ engine and no model types a derivative.
 
 from __future__ import annotations
 
-from sympy import Expr, Symbol, diff
+from sympy import Abs, Add, Basic, Expr, Integer, Mul, Pow, Sum, Symbol, diff, exp, log
 
-__all__ = ["derivatives", "householder"]
+__all__ = ["Total", "derivatives", "hoist", "householder", "magnitude", "step"]
+
+
+class Total(Expr):
+    """A sum over an axis' rows as a function of the array of its terms: linear, which is all algebra needs.
+
+    Parameters
+    ----------
+    terms : Expr
+        In plain symbols, each of which stands for an array.
+    axis : Symbol
+        The axis' name.
+    """
+
+    def __new__(cls, terms: Expr, axis: Symbol) -> Expr:
+        """Take numbers out, so that twice a sum is not another sum."""
+        number, rest = terms.as_coeff_Mul()
+        if number == 0:
+            return Integer(0)
+        total = super().__new__(cls, rest, axis)
+        return total if number == 1 else number * total
+
+    is_commutative = True
+    is_real = True
+
+    def _eval_derivative(self, symbol: Symbol) -> Expr:
+        terms, axis = self.args
+        return Total(diff(terms, symbol), axis)
 
 
 def derivatives(function: Expr, unknown: Symbol) -> tuple[Expr, Expr, Expr, Expr]:
@@ -24,3 +51,70 @@ def householder(f: Expr, f1: Expr, f2: Expr, f3: Expr) -> Expr:
     Source: A. S. Householder, The Numerical Treatment of a Single Nonlinear Equation, McGraw-Hill, 1970.
     """
     return 3 * f * (2 * f1**2 - f * f2) / (6 * f1**3 - 6 * f * f1 * f2 + f**2 * f3)
+
+
+def step(function: Expr, unknown: Symbol) -> Expr:
+    """What is subtracted from the unknown: a fourth-order step, or Newton's where a derivative is a sum.
+
+    Parameters
+    ----------
+    function : Expr
+        What must vanish, in plain symbols.
+    unknown : Symbol
+    """
+    if function.has(Total):
+        return function / diff(function, unknown)
+    names = [Symbol(f"f_{i}", real=True) for i in range(4)]
+    return householder(*names).xreplace(dict(zip(names, derivatives(function, unknown), strict=True)))
+
+
+def hoist(expression: Expr, unknown: Symbol, constants: dict[Expr, Symbol]) -> Expr:
+    """Write what does not change with the unknown as constants, to be computed once for all steps.
+
+    A power whose base is such becomes an exponential: the logarithm is then taken once.
+
+    Parameters
+    ----------
+    expression : Expr
+        In plain symbols.
+    unknown : Symbol
+    constants : dict of Expr to Symbol
+        The constants so far; new ones are added.
+    """
+
+    def constant(part: Expr) -> Expr:
+        if part.is_Atom:
+            return part
+        sign = {"positive": True} if part.is_positive else {"real": True}
+        named = Symbol(f"c_{len(constants)}", **sign)
+        return constants.setdefault(part, named)
+
+    def moving(part: Expr) -> Expr:
+        if not part.has(unknown):
+            return constant(part)
+        if isinstance(part, (Add, Mul)):
+            still = [argument for argument in part.args if not argument.has(unknown)]
+            rest = [moving(argument) for argument in part.args if argument.has(unknown)]
+            return part.func(constant(part.func(*still)), *rest)
+        if isinstance(part, Pow) and part.base.is_positive and not part.base.has(unknown):
+            return exp(moving(log(part.base) * part.exp))
+        if isinstance(part, Total):
+            terms, axis = part.args
+            return Total(moving(terms), axis)
+        return part.func(*map(moving, part.args)) if part.args else part
+
+    return moving(expression)
+
+
+def magnitude(expression: Basic) -> Expr:
+    """The expression with nothing cancelling: times the unit roundoff, about what rounding leaves of it."""
+    if isinstance(expression, (Add, Mul)):
+        return expression.func(*map(magnitude, expression.args))
+    if isinstance(expression, Pow) and expression.exp.is_Integer and expression.exp > 0:
+        return magnitude(expression.base) ** expression.exp
+    if isinstance(expression, Total):
+        terms, axis = expression.args
+        return Total(magnitude(terms), axis)
+    if isinstance(expression, Sum):
+        return Sum(magnitude(expression.function), *expression.limits)
+    return Abs(expression)

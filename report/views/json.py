@@ -57,7 +57,14 @@ def _given_uncertainty(report: Report, column: Column) -> Any:
 
 def proof_statuses(report: Report) -> dict[str, str]:
     """Status by number; a number with several lines also has the worst status of its lines."""
-    order = ["refuted", "undecided", "proved with a correction of the print", "proved", "assumption", "definition"]
+    order = [
+        "refuted",
+        "undecided",
+        "proved with a correction of the print",
+        "proved",
+        "assumption",
+        "definition",
+    ]
     found: dict[str, str] = {}
     for proof in report.proofs:
         equation, status = proof.equation, proof.status.value
@@ -96,7 +103,9 @@ def manifest(inputs: Mapping[str, bytes], outputs: Mapping[str, bytes], versions
     def hashes(files: Mapping[str, bytes]) -> dict[str, str]:
         return {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
 
-    return _text({"schema": SCHEMA, "inputs": hashes(inputs), "outputs": hashes(outputs), "versions": dict(versions)})
+    return _text(
+        {"schema": SCHEMA, "inputs": hashes(inputs), "outputs": hashes(outputs), "versions": dict(versions)}
+    )
 
 
 def _text(content: dict[str, Any]) -> str:

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from sympy import Max, Ne, Or, Piecewise, Rational, Symbol, log, solve
+from sympy import Expr, Rational, Symbol
 
+from ...derivations import generated_points as points
 from ...derivations import power_law_fit as fit
 from ...derivations import soft_impact as model
-from ...derivations.equation import Equation, evaluated
-from ...derivations.soft_impact import CP, E, V, XM, XP
+from ...derivations.equation import Equation
+from ...derivations.soft_impact import CP, XM, XP, E, V
 from ...derivations.symbols import TABLE, p, q, s
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
 from ..workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook
+from .soft_impact_root import alpha_rule, two_tests
 
 if TYPE_CHECKING:
     from ..result import Curve
@@ -47,7 +49,7 @@ PARAMETERS = (
 
 k, i, j = (Symbol(name, integer=True, positive=True) for name in "kij")
 TESTS = Axis("tests", k, Symbol("n_tests", integer=True, positive=True))
-PAIRS = PairAxis("pairs", p, model.n_pairs, of=TESTS, first=i, second=j)
+PAIRS = PairAxis("pairs", p, points.n_pairs, of=TESTS, first=i, second=j)
 POINTS = RepeatAxis("points", q, fit.size, of=PAIRS, step=s, count="points_per_pair")
 
 
@@ -61,11 +63,11 @@ def _masses_given(given: frozenset[str]) -> str | None:
     return None
 
 
-def _column(name: str, axis: Axis | None, rule: Formula | Root | Given, like: str, **more: object) -> Column:
-    """A column that takes unit and LaTeX of a quantity of the derivations."""
+def _column(name: str, axis: Axis | None, rule: Formula | Root | Given, like: str, **more: Any) -> Column:
+    """A column that takes unit, meaning and LaTeX of a quantity of the derivations."""
     quantity = TABLE[like]
-    settings: dict[str, object] = {"unit": quantity.unit, "meaning": quantity.meaning, "latex": quantity.latex}
-    return Column(name, axis, rule, **{**settings, **more})  # type: ignore[arg-type]
+    more = {"unit": quantity.unit, "meaning": quantity.meaning, "latex": quantity.latex, **more}
+    return Column(name, axis, rule, **more)
 
 
 # Given columns and the cells they lead to, by the symbols of the derivations.
@@ -78,47 +80,18 @@ points_per_pair = Column(
 )
 
 
-def _pair_symbols() -> dict[object, object]:
+def _pair_symbols() -> dict[Expr, Expr]:
     """What the two tests of the derivations are called in the sheet: rows i and j, cells of the pair."""
 
-    def of_pair(name: str, positive: bool = True) -> object:
-        return Column(name, PAIRS, Given(), positive=positive)[p]
+    def of_pair(name: str) -> Expr:
+        return Column(name, PAIRS, Given())[p]
 
     return {
         V[1]: v[i], V[2]: v[j], E[1]: e[i], E[2]: e[j], XP[1]: x_p[i], XP[2]: x_p[j],
-        XM[1]: of_pair("x_m1"), XM[2]: of_pair("x_m2"), CP[1]: of_pair("Cprime_1"), CP[2]: of_pair("Cprime_2"),
-        model.C: of_pair("C"), model.alpha: of_pair("alpha"), model.x_top: of_pair("x_top"),
+        XM[1]: of_pair("x_m1"), XM[2]: of_pair("x_m2"),
+        CP[1]: of_pair("Cprime_1"), CP[2]: of_pair("Cprime_2"),
+        model.C: of_pair("C"), model.alpha: of_pair("alpha"), points.x_top: of_pair("x_top"),
     }  # fmt: skip
-
-
-def _alpha() -> Root:
-    """The root of (11): in u = 1/(alpha + 1) the equation is smooth, its domain and turning point closed form."""
-    where = _pair_symbols()
-    u = model.u
-    form = model.root_form.at(where)
-    # No test gives back so little that alpha would reach -1: the last term only keeps the end finite.
-    high = 1 / ((beta.symbol + 1) * Max(e[i] ** 2, e[j] ** 2, Rational(1, 10**12)))
-    equal_e = evaluated(model.logarithm).subs(E[2], E[1]).xreplace(where).subs(u, high)
-    (alpha_of_u,) = solve(model.reciprocal.sides[0] - model.reciprocal.sides[1], model.alpha)
-    return Root(
-        equation=model.eq11.at(where),
-        form=form,
-        unknown=u,
-        value=alpha_of_u,
-        low=Rational(0),
-        high=high,
-        # Where u -> 0 the form tends to 1 - x_p1/x_p2. At the other end the factor of the livelier test
-        # vanishes and the other decides; where both vanish, the logarithm of (L6) does.
-        sign_low=x_p[j] - x_p[i],
-        sign_high=Piecewise((e[j] - e[i], Ne(e[i], e[j])), (equal_e, True)),
-        turning=(model.turning.value.subs(model.Lambda, model.log_speeds.value).xreplace(where),),
-        start=model.starting_value().xreplace(where),
-        steps=4,
-        none="no exponent gives both tests a positive approach on one loading curve; "
-        "a faster impact must leave a deeper imprint",
-        two="e rises with the speed, and the two tests alone cannot tell which exponent is meant",
-    )
-
 
 
 def sheet(given: frozenset[str]) -> Sheet:
@@ -130,76 +103,80 @@ def sheet(given: frozenset[str]) -> Sheet:
         Names of parameters: they decide between the mass and the diameter, a free and a fixed target.
     """
     where = _pair_symbols()
-    alpha = _column("alpha", PAIRS, _alpha(), "alpha", requires=_TWO_TESTS)
+    alpha = _column("alpha", PAIRS, alpha_rule(where), "alpha", requires=two_tests(where))
     on_pair = {
-        name: _column(name, PAIRS, Formula(equation.at(where)), like, meaning=meaning, display=shown, latex=latex)
+        name: _column(
+            name, PAIRS, Formula(equation.at(where)), like, meaning=meaning, display=shown, latex=latex
+        )
         for name, equation, like, meaning, shown, latex in (
             ("x_m2", model.eq12a, "x_m", "approach of the pair's second test", "like x_p", r"x_{m_2%s}"),
             ("x_m1", model.eq12b, "x_m", "approach of the pair's first test", "like x_p", r"x_{m_1%s}"),
             ("C", model.eq12c, "C", "coefficient of the compression law", "", "C%s"),
             ("Cprime_1", model.eq12d, "Cprime", "maximum force of the pair's first test", "", "C'_{1%s}"),
             ("Cprime_2", model.eq12e, "Cprime", "maximum force of the pair's second test", "", "C'_{2%s}"),
-            ("x_top", model.top, "x_top", "largest approach of the pair", "like x_p", r"x_{\mathrm{top}%s}"),
+            ("x_top", points.top, "x_top", "largest approach of the pair", "like x_p", r"x_{\mathrm{top}%s}"),
         )
     }
     x_top, C = on_pair["x_top"], on_pair["C"]
     x = _column(
-        "x", POINTS, Formula(model.abscissa.at({model.x_top: x_top[p], model.N: points_per_pair.symbol})), "x",
+        "x", POINTS,
+        Formula(points.abscissa.at({points.x_top: x_top[p], points.N: points_per_pair.symbol})), "x",
         meaning="approach of a generated point", display="like x_p",
     )  # fmt: skip
     F = _column(
         "F", POINTS,
-        Formula(model.law_c.at({model.x: x[q], model.C: C[p], model.alpha: alpha[p], model.F: Symbol("F")})), "F",
+        Formula(model.law_c.at({model.x: x[q], model.C: C[p], model.alpha: alpha[p], model.F: Symbol("F")})),
+        "F",
         meaning="force of a generated point",
     )  # fmt: skip
     return Sheet(
         (
             v, e, x_p, beta, *_masses(given), points_per_pair,
             alpha, *on_pair.values(),
-            Column("alpha_mean", None, Formula(model.mean), meaning="mean exponent", latex=r"\bar{\alpha}"),
+            Column("alpha_mean", None, Formula(points.mean), meaning="mean exponent", latex=r"\bar{\alpha}"),
             x, F, *_log_fit(x, F), *_lin_fit(x, F), *_tests_after_fit(),
         )
     )  # fmt: skip
 
 
-_TWO_TESTS = (
-    (
-        Or(Ne(v[i], v[j]), Ne(e[i], e[j]), Ne(x_p[i], x_p[j])),
-        "two equal tests are one; every exponent fits them",
-    ),
-)
-
-
 def _masses(given: frozenset[str]) -> tuple[Column, ...]:
     """The mass of the ball and the reduced mass, from what was given."""
-    mass = {"unit": "kg", "display": "g"}
     columns: list[Column] = []
-    ball = Column("ball_mass", None, Given("parameter"), meaning="mass of the ball", latex="m_1", **mass)
+    ball = _mass("ball_mass", Given("parameter"), "mass of the ball", "m_1")
     if "ball_mass" not in given:
-        diameter = Column("ball_diameter", None, Given("parameter"), "m", "diameter of the ball", "d", "like ball_diameter")
-        density = Column("ball_density", None, Given("parameter"), "kg/m^3", "density of the ball", r"\rho", "like ball_density")
+        diameter, density = (
+            Column(name, None, Given("parameter"), unit, meaning, latex, f"like {name}")
+            for name, unit, meaning, latex in (
+                ("ball_diameter", "m", "diameter of the ball", "d"),
+                ("ball_density", "kg/m^3", "density of the ball", r"\rho"),
+            )
+        )
         rule = Formula(model.ball_mass.at({model.rho: density.symbol, model.d: diameter.symbol}))
-        ball = Column("ball_mass", None, rule, meaning="mass of the ball", latex="m_1", **mass)
+        ball = _mass("ball_mass", rule, "mass of the ball", "m_1")
         columns += [diameter, density]
     columns.append(ball)
     reduced = model.immobile_mass.at({model.m_1: ball.symbol})
     if "target_mass" in given:
-        target = Column("target_mass", None, Given("parameter"), meaning="mass of the target", latex="m_2", **mass)
+        target = _mass("target_mass", Given("parameter"), "mass of the target", "m_2")
         reduced = model.eq8.at({model.m_1: ball.symbol, model.m_2: target.symbol})
         columns.append(target)
-    columns.append(Column("m_red", None, Formula(reduced), meaning="reduced mass", latex="m_{red}", **mass))
+    columns.append(_mass("m_red", Formula(reduced), "reduced mass", "m_{red}"))
     return tuple(columns)
+
+
+def _mass(name: str, rule: Formula | Given, meaning: str, latex: str) -> Column:
+    return Column(name, None, rule, "kg", meaning, latex, "g")
 
 
 def _log_fit(x: Column, F: Column) -> tuple[Column, ...]:
     """The straight line through the logarithms of the generated points."""
     ref = (
-        _column("x_ref", None, Formula(model.x_scale), "x_ref", display="like x_p"),
-        _column("F_ref", None, Formula(model.F_scale), "F_ref"),
+        _column("x_ref", None, Formula(points.x_scale), "x_ref", display="like x_p"),
+        _column("F_ref", None, Formula(points.F_scale), "F_ref"),
     )
-    ln_x, ln_F, mean_x, mean_F, line = (
-        Column(name, axis, Given(), positive=False)
-        for name, axis in (("ln_x", POINTS), ("ln_F", POINTS), ("mean_ln_x", None), ("mean_ln_F", None), ("ln_F_at_ref", None))
+    ln_x, ln_F = (Column(name, POINTS, Given(), positive=False) for name in ("ln_x", "ln_F"))
+    mean_x, mean_F, line = (
+        Column(name, None, Given(), positive=False) for name in ("mean_ln_x", "mean_ln_F", "ln_F_at_ref")
     )
     alpha_log = TABLE["alpha"].symbol.func("alpha_log", positive=True)
     where = {
@@ -207,19 +184,23 @@ def _log_fit(x: Column, F: Column) -> tuple[Column, ...]:
         fit.a: line.symbol, fit.b: alpha_log,
     }  # fmt: skip
 
-    def own(name: str, equation: Equation, latex: str, meaning: str, axis: Axis | None = None, unit: str = "1", positive: bool = False) -> Column:
-        return Column(name, axis, Formula(equation.at(where)), unit, meaning, latex, positive=positive)
+    def own(name: str, equation: Equation, latex: str, meaning: str, **more: Any) -> Column:
+        more = {"axis": None, "unit": "1", "positive": False, **more}
+        return Column(name, rule=Formula(equation.at(where)), latex=latex, meaning=meaning, **more)
 
     return (
         *ref,
-        own("ln_x", fit.log_x, "X%s", "logarithm of a point's approach over the reference", POINTS),
-        own("ln_F", fit.log_F, "Y%s", "logarithm of a point's force over the reference", POINTS),
+        own("ln_x", fit.log_x, "X%s", "logarithm of a point's approach over the reference", axis=POINTS),
+        own("ln_F", fit.log_F, "Y%s", "logarithm of a point's force over the reference", axis=POINTS),
         own("mean_ln_x", fit.mean_X, r"\bar{X}", "mean of X"),
         own("mean_ln_F", fit.mean_Y, r"\bar{Y}", "mean of Y"),
         own("alpha_log", fit.alpha_log, r"\alpha_{\log}", "exponent of the log-log fit", positive=True),
         own("ln_F_at_ref", fit.intercept, "a", "intercept of the log-log fit"),
-        own("C_log", fit.log_scale, r"C_{\log}", "coefficient of the log-log fit", unit="N/m^alpha_log", positive=True),
-    )
+        own(
+            "C_log", fit.log_scale, r"C_{\log}", "coefficient of the log-log fit",
+            unit="N/m^alpha_log", positive=True,
+        ),
+    )  # fmt: skip
 
 
 def _lin_fit(x: Column, F: Column) -> tuple[Column, ...]:
@@ -234,11 +215,14 @@ def _lin_fit(x: Column, F: Column) -> tuple[Column, ...]:
         low=Rational(1, 10),
         high=Rational(5),
         start=Column("alpha_log", None, Given()).symbol,
-        steps=6,
+        steps=8,
         none="the best power of the points lies outside 0.1 to 5",
     )
     return (
-        Column("alpha_lin", None, root, "1", "exponent of the least squares of force", r"\alpha_{\mathrm{lin}}"),
+        Column(
+            "alpha_lin", None, root, "1", "exponent of the least squares of force",
+            r"\alpha_{\mathrm{lin}}",
+        ),
         Column(
             "C_lin", None, Formula(fit.lin_scale.at({fit.alpha: alpha})), "N/m^alpha_lin",
             "coefficient of the least squares of force", r"C_{\mathrm{lin}}",
@@ -258,7 +242,8 @@ def _tests_after_fit() -> tuple[Column, ...]:
     return (
         _column("x_m", TESTS, Formula(model.x_m_of_test.at(where)), "x_m", display="like x_p"),
         _column(
-            "Cprime_eq7", TESTS, Formula(model.Cprime_of_test.at({**where, model.Cprime: seven[k]})), "Cprime",
+            "Cprime_eq7", TESTS, Formula(model.Cprime_of_test.at({**where, model.Cprime: seven[k]})),
+            "Cprime",
             meaning="maximum force, from the restitution (7)", latex="C'_{(7)%s}",
             requires=((x_m[k] > x_p[k], "the imprint is not shallower than the approach"),),
         ),
@@ -331,12 +316,13 @@ WORKBOOK = Workbook(
         FigureSpec(
             "hysteresis",
             "1",
-            "Hysteresis loop of an impact. The hatched areas are lost to internal friction, while loading and "
-            "while unloading; the grey area between them is the work of plastic deformation. The model has "
-            "the grey loop alone.",
+            "Hysteresis loop of an impact. The hatched areas are lost to internal friction, while loading "
+            "and while unloading; the grey area between them is the work of plastic deformation. The model "
+            "has the grey loop alone.",
             "hysteresis",
-            "A loop of force over approach: up along the loading curve, down along the unloading curve to the "
-            "imprint depth. Two hatched areas, the works of friction, enclose a grey one, the plastic work.",
+            "A loop of force over approach: up along the loading curve, down along the unloading curve to "
+            "the imprint depth. Two hatched areas, the works of friction, enclose a grey one, the plastic "
+            "work.",
         ),
         FigureSpec(
             "lankarani",
@@ -349,17 +335,19 @@ WORKBOOK = Workbook(
         FigureSpec(
             "loops",
             "4",
-            "Generated points, the curve fitted through their logarithms, and the restitution curve of each test.",
+            "Generated points, the curve fitted through their logarithms, and the restitution curve of each "
+            "test.",
             "loops",
-            "Force over approach: the generated points of all pairs lie along one fitted loading curve; from it "
-            "one steep unloading curve for each test falls to its imprint depth.",
+            "Force over approach: the generated points of all pairs lie along one fitted loading curve; from "
+            "it one steep unloading curve for each test falls to its imprint depth.",
         ),
         FigureSpec(
             "alpha_pairs",
             "L1",
             "Exponent of every pair over the mean speed of its two tests.",
             "alpha_pairs",
-            "One dot for each pair of tests, its exponent over its mean speed; a line marks the mean exponent.",
+            "One mark for each pair of tests, its exponent over its mean speed; a line marks the mean "
+            "exponent.",
         ),
     ),
     published_as={

@@ -1,0 +1,211 @@
+"""What the figures of the soft-impact paper draw: points, hysteresis loops and exponents, in SI.
+
+No force law is typed here. The branches are those of equations (2) and (3) in the derivations, printed by
+the NumPy engine and given the sheet's values.
+
+Two figures are schematic and come in reduced units, x/x_m and F/F_m. Their numbers (`SCHEMATIC`) are
+chosen for the eye. In figure 1 the loop without friction is equation (3); how friction widens it is an
+illustration of this project, not a published law: while loading it adds, while unloading it takes away, a
+share of the force that dies out with the speed towards the maximum approach (:func:`_friction_share`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from sympy import Basic
+
+from ...derivations import soft_impact as model
+from ...derivations.equation import evaluated
+from ..engines.numpy import kernel
+from ..result import Curve
+from ..sheet import PairAxis, Sheet
+from ..values import Status, Values
+
+__all__ = ["FRICTION", "SAMPLES", "SCHEMATIC", "ForceLaw", "curves"]
+
+Array = NDArray[np.float64]
+
+SAMPLES = 201
+"""Abscissae of a curve. A polyline through so many is smooth to a tenth of a point in print."""
+
+SCHEMATIC = {"alpha": 1.3, "beta": 1.5, "x_m": 1.0, "x_p": 0.55, "Cprime": 1.0}
+"""What the schematic figures assume, in reduced units; any test of a soft target looks like it."""
+
+FRICTION = 0.35
+"""The largest share of the force that friction has in figure 1: large enough to be seen."""
+
+
+class ForceLaw:
+    """A branch of a force law, ready to be evaluated over approaches.
+
+    Parameters
+    ----------
+    expression : Basic
+        The force as the derivations write it, in the symbol ``x`` and the law's constants.
+    """
+
+    def __init__(self, expression: Basic) -> None:
+        self._kernel = kernel([evaluated(expression)], {})
+        self._names = [str(argument) for argument in self._kernel.arguments]
+
+    def __call__(self, x: Array, **constants: float) -> Array:
+        """The force at each approach.
+
+        Parameters
+        ----------
+        x : float array
+            Approaches within the branch's domain.
+        **constants : float
+            The law's constants by their names; those that it does not use are ignored.
+        """
+        known: dict[str, Array | float] = {"x": x, **constants}
+        (force,) = self._kernel.run(*(known[name] for name in self._names))
+        return np.asarray(force, dtype=np.float64)
+
+
+def curves(sheet: Sheet, values: Values, samples: int = SAMPLES) -> tuple[Curve, ...]:
+    """All curves of the paper's figures; what rests on a cell in error is left out.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        A sheet of the soft-impact workbook.
+    values : Values
+        Its values, without a batch dimension.
+    samples : int
+        How many abscissae a curve gets.
+
+    Returns
+    -------
+    tuple of Curve
+        ``loops``: ``points`` (one a pair), ``compression``, ``restitution`` (one a test);
+        ``alpha_pairs``: ``pair`` (one a pair: mean speed of its tests in m/s, exponent), ``mean``;
+        ``lankarani``: ``compression``, ``restitution``;
+        ``hysteresis``: ``compression``, ``restitution`` without friction, ``loading``, ``unloading`` with.
+        The last two figures are in reduced units.
+    """
+    return (
+        *_points(values),
+        *_loops(values, samples),
+        *_alpha_pairs(sheet, values),
+        *_lankarani(samples),
+        *_hysteresis(samples),
+    )
+
+
+def _ok(values: Values, *names: str) -> NDArray[np.bool_]:
+    """Where all of these columns, on one axis, have values."""
+    return np.asarray(np.all([values.status[name] == Status.OK for name in names], axis=0))
+
+
+def _label(parts: NDArray[np.int64]) -> str:
+    return "-".join(str(part) for part in parts)
+
+
+# --- figure 4: points, compression, restitution -----------------------------------------------------------
+
+
+def _points(values: Values) -> Iterator[Curve]:
+    """The generated points, pair by pair."""
+    pairs = values.layouts["pairs"].labels
+    # The rows of the points' axis repeat the pairs one after the other.
+    shape = (len(pairs), -1)
+    x, F, ok = (a.reshape(shape) for a in (values.value["x"], values.value["F"], _ok(values, "x", "F")))
+    for pair, its_x, its_F, its_ok in zip(pairs, x, F, ok, strict=True):
+        if its_ok.any():
+            yield Curve("loops", "points", _label(pair), its_x[its_ok], its_F[its_ok])
+
+
+def _loops(values: Values, samples: int) -> Iterator[Curve]:
+    """The fitted compression curve and the restitution curve of every test."""
+    has_fit = bool(_ok(values, "C_log", "alpha_log", "beta").all())
+    x_m, x_p, peak = (values.value[name] for name in ("x_m", "x_p", "Cprime_eq9"))
+    # A test that the fit gives no more approach than its imprint has no restitution to draw.
+    closed = _ok(values, "x_m", "x_p", "Cprime_eq9") & (x_p < x_m)
+    if not has_fit or not closed.any():
+        return
+    fit = {"C": values.scalar("C_log"), "alpha": values.scalar("alpha_log")}
+    # The abscissae contain every x_m, so that the tip of each loop lies on the polyline itself.
+    up = np.union1d(np.linspace(0.0, x_m[closed].max(), samples), x_m[closed])
+    yield Curve("loops", "compression", "", up, ForceLaw(model.law_c.value)(up, **fit))
+    restitution = ForceLaw(model.law_r.value)
+    tests = values.layouts["tests"].labels
+    for test, its_x_m, its_x_p, its_peak in zip(
+        tests[closed], x_m[closed], x_p[closed], peak[closed], strict=True
+    ):
+        back = np.linspace(its_x_p, its_x_m, samples)
+        # The maximum force is that of (9), not of (7): (9) is the continuity of (3) at x_m, so the loop
+        # closes on the fitted curve. With (7) it would close only for a test that the fit meets exactly.
+        law = {"Cprime": its_peak, "beta": values.scalar("beta"), "x_m": its_x_m, "x_p": its_x_p}
+        yield Curve("loops", "restitution", _label(test), back, restitution(back, **law))
+
+
+# --- the exponent of every pair ---------------------------------------------------------------------------
+
+
+def _alpha_pairs(sheet: Sheet, values: Values) -> Iterator[Curve]:
+    """Each pair's exponent over the mean speed of its two tests, and the mean of all.
+
+    One power law for all speeds would scatter the pairs about a level. The mean speed is the place on the
+    speed axis that a pair speaks for: on the paper's data the exponents climb with it without exception.
+    """
+    axis = sheet["alpha"].axis
+    assert isinstance(axis, PairAxis)
+    layout = values.layouts[axis.name]
+    v, alpha = values.value["v"], values.value["alpha"]
+    speed = (v[layout.rows[axis.first]] + v[layout.rows[axis.second]]) / 2
+    ok = _ok(values, "alpha")
+    for pair, its_speed, its_alpha in zip(layout.labels[ok], speed[ok], alpha[ok], strict=True):
+        yield Curve("alpha_pairs", "pair", _label(pair), np.array([its_speed]), np.array([its_alpha]))
+    if ok.any() and _ok(values, "alpha_mean").all():
+        span = np.array([speed[ok].min(), speed[ok].max()])
+        yield Curve("alpha_pairs", "mean", "", span, np.full(2, values.scalar("alpha_mean")))
+
+
+# --- figures 1 and 2: schematic, in reduced units ---------------------------------------------------------
+
+
+def _closed(
+    figure: str, compression: ForceLaw, restitution: ForceLaw, x: Array, back: Array
+) -> tuple[Curve, Curve]:
+    """Both branches with the constants of `SCHEMATIC`; the coefficient is the one that closes the loop."""
+    end = np.array([SCHEMATIC["x_m"]])
+    (peak,) = restitution(end, **SCHEMATIC)
+    coefficient = float(peak / compression(end, C=1.0, **SCHEMATIC)[0])
+    return (
+        Curve(figure, "compression", "", x, compression(x, C=coefficient, **SCHEMATIC)),
+        Curve(figure, "restitution", "", back, restitution(back, **SCHEMATIC)),
+    )
+
+
+def _lankarani(samples: int) -> Iterator[Curve]:
+    """Equation (2): both branches as they stand in its cases."""
+    # The author's own form: evaluated, the cases lose the second, whose domain lies in the first's.
+    up, down = (ForceLaw(case.expr) for case in model.eq2.members[-1].args)
+    x_m, x_p = SCHEMATIC["x_m"], SCHEMATIC["x_p"]
+    yield from _closed("lankarani", up, down, np.linspace(0.0, x_m, samples), np.linspace(x_p, x_m, samples))
+
+
+def _hysteresis(samples: int) -> Iterator[Curve]:
+    """Equation (3) without friction, and the loop that friction widens."""
+    x_m, x_p = SCHEMATIC["x_m"], SCHEMATIC["x_p"]
+    # Denser towards x_m, where the loop with friction turns round.
+    s = np.sin(np.linspace(0.0, np.pi / 2, samples))
+    x, back = s * x_m, x_p + s * (x_m - x_p)
+    up, down = _closed("hysteresis", ForceLaw(model.law_c.value), ForceLaw(model.law_r.value), x, back)
+    share = _friction_share(s)
+    yield from (up, down)
+    yield Curve("hysteresis", "loading", "", x, up.y * (1 + share))
+    yield Curve("hysteresis", "unloading", "", back, down.y * (1 - share))
+
+
+def _friction_share(s: Array) -> Array:
+    """What share of the force is friction at the part `s` of the way to the maximum approach.
+
+    An illustration, not a law of the paper: it follows the speed of a body on a linear spring, so that it
+    vanishes where the bodies are at rest and the loop stays closed.
+    """
+    return FRICTION * np.sqrt(np.clip(1 - s**2, 0.0, 1.0))

@@ -1,0 +1,65 @@
+"""Work beside the main work: drawing takes as long as proving, and neither needs the other."""
+
+from __future__ import annotations
+
+import multiprocessing
+import warnings
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
+__all__ = ["Background"]
+
+T = TypeVar("T")
+
+
+class Background(Generic[T]):
+    """A function running in a process of its own, where the system can fork; else when it is asked for.
+
+    Parameters
+    ----------
+    work : callable
+        Takes nothing; what it returns must be plain data. It sees the memory as it is now.
+    """
+
+    def __init__(self, work: Callable[[], T]) -> None:
+        self._work = work
+        self._process = None
+        if "fork" not in multiprocessing.get_all_start_methods():
+            return
+        context = multiprocessing.get_context("fork")
+        self._receiver, sender = context.Pipe(duplex=False)
+        self._process = context.Process(target=_run, args=(work, sender), daemon=True)
+        with warnings.catch_warnings():
+            # Forking beside NumPy's idle threads is what the warning is about; the child does not use them.
+            warnings.simplefilter("ignore", DeprecationWarning)
+            self._process.start()
+        sender.close()
+
+    def result(self) -> T:
+        """Wait for the result; what the work raised is raised here."""
+        if self._process is None:
+            return self._work()
+        try:
+            outcome, error = self._receiver.recv()
+        except EOFError:
+            outcome, error = None, RuntimeError("the background process died")
+        self._process.join()
+        self._process = None
+        if error is not None:
+            raise error
+        result: T = outcome
+        return result
+
+    def cancel(self) -> None:
+        """Stop it, if it still runs."""
+        if self._process is not None:
+            self._process.terminate()
+            self._process.join()
+
+
+def _run(work: Callable[[], T], sender: object) -> None:
+    try:
+        outcome: tuple[object, Exception | None] = (work(), None)
+    except Exception as error:
+        outcome = (None, error)
+    sender.send(outcome)  # type: ignore[attr-defined]

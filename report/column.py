@@ -1,0 +1,315 @@
+"""What a sheet is made of: index sets, rules, and columns that have one rule each.
+
+Nothing here knows a model, a number or an output.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from sympy import Basic, Expr, Indexed, IndexedBase, Rel, Sum, Symbol
+
+from ..derivations.equation import Equation
+
+__all__ = [
+    "Axis",
+    "Column",
+    "Formula",
+    "Given",
+    "PairAxis",
+    "Reference",
+    "RepeatAxis",
+    "Root",
+    "Rule",
+    "name_of",
+    "references",
+]
+
+
+# --- index sets ------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Axis:
+    """An index set whose rows come with the data, such as the tests of a campaign.
+
+    Parameters
+    ----------
+    name : str
+        ``tests``, ``pairs``, ``points``.
+    index : Symbol
+        The running number of a row in formulas, ``k``.
+    size : Symbol
+        How many rows there are: the upper limit of sums over the axis.
+    """
+
+    name: str
+    index: Symbol
+    size: Symbol
+
+    @property
+    def maps(self) -> dict[Symbol, Axis]:
+        """For every index that may be used in a formula on this axis, the axis whose rows it names."""
+        return {self.index: self}
+
+    @property
+    def ordinals(self) -> tuple[Symbol, ...]:
+        """Running numbers that a formula on this axis may use as values, its own first."""
+        return ()
+
+    @property
+    def parents(self) -> tuple[Axis, ...]:
+        """The axes that its rows are made of."""
+        return ()
+
+
+@dataclass(frozen=True)
+class PairAxis(Axis):
+    """Every pair i < j of another axis' rows, in lexical order."""
+
+    of: Axis
+    first: Symbol
+    second: Symbol
+
+    @property
+    def maps(self) -> dict[Symbol, Axis]:
+        """The pair's own number and those of its two members."""
+        return {self.index: self, self.first: self.of, self.second: self.of}
+
+    @property
+    def parents(self) -> tuple[Axis, ...]:
+        """The axis that is paired."""
+        return (self.of,)
+
+
+@dataclass(frozen=True)
+class RepeatAxis(Axis):
+    """A number of rows, counted by `step` = 1, 2, ..., for each row of another axis."""
+
+    of: Axis
+    step: Symbol
+    count: str
+    """Name of the given scalar that says how many, the same for all."""
+
+    @property
+    def maps(self) -> dict[Symbol, Axis]:
+        """The row's own number, and all that its parent's row may name."""
+        return {self.index: self, **self.of.maps}
+
+    @property
+    def ordinals(self) -> tuple[Symbol, ...]:
+        """The running number within the parent's row, then what the parent's row may use."""
+        return (self.step, *self.of.ordinals)
+
+    @property
+    def parents(self) -> tuple[Axis, ...]:
+        """The axis that is repeated."""
+        return (self.of,)
+
+
+# --- rules -----------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Given:
+    """The value comes from the user, as printed."""
+
+    source: str = "given"
+
+
+@dataclass(frozen=True)
+class Formula:
+    """The last side of an equation of the ledger, in the sheet's symbols."""
+
+    equation: Equation
+
+    @cached_property
+    def expression(self) -> Expr:
+        """What is computed."""
+        return self.equation.value
+
+
+@dataclass(frozen=True)
+class Root:
+    """The only root of an equation in an interval; that it is the only one is decided before it is sought.
+
+    Parameters
+    ----------
+    equation : Equation
+        What the root satisfies, as published.
+    form : Equation
+        What is solved: equivalent on the interval, its left side smooth, its right side zero.
+    unknown : Symbol
+        The unknown of `form`.
+    value : Expr
+        The cell's value in terms of the unknown.
+    low, high : Expr
+        The open interval of the unknown.
+    sign_low, sign_high : Expr or None
+        Expressions with the sign of `form` at the ends of the interval, where it cannot be evaluated or
+        where rounding would decide; None evaluates it.
+    turning : tuple of Expr
+        Increasing points of the interval between which `form` changes sign at most once; one that is not
+        a number, or lies outside, does not count.
+    start : Expr
+        A first guess. It costs steps, never truth: the bracket decides.
+    steps : int
+        How many fourth-order steps every cell gets. One that they do not settle is bisected to the end.
+    none : str
+        What it means when there is no root, for the reader.
+    two : str
+        What it means when there are several.
+    """
+
+    equation: Equation
+    form: Equation
+    unknown: Symbol
+    value: Expr
+    low: Expr
+    high: Expr
+    start: Expr
+    sign_low: Expr | None = None
+    sign_high: Expr | None = None
+    turning: tuple[Expr, ...] = ()
+    steps: int = 4
+    none: str = "no value of the interval satisfies the equation"
+    two: str = "several values of the interval satisfy the equation"
+
+    @cached_property
+    def expression(self) -> Expr:
+        """What must vanish."""
+        sides = self.form.sides
+        return sides[0] - sides[1]
+
+    @property
+    def expressions(self) -> tuple[Expr, ...]:
+        """Everything that is evaluated, in terms of other columns and the unknown."""
+        signs = tuple(s for s in (self.sign_low, self.sign_high) if s is not None)
+        return (self.expression, self.value, self.low, self.high, self.start, *signs, *self.turning)
+
+
+Rule = Given | Formula | Root
+
+
+@dataclass(frozen=True)
+class Column:
+    """One quantity over one index set.
+
+    Parameters
+    ----------
+    name : str
+        The cell name, ``x_m1``.
+    axis : Axis or None
+        None for a scalar.
+    rule : Given, Formula or Root
+        Where its values come from.
+    unit : str
+        SI unit; an exponent may be another column's name (``N/m^alpha``).
+    meaning : str
+        What it is.
+    latex : str
+        How it is printed; ``%s`` is where an index goes.
+    display : str
+        The unit it is shown in; ``like x_p`` follows the unit that the user wrote for a given column.
+    positive : bool
+        Whether it is positive wherever it has a value: a formula that gives zero or less is then outside
+        its domain. (A root is held by its interval, a given value by what the workbook allows.)
+    requires : tuple
+        Relations that must hold for a row, each with the sentence that explains a ``#DOMAIN!``.
+    exact : bool
+        Whether a given value is a choice or a convention, so that its digits say nothing of precision.
+    """
+
+    name: str
+    axis: Axis | None
+    rule: Rule
+    unit: str = "1"
+    meaning: str = ""
+    latex: str = ""
+    display: str = ""
+    positive: bool = True
+    requires: tuple[tuple[Rel, str], ...] = ()
+    exact: bool = False
+
+    @cached_property
+    def symbol(self) -> Symbol:
+        """The name as a sympy symbol, with its assumptions."""
+        return Symbol(self.name, positive=True) if self.positive else Symbol(self.name, real=True)
+
+    def __getitem__(self, index: Any) -> Indexed:
+        """The cell of a row."""
+        return IndexedBase(self.symbol)[index]
+
+    @property
+    def cell(self) -> Expr:
+        """The column as it stands in formulas on its own axis."""
+        return self.symbol if self.axis is None else self[self.axis.index]
+
+    @property
+    def equation(self) -> Equation | None:
+        """The published equation behind it."""
+        return None if isinstance(self.rule, Given) else self.rule.equation
+
+    @property
+    def source(self) -> str:
+        """Number of its equation, or where it was given."""
+        return self.rule.source if isinstance(self.rule, Given) else self.rule.equation.label
+
+    @property
+    def expressions(self) -> tuple[Basic, ...]:
+        """All expressions that its rule and its conditions evaluate."""
+        conditions = tuple(condition for condition, _ in self.requires)
+        if isinstance(self.rule, Formula):
+            return (self.rule.expression, *conditions)
+        return (*self.rule.expressions, *conditions) if isinstance(self.rule, Root) else conditions
+
+
+# --- what a rule names -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A cell, size or running number in an expression.
+
+    Parameters
+    ----------
+    cell : Expr
+        ``x_p[i]``, ``beta``, ``n_pairs``.
+    over : Axis or None
+        The axis of the innermost sum it stands in, whose rows it then runs over; None for one of the row
+        itself. ``alpha[p]`` may stand for both in one formula.
+    """
+
+    cell: Expr
+    over: Axis | None = None
+
+
+def references(
+    expression: Basic, sums: Mapping[Symbol, Axis], over: Axis | None = None
+) -> Iterator[Reference]:
+    """Everything that an expression names, in the order it stands there; the same may come twice.
+
+    Parameters
+    ----------
+    expression : Basic
+    sums : mapping of Symbol to Axis
+        The axis that a sum over a running number runs over.
+    over : Axis or None
+        The axis of the sum that the expression stands in.
+    """
+    if isinstance(expression, Sum):
+        index = expression.limits[0][0]
+        yield from references(expression.function, sums, sums[index])
+    elif isinstance(expression, (Indexed, Symbol)):
+        yield Reference(expression, over)
+    else:
+        for argument in expression.args:
+            yield from references(argument, sums, over)
+
+
+def name_of(cell: Expr) -> str:
+    """The column's name in a cell, plain or indexed."""
+    return str(cell.base.label) if isinstance(cell, Indexed) else str(cell)

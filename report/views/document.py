@@ -1,0 +1,288 @@
+"""What a report shows, ready to be set on a page: tables, references, comparisons. Both formats read this.
+
+Nothing is calculated here; what is decided is order, wording, digits and what refers to what.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from functools import cached_property
+
+from ...derivations.equation import Derivation, Equation
+from ...derivations.proof import Proof
+from ..quantity import Printed
+from ..result import Report
+from ..sheet import Axis, Column, Given, RepeatAxis, Root
+from ..values import Cell
+from ..workbook import FigureSpec, TableSpec
+from .escape import slug
+from .math import Printer, name_latex
+from .numbers import Figure, decimals, read, shown, table_format
+from .parts import FitUsed, Group, Head, Item, Pair, Row, Table
+from .typeset import Block, block
+
+__all__ = ["Document"]
+
+
+class Document:
+    """A report as its views see it."""
+
+    def __init__(self, report: Report) -> None:
+        self.report = report
+        columns = report.sheet.columns
+        self.names = {column.name: column.latex or name_latex(column.name) + "%s" for column in columns}
+        self.printer = Printer(self.names)
+
+    # --- names and numbers
+
+    def latex(self, name: str, index: str = "") -> str:
+        """LaTeX of a cell's name."""
+        return name_latex(name, self.names, index)
+
+    def head(self, column: Column) -> Head:
+        """The head of a column, without what its numbers need."""
+        sources: tuple[str, ...] = ()
+        if column.equation is not None:
+            sources = (column.equation.label,)
+            if isinstance(column.rule, Root) and column.rule.form.label not in sources:
+                sources += (column.rule.form.label,)
+        known = {equation.label for equation in self.report.ledger.equations()}
+        return Head(
+            column.name,
+            self.latex(column.name),
+            self.report.shown[column.name].unit,
+            column.meaning,
+            isinstance(column.rule, Given),
+            tuple(source for source in sources if source in known),
+        )
+
+    def _printed(self, name: str) -> tuple[Printed, ...] | None:
+        """The numbers of a given column, as they were printed."""
+        inputs = self.report.inputs
+        if name in inputs.measured:
+            return inputs.measured[name]
+        return (inputs.parameters[name],) if name in inputs.parameters else None
+
+    def items(self, name: str) -> tuple[Head, tuple[Item, ...]]:
+        """All cells of a column, in one notation."""
+        column = self.report.sheet[name]
+        head, cells = self.head(column), list(self.report.values.cells(name))
+        printed = self._printed(name) if head.given else None
+        form = self.report.shown[name]
+        figures: list[Figure | None]
+        if printed is None:
+            figures = shown((cell.value for cell in cells), form.scale, form.digits)
+            texts: tuple[str | None, ...] = (None,) * len(cells)
+        else:
+            # A given number is shown as it was printed, in the unit it was printed in.
+            texts = tuple(number.text for number in printed)
+            figures = [read(number.text) for number in printed]
+            head = replace(head, unit=printed[0].unit)
+        places = max((len(figure.fraction) for figure in figures if figure is not None), default=0)
+        head = replace(head, format=table_format(figures), places=places)
+        rows = zip(cells, figures, texts, strict=True)
+        return head, tuple(Item(cell, head, figure, text) for cell, figure, text in rows)
+
+    def item(self, name: str, index: Iterable[int] = ()) -> Item:
+        """One cell."""
+        row = self.report.values.row(self.report.sheet[name], tuple(index))
+        return self.items(name)[1][row]
+
+    def has(self, name: str) -> bool:
+        """Whether there is a column of that name."""
+        return name in self.report.sheet
+
+    def count(self, axis: str) -> int:
+        """How many rows an axis has."""
+        return self.report.values.layouts[axis].size
+
+    def counted(self, name: str, axis: str) -> int:
+        """Over how many rows of an axis a column sums; rows without a value do not count."""
+        return self.report.values.counted.get(name, {}).get(axis, self.count(axis))
+
+    def left_out(self, name: str) -> tuple[tuple[str, int, int], ...]:
+        """For a column that sums over an axis with errors: the axis, how many rows counted, of how many."""
+        counted = self.report.values.counted.get(name, {})
+        return tuple(
+            (axis, rows, self.count(axis)) for axis, rows in counted.items() if rows != self.count(axis)
+        )
+
+    # --- tables
+
+    @cached_property
+    def tables(self) -> Mapping[str, Table]:
+        """The workbook's tables; without any, one for the scalars and one for each axis."""
+        specs = self.report.workbook.tables or tuple(self._default_specs())
+        numbered: dict[str, Table] = {}
+        own = 0
+        for spec in specs:
+            names = tuple(name for name in spec.columns if name in self.report.sheet)
+            if not names:
+                continue
+            own += not spec.number
+            numbered[spec.name] = self._table(replace(spec, number=spec.number or str(own)), names)
+        return numbered
+
+    def _default_specs(self) -> Iterable[TableSpec]:
+        sheet = self.report.sheet
+        given = tuple(c.name for c in sheet.columns if c.axis is None and isinstance(c.rule, Given))
+        scalars = tuple(c.name for c in sheet.columns if c.axis is None and c.name not in given)
+        if given:
+            yield TableSpec("given", "Parameters", given)
+        for axis in self.tabulated:
+            columns = [c for c in sheet.columns if c.axis == axis]
+            yield TableSpec(axis.name, f"Values of the {axis.name}", tuple(c.name for c in columns))
+        if scalars:
+            yield TableSpec("scalars", "Results", scalars)
+
+    @property
+    def tabulated(self) -> tuple[Axis, ...]:
+        """The axes whose rows are shown; generated points are too many."""
+        return tuple(axis for axis in self.report.sheet.axes if not isinstance(axis, RepeatAxis))
+
+    def _table(self, spec: TableSpec, names: tuple[str, ...]) -> Table:
+        axis = self.report.sheet[names[0]].axis
+        columns = [self.items(name) for name in names]
+        heads = tuple(head for head, _ in columns)
+        if axis is None:
+            return Table(spec, "", heads, (Row((), tuple(items[0] for _, items in columns)),))
+        labels = self.report.values.labels(self.report.sheet[names[0]])
+        rows = zip(labels, zip(*(items for _, items in columns), strict=True), strict=True)
+        return Table(spec, _row_name(axis), heads, tuple(Row(label, items) for label, items in rows))
+
+    # --- figures
+
+    def figure(self, name: str) -> FigureSpec:
+        """A figure of the workbook by its name."""
+        return next(figure for figure in self.report.workbook.figures if figure.name == name)
+
+    # --- equations
+
+    @cached_property
+    def equations(self) -> tuple[Equation, ...]:
+        """All equations of the ledger."""
+        return tuple(self.report.ledger.equations())
+
+    @cached_property
+    def identifiers(self) -> Mapping[str, str]:
+        """What each label is called in the page; the number of a group stands for its first line."""
+        found: dict[str, str] = {}
+        for equation in self.equations:
+            identifier = f"eq-{slug(equation.label)}"
+            while identifier in found.values():
+                identifier += "x"
+            found[equation.label] = identifier
+        for equation in self.equations:
+            if equation.number:
+                found.setdefault(equation.number, found[equation.label])
+        return found
+
+    def block(self, equation: Equation) -> Block:
+        """An equation, broken into lines."""
+        return block(self.printer, equation.members)
+
+    def equation(self, label: str) -> Equation:
+        """An equation of the ledger."""
+        return self.report.ledger[label]
+
+    def derivation(self, equation: Equation) -> Derivation | None:
+        """How it follows."""
+        return self.report.ledger.derivation(equation)
+
+    def proof(self, equation: Equation) -> Proof | None:
+        """What was found of it; None where the algebra was not checked."""
+        return next((proof for proof in self.report.proofs if proof.equation == equation), None)
+
+    @property
+    def has_own_numbers(self) -> bool:
+        """Whether some equations carry numbers that their source does not have."""
+        return any(equation.own for equation in self.equations)
+
+    # --- published values
+
+    @cached_property
+    def groups(self) -> tuple[Group, ...]:
+        """The published values by their source, in the order of the file."""
+        found: dict[str, list[Pair]] = {}
+        for comparison in self.report.comparisons:
+            column, printed = self.report.sheet[comparison.published.cell], comparison.published.printed
+            distance = None if comparison.distance is None else decimals(comparison.distance, 1)
+            axis = "" if column.axis is None else _row_name(column.axis)
+            pair = Pair(
+                comparison, self.head(column), read(printed.text), read(comparison.again), distance, axis
+            )
+            found.setdefault(comparison.published.source, []).append(pair)
+        titles = self.report.workbook.published_as
+        return tuple(Group(source, titles.get(source, ""), tuple(pairs)) for source, pairs in found.items())
+
+    def published(self, cell: str, index: tuple[int, ...] = ()) -> Pair | None:
+        """The published value of a cell, if there is one."""
+        for group in self.groups:
+            for pair in group.pairs:
+                if (pair.comparison.published.cell, pair.comparison.published.index) == (cell, index):
+                    return pair
+        return None
+
+    def _verdicts(self, verdict: str) -> int:
+        return sum(comparison.verdict == verdict for comparison in self.report.comparisons)
+
+    @property
+    def same(self) -> int:
+        """How many published values come out as printed."""
+        return self._verdicts("same")
+
+    @property
+    def differing(self) -> int:
+        """How many do not."""
+        return self._verdicts("differs")
+
+    @property
+    def unchecked(self) -> int:
+        """How many could not be compared, because their cell has no value."""
+        return self._verdicts("not-checkable")
+
+    @property
+    def unexpected(self) -> int:
+        """How many findings the published values did not announce."""
+        return sum(not comparison.as_expected for comparison in self.report.comparisons)
+
+    @cached_property
+    def fit_used(self) -> FitUsed | None:
+        """Which of two fits a source used, told by how far its fit is from its mean.
+
+        None if it cannot be asked.
+
+        The offset of the printed fit from the printed mean is known to one unit of their last digit, for
+        each of the two was rounded. A fit whose offset is further away was not the one.
+        """
+        mean, fitted = self.published("alpha_mean"), self.published("alpha_log")
+        names = ("alpha_mean", "alpha_log", "alpha_lin")
+        if mean is None or fitted is None or not all(self.has(name) and self.item(name).ok for name in names):
+            return None
+        published = float(fitted.printed.value - mean.printed.value)
+        center, log, lin = (self.report.values.scalar(name) for name in names)
+        unit = float(2 * max(mean.printed.half_unit, fitted.printed.half_unit))
+        fits = [abs(offset - center - published) <= unit for offset in (log, lin)]
+        verdict = {(True, False): "log", (False, True): "lin"}.get((fits[0], fits[1]), "open")
+        places = max(mean.printed.decimals, fitted.printed.decimals)
+        return FitUsed(
+            mean,
+            fitted,
+            decimals(published, places),
+            decimals(log - center, places + 1),
+            decimals(lin - center, places + 1),
+            verdict,
+        )
+
+    # --- errors
+
+    @cached_property
+    def missing(self) -> tuple[Cell, ...]:
+        """The cells where an error begins."""
+        return tuple(self.report.values.errors())
+
+
+def _row_name(axis: Axis) -> str:
+    """What a row of an axis is called: ``test`` of ``tests``."""
+    return axis.name.removesuffix("s")

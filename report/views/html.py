@@ -1,0 +1,188 @@
+"""The report as one HTML page: nothing loaded, everything in the file; with a program it recalculates."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import re
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+from urllib.parse import quote
+
+from ...derivations.equation import Equation
+from ..result import Report
+from ..values import Cell
+from . import live
+from .compact import short_mathml, short_style
+from .compact_svg import short_svg
+from .document import Document
+from .escape import Markup, html, html_finalize
+from .numbers import Figure, is_pure, unit_html
+from .parts import Item, address
+from .typeset import mathml, mathml_block
+from .words import TEMPLATES, Words, environment
+
+__all__ = ["csp", "render"]
+
+
+class HtmlWords(Words):
+    """What templates call to print something in HTML."""
+
+    def escape(self, text: object) -> Markup:
+        """Plain text."""
+        return html(text)
+
+    def math(self, latex: str) -> Markup:
+        """A formula in running text."""
+        return mathml(latex)
+
+    def number(self, figure: Figure) -> Markup:
+        """A number."""
+        return html(figure.text)
+
+    def signed(self, figure: Figure) -> Markup:
+        """A difference: with its sign, be it a plus."""
+        zero = not int(figure.whole + figure.fraction)
+        return html(figure.text if figure.negative or zero else f"+{figure.text}")
+
+    @cached_property
+    def _exponents(self) -> dict[str, Markup]:
+        return {name: mathml(latex) for name, latex in self.exponents().items()}
+
+    def unit(self, unit: str) -> Markup:
+        """A unit; nothing for a pure number."""
+        return Markup("") if is_pure(unit) else unit_html(unit, self._exponents)
+
+    def refer(self, label: str) -> Markup:
+        """A link to an equation."""
+        return Markup('<a class="eqref" href="#{}">{}</a>').format(
+            self.document.identifiers[label], html(label)
+        )
+
+    def equation(self, label: str) -> Markup:
+        """A displayed equation."""
+        return mathml_block(self.document.block(self.document.equation(label)))
+
+    def data(self, item: Item, identified: bool = True) -> Markup:
+        """The attributes of a cell; its identifier goes to the first element that shows it in a table."""
+        name = Markup("")
+        if identified and self.first(item.identifier):
+            name = Markup('id="{}" ').format(item.identifier)
+        return name + Markup('data-cell="{}" data-index="{}" data-value="{}" data-status="{}"').format(
+            item.cell.name, item.index, item.data, item.code
+        )
+
+    def padding(self, item: Item) -> str:
+        """The classes that put the decimal sign of a cell below those above it."""
+        if item.figure is None or not item.pad:
+            return "p0"
+        point = "" if item.figure.fraction else " nopoint"
+        return f"p{min(item.pad, 8)}{point}"
+
+    def why(self, cell: Cell) -> str:
+        """The identifier of the sentence that says why a cell has no value."""
+        return address(cell.name, cell.label).replace("cell-", "why-", 1)
+
+    def claim(self, equation: Equation) -> Markup:
+        """A displayed equation of a derivation, which is none of the ledger."""
+        return mathml_block(self.document.block(equation))
+
+
+def picture(svg: str, alt: str) -> Markup:
+    """An SVG as an image that is part of the page: nothing in it can run or load anything."""
+    opening = re.search(r"<svg\b[^>]*>", svg)
+    size = {}
+    for name in ("width", "height"):
+        found = re.search(rf'\b{name}="([\d.]+)(pt|px|)"', opening.group() if opening else "")
+        if found:
+            size[name] = round(float(found[1]) * (4 / 3 if found[2] == "pt" else 1))
+    attributes = Markup("").join(Markup(' {}="{}"').format(name, value) for name, value in size.items())
+    # In apostrophes the text of an SVG needs next to no escapes: three quarters of what base64 takes.
+    data = quote(short_svg(svg).replace('"', "'"), safe="=:/?;,+-.()'!*@$~")
+    return Markup('<img src="data:image/svg+xml,{}" alt="{}"{}>').format(Markup(data), html(alt), attributes)
+
+
+class Count(int):
+    """How many rows an axis has, marked where it stands so that it can follow."""
+
+    def __new__(cls, number: int, axis: str) -> Count:
+        made = super().__new__(cls, number)
+        made.axis = axis
+        return made
+
+    axis: str
+
+    def __html__(self) -> str:
+        return str(Markup('<span data-count="{}">{}</span>').format(self.axis, int(self)))
+
+
+class HtmlDocument(Document):
+    """A report whose counts of rows know what they count."""
+
+    def count(self, axis: str) -> int:
+        """How many rows an axis has."""
+        return Count(super().count(axis), axis)
+
+
+def finalize(value: Any) -> Markup:
+    """Escape whatever a template puts out, unless it is markup already."""
+    return Markup(value.__html__()) if isinstance(value, Count) else html_finalize(value)
+
+
+def csp(style: str, script: str = "") -> str:
+    """The content security policy of a page with this style, this script and nothing else."""
+
+    def hashed(text: str) -> str:
+        return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+    return (
+        f"default-src 'none'; script-src {hashed(script) if script else chr(39) + 'none' + chr(39)}; "
+        f"style-src {hashed(style)}; img-src data:; base-uri 'none'; form-action 'none'"
+    )
+
+
+def render(report: Report, figures: Mapping[str, str], program: str | None = None) -> str:
+    """Print a report as HTML.
+
+    Parameters
+    ----------
+    report : Report
+    figures : mapping of str to str
+        SVG text of each figure, by its name.
+    program : str or None
+        The sheet as JavaScript, for a page that recalculates itself; None makes a page without a script.
+    """
+    document = HtmlDocument(report)
+    words = HtmlWords(document)
+    # Both are hashed as they stand in the page, where there are no empty lines.
+    style = short_style(_text("html/style.css") + (_text("html/live.css") if program is not None else ""))
+    script = "" if program is None else _squeezed(live.script(program, _text("engines/runtime.js")))
+    jinja = environment(finalize)
+    pictures = {
+        figure.name: picture(figures[figure.name], figure.alt or figure.caption)
+        for figure in report.workbook.figures
+        if figure.name in figures
+    }
+    context = {"report": report, "doc": document, "w": words, "figures": pictures, "macros": "html/macros.j2"}
+    # The body comes first: the table of contents is made of the sections that it has.
+    body = Markup(jinja.get_template(f"prose/{report.workbook.prose}.j2").render(context))
+    if program is not None:
+        parts = tuple(live.parts(report, document))
+        context["live"] = {
+            "data": Markup(live.data(report, document)),
+            "parts": parts,
+            "script": Markup(script),
+        }
+    page = jinja.get_template("html/page.j2")
+    whole = page.render(context, body=body, style=Markup(style), csp=Markup(csp(style, script)))
+    return _squeezed(short_mathml(whole))
+
+
+def _squeezed(text: str) -> str:
+    """Text without empty lines."""
+    return re.sub(r"\n{2,}", "\n", text)
+
+
+def _text(name: str) -> str:
+    return (TEMPLATES / name).read_text(encoding="utf-8")

@@ -1,0 +1,352 @@
+"""What the page needs to recalculate itself: the data, the equations with places for numbers, the script.
+
+The program that computes comes from an engine, as text. The scripts under templates/live edit, redraw and
+explain; they know no model, and nothing of what they read is ever evaluated.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from sympy import Indexed, Sum, Symbol
+
+from ..quantity import Bounds, Printed
+from ..result import Report
+from ..sheet import Column, Formula, Given, Root, name_of
+from ..unit_text import parse_unit
+from ..workbook import Measured, Parameter
+from .compact import short_script
+from .document import Document
+from .drawing import unit_text
+from .escape import slug
+from .math import Printer
+from .parts import index_text
+from .words import TEMPLATES
+
+__all__ = ["FIGURES", "SCRIPTS", "Part", "data", "parts", "script"]
+
+SCRIPTS = (
+    "page.js",
+    "numbers.js",
+    "inputs.js",
+    "trace.js",
+    "cells.js",
+    "tables.js",
+    "published.js",
+    "drawing.js",
+    "figures.js",
+    "bar.js",
+    "grid.js",
+    "files.js",
+    "main.js",
+)
+"""The scripts of the page in the order in which they are read."""
+
+FIGURES = ("loops", "alpha_pairs")
+"""The drawings that the page can draw again."""
+
+
+# --- the script ------------------------------------------------------------------------------------------
+
+
+def script(program: str, runtime: str) -> str:
+    """The script of the page, with the generated program in it.
+
+    Parameters
+    ----------
+    program : str
+        The sheet as a JavaScript object literal.
+    runtime : str
+        What evaluates it.
+
+    Raises
+    ------
+    ValueError
+        The text would end the element that it stands in.
+    """
+    own = [(TEMPLATES / "live" / name).read_text(encoding="utf-8") for name in SCRIPTS]
+    whole = "\n".join(["(() => {", runtime, f"const PROGRAM = {program};", *own, "})();", ""])
+    text = short_script(whole)
+    if re.search(r"</script|<!--|<script", text, re.IGNORECASE):
+        raise ValueError("the script of the page must not hold the end of its element")
+    return text
+
+
+# --- the data --------------------------------------------------------------------------------------------
+
+
+def data(report: Report, document: Document) -> str:
+    """What the script must know of the report, as JSON that cannot end the element it stands in.
+
+    Parameters
+    ----------
+    report : Report
+    document : Document
+        The same report, as the views see it.
+    """
+    inputs = report.inputs
+    sheet = report.sheet
+    measured = {name: numbers for name, numbers in inputs.measured.items() if name in sheet}
+    parameters = {name: number for name, number in inputs.parameters.items() if name in sheet}
+    known = {
+        "columns": {column.name: _column(report, document, column) for column in sheet.columns},
+        "tests": [
+            {
+                "label": test,
+                "used": True,
+                "cells": {name: numbers[row].text for name, numbers in measured.items()},
+            }
+            for row, test in enumerate(inputs.tests)
+        ],
+        "parameters": {name: number.text for name, number in parameters.items()},
+        "units": {name: inputs.header_units[name] for name in measured},
+        "uncertainties": _uncertainties(inputs.tests, measured),
+        "toml": list(_toml(report)),
+        "equations": {
+            equation.label: {
+                "id": document.identifiers[equation.label],
+                "status": _status(document, equation.label),
+            }
+            for equation in document.equations
+        },
+        "headline": [name for name in report.workbook.headline if name in sheet],
+        "figures": {
+            figure.name: {"draw": figure.draw, "alt": figure.alt or figure.caption}
+            for figure in report.workbook.figures
+            if figure.draw in FIGURES
+        },
+        "published": [
+            {
+                "id": f"published-{slug(group.source)}",
+                "rows": [
+                    [
+                        pair.comparison.published.cell,
+                        index_text(pair.comparison.published.index),
+                        pair.printed.text,
+                        _fraction(pair.printed.scale),
+                        pair.comparison.published.expect == "differs",
+                    ]
+                    for pair in group.pairs
+                ],
+            }
+            for group in document.groups
+        ],
+    }
+    # In an element of its own only these could be taken for its end or for a comment.
+    return json.dumps(known, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
+
+
+def _fraction(value: Fraction) -> list[str]:
+    """A fraction as text: JavaScript's numbers would round it."""
+    return [str(value.numerator), str(value.denominator)]
+
+
+def _column(report: Report, document: Document, column: Column) -> dict[str, Any]:
+    shown = report.shown[column.name]
+    head = document.head(column)
+    entry: dict[str, Any] = {
+        "source": column.source,
+        "unit": unit_text(shown.unit).strip("()"),
+        "scale": shown.scale,
+        "digits": shown.digits,
+    }
+    if isinstance(column.rule, Given):
+        entry["given"] = _given(report, column)
+        return entry
+    put = Put(document)
+    entry["equations"] = head.sources
+    if isinstance(column.rule, Root):
+        entry |= {"none": column.rule.none, "two": column.rule.two}
+    if column.requires:
+        entry["requires"] = "; ".join(sentence for _, sentence in column.requires)
+    if put.equation(column):
+        entry["put"] = put.cells
+    return entry
+
+
+def _status(document: Document, label: str) -> str:
+    proof = document.proof(document.equation(label))
+    return "not checked" if proof is None else proof.status.value
+
+
+def _given(report: Report, column: Column) -> dict[str, Any]:
+    """What an input may be, and how large its printed unit is."""
+    declared: Measured | Parameter | None = next(
+        (c for c in (*report.workbook.measured, *report.workbook.parameters) if c.name == column.name), None
+    )
+    printed = _printed(report, column.name)
+    bounds = declared.bounds if declared is not None else Bounds()
+    unit = "" if column.unit == "1" else f" {column.unit}"
+    return {
+        "unit": printed.unit if printed else column.unit,
+        "scale": _fraction(printed.scale if printed else parse_unit(column.unit).scale),
+        "bounds": {
+            name: repr(bound) if name in ("low", "high") else True
+            for name in ("low", "high", "low_open", "high_open", "integer")
+            if (bound := getattr(bounds, name)) is not None and bound is not False
+        },
+        "allowed": f"{bounds}{unit} ({declared.meaning if declared is not None else column.meaning})",
+    }
+
+
+def _printed(report: Report, name: str) -> Printed | None:
+    """A number of an input, for its unit."""
+    if name in report.inputs.measured:
+        return next(iter(report.inputs.measured[name]), None)
+    return report.inputs.parameters.get(name)
+
+
+def _uncertainties(
+    tests: tuple[int, ...], measured: dict[str, tuple[Printed, ...]]
+) -> dict[str, dict[str, str]]:
+    """The standard uncertainties that were given, in the unit of the header, by column and test."""
+    given = {
+        name: numbers for name, numbers in measured.items() if any(n.given_u is not None for n in numbers)
+    }
+    return {
+        name: {
+            str(test): _decimal(number.given_u / number.scale)
+            for test, number in zip(tests, numbers, strict=True)
+            if number.given_u is not None
+        }
+        for name, numbers in given.items()
+    }
+
+
+def _decimal(value: Fraction) -> str:
+    """A fraction that was a decimal number, as one again."""
+    places = 0
+    while (value * 10**places).denominator != 1 and places < 400:
+        places += 1
+    digits = str(round(value * 10**places)).rjust(places + 1, "0")
+    return f"{digits[:-places]}.{digits[-places:]}" if places else digits
+
+
+def _toml(report: Report) -> Iterator[str | dict[str, str]]:
+    """report.toml in pieces: text as it stands, and between it the numbers that may be edited.
+
+    A parameter that is not in the file has its piece behind the head of the table.
+    """
+    # Lines are counted as the reader counts them: any of the three ends, a mark in front is not text.
+    raw = report.inputs.files.get("report.toml", b"").decode("utf-8-sig", "replace")
+    text = re.sub("\r\n?", "\n", raw)
+    starts = [0, *(found.end() for found in re.finditer("\n", text))]
+    pieces: list[tuple[int, int, dict[str, str]]] = []
+    for name, number in report.inputs.parameters.items():
+        unit = number.unit if number.unit != "1" else ""
+        found = re.fullmatch(r"report\.toml:(\d+):(\d+)", number.where)
+        if found is None:
+            head = re.search(r"^[ \t]*\[[ \t]*parameters[ \t]*\][^\n]*\n?", text, re.MULTILINE)
+            if head is not None:
+                pieces.append((head.end(), head.end(), {"parameter": name, "unit": unit, "line": "new"}))
+            continue
+        place = text.find(number.text, starts[int(found[1]) - 1] + int(found[2]) - 1)
+        if place >= 0:
+            pieces.append((place, place + len(number.text), {"parameter": name}))
+    table = re.search(
+        r"""^[ \t]*file[ \t]*=[ \t]*(["'])(?P<name>[^"'\n]*)\1""", _measurements(text), re.MULTILINE
+    )
+    if table is not None and table["name"] != "measurements.csv":
+        start = text.index(_measurements(text)) + table.start("name")
+        pieces.append((start, start + len(table["name"]), {"file": "measurements.csv"}))
+    done = 0
+    for start, end, piece in sorted(pieces, key=lambda piece: piece[:2]):
+        yield text[done:start]
+        yield piece
+        done = end
+    yield text[done:]
+
+
+def _measurements(text: str) -> str:
+    """The lines of the table of the measurements."""
+    found = re.search(
+        r"^[ \t]*\[[ \t]*measurements[ \t]*\][^\n]*\n(?:(?![ \t]*\[)[^\n]*\n?)*", text, re.MULTILINE
+    )
+    return found.group() if found else ""
+
+
+# --- equations with places for numbers --------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Part:
+    """What the formula bar shows of a column, in LaTeX.
+
+    Parameters
+    ----------
+    column : Column
+    latex : str
+        Its symbol.
+    equation : str
+        Its equation with ``@n@`` for the n-th cell in it; empty if it is given or sums over rows.
+    """
+
+    column: Column
+    latex: str
+    equation: str
+
+
+def parts(report: Report, document: Document) -> Iterator[Part]:
+    """What the formula bar shows of every column."""
+    for column in report.sheet.columns:
+        yield Part(column, document.latex(column.name), Put(document).equation(column))
+
+
+_BETWEEN = re.compile(
+    r"(?<=[\d})])(?<!\\begin\{cases\}) (?=\\text\{@|\\left|\(|\\frac|\\ln|\\exp|\\sqrt|\\pi|\d)"
+)
+
+
+class Put(Printer):
+    """Prints an equation with a numbered place for every cell, size and running number in it."""
+
+    def __init__(self, document: Document) -> None:
+        super().__init__(document.printer.names)
+        self.sheet = document.report.sheet
+        self.cells: list[list[str | None]] = []
+        """What belongs into each place: a column and an index, or how many rows an axis has."""
+
+    def equation(self, column: Column) -> str:
+        """The equation of a column in LaTeX; empty if it has none, or sums over rows."""
+        self.column = column
+        self.cells = []
+        if isinstance(column.rule, Formula):
+            members = column.rule.equation.members[-1:]
+        elif isinstance(column.rule, Root):
+            members = column.rule.equation.members
+        else:
+            return ""
+        if any(member.has(Sum) for member in members):
+            return ""
+        text = " = ".join(str(self.doprint(member)) for member in members)
+        # Two numbers side by side would be read as one.
+        return _BETWEEN.sub(r" \\cdot ", text)
+
+    def _place(self, name: str, index: str | None) -> str:
+        cell: list[str | None] = [name, index]
+        if cell not in self.cells:
+            self.cells.append(cell)
+        return rf"\text{{@{self.cells.index(cell)}@}}"
+
+    def _print_Symbol(self, expr: Symbol, style: str = "plain") -> str:
+        axis = self.column.axis
+        if expr in self.sheet.sizes:
+            return self._place("", self.sheet.sizes[expr].name)
+        if axis is not None and expr in axis.ordinals:
+            return self._place("#", expr.name)
+        if isinstance(self.column.rule, Root) and expr == self.column.rule.unknown:
+            return self._place(self.column.name, None if axis is None else str(axis.index))
+        if expr.name in self.sheet:
+            # The left side of an equation may name a column without its index.
+            return self._place(
+                expr.name, None if self.sheet[expr.name].axis is None else str(axis and axis.index)
+            )
+        return super()._print_Symbol(expr, style)  # type: ignore[no-any-return]
+
+    def _print_Indexed(self, expr: Indexed) -> str:
+        return self._place(name_of(expr), str(expr.indices[0]))

@@ -1,0 +1,404 @@
+r"""Mathematics for the eye: from sympy to LaTeX, in the author's order of terms.
+
+Equations are written under ``evaluate(False)``, so their tree is the author's: ``a*b/c*d`` is a fraction
+with a factor behind it. The printer reads the tree from left to right and reorders nothing. Where sympy
+has put terms in an order of its own, the author's is lost; there a sum begins with a positive term and a
+product is one fraction.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from sympy import Add, And, Basic, Expr, Indexed, Integral, Mul, Number, Piecewise, Pow, Rational, Sum, Symbol
+from sympy.core.function import AppliedUndef
+from sympy.core.relational import Relational
+from sympy.printing.latex import LatexPrinter, translate
+
+from ...derivations.symbols import TABLE
+from ..sheet import name_of
+
+__all__ = ["Printer", "name_latex", "with_index"]
+
+_RELATIONS = {"<=": r"\le", ">=": r"\ge", "<": "<", ">": ">", "==": "=", "!=": r"\ne"}
+_MIRROR = {">=": "<=", ">": "<"}
+_TALL = re.compile(r"\\(?:frac|sum|int|sqrt|left|begin)")
+
+
+# --- names -----------------------------------------------------------------------------------------------
+
+
+def name_latex(name: str, names: Mapping[str, str] | None = None, index: str = "") -> str:
+    r"""Print the name of a quantity.
+
+    Parameters
+    ----------
+    name : str
+        The cell name, ``x_m``.
+    names : mapping of str to str
+        LaTeX of names that the table of symbols does not have; ``%s`` is where an index goes.
+    index : str
+        LaTeX of the index; empty for none.
+
+    Examples
+    --------
+    >>> name_latex("x_m", index="k"), name_latex("n_pairs"), name_latex("v", index="2")
+    ('x_{m_{k}}', 'n_{\\mathrm{pairs}}', "v'_{2}")
+    """
+    if names and name in names:
+        template = names[name]
+    elif name in TABLE:
+        template = TABLE[name].latex
+    else:
+        head, _, tail = name.partition("_")
+        template = _word(head) + (f"_{{{_word(tail)}%s}}" if tail else "%s")
+    return with_index(template, index)
+
+
+def _word(text: str) -> str:
+    if len(text) == 1 or text.isdigit():
+        return text
+    greek = str(translate(text))
+    plain = text.replace("_", r"\_")
+    return greek if greek.startswith("\\") and "{" not in greek else rf"\mathrm{{{plain}}}"
+
+
+def with_index(template: str, index: str = "") -> str:
+    r"""Put an index where the LaTeX of a quantity has its place for one.
+
+    >>> with_index("m_{red%s}"), with_index("e%s", "1")
+    ('m_{\\mathrm{red}}', 'e_{1}')
+    """
+    # A subscript of several letters is a word, not a product.
+    upright = re.sub(r"_\{([A-Za-z]{2,})(?=[%}])", r"_{\\mathrm{\1}", template)
+    if not index:
+        return upright.replace("%s", "")
+    if "%s" in upright:
+        return upright.replace("%s", f"_{{{index}}}")
+    return f"{{{upright}}}_{{{index}}}" if "_" in upright else f"{upright}_{{{index}}}"
+
+
+# --- expressions -----------------------------------------------------------------------------------------
+
+
+class Printer(LatexPrinter):  # type: ignore[misc] # sympy has no types
+    """LaTeX in the order in which the author wrote it.
+
+    Parameters
+    ----------
+    names : mapping of str to str
+        LaTeX of quantities that the table of symbols does not have.
+    """
+
+    def __init__(self, names: Mapping[str, str] | None = None) -> None:
+        super().__init__({"order": "none", "ln_notation": True})
+        self.names = dict(names or {})
+
+    def emptyPrinter(self, expr: Any) -> str:
+        """Refuse what has no LaTeX: half an equation is worse than none."""
+        raise TypeError(f"no LaTeX for {type(expr).__name__}: {expr}")
+
+    def _print_Basic(self, expr: Basic) -> str:
+        return self.emptyPrinter(expr)
+
+    # names
+
+    def _print_Symbol(self, expr: Symbol, style: str = "plain") -> str:
+        return name_latex(expr.name, self.names)
+
+    def _print_Indexed(self, expr: Indexed) -> str:
+        return name_latex(name_of(expr), self.names, ",".join(self._print(i) for i in expr.indices))
+
+    def _print_AppliedUndef(self, expr: AppliedUndef) -> str:
+        return name_latex(expr.func.__name__, self.names)
+
+    # sums and products
+
+    def _print_Add(self, expr: Add, order: str | None = None) -> str:
+        return self.join(self.terms(expr))
+
+    @staticmethod
+    def join(terms: Iterable[tuple[bool, str]]) -> str:
+        """Join signed terms."""
+        text = ""
+        for negative, term in terms:
+            sign = "-" if negative else "+"
+            text += f" {sign} {term}" if text else ("-" if negative else "") + term
+        return text
+
+    def terms(self, expr: Expr) -> list[tuple[bool, str]]:
+        """The terms of a sum, each with whether it is subtracted."""
+        summands = _summands(expr)
+        if len(summands) == 1 and isinstance(expr, Piecewise):
+            return [(False, self._print(expr))]
+        parts = [self._signed(term) for term in summands]
+        if len(parts) > 1 and parts[0][0] and _canonical(expr):
+            first = next((place for place, (negative, _) in enumerate(parts) if not negative), 0)
+            parts.insert(0, parts.pop(first))
+        return parts
+
+    def _signed(self, expr: Expr) -> tuple[bool, str]:
+        if isinstance(expr, Mul):
+            return self._product(expr)
+        if isinstance(expr, Number) and expr.is_negative:
+            return True, self._print(-expr)
+        text = self._print(expr)
+        return False, self._bracket(text) if isinstance(expr, Piecewise) else text
+
+    def _print_Mul(self, expr: Mul) -> str:
+        negative, text = self._product(expr)
+        return ("-" if negative else "") + text
+
+    def _product(self, expr: Mul) -> tuple[bool, str]:
+        """The sign of a product and its LaTeX without it."""
+        negative, units = self._units(expr)
+        if not units:
+            return negative, "1"
+        alone = len(units) == 1 and not negative
+        text = ""
+        for place, (above, below) in enumerate(units):
+            last = place == len(units) - 1
+            printed = self._unit(above, below, alone, last)
+            if text and re.search(r"\d$", text) and re.match(r"\d|\\frac", printed):
+                text += r" \cdot " + printed
+            else:
+                text += (" " if text else "") + printed
+        return negative, text
+
+    def _units(self, expr: Mul) -> tuple[bool, list[tuple[list[Expr], list[Expr]]]]:
+        """Fractions and factors, from left to right: numerators and denominators of each."""
+        negative = False
+        units: list[tuple[list[Expr], list[Expr]]] = []
+        one = _canonical(expr)  # sympy's order says nothing: one fraction
+        closed = True
+        for place, written in enumerate(_factors(expr)):
+            below_zero = bool(isinstance(written, Number) and written.is_negative)
+            negative ^= below_zero
+            factor = -written if below_zero else written
+            if factor == 1:
+                continue
+            if isinstance(factor, Mul):
+                other, inner = self._units(factor)
+                negative ^= other
+                if closed or units[-1][1] or len(inner) > 1 or inner[0][1]:
+                    units += inner
+                else:
+                    units[-1][0].extend(inner[0][0])
+                closed = False
+                continue
+            above, below = _halves(factor)
+            if place <= 1 and not units and above and below and isinstance(factor, Rational):
+                units.append((above, below))  # a number such as 1/2 stands for itself, in front
+                closed = True
+                continue
+            if closed or (above and units[-1][1] and not one):
+                units.append(([], []))
+                closed = False
+            units[-1][0].extend(above)
+            units[-1][1].extend(below)
+        return negative, units
+
+    def _unit(self, above: list[Expr], below: list[Expr], alone: bool, last: bool) -> str:
+        if not below:
+            return self._chain(above, alone and len(above) == 1, last)
+        if (
+            len(above) == 1
+            and isinstance(above[0], Sum)
+            and last
+            and not any(part.has(Sum) for part in below)
+        ):
+            # A mean: the sum beside the bar keeps its limits where they can be read.
+            return rf"\frac{{1}}{{{self._chain(below, len(below) == 1, True)}}} {self._print(above[0])}"
+        top = self._chain(above, len(above) == 1, True) if above else "1"
+        return rf"\frac{{{top}}}{{{self._chain(below, len(below) == 1, True)}}}"
+
+    def _chain(self, factors: list[Expr], bare: bool, last: bool) -> str:
+        """Factors side by side, with parentheses where they are needed."""
+        text = ""
+        for place, factor in enumerate(factors):
+            printed = self._print(factor)
+            ends = last and place == len(factors) - 1
+            if not bare and (
+                isinstance(factor, (Add, Piecewise)) or (isinstance(factor, (Sum, Integral)) and not ends)
+            ):
+                printed = self._bracket(printed)
+            digits = re.search(r"\d$", text) and re.match(r"\d|\\frac", printed)
+            text += (r" \cdot " if digits else " " if text else "") + printed
+        return text
+
+    @staticmethod
+    def _bracket(text: str) -> str:
+        """Parentheses, as high as what is in them."""
+        return rf"\left({text}\right)" if _TALL.search(text) else f"({text})"
+
+    # powers and functions
+
+    def _print_Pow(self, expr: Pow) -> str:
+        base, exponent = expr.base, expr.exp
+        if exponent == Rational(1, 2):
+            return rf"\sqrt{{{self._print(base)}}}"
+        above, below = _halves(expr)
+        if below:
+            return self._unit(above, below, True, True)
+        raised = self._inline(exponent)
+        if isinstance(base, (Symbol, Indexed, AppliedUndef)):
+            name = self._print(base)
+            primed = re.fullmatch(r"(\\?[A-Za-z]+)('+)(_\{.*\})?", name)
+            if primed:  # a prime is a superscript already, and there is only one
+                primes = r"\prime" * len(primed[2])
+                return f"{primed[1]}{primed[3] or ''}^{{{primes} {raised}}}"
+            if r"\cdot" not in name:
+                return f"{name}^{{{raised}}}"
+        if isinstance(base, Number) and base.is_integer and base.is_nonnegative:
+            return f"{self._print(base)}^{{{raised}}}"
+        return f"{self._bracket(self._print(base))}^{{{raised}}}"
+
+    def _inline(self, expr: Expr) -> str:
+        """An exponent: fractions with a slash, for a bar is hard to read up there."""
+        if isinstance(expr, Rational) and not expr.is_integer:
+            return f"{expr.p}/{expr.q}"
+        if isinstance(expr, (Mul, Pow)):
+            negative, units = self._units(expr) if isinstance(expr, Mul) else (False, [_halves(expr)])
+            if len(units) == 1 and units[0][1]:
+                above, below = units[0]
+                top = self._chain(above, False, True) if above else "1"
+                bottom = self._chain(below, False, True)
+                if len(below) > 1:
+                    bottom = self._bracket(bottom)
+                return f"{'-' if negative else ''}{top}/{bottom}"
+        return str(self._print(expr))
+
+    def _print_exp(self, expr: Expr, exp: str | None = None) -> str:
+        # e is the coefficient of restitution.
+        return self._call(r"\exp", self._print(expr.args[0]), exp)
+
+    def _print_log(self, expr: Expr, exp: str | None = None) -> str:
+        return self._call(r"\ln", self._print(expr.args[0]), exp)
+
+    def _call(self, function: str, inside: str, exp: str | None) -> str:
+        text = function + self._bracket(inside)
+        return text if exp is None else f"{self._bracket(text)}^{{{exp}}}"
+
+    def _print_Max(self, expr: Expr, exp: str | None = None) -> str:
+        return self._extreme(r"\max", expr)
+
+    def _print_Min(self, expr: Expr, exp: str | None = None) -> str:
+        return self._extreme(r"\min", expr)
+
+    def _extreme(self, which: str, expr: Expr) -> str:
+        inside = ", ".join(self._print(argument) for argument in sorted(expr.args, key=str))
+        return which + self._bracket(inside)
+
+    # sums, integrals, cases
+
+    def _print_Sum(self, expr: Sum) -> str:
+        text = ""
+        for index, low, high in expr.limits:
+            text += rf"\sum_{{{self._print(index)}={self._print(low)}}}^{{{self._print(high)}}} "
+        return text + self._body(expr.function)
+
+    def _print_Integral(self, expr: Integral) -> str:
+        text, ends = "", ""
+        for variable, low, high in expr.limits:
+            text += rf"\int_{{{self._print(low)}}}^{{{self._print(high)}}} "
+            ends = rf" \, d{self._print(variable)}" + ends
+        return text + self._body(expr.function) + ends
+
+    def _body(self, expr: Expr) -> str:
+        """What stands behind a sign of summation or integration."""
+        if isinstance(expr, Mul):  # sympy writes 1*(a + b)
+            factors = [factor for factor in expr.args if factor != 1]
+            expr = factors[0] if len(factors) == 1 else expr
+        printed = self._print(expr)
+        return self._bracket(printed) if isinstance(expr, (Add, Piecewise)) or printed[0] == "-" else printed
+
+    def _print_Piecewise(self, expr: Piecewise) -> str:
+        rows = []
+        for body, condition in expr.args:
+            when = r"\text{otherwise}" if condition == True else self._print(condition)  # noqa: E712
+            rows.append(rf"{self._print(body)}, & {when}")
+        return r"\begin{cases} " + r" \\ ".join(rows) + r" \end{cases}"
+
+    def _print_Relational(self, expr: Relational) -> str:
+        return rf"{self._print(expr.lhs)} {_RELATIONS[expr.rel_op]} {self._print(expr.rhs)}"
+
+    def _print_And(self, expr: And) -> str:
+        """Join relations that share a side: ``0 <= x <= x_m``."""
+        if not all(isinstance(part, Relational) for part in expr.args):
+            return r" \ \text{and}\ ".join(self._print(part) for part in expr.args)
+        left = [_upwards(part) for part in expr.args]
+        chains: list[list[Any]] = []
+        while left:
+            low, sign, high = left.pop(0)
+            chain = [low, sign, high]
+            grown = True
+            while grown:
+                grown = False
+                for other in list(left):
+                    if other[0] == chain[-1]:
+                        chain += other[1:]
+                    elif other[2] == chain[0]:
+                        chain[:0] = other[:2]
+                    else:
+                        continue
+                    left.remove(other)
+                    grown = True
+            chains.append(chain)
+        printed = [
+            " ".join(_RELATIONS[part] if isinstance(part, str) else self._print(part) for part in chain)
+            for chain in chains
+        ]
+        return r" \ \text{and}\ ".join(printed)
+
+
+def _upwards(relation: Relational) -> tuple[Expr, str, Expr]:
+    """A relation read from the smaller side."""
+    if relation.rel_op in _MIRROR:
+        return relation.rhs, _MIRROR[relation.rel_op], relation.lhs
+    return relation.lhs, relation.rel_op, relation.rhs
+
+
+def _canonical(expr: Expr) -> bool:
+    """Whether sympy has ordered the arguments, so that no author's order is left in them."""
+    if any(isinstance(argument, expr.func) for argument in expr.args):
+        return False
+    return bool(expr.func(*expr.args).args == expr.args)
+
+
+def _summands(expr: Expr) -> list[Expr]:
+    """The terms of nested sums, in order."""
+    if not isinstance(expr, Add):
+        return [expr]
+    return [term for argument in expr.args for term in _summands(argument)]
+
+
+def _factors(expr: Expr) -> list[Expr]:
+    """The factors of ``a*b/c*d`` in order; a product that was written in parentheses stays one."""
+    head, *rest = expr.args
+    while isinstance(head, Number) and head == -1 and len(rest) == 1 and isinstance(rest[0], Mul):
+        return [head, *_factors(rest[0])]  # -(a*b)
+    return [*(_factors(head) if isinstance(head, Mul) else [head]), *rest]
+
+
+def _halves(factor: Basic) -> tuple[list[Expr], list[Expr]]:
+    """What a factor puts above and below the bar of a fraction."""
+    if isinstance(factor, Rational) and not factor.is_integer:
+        return [Rational(factor.p)], [Rational(factor.q)]
+    if isinstance(factor, Pow):
+        exponent = factor.exp
+        if isinstance(exponent, Number) and exponent.is_negative:
+            base, power = factor.base, -exponent
+            if power == 1:
+                return [], _factors(base) if isinstance(base, Mul) and not _divides(base) else [base]
+            return [], [Pow(base, power, evaluate=False)]
+        if isinstance(exponent, Mul) and exponent.args[0] == -1:
+            rest = exponent.args[1:]
+            power = rest[0] if len(rest) == 1 else Mul(*rest, evaluate=False)
+            return [], [Pow(factor.base, power, evaluate=False)]
+    return [factor], []
+
+
+def _divides(expr: Mul) -> bool:
+    return any(_halves(factor)[1] or isinstance(factor, Mul) for factor in _factors(expr))

@@ -1,0 +1,213 @@
+"""The parts of a report as they are shown: cells, tables, published values beside recomputed ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..quantity import Printed
+from ..result import Comparison
+from ..values import Cell, Status
+from ..workbook import TableSpec
+from .escape import slug
+from .numbers import Figure
+
+__all__ = ["FitUsed", "Group", "Head", "Item", "Pair", "Row", "Table", "address", "index_text"]
+
+LONG = 30
+"""A table of more rows than this scrolls in the page and breaks over pages in print."""
+
+
+def index_text(label: tuple[int, ...]) -> str:
+    """The label of a row as attributes hold it: ``2``, ``1-2``, empty for a scalar."""
+    return "-".join(map(str, label))
+
+
+def address(name: str, label: tuple[int, ...]) -> str:
+    """The identifier of a cell: ``cell-alpha-1-2``."""
+    return slug(f"cell-{name}-{index_text(label)}" if label else f"cell-{name}")
+
+
+@dataclass(frozen=True)
+class Head:
+    """The head of a column.
+
+    Parameters
+    ----------
+    name, latex, unit, meaning
+        As the column's.
+    given : bool
+        Whether its cells come from the user.
+    sources : tuple of str
+        Labels of the equations it comes from.
+    format : str
+        The ``table-format`` of siunitx.
+    places : int
+        Digits behind the decimal point, at most.
+    """
+
+    name: str
+    latex: str
+    unit: str
+    meaning: str
+    given: bool
+    sources: tuple[str, ...]
+    format: str = "1"
+    places: int = 0
+
+
+@dataclass(frozen=True)
+class Item:
+    """A cell as it is shown.
+
+    Parameters
+    ----------
+    cell : Cell
+    head : Head
+        Of its column.
+    figure : Figure or None
+        Its number; None if it has none, or if it was printed in another notation.
+    printed : str or None
+        A given number as the user printed it.
+    """
+
+    cell: Cell
+    head: Head
+    figure: Figure | None
+    printed: str | None = None
+
+    @property
+    def ok(self) -> bool:
+        """Whether it has a value."""
+        return self.cell.status is Status.OK
+
+    @property
+    def code(self) -> str:
+        """``ok``, or the code of its error."""
+        return self.cell.status.code
+
+    @property
+    def index(self) -> str:
+        """``2``, ``1-2``, or nothing."""
+        return index_text(self.cell.label)
+
+    @property
+    def identifier(self) -> str:
+        """Its name in the page."""
+        return address(self.cell.name, self.cell.label)
+
+    @property
+    def data(self) -> str:
+        """The value in SI with all its digits; empty if there is none."""
+        return "" if self.cell.value is None else repr(self.cell.value)
+
+    @property
+    def origin(self) -> Cell:
+        """Where its error began."""
+        return self.cell.culprit or self.cell
+
+    @property
+    def pad(self) -> int:
+        """How many digits are missing on the right for the decimal signs to be in one line."""
+        return 0 if self.figure is None else self.head.places - len(self.figure.fraction)
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row of a table: what it is called, and its cells."""
+
+    label: tuple[int, ...]
+    items: tuple[Item, ...]
+
+    @property
+    def text(self) -> str:
+        """``2``, ``1–2``."""
+        return "–".join(map(str, self.label))
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of the report.
+
+    Parameters
+    ----------
+    spec : TableSpec
+    axis : str
+        What a row is, ``test``; empty for a list of scalars, one a row.
+    heads : tuple of Head
+    rows : tuple of Row
+        Of a list of scalars: one row, an item for each head.
+    """
+
+    spec: TableSpec
+    axis: str
+    heads: tuple[Head, ...]
+    rows: tuple[Row, ...]
+
+    @property
+    def long(self) -> bool:
+        """Whether it needs room of its own."""
+        return len(self.rows) > LONG
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A published value beside its recomputation."""
+
+    comparison: Comparison
+    head: Head
+    published: Figure | None
+    again: Figure | None
+    distance: Figure | None
+    axis: str = ""
+
+    @property
+    def printed(self) -> Printed:
+        """The published number."""
+        return self.comparison.published.printed
+
+    @property
+    def index(self) -> str:
+        """``1–2``."""
+        return index_text(self.comparison.published.index).replace("-", "–")
+
+    @property
+    def row(self) -> str:
+        """``pair 1–2``, ``test 3``; empty for a scalar."""
+        return f"{self.axis} {self.index}" if self.index else ""
+
+    @property
+    def verdict(self) -> str:
+        """The finding in a word."""
+        return {"same": "same", "differs": "differs", "not-checkable": "no value"}[self.comparison.verdict]
+
+
+@dataclass(frozen=True)
+class Group:
+    """The published values of one place of the source."""
+
+    source: str
+    title: str
+    pairs: tuple[Pair, ...]
+
+    @property
+    def same(self) -> int:
+        """How many print the same."""
+        return sum(pair.comparison.verdict == "same" for pair in self.pairs)
+
+    @property
+    def furthest(self) -> Pair | None:
+        """The one that is furthest off, in units of its last digit."""
+        known = [pair for pair in self.pairs if pair.comparison.distance is not None]
+        return max(known, key=lambda pair: abs(pair.comparison.distance or 0), default=None)
+
+
+@dataclass(frozen=True)
+class FitUsed:
+    """What tells which of two fits a source used: the fit less the mean, published and recomputed."""
+
+    mean: Pair
+    fitted: Pair
+    published: Figure
+    log: Figure
+    lin: Figure
+    verdict: str

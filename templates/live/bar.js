@@ -1,0 +1,181 @@
+// The formula bar: what a number is, where it comes from, and what is computed from it.
+
+const bar = { name: null, index: "", open: true };
+const MOST_BUTTONS = 12;
+
+function showCell(name, index) {
+  if (!LIVE.columns[name]) return;
+  bar.name = name;
+  bar.index = index;
+  writeBar(page.look);
+}
+
+function hideCell() {
+  bar.name = null;
+  writeBar(page.look);
+}
+
+function writeBar(look) {
+  const box = byId("formula-bar"), { name, index } = bar, row = name === null ? -1 : look.trace.row(name, index);
+  box.dataset.cell = name ?? "";
+  box.dataset.index = index;
+  byId("bar-hint").hidden = row >= 0;
+  byId("bar-cell").hidden = row < 0;
+  for (const id of ["reason", "source", "put", "precedents", "dependents"]) byId(`bar-${id}`).hidden = true;
+  if (name !== null && row < 0) byId("bar-hint").textContent = `${name}[${index}] has no place in the sheet now: its test is left out or removed.`;
+  if (row >= 0) fillBar(look, name, row, index);
+  markCells(look, name, row, index);
+}
+
+function fillBar(look, name, row, index) {
+  const { trace } = look, column = LIVE.columns[name], here = trace.declared[name];
+  byId("bar-name").replaceChildren(...part(name, "symbol"), make("code", {}, trace.address(name, row)));
+  byId("bar-meaning").replaceChildren(...part(name, "meaning"));
+  byId("bar-value").replaceChildren(...fullValue(look, name, row));
+  if (!trace.isOk(name, row)) {
+    const origin = trace.culprit(name, row), itself = origin.name === name && origin.row === row;
+    fill("bar-reason", itself ? "" : "needs ", ...(itself ? [] : [cellButton(look, origin.name, origin.row), ": "]), trace.why(origin.name, origin.row));
+  }
+  if (column.given) fill("bar-source", `given, ${here.axis === null ? "in report.toml" : `in measurements.csv, test ${index}`}`);
+  else fill("bar-source", ...sourceLine(column), ...publishedMath(column, name));
+  if (column.put && trace.isOk(name, row)) fill("bar-put", ...putIn(look, name, row));
+  fillCells(look, "bar-precedents", "rests on", trace.precedents(name, row));
+  fillCells(look, "bar-dependents", "used by", trace.dependents(name, row));
+}
+
+function fill(id, ...nodes) {
+  byId(id).replaceChildren(...nodes);
+  byId(id).hidden = false;
+}
+
+// All digits, in the unit of the report; a given number as it was printed.
+function fullValue(look, name, row) {
+  const { scale, given } = LIVE.columns[name], { texts } = look.column(name);
+  const unit = given ? given.unit : null, nodes = part(name, "unit");
+  if (!look.trace.isOk(name, row)) return [make("span", { class: "error" }, CODES[look.trace.sheet.status[name][row]])];
+  const text = given ? texts[row] : repr(look.trace.sheet.value[name][row] / scale).replace(/\.0$/, "");
+  const [mantissa, power] = text.split("e");
+  const shown = (power === undefined || given ? text : `${mantissa} × 10${raised(Number(power))}`).replace("-", MINUS);
+  return unit === "1" || (!nodes.length && !unit) ? [shown] : [`${shown}\u00a0`, ...nodes];
+}
+
+function sourceLine({ equations, source }) {
+  if (!equations.length) return [`from ${source}`];
+  return equations.flatMap((label, place) => {
+    const { id, status } = LIVE.equations[label];
+    const kind = status.startsWith("proved") ? "holds" : /refuted|undecided/.test(status) ? "fails" : "stated";
+    const link = make("a", { href: `#${id}`, class: "eqref" }, label);
+    return [place ? ", solved as " : "from ", link, " ", make("span", { class: `status ${kind}` }, status)];
+  });
+}
+
+// The equation as the report prints it: a copy from its place there.
+function publishedMath({ equations }, name) {
+  const found = equations.length && byId(LIVE.equations[equations[0]].id)?.querySelector(".eq math");
+  if (!found) return [];
+  const copy = found.cloneNode(true);
+  const rows = LIVE.columns[name].put ? "" : summedRows(name);
+  return [make("span", { class: "math" }, copy), rows];
+}
+
+// Over how many rows a sum runs: its terms are too many to be put in.
+function summedRows(name) {
+  const { look } = page, column = look.trace.declared[name], counted = look.trace.sheet.counted[name] ?? {};
+  return column.sums.map((axis) => ` over ${counted[axis] ?? look.trace.sheet.layouts[axis].size} ${axis}`).join(",");
+}
+
+// The equation with the values put in, in SI.
+function putIn(look, name, row) {
+  const { trace } = look, { put, none } = LIVE.columns[name], [math] = part(name, "equation");
+  const axis = trace.declared[name].axis, layout = axis === null ? null : trace.sheet.layouts[axis];
+  const valueOf = ([of, index]) => {
+    if (of === "") return trace.sheet.layouts[index].size;
+    if (of === "#") return layout.ordinals[index][row];
+    return trace.sheet.value[of][index === null ? 0 : layout.rows[index][row]];
+  };
+  for (const place of all("mtext", math)) {
+    const found = /^@([0-9]+)@$/.exec(place.textContent);
+    if (found) place.replaceWith(...numberMath(valueOf(put[found[1]])));
+  }
+  math.setAttribute("display", "block");
+  const shown = make("span", { class: "math" }, math);
+  if (none !== undefined) return [make("span", { class: "si" }, "in SI: "), shown];
+  const value = numberMath(trace.sheet.value[name][row]).map((node) => node.textContent).join("").replace(/^\((.*)\)$/, "$1");
+  return [make("span", { class: "si" }, "in SI: "), ...part(name, "symbol"), " = ", shown, ` = ${value}`];
+}
+
+// A number for a formula: six digits, in parentheses where it would not hold together.
+function numberMath(value) {
+  const [mantissa, power] = brief(value).split("e");
+  const text = mantissa.replace("-", MINUS) + (power === undefined ? "" : `\u202f×\u202f10${raised(Number(power))}`);
+  const element = (tag, attributes, ...content) => furnished(document.createElementNS(MATHML, tag), attributes, content);
+  const number = element("mn", {}, text), close = { stretchy: "false", lspace: "0", rspace: "0" };
+  if (power === undefined && value >= 0) return [number];
+  return [element("mrow", {}, element("mo", close, "("), number, element("mo", close, ")"))];
+}
+
+// --- precedents and dependents ---------------------------------------------------------------------------
+
+function cellButton(look, name, row) {
+  const address = look.trace.address(name, row), shown = look.shownText(name, row);
+  return make("button", { type: "button", "data-goto": address, title: meaningOf(name) }, make("code", {}, address), ` ${shown}`);
+}
+
+function fillCells(look, id, says, groups) {
+  const seen = new Set(), nodes = [];
+  for (const { name, rows } of groups) {
+    const fresh = rows.filter((row) => !seen.has(`${name} ${row}`));
+    fresh.forEach((row) => seen.add(`${name} ${row}`));
+    if (fresh.length <= MOST_BUTTONS) nodes.push(...fresh.map((row) => cellButton(look, name, row)));
+    else nodes.push(make("span", { class: "many" }, make("code", {}, name), ` ${fresh.length} rows`));
+  }
+  if (nodes.length) fill(id, make("span", { class: "says" }, says), ...nodes);
+}
+
+// Where each cell stands in the page.
+function placesOf(name, index) {
+  if (!page.places) {
+    page.places = new Map();
+    for (const element of all("main [data-cell]")) {
+      const address = `${element.dataset.cell} ${element.dataset.index}`, found = page.places.get(address);
+      if (found) found.push(element);
+      else page.places.set(address, [element]);
+    }
+  }
+  return page.places.get(`${name} ${index}`) ?? [];
+}
+
+function markCells(look, name, row, index) {
+  const wanted = new Map();
+  if (row >= 0) {
+    for (const { name: other, rows } of look.trace.precedents(name, row)) {
+      if (!placesOf(other, look.trace.index(other, rows[0])).length) continue;
+      for (const one of rows) {
+        for (const element of placesOf(other, look.trace.index(other, one))) wanted.set(element, "precedent");
+      }
+    }
+    for (const element of placesOf(name, index)) wanted.set(element, "selected");
+  }
+  for (const [element, word] of page.marked) if (wanted.get(element) !== word) element.classList.remove(word);
+  for (const [element, word] of wanted) element.classList.add(word);
+  page.marked = wanted;
+}
+
+// Goes to a cell: to its place in a table if it has one.
+function goTo(address) {
+  const [, name, index = ""] = /^(\w+)(?:\[(.*)\])?$/.exec(address);
+  const selector = `main [data-cell="${CSS.escape(name)}"][data-index="${CSS.escape(index)}"]`;
+  const element = byId(cellId("cell", name, index)) ?? document.querySelector(selector);
+  if (!element) {
+    showCell(name, index);
+    return;
+  }
+  element.scrollIntoView({ block: "center", behavior: "instant" });
+  enter(element);
+}
+
+function toggleBar(open) {
+  bar.open = open;
+  byId("bar-body").hidden = !open;
+  byId("bar-toggle").setAttribute("aria-expanded", String(open));
+}

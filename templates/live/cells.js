@@ -1,0 +1,128 @@
+// One cell of the page: what it shows, and how it is written into whatever element shows it.
+
+// What the cells of a sheet look like, column by column, computed when asked for.
+class Look {
+  constructor(trace, state, issued) {
+    this.trace = trace;
+    this.state = state;
+    this.issued = issued;
+    this.tests = usedTests(state);
+    this.known = {};
+  }
+
+  // The printed texts of a given column, row by row.
+  texts(name) {
+    const axis = this.trace.declared[name].axis;
+    return axis === null ? [this.state.parameters[name]] : this.tests.map((test) => test.cells[name]);
+  }
+
+  column(name) {
+    if (this.known[name]) return this.known[name];
+    const { scale, digits, given } = LIVE.columns[name], values = this.trace.sheet.value[name];
+    if (given) {
+      const texts = this.texts(name), figures = texts.map(readFigure);
+      const places = Math.max(0, ...figures.map((figure) => figure?.fraction.length ?? 0));
+      return (this.known[name] = { texts, places, scientific: false, figure: (row) => figures[row] });
+    }
+    const form = columnForm(values, scale, digits);
+    const figure = (row) => (Number.isNaN(values[row]) ? null : rounded(values[row] / scale, digits, form.scientific));
+    return (this.known[name] = { texts: null, ...form, figure });
+  }
+
+  cell(name, row) {
+    const { texts, places, ...form } = this.column(name), figure = form.figure(row);
+    const code = CODES[this.trace.sheet.status[name][row]];
+    const index = this.trace.index(name, row), missing = figure ? places - figure.fraction.length : 0;
+    const before = this.issued && this.issued.trace.row(name, index);
+    const same = before >= 0 && this.issued && isSameCell(this, name, row, this.issued, before);
+    return {
+      name, row, index, code, ok: code === "ok", printed: texts?.[row] ?? null,
+      text: code !== "ok" ? code : figure ? figureText(figure) : texts[row],
+      data: repr(this.trace.sheet.value[name][row]),
+      pad: missing > 0 ? `p${Math.min(missing, 8)}${figure.fraction ? "" : " nopoint"}` : "p0",
+      mark: !this.issued || same ? "" : before >= 0 ? "changed" : "added",
+      before: this.issued && before >= 0 && !same ? this.issued.shownText(name, before) : "",
+    };
+  }
+
+  // The number as the report prints it, with its unit.
+  shownText(name, row) {
+    const { texts, figure } = this.column(name), shown = figure(row);
+    if (!this.trace.isOk(name, row)) return CODES[this.trace.sheet.status[name][row]];
+    const text = shown ? figureText(shown) : texts[row];
+    const unit = LIVE.columns[name].given?.unit ?? LIVE.columns[name].unit;
+    return unit === "1" ? text : `${text} ${unit}`;
+  }
+}
+
+function isSameCell(look, name, row, other, before) {
+  const a = look.trace.sheet, b = other.trace.sheet;
+  if (a.status[name][row] !== b.status[name][before]) return false;
+  if (LIVE.columns[name].given) return look.texts(name)[row] === other.texts(name)[before];
+  return look.trace.isOk(name, row) ? a.value[name][row] === b.value[name][before] : true;
+}
+
+// Whether a computed cell looks as it did: then the page is left alone.
+function isUnchanged(look, last, name, row, before) {
+  if (!last?.issued || before < 0) return false;
+  const now = look.trace.sheet, then = last.trace.sheet;
+  if (now.value[name][row] !== then.value[name][before] || now.status[name][row] || then.status[name][before]) return false;
+  const form = look.column(name), old = last.column(name);
+  return form.scientific === old.scientific && form.places === old.places;
+}
+
+// What was last written into an element.
+let written = new WeakMap();
+
+function writeCell(element, look, name, row) {
+  const cell = look.cell(name, row);
+  const key = `${cell.code} ${cell.data} ${cell.text} ${cell.printed} ${cell.pad} ${cell.mark} ${cell.before}`;
+  if (written.get(element) === key && cell.ok) return;
+  written.set(element, key);
+  const reason = cell.ok ? "" : look.trace.reason(name, row);
+  const title = [reason, cell.before && `as issued: ${cell.before}`].filter(Boolean).join("; ");
+  element.setAttribute("data-value", cell.ok ? cell.data : "");
+  element.setAttribute("data-status", cell.code);
+  if (title) element.setAttribute("title", title);
+  else element.removeAttribute("title");
+  element.classList.toggle("changed", cell.mark === "changed");
+  element.classList.toggle("added", cell.mark === "added");
+  if (element.tagName === "INPUT") writeInput(element, look, cell);
+  else if (element.tagName === "TD") writeComputed(element, look, cell);
+  else writeInText(element, cell);
+}
+
+function codeLink(look, { name, row, code }) {
+  const origin = look.trace.culprit(name, row), index = look.trace.index(origin.name, origin.row);
+  return make("a", { href: `#${cellId("why", origin.name, index)}`, tabindex: "-1" }, code);
+}
+
+function writeComputed(element, look, cell) {
+  element.classList.remove(...Array.from(element.classList).filter((word) => /^(p\d|nopoint|error)$/.test(word)));
+  element.classList.add(...(cell.ok ? cell.pad.split(" ") : ["error"]));
+  if (cell.ok) element.textContent = cell.text;
+  else element.replaceChildren(codeLink(look, cell));
+}
+
+function writeInput(element, look, cell) {
+  element.value = cell.printed;
+  element.setAttribute("size", Math.max(2, cell.printed.length));
+  const box = element.parentElement;
+  box.className = cell.ok ? cell.pad : "error";
+  box.querySelector("a.code")?.remove();
+  if (cell.ok) element.removeAttribute("aria-invalid");
+  else {
+    element.setAttribute("aria-invalid", "true");
+    const link = codeLink(look, cell);
+    link.className = "code";
+    element.after(link);
+  }
+}
+
+function writeInText(element, cell) {
+  element.textContent = cell.text;
+  element.classList.toggle("error", !cell.ok);
+  // A code has no unit.
+  const unit = element.nextElementSibling;
+  if (unit?.classList.contains("unit")) unit.hidden = !cell.ok;
+}

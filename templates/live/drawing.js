@@ -1,0 +1,126 @@
+// What every picture drawn in the page is made with: a frame, scales and ticks, texts that find room.
+// Measures are points of print, as in the pictures that were issued.
+
+const WIDTH = 453.54, INK = "#1a1a1a", LOADING = "#d55e00", UNLOADING = "#0072b2";
+const FONT = "'DejaVu Sans', Verdana, 'Noto Sans', 'Liberation Sans', Arial, sans-serif";
+
+// Round numbers between two ends: their distance is 1, 2, 2.5 or 5 times a power of ten.
+function ticks(low, high, most) {
+  const rough = (high - low) / most || 1, power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 2.5, 5, 10].find((size) => size * power >= rough * (1 - 1e-9)) * power;
+  const first = Math.ceil(low / step - 1e-9), found = [];
+  for (let n = first; n * step <= high + step * 1e-9; n++) found.push(n * step);
+  const places = Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) + (String(step / power).startsWith("2.5") ? 1 : 0);
+  return found.map((at) => ({ at, text: at.toFixed(Math.min(places, 12)).replace("-", MINUS) }));
+}
+
+// A width that is near enough to keep texts apart.
+const textWidth = (text, size) => size * Array.from(text).reduce((sum, c) => sum + (/[ijl.,:;|' ]/.test(c) ? 0.32 : /[mwMW]/.test(c) ? 0.93 : 0.61), 0);
+
+class Picture {
+  constructor(height, { x, y, xLabel, yLabel, top = 4 }) {
+    const yTicks = ticks(y[0], y[1], Math.min(9, (height - 60) / 24));
+    const left = 28 + Math.max(...yTicks.map((tick) => textWidth(tick.text, 8.5)));
+    this.frame = { left, right: WIDTH - 3, top, bottom: height - 36 };
+    this.limits = { x, y };
+    this.taken = [];
+    this.svg = draw("svg", {
+      role: "img", viewBox: `0 0 ${WIDTH} ${height}`, width: Math.round((WIDTH * 4) / 3), height: Math.round((height * 4) / 3),
+      "font-family": FONT, "font-size": "9", fill: INK, class: "picture",
+    });
+    this.svg.append(draw("rect", { width: WIDTH, height, fill: "#fff" }));
+    this.axes(ticks(x[0], x[1], 9), yTicks, xLabel, yLabel, height);
+  }
+
+  x(value) {
+    const { left, right } = this.frame, [low, high] = this.limits.x;
+    return left + ((value - low) / (high - low)) * (right - left);
+  }
+
+  y(value) {
+    const { top, bottom } = this.frame, [low, high] = this.limits.y;
+    return bottom - ((value - low) / (high - low)) * (bottom - top);
+  }
+
+  axes(xTicks, yTicks, xLabel, yLabel, height) {
+    const { left, right, top, bottom } = this.frame, lines = [], marks = [], texts = [];
+    for (const { at, text } of xTicks) {
+      const x = this.x(at).toFixed(2);
+      lines.push(`M${x} ${bottom}V${top}`);
+      marks.push(`M${x} ${bottom}v3.5`);
+      texts.push(draw("text", { x, y: bottom + 13, "text-anchor": "middle" }, text));
+    }
+    for (const { at, text } of yTicks) {
+      const y = this.y(at).toFixed(2);
+      lines.push(`M${left} ${y}H${right}`);
+      marks.push(`M${left} ${y}h-3.5`);
+      texts.push(draw("text", { x: left - 7, y: Number(y) + 3.1, "text-anchor": "end" }, text));
+    }
+    const middle = (top + bottom) / 2;
+    this.svg.append(
+      draw("path", { d: lines.join(""), stroke: "#e6e6e6", "stroke-width": 0.5 }),
+      draw("path", { d: marks.join("") + `M${left} ${top}V${bottom}H${right}`, stroke: INK, "stroke-width": 0.7, fill: "none" }),
+      draw("g", { "font-size": "8.5" }, ...texts),
+      draw("text", { x: (left + right) / 2, y: height - 7, "text-anchor": "middle" }, ...xLabel),
+      draw("text", { transform: `translate(11 ${middle}) rotate(-90)`, "text-anchor": "middle" }, ...yLabel),
+    );
+  }
+
+  // Dots as one path, each a stroke of no length with round ends.
+  dots(points, size, colour) {
+    const d = points.map(([x, y]) => `M${this.x(x).toFixed(1)} ${this.y(y).toFixed(1)}h0`).join("");
+    this.svg.append(draw("path", { d, stroke: colour, "stroke-width": size, "stroke-linecap": "round", fill: "none", class: "dots" }));
+    for (const [x, y] of points) this.avoid(this.x(x), this.y(y), 2);
+  }
+
+  line(points, colour, width, name, dashes = null) {
+    const d = points.map(([x, y], n) => `${n ? "L" : "M"}${this.x(x).toFixed(2)} ${this.y(y).toFixed(2)}`).join("");
+    const attributes = { d, stroke: colour, "stroke-width": width, fill: "none", class: name, "stroke-dasharray": dashes };
+    this.svg.append(draw("path", { ...attributes, "stroke-linejoin": "round" }));
+    for (const [x, y] of points) this.avoid(this.x(x), this.y(y), 1);
+  }
+
+  avoid(x, y, radius) {
+    this.taken.push([x - radius, y - radius, x + radius, y + radius]);
+  }
+
+  // A text at the first free of some places beside a point: [dx, dy, anchor]. Says whether there was one.
+  label(text, [atX, atY], places, { size = 9, colour = INK } = {}) {
+    const wide = textWidth(text, size), { left, right, top, bottom } = this.frame;
+    for (const [dx, dy, anchor] of places) {
+      const x = this.x(atX) + dx, y = this.y(atY) + dy;
+      const from = anchor === "end" ? x - wide : anchor === "middle" ? x - wide / 2 : x;
+      const box = [from, y - size * 0.78, from + wide, y + size * 0.12];
+      const inside = box[0] >= left && box[2] <= right && box[1] >= top && box[3] <= bottom;
+      if (!inside || this.taken.some(([a, b, c, d]) => a < box[2] && c > box[0] && b < box[3] && d > box[1])) continue;
+      this.taken.push(box);
+      if (Math.max(Math.abs(dx), Math.abs(dy)) > 16) {
+        const d = `M${x} ${y}L${this.x(atX)} ${this.y(atY)}`;
+        this.svg.append(draw("path", { d, stroke: colour, "stroke-width": 0.5 }));
+      }
+      this.svg.append(draw("text", { x: x.toFixed(1), y: y.toFixed(1), "text-anchor": anchor, "font-size": size, fill: colour }, text));
+      return true;
+    }
+    return false;
+  }
+
+  // What the marks are, above the picture: [mark, text], the mark an element around 0 0.
+  key(entries) {
+    let x = 10;
+    for (const { mark, text, plain } of entries) {
+      const group = draw("g", { transform: `translate(${x.toFixed(1)} 11)` }, mark);
+      group.append(draw("text", { x: 19, y: 3.1, "font-size": 8.5 }, ...text));
+      this.svg.append(group);
+      x += 19 + textWidth(plain, 8.5) + 16;
+    }
+  }
+}
+
+const italic = (text) => draw("tspan", { "font-style": "italic" }, text);
+const unitLabel = (unit) => (unit.includes("/") ? `(${unit})` : unit);
+
+// At most so many of the numbers 0 ... size - 1, evenly from the first to the last.
+function evenly(size, most) {
+  const count = Math.min(size, most);
+  return Array.from({ length: count }, (_, n) => (count < 2 ? 0 : Math.round((n * (size - 1)) / (count - 1))));
+}

@@ -1,0 +1,192 @@
+// The keyboard of a spreadsheet. A cell of a table has the focus; typing replaces what is in it, F2 or a
+// second click edits it in place, and until Enter or Tab nothing is computed.
+
+let editing = null; // { element, before, inPlace }
+
+const STOPS = "input, button, td[data-cell], td[data-published]";
+const gridOf = (element) => element.closest?.("table[role=grid]");
+const stopsOf = (row) => all(STOPS, row);
+const isText = (element) => element?.tagName === "INPUT" && element.hasAttribute("data-cell");
+
+function makeGrids() {
+  const tables = new Set(all("main table").filter((table) => table.querySelector("tbody :is([data-cell], [data-published])")));
+  for (const table of tables) {
+    table.setAttribute("role", "grid");
+    if (!table.querySelector("input[data-cell]")) table.setAttribute("aria-readonly", "true");
+    else for (const cell of all("tbody td[data-cell]", table)) cell.setAttribute("aria-readonly", "true");
+    table.querySelector(`tbody :is(${STOPS.replace("input", "input[data-cell]")})`)?.setAttribute("tabindex", "0");
+  }
+}
+
+// Gives a cell the focus and makes it the one that Tab comes back to.
+function enter(element) {
+  const grid = gridOf(element);
+  if (grid) {
+    for (const other of all("tbody [tabindex='0']", grid)) {
+      if (other !== element) other.setAttribute("tabindex", "-1");
+    }
+    element.setAttribute("tabindex", "0");
+  }
+  element.focus({ preventScroll: grid === null });
+  if (isText(element)) element.select();
+}
+
+const placeOf = (element) => {
+  const row = element.closest("tr");
+  return { grid: gridOf(element), row: row.sectionRowIndex, stop: stopsOf(row).indexOf(element) };
+};
+
+function moveTo({ grid, row, stop }) {
+  const rows = grid.tBodies[0].rows, there = rows[Math.max(0, Math.min(row, rows.length - 1))];
+  const stops = stopsOf(there);
+  if (stops.length) enter(stops[Math.max(0, Math.min(stop, stops.length - 1))]);
+}
+
+// --- editing ---------------------------------------------------------------------------------------------
+
+function beginEditing(element, inPlace) {
+  if (editing?.element === element) editing.inPlace ||= inPlace;
+  else editing = { element, before: element.value, inPlace };
+  element.classList.add("editing");
+}
+
+function endEditing() {
+  editing?.element.classList.remove("editing");
+  editing = null;
+}
+
+function commit() {
+  if (!editing) return;
+  const { element } = editing, text = normalised(element.value);
+  endEditing();
+  element.value = text;
+  setCell(element.dataset.cell, element.dataset.index, text);
+}
+
+function cancel() {
+  editing.element.value = editing.before;
+  const { element } = editing;
+  endEditing();
+  element.select();
+}
+
+const ARROWS = { ArrowUp: [-1, 0], ArrowDown: [1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
+
+function onGridKey(event) {
+  const element = event.target.closest(STOPS), text = isText(element), inPlace = editing?.element === element && editing.inPlace;
+  if (!element || event.altKey) return;
+  const { key, ctrlKey, metaKey, shiftKey } = event, control = ctrlKey || metaKey, here = placeOf(element);
+  const go = (place) => {
+    event.preventDefault();
+    commit();
+    moveTo({ ...here, ...place });
+  };
+  if (ARROWS[key] && !control) {
+    const [down, right] = ARROWS[key];
+    if (inPlace && (right || text)) return;
+    go({ row: here.row + down, stop: here.stop + right });
+  } else if (ARROWS[key]) {
+    const [down, right] = ARROWS[key];
+    go({ row: down ? (down > 0 ? Infinity : 0) : here.row, stop: right ? (right > 0 ? Infinity : 0) : here.stop });
+  } else if ((key === "Home" || key === "End") && !inPlace) {
+    const last = key === "End";
+    go({ row: control ? (last ? Infinity : 0) : here.row, stop: last ? Infinity : 0 });
+  } else if (key === "Enter" && text) {
+    go({ row: here.row + (shiftKey ? -1 : 1) });
+  } else if (key === "Tab" && text) {
+    const index = all("input[data-cell]", here.grid.tBodies[0]).indexOf(element) + (shiftKey ? -1 : 1);
+    commit();
+    const next = all("input[data-cell]", here.grid.tBodies[0])[index];
+    if (next) {
+      event.preventDefault();
+      enter(next);
+    }
+  } else if (key === "Escape" && editing) {
+    event.preventDefault();
+    cancel();
+  } else if (key === "F2" && text) {
+    event.preventDefault();
+    beginEditing(element, true);
+    element.setSelectionRange(element.value.length, element.value.length);
+  } else if (key === "Delete" && text && !editing) {
+    event.preventDefault();
+    beginEditing(element, false);
+    element.value = "";
+    commit();
+    enter(element);
+  }
+}
+
+function onKey(event) {
+  const { key, ctrlKey, metaKey, shiftKey } = event;
+  // While a text is being typed, its own steps are what is taken back.
+  if ((ctrlKey || metaKey) && !editing && /^[zy]$/i.test(key)) {
+    event.preventDefault();
+    if (key.toLowerCase() === "y" || shiftKey) redo();
+    else undo();
+    return;
+  }
+  if (gridOf(event.target)) onGridKey(event);
+  else if ((key === "Enter" || key === " ") && event.target.matches?.("span[data-cell]")) {
+    event.preventDefault();
+    showCell(event.target.dataset.cell, event.target.dataset.index);
+  }
+}
+
+// --- pointer and focus -----------------------------------------------------------------------------------
+
+// The first press selects a cell as a whole; one more, or one while it is typed in, puts the caret into it.
+function onPress(event) {
+  const { target, detail } = event;
+  if (isText(target)) {
+    const active = target === document.activeElement;
+    if (active && (editing || detail > 1)) beginEditing(target, true);
+    else {
+      event.preventDefault();
+      enter(target);
+    }
+    return;
+  }
+  const element = target.closest("main :is(td, span)[data-cell], td[data-published]");
+  if (!element || target.closest("a")) return;
+  if (!element.hasAttribute("tabindex")) element.setAttribute("tabindex", "-1");
+  event.preventDefault();
+  enter(element);
+}
+
+function onFocus(event) {
+  const element = event.target.closest?.("[data-cell], [data-published]");
+  if (!element || element.id === "formula-bar") return;
+  const grid = gridOf(element);
+  if (grid && element.getAttribute("tabindex") !== "0") {
+    for (const other of all("tbody [tabindex='0']", grid)) other.setAttribute("tabindex", "-1");
+    element.setAttribute("tabindex", "0");
+  }
+  const [name, index] = element.dataset.published?.split(" ") ?? [element.dataset.cell, element.dataset.index];
+  if (bar.name !== name || bar.index !== index) showCell(name, index);
+}
+
+// --- the clipboard ---------------------------------------------------------------------------------------
+
+function onPaste(event) {
+  const element = event.target, text = event.clipboardData?.getData("text/plain") ?? "";
+  if (!isText(element) || !/[\t\n\r]/.test(text.trim())) return;
+  event.preventDefault();
+  if (editing) cancel();
+  const rows = text.replace(/[\r\n]+$/, "").split(/\r\n|\r|\n/).map((line) => line.split("\t").map(normalised));
+  // A first line without any number is the head of the block.
+  if (rows.length > 1 && !rows[0].some((field) => NUMBER.test(field))) rows.shift();
+  pasteBlock(element, rows);
+}
+
+// A selection over a table is copied as text, with what stands in its inputs.
+function onCopy(event) {
+  const selection = document.getSelection(), table = gridOf(selection.anchorNode?.parentElement ?? document.body);
+  if (isText(event.target) || selection.isCollapsed || !table) return;
+  const rows = Array.from(table.rows).filter((row) => selection.containsNode(row, true));
+  if (rows.length < 2) return;
+  const content = (cell) => cell.querySelector("input[data-cell]")?.value ?? cell.textContent.trim().replace(/\s+/g, " ");
+  const lines = rows.map((row) => Array.from(row.cells).filter((cell) => cell.className !== "tools").map(content).join("\t"));
+  event.clipboardData.setData("text/plain", `${lines.join("\n")}\n`);
+  event.preventDefault();
+}

@@ -1,0 +1,103 @@
+// The inputs: what was printed, how a text becomes a number, and the states that can be undone.
+// Nothing in this file knows the page.
+
+// What people write for a number, in our notation: a decimal comma becomes a point, a real minus a hyphen.
+function normalised(text) {
+  const plain = text.replace(/[\s\u00a0\u2007\u202f'_]/g, "").replace(/[\u2212\u2013]/g, "-");
+  const comma = plain.lastIndexOf(","), point = plain.lastIndexOf(".");
+  if (comma < 0 || plain.indexOf(",") !== comma && point < 0) return plain;
+  // Of comma and point together, the last is the decimal sign and the others group digits.
+  return comma > point ? plain.replace(/\./g, "").replace(",", ".") : plain.replace(/,/g, "");
+}
+
+const LARGEST = tenTo(300);
+const isLess = (a, b) => a.n * b.d < b.n * a.d;
+const isSane = ({ n, d }) => magnitude(n) <= LARGEST * d && magnitude(n) * LARGEST >= d;
+
+// A printed text as the value of an input in SI: { value }, or { why } there is none.
+function readInput(given, text) {
+  const allowed = `it must be ${given.allowed}`;
+  if (text === "") return { why: `the datum is missing; ${allowed}` };
+  const found = NUMBER.exec(text);
+  if (!found) return { why: `“${text}” is not a number; ${allowed}` };
+  if (text.length > 100 || Math.abs(Number(found[5] ?? 0)) > 300) return { why: `“${text}” is out of all range; ${allowed}` };
+  const exact = readExact(text), scale = { n: BigInt(given.scale[0]), d: BigInt(given.scale[1]) };
+  const value = { n: exact.n * scale.n, d: exact.d * scale.d };
+  if (value.n !== 0n && !isSane(value)) return { why: `“${text}” is out of all range; ${allowed}` };
+  const { low, high, low_open, high_open, integer } = given.bounds;
+  const wrong = [
+    integer && value.n % value.d !== 0n,
+    low !== undefined && (isLess(value, readExact(low)) || (low_open && !isLess(readExact(low), value))),
+    high !== undefined && (isLess(readExact(high), value) || (high_open && !isLess(value, readExact(high)))),
+  ];
+  if (wrong.some(Boolean)) return { why: `“${text}” is not allowed; ${allowed}` };
+  return { value: toDouble(value) };
+}
+
+// --- states ----------------------------------------------------------------------------------------------
+// A state is { tests: [{ label, used, cells: { v: "2.334" } }], parameters: { beta: "1.5" } } and is never
+// changed: an edit makes a new one.
+
+const copied = (state) => structuredClone(state);
+const sameState = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+const usedTests = (state) => state.tests.filter((test) => test.used);
+
+class History {
+  constructor(issued) {
+    this.issued = issued;
+    this.states = [issued];
+    this.place = 0;
+  }
+
+  get now() {
+    return this.states[this.place];
+  }
+
+  push(state) {
+    if (sameState(state, this.now)) return false;
+    this.states.splice(this.place + 1, Infinity, state);
+    this.place += 1;
+    return true;
+  }
+
+  move(step) {
+    if (!this.states[this.place + step]) return false;
+    this.place += step;
+    return true;
+  }
+}
+
+// How many inputs differ from the report as issued.
+function differences(state, issued) {
+  const before = new Map(issued.tests.map((test) => [test.label, test]));
+  let count = before.size;
+  for (const test of state.tests) {
+    const old = before.get(test.label);
+    if (!old) {
+      count += 1;
+      continue;
+    }
+    count += (test.used !== old.used) - 1;
+    for (const name of Object.keys(test.cells)) count += test.cells[name] !== old.cells[name];
+  }
+  for (const name of Object.keys(state.parameters)) count += state.parameters[name] !== issued.parameters[name];
+  return count;
+}
+
+// --- the sheet of a state --------------------------------------------------------------------------------
+
+// Reads the inputs and computes every column: what evaluateSheet returns, with why inputs were refused.
+function computeSheet(program, columns, state) {
+  const tests = usedTests(state), labels = {}, data = {}, refused = {};
+  for (const axis of program.axes) if (axis.kind === "given") labels[axis.name] = tests.map((test) => test.label);
+  for (const { name, axis, kind } of program.columns) {
+    if (kind !== "given") continue;
+    const texts = axis === null ? [state.parameters[name]] : tests.map((test) => test.cells[name]);
+    data[name] = texts.map((text, row) => {
+      const read = readInput(columns[name].given, text);
+      if (read.why) (refused[name] ??= {})[row] = read.why;
+      return read.why ? NaN : read.value;
+    });
+  }
+  return { ...evaluateSheet(program, labels, data), refused };
+}

@@ -1,0 +1,234 @@
+// What happens after an edit, in order: a new state, the sheet, the page. And how it all begins.
+
+const page = { history: null, look: null, issued: null, tables: [], kept: [], loose: [], places: null, marked: [], hadMissing: false };
+
+function lookAt(state, issued) {
+  return new Look(new Trace(PROGRAM, LIVE.columns, computeSheet(PROGRAM, LIVE.columns, state)), state, issued);
+}
+
+const say = (sentence) => {
+  byId("live-said").textContent = sentence;
+};
+
+// --- edits -----------------------------------------------------------------------------------------------
+
+function change(edit) {
+  const state = copied(page.history.now);
+  if (edit(state) !== false && page.history.push(state)) show();
+}
+
+function setCell(name, index, text) {
+  change((state) => {
+    if (index === "") state.parameters[name] = text;
+    else state.tests.find((test) => String(test.label) === index).cells[name] = text;
+  });
+}
+
+const enough = (state) => usedTests(state).length >= 2;
+
+function useTest(label, used) {
+  change((state) => {
+    state.tests.find((test) => test.label === label).used = used;
+    if (enough(state)) return true;
+    say("Two tests are the least that a report needs.");
+    return false;
+  });
+  for (const box of all("[data-use]")) box.checked = page.history.now.tests.find((test) => String(test.label) === box.dataset.use).used;
+}
+
+function removeTest(label) {
+  change((state) => {
+    state.tests = state.tests.filter((test) => test.label !== label);
+    if (enough(state)) return true;
+    say("Two tests are the least that a report needs.");
+    return false;
+  });
+}
+
+function newTest(state) {
+  const label = Math.max(0, ...state.tests.map((test) => test.label)) + 1;
+  const test = { label, used: true, cells: Object.fromEntries(Object.keys(LIVE.units).map((name) => [name, ""])) };
+  state.tests.push(test);
+  return test;
+}
+
+function addTest() {
+  change((state) => newTest(state));
+  const table = page.tables.find((one) => one.editable);
+  const input = table.body.rows[table.body.rows.length - 1].querySelector("input[data-cell]");
+  enter(input);
+}
+
+// A block of texts from a cell on: to the right as far as there are inputs, down into new tests.
+function pasteBlock(element, rows) {
+  const { cell, index } = element.dataset, table = page.tables.find((one) => one.element === gridOf(element));
+  const names = table?.editable ? table.inputs.slice(table.inputs.indexOf(cell)) : [];
+  const scalars = table ? [] : all("input[data-cell]", gridOf(element).tBodies[0]).map((input) => input.dataset.cell);
+  change((state) => {
+    rows.forEach((fields, down) => {
+      if (!names.length) {
+        const name = scalars[scalars.indexOf(cell) + down];
+        if (name) state.parameters[name] = fields[0];
+        return;
+      }
+      const first = state.tests.findIndex((test) => String(test.label) === index);
+      const test = state.tests[first + down] ?? newTest(state);
+      fields.slice(0, names.length).forEach((text, right) => (test.cells[names[right]] = text));
+    });
+  });
+  enter(element);
+}
+
+function undo() {
+  if (page.history.move(-1)) show();
+}
+
+function redo() {
+  if (page.history.move(1)) show();
+}
+
+function reset() {
+  if (!page.history.push(copied(page.history.issued))) return;
+  hideCell();
+  show();
+}
+
+// --- showing a state -------------------------------------------------------------------------------------
+
+function show() {
+  const begin = performance.now(), before = page.look, { now, issued } = page.history;
+  const focus = document.activeElement?.closest?.("[data-cell], [data-use]");
+  page.look = lookAt(now, page.issued);
+  const edited = !sameState(now, issued);
+  document.documentElement.toggleAttribute("data-edited", edited);
+  if (edited) writePage(page.look, before);
+  else restore();
+  writeToolbar(edited);
+  writeBar(page.look);
+  if (focus && !focus.isConnected) refocus(focus);
+  announce(before, page.look);
+  document.documentElement.dataset.milliseconds = (performance.now() - begin).toFixed(2);
+}
+
+function writePage(look, last) {
+  for (const table of page.tables) table.write(look, last);
+  for (const element of page.loose) writeCell(element, look, element.dataset.cell, look.trace.row(element.dataset.cell, element.dataset.index));
+  writeCounts(look);
+  writeCounted(look);
+  writeMissing(look);
+  writePublished(look);
+  markStale();
+  writeFigures(look);
+}
+
+// The page as it was issued, character by character.
+function restore() {
+  written = new WeakMap();
+  page.places = null;
+  for (const [element, model] of page.kept) become(element, model);
+  if (!page.hadMissing) byId("missing")?.remove();
+}
+
+function refocus(element) {
+  const { cell, index, use } = element.dataset;
+  const same = cell ? document.querySelector(`main [data-cell="${CSS.escape(cell)}"][data-index="${CSS.escape(index)}"]`) : document.querySelector(`[data-use="${CSS.escape(use)}"]`);
+  if (same) enter(same);
+}
+
+function writeToolbar(edited) {
+  const { history } = page, count = differences(history.now, history.issued);
+  const differ = count === 1 ? "1 input differs" : `${count} inputs differ`;
+  byId("live-banner").textContent = edited ? `Edited: ${count ? differ : "the order of the tests differs"} from the report as issued.` : "";
+  byId("live-banner").hidden = !edited;
+  byId("live-reset").disabled = !edited;
+  byId("live-undo").disabled = history.place === 0;
+  byId("live-redo").disabled = history.place === history.states.length - 1;
+  byId("live-downloads").hidden = true;
+}
+
+// One sentence about the result, for those who cannot see it change.
+function announce(before, after) {
+  const name = LIVE.headline[0];
+  if (!name) return;
+  const then = before.shownText(name, 0), now = after.shownText(name, 0), meaning = meaningOf(name);
+  const reason = after.trace.isOk(name, 0) ? "" : ` ${after.trace.reason(name, 0)}.`;
+  const broken = after.trace.errors.length;
+  const cells = broken ? ` ${plural(broken, "cell")} without a value.` : "";
+  say(`${meaning} (${name}) ${then === now ? `is still ${now}` : `changed from ${then} to ${now}`}.${reason}${cells}`);
+}
+
+// --- the beginning ---------------------------------------------------------------------------------------
+
+function begin() {
+  const state = { tests: LIVE.tests, parameters: LIVE.parameters };
+  page.history = new History(state);
+  page.look = lookAt(state, null);
+  page.issued = page.look;
+  prepareInputs();
+  // Everything that an edit may change is kept as it is now.
+  const parts = [
+    ...all("main tbody"), ...all("main span[data-cell]").map((one) => one.closest("dd") ?? one), ...all("[data-count]"),
+    ...all("#result > p, #published > ul > li, main .note > p, #missing"),
+    ...Object.keys(LIVE.figures).map((name) => document.querySelector(`#figure-${CSS.escape(name)} .card`)).filter(Boolean),
+  ];
+  page.kept = parts.filter((part) => !parts.some((other) => other !== part && other.contains(part))).map((part) => [part, part.cloneNode(true)]);
+  page.hadMissing = byId("missing") !== null;
+  listen();
+  byId("live-dock").hidden = false;
+  writeToolbar(false);
+  writeBar(page.look);
+  toggleBar(matchMedia("(min-width: 48rem)").matches);
+  new ResizeObserver(makeRoom).observe(byId("live-dock"));
+  document.documentElement.dataset.live = "ready";
+}
+
+// What has the focus must not hide behind the bar, nor the end of the page.
+function makeRoom([entry]) {
+  const height = `${Math.ceil(entry.borderBoxSize[0].blockSize) + 12}px`;
+  document.body.style.paddingBottom = height;
+  document.documentElement.style.scrollPaddingBottom = height;
+}
+
+function prepareInputs() {
+  for (const input of all("main input[data-cell]")) {
+    input.removeAttribute("readonly");
+    for (const [name, value] of Object.entries(INPUT_ATTRIBUTES)) input.setAttribute(name, value);
+  }
+  const tables = all("main table:not(.list)").filter((table) => table.querySelector("tbody [data-cell]"));
+  page.tables = tables.map((table) => new Table(table));
+  page.tables.find(({ inputs }) => inputs.length)?.makeEditable();
+  page.loose = all("main [data-cell]").filter((cell) => !cell.closest("table:not(.list)"));
+  for (const cell of page.loose) {
+    if (cell.tagName === "SPAN") furnished(cell, { tabindex: "0", role: "button", "aria-controls": "formula-bar" }, []);
+  }
+  for (const { id, rows } of LIVE.published) {
+    rows.forEach(([cell, index], place) => (byId(id).querySelector("tbody").rows[place].cells[3].dataset.published = `${cell} ${index}`));
+  }
+  makeGrids();
+}
+
+function listen() {
+  const main = byId("main");
+  document.addEventListener("keydown", onKey);
+  document.addEventListener("focusin", onFocus);
+  document.addEventListener("copy", onCopy);
+  main.addEventListener("mousedown", onPress);
+  main.addEventListener("paste", onPaste);
+  main.addEventListener("input", (event) => isText(event.target) && beginEditing(event.target, false));
+  main.addEventListener("focusout", (event) => editing?.element === event.target && commit());
+  main.addEventListener("change", (event) => event.target.dataset.use && useTest(Number(event.target.dataset.use), event.target.checked));
+  document.addEventListener("click", (event) => {
+    const button = event.target.closest?.("button");
+    if (button) pressed(button);
+  });
+}
+
+function pressed(button) {
+  const actions = { "live-undo": undo, "live-redo": redo, "live-reset": reset, "live-save": save, "live-add": addTest };
+  if (button.dataset.goto) goTo(button.dataset.goto);
+  else if (button.dataset.remove) removeTest(Number(button.dataset.remove));
+  else if (button.id === "bar-toggle") toggleBar(!bar.open);
+  else actions[button.id]?.();
+}
+
+begin();

@@ -1,0 +1,199 @@
+// Numbers as text and back, exactly: the page reads and prints them as the program that issued it does.
+// Nothing in this file knows the page.
+
+const MINUS = "\u2212", THIN = "\u202f", RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+const NUMBER = /^([+-]?)(?:([0-9]+)\.?([0-9]*)|\.([0-9]+))(?:[eE]([+-]?[0-9]+))?$/;
+
+// --- fractions of whole numbers --------------------------------------------------------------------------
+
+const tenTo = (n) => 10n ** BigInt(n);
+const magnitude = (n) => (n < 0n ? -n : n);
+
+// A printed number as { n, d }, its exact value n/d; null if it is none.
+function readExact(text) {
+  const found = NUMBER.exec(text);
+  if (!found) return null;
+  const [, sign, whole = "", fraction = "", lone = "", power = "0"] = found;
+  const digits = BigInt(whole + fraction + lone) * (sign === "-" ? -1n : 1n);
+  const exponent = Number(power) - fraction.length - lone.length;
+  return exponent >= 0 ? { n: digits * tenTo(exponent), d: 1n } : { n: digits, d: tenTo(-exponent) };
+}
+
+// The double nearest to n/d, ties to even: a bit that says whether anything was cut off makes the rounding
+// of more than 53 bits right. Written for sizes far from the ends of the range, which inputs are held to.
+function toDouble({ n, d }) {
+  if (n === 0n) return 0;
+  const bits = (x) => x.toString(2).length;
+  const shift = 60 - bits(magnitude(n)) + bits(d);
+  const top = shift > 0 ? magnitude(n) << BigInt(shift) : magnitude(n);
+  const bottom = shift < 0 ? d << BigInt(-shift) : d;
+  const quotient = top / bottom;
+  const value = Number(quotient * bottom === top ? quotient : quotient | 1n);
+  return (n < 0n ? -value : value) * 2 ** -shift;
+}
+
+// The exact value of a double.
+function ofDouble(x) {
+  const bits = new DataView(new ArrayBuffer(8));
+  bits.setFloat64(0, x);
+  const word = bits.getBigUint64(0), power = Number((word >> 52n) & 2047n);
+  const digits = (word & ((1n << 52n) - 1n)) | (power ? 1n << 52n : 0n);
+  const n = word >> 63n ? -digits : digits, shift = (power || 1) - 1075;
+  return shift >= 0 ? { n: n << BigInt(shift), d: 1n } : { n, d: 1n << BigInt(-shift) };
+}
+
+// The whole number nearest to n/d, n >= 0, ties to even.
+function nearest(n, d) {
+  const q = n / d, rest = 2n * (n - q * d);
+  return rest > d || (rest === d && q & 1n) ? q + 1n : q;
+}
+
+// n/d with so many decimals (fewer than none: rounded to tens), ties to even.
+function fixedExact({ n, d }, places) {
+  const scaled = places >= 0 ? nearest(magnitude(n) * tenTo(places), d) : nearest(magnitude(n), d * tenTo(-places));
+  let digits = places >= 0 ? scaled.toString() : (scaled * tenTo(-places)).toString();
+  if (places > 0) {
+    digits = digits.padStart(places + 1, "0");
+    digits = `${digits.slice(0, -places)}.${digits.slice(-places)}`;
+  }
+  return (n < 0n ? "-" : "") + digits;
+}
+
+// --- digits of a double ----------------------------------------------------------------------------------
+
+// toFixed and toExponential are exact but for ties, which they round up. A tie shows: with one digit more
+// the text ends in 5 and is read as the same number.
+const mayBeTie = (longer, x) => /5(?:e|$)/.test(longer) && Number(longer) === x;
+
+function fixed(x, places) {
+  if (Math.abs(x) >= 1e21 || mayBeTie(x.toFixed(places + 1), x)) return fixedExact(ofDouble(x), places);
+  return x.toFixed(places);
+}
+
+// The significant digits of a number that is not zero, and the power of ten of the first.
+function significant(x, digits) {
+  const size = Math.abs(x);
+  if (mayBeTie(size.toExponential(digits), size)) {
+    const first = Number(size.toExponential(20).split("e")[1]), shift = digits - 1 - first;
+    const { n, d } = ofDouble(size);
+    const whole = shift >= 0 ? nearest(n * tenTo(shift), d) : nearest(n, d * tenTo(-shift));
+    const text = whole.toString(); // one digit more where 9.95 became 10.0
+    return { digits: text.slice(0, digits), first: first + text.length - digits };
+  }
+  const [mantissa, power] = size.toExponential(digits - 1).split("e");
+  return { digits: mantissa.replace(".", ""), first: Number(power) };
+}
+
+// --- numbers as they are shown ---------------------------------------------------------------------------
+
+// A number of more than six digits before the point, or with more than three zeros behind it, gets a power.
+const isLarge = (first) => first >= 6 || first < -3;
+
+function figureOf(text, exponent = null) {
+  const plain = text.replace("-", ""), [whole, fraction = ""] = plain.split(".");
+  return { negative: text[0] === "-" && /[1-9]/.test(plain), whole, fraction, exponent };
+}
+
+// A printed number as it stands; null if it is not plain digits.
+function readFigure(text) {
+  const found = /^(-?)([0-9]+)(?:\.([0-9]+))?(?:[eE]([+-]?[0-9]+))?$/.exec(text);
+  if (!found) return null;
+  const [, sign, whole, fraction = "", power] = found;
+  return { negative: sign === "-", whole, fraction, exponent: power === undefined ? null : Number(power) };
+}
+
+// A number with significant digits; `scientific` null decides by its size.
+function rounded(value, digits, scientific = null) {
+  if (value === 0) {
+    const zeros = "0".repeat(digits - 1);
+    return figureOf(digits > 1 ? `0.${zeros}` : "0", scientific ? 0 : null);
+  }
+  const short = significant(value, digits), sign = value < 0 ? "-" : "", all = short.digits;
+  if (scientific ?? isLarge(short.first)) {
+    return figureOf(sign + all[0] + (digits > 1 ? `.${all.slice(1)}` : ""), short.first);
+  }
+  if (short.first >= digits) return figureOf(fixed(value, 0));
+  const places = digits - 1 - short.first, padded = all.padStart(places + 1, "0");
+  return figureOf(sign + (places ? `${padded.slice(0, -places)}.${padded.slice(-places)}` : padded));
+}
+
+const decimals = (value, places) => figureOf(fixed(value, Math.max(0, places)));
+
+// How a column is shown: a power of ten for all its numbers or for none, and the longest fraction among them.
+// Its largest and its smallest number decide both, so that the others are printed only where they are shown.
+function columnForm(values, scale, digits) {
+  let most = 0, least = Infinity, zero = false;
+  for (const value of values) {
+    const size = Math.abs(value / scale);
+    if (size > most) most = size;
+    if (size < least && size > 0) least = size;
+    zero ||= size === 0;
+  }
+  const firsts = most ? [least, most].map((size) => significant(size, digits).first) : [0];
+  const scientific = most > 0 && firsts.some(isLarge);
+  const places = scientific ? digits - 1 : Math.max(0, digits - 1 - firsts[0], zero ? digits - 1 : 0);
+  return { scientific, places };
+}
+
+// A column in that form; NaN has no figure.
+function shownColumn(values, scale, digits) {
+  const { scientific } = columnForm(values, scale, digits);
+  return Array.from(values, (value) => (Number.isNaN(value) ? null : rounded(value / scale, digits, scientific)));
+}
+
+const raised = (n) => String(n).replace(/[0-9]/g, (digit) => RAISED[digit]).replace("-", "⁻");
+
+// For the eye: a real minus sign, thin spaces in long numbers, a written power of ten.
+function figureText({ negative, whole, fraction, exponent }) {
+  const grouped = whole.length >= 5 ? whole.replace(/\B(?=(?:[0-9]{3})+$)/g, THIN) : whole;
+  const power = exponent === null ? "" : `\u00a0×\u00a010${raised(exponent)}`;
+  return `${negative ? MINUS : ""}${grouped}${fraction && `.${fraction}`}${power}`;
+}
+
+const signedText = (figure) => {
+  const zero = !/[1-9]/.test(figure.whole + figure.fraction);
+  return figure.negative || zero ? figureText(figure) : `+${figureText(figure)}`;
+};
+
+// All digits of a double, as the issued page writes them.
+function repr(x) {
+  if (!Number.isFinite(x)) return "";
+  const [mantissa, power] = x.toExponential().split("e"), exponent = Number(power);
+  if (exponent < -4 || exponent >= 16) {
+    return `${mantissa}e${exponent < 0 ? "-" : "+"}${String(Math.abs(exponent)).padStart(2, "0")}`;
+  }
+  const plain = exponent < 0 ? x.toFixed(mantissa.replace(/[-.]/g, "").length - 1 - exponent) : String(x);
+  return plain.includes(".") ? plain : `${plain}.0`;
+}
+
+// Six significant digits without idle zeros.
+function brief(x) {
+  if (x === 0) return "0";
+  const { digits, first } = significant(x, 6), plain = digits.replace(/0+$/, ""), sign = x < 0 ? "-" : "";
+  if (first < -4 || first >= 6) {
+    const power = `${first < 0 ? "-" : "+"}${String(Math.abs(first)).padStart(2, "0")}`;
+    return `${sign}${plain[0]}${plain.length > 1 ? `.${plain.slice(1)}` : ""}e${power}`;
+  }
+  if (first < 0) return `${sign}0.${"0".repeat(-first - 1)}${plain}`;
+  const whole = plain.padEnd(first + 1, "0");
+  return sign + whole.slice(0, first + 1) + (whole.length > first + 1 ? `.${whole.slice(first + 1)}` : "");
+}
+
+// --- beside a printed number -----------------------------------------------------------------------------
+
+// Decimal places as printed: 3 for 2.940, -2 for 12e2.
+function decimalsOf(text) {
+  const [mantissa, power = "0"] = text.toLowerCase().split("e");
+  return (mantissa.split(".")[1] ?? "").length - Number(power);
+}
+
+// A double beside a printed number: printed as that is, how far off in units of its last digit, the same?
+function beside(value, text, scale) {
+  const exact = ofDouble(value), places = decimalsOf(text), printed = readExact(text);
+  const inUnit = { n: exact.n * scale.d, d: exact.d * scale.n };
+  const again = fixedExact(inUnit, places);
+  const off = { n: inUnit.n * printed.d - printed.n * inUnit.d, d: inUnit.d * printed.d };
+  const distance = places >= 0 ? { n: off.n * tenTo(places), d: off.d } : { n: off.n, d: off.d * tenTo(-places) };
+  const other = readExact(again);
+  return { again, distance: toDouble(distance), same: other.n * printed.d === printed.n * other.d };
+}

@@ -1,0 +1,75 @@
+// Published values beside their recomputation, and the sentences that count them.
+
+function compared(look, [cell, index, text, scale, differs]) {
+  const row = look.trace.row(cell, index);
+  if (row < 0 || !look.trace.isOk(cell, row)) {
+    return { again: row < 0 ? "–" : CODES[look.trace.sheet.status[cell][row]], verdict: "no value", expected: false };
+  }
+  const size = { n: BigInt(scale[0]), d: BigInt(scale[1]) };
+  const { again, distance, same } = beside(look.trace.sheet.value[cell][row], text, size);
+  return { again, distance, verdict: same ? "same" : "differs", expected: same !== differs };
+}
+
+const distanceText = (distance) => signedText(decimals(distance, Math.abs(distance) >= 9.95 ? 0 : 1));
+
+function writePublished(look) {
+  const groups = LIVE.published.map((group) => ({ ...group, found: group.rows.map((row) => compared(look, row)) }));
+  for (const { id, rows, found } of groups) {
+    const body = byId(id)?.querySelector("tbody");
+    if (!body) continue;
+    found.forEach(({ again, distance, verdict, expected }, place) => {
+      const row = body.rows[place], cells = row.cells;
+      cells[3].textContent = again;
+      cells[5].textContent = distance === undefined ? "" : distanceText(distance);
+      cells[6].textContent = verdict + (expected ? "" : ", unexpectedly");
+      row.classList.toggle("unexpected", !expected);
+      const [cell, index] = rows[place], now = look.trace.row(cell, index), before = look.issued.trace.row(cell, index);
+      const same = now >= 0 && before >= 0 && isSameCell(look, cell, now, look.issued, before);
+      cells[3].classList.toggle("changed", !same);
+    });
+    writeGroup(groups.findIndex((group) => group.id === id), rows, found);
+  }
+  writeTally(groups.flatMap((group) => group.found));
+}
+
+const comes = (count) => `${count || "none"} ${count > 1 ? "come" : "comes"}`;
+
+// The sentence under the result that counts all published values: the one that leads to their tables.
+function writeTally(found) {
+  const element = all("#result > p").find((p) => p.querySelector('a[href="#published"]'));
+  if (!element) return;
+  const count = (verdict) => found.filter((one) => one.verdict === verdict).length;
+  const differing = count("differs"), unchecked = count("no value"), surprises = found.filter((one) => !one.expected).length;
+  const parts = [`Of ${found.length} published values, ${comes(count("same"))} out as printed`];
+  if (differing) parts.push(` and ${differing} ${differing === 1 ? "differs" : "differ"}`);
+  if (unchecked) parts.push(`; ${unchecked} could not be compared`);
+  const sentences = [`${parts.join("")}. `, element.querySelector("a")];
+  if (surprises) {
+    const was = surprises === 1 ? "was" : "were";
+    sentences.push(" ", make("strong", {}, `${surprises} of these findings ${was} not expected.`));
+  }
+  element.replaceChildren(...sentences);
+}
+
+// The line that sums up one table of the source: rewritten behind its title.
+function writeGroup(place, rows, found) {
+  const element = all("#published > ul > li")[place], start = `: of ${rows.length} value`;
+  const node = element && Array.from(element.childNodes).find((one) => one.nodeType === Node.TEXT_NODE && one.data.includes(start));
+  if (!node) return;
+  while (node.nextSibling) node.nextSibling.remove();
+  const same = found.filter((one) => one.verdict === "same").length;
+  const known = found.map((one, row) => ({ ...one, index: rows[row][1], text: rows[row][2] })).filter((one) => one.distance !== undefined);
+  const furthest = known.reduce((a, b) => (a && Math.abs(a.distance) >= Math.abs(b.distance) ? a : b), null);
+  const of = furthest?.index ? ` of ${furthest.index.replaceAll("-", "–")}` : "";
+  const off = furthest && same < found.length
+    ? `; the furthest is off by ${distanceText(furthest.distance)} units, ${furthest.again} against the published ${furthest.text}${of}`
+    : "";
+  node.data = `${node.data.slice(0, node.data.indexOf(start))}${start}${rows.length === 1 ? "" : "s"} ${comes(same)} out as printed${off}.`;
+}
+
+// What no script can rewrite says that it is about the report as issued.
+function markStale() {
+  for (const note of all("main .note > p")) {
+    if (!note.querySelector(".stale")) note.prepend(make("span", { class: "stale" }, "As issued, before the edits: "));
+  }
+}

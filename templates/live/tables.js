@@ -1,0 +1,155 @@
+// The tables whose rows come and go with the tests, and the cells that stand elsewhere.
+
+// A table of one index set: a row for each of its rows, and for the tests also for those that are left out.
+class Table {
+  constructor(element) {
+    this.element = element;
+    this.body = element.tBodies[0];
+    const cells = all("[data-cell]", this.body.rows[0]);
+    this.columns = cells.map((cell) => ({ name: cell.dataset.cell, identified: cell.id !== "" }));
+    this.axis = PROGRAM.columns.find((column) => column.name === this.columns[0].name).axis;
+    this.inputs = this.columns.filter(({ name }) => LIVE.columns[name].given).map(({ name }) => name);
+    this.labels = Object.fromEntries(cells.map((cell) => [cell.dataset.cell, cell.getAttribute("aria-label")]));
+    this.editable = false;
+    for (const row of this.body.rows) row.dataset.label = row.querySelector("[data-cell]").dataset.index;
+  }
+
+  // Lets tests be left out, removed and added here.
+  makeEditable() {
+    this.editable = true;
+    this.element.tHead.rows[0].append(make("td", { class: "tools" }));
+    for (const row of this.body.rows) this.addTools(row);
+    const add = make("button", { type: "button", id: "live-add" }, "Add a test");
+    this.element.closest(".scroll").after(make("p", { class: "add" }, add));
+  }
+
+  addTools(row) {
+    const label = row.dataset.label, head = row.cells[0];
+    const use = make("input", {
+      type: "checkbox", checked: true, "data-use": label, tabindex: "-1", "aria-label": `use test ${label}`,
+    });
+    head.replaceChildren(make("label", {}, use, ` ${label}`));
+    const remove = make("button", {
+      type: "button", "data-remove": label, tabindex: "-1", "aria-label": `remove test ${label}`, title: `remove test ${label}`,
+    }, "×");
+    row.append(make("td", { class: "tools" }, remove));
+  }
+
+  newRow(index) {
+    const text = index.replaceAll("-", "–");
+    const row = make("tr", { "data-label": index }, make("th", { scope: "row", class: "row" }, text));
+    for (const { name, identified } of this.columns) {
+      const data = { id: identified ? cellId("cell", name, index) : null, "data-cell": name, "data-index": index };
+      if (!LIVE.columns[name].given) {
+        row.append(make("td", data));
+        continue;
+      }
+      const issued = this.body.rows[0]?.querySelector("[data-index]")?.dataset.index ?? "";
+      const label = (this.labels[name] ?? name).replace(`, ${issued}`, `, ${index}`);
+      row.append(make("td", {}, make("input", { ...data, ...INPUT_ATTRIBUTES, "aria-label": label })));
+    }
+    if (this.editable) this.addTools(row);
+    return row;
+  }
+
+  // The rows that the table has now, by their index.
+  wanted(look) {
+    if (this.editable) return look.state.tests.map((test) => String(test.label));
+    return look.trace.sheet.layouts[this.axis].labels.map((label) => label.join("-"));
+  }
+
+  // `last` is what the page shows now.
+  write(look, last) {
+    const wanted = this.wanted(look), rows = Array.from(this.body.rows);
+    if (wanted.length !== rows.length || rows.some((row, n) => row.dataset.label !== wanted[n])) {
+      const old = new Map(rows.map((row) => [row.dataset.label, row]));
+      this.body.replaceChildren(...wanted.map((index) => old.get(index) ?? this.newRow(index)));
+      page.places = null;
+    }
+    const scroll = this.element.closest(".scroll");
+    scroll.classList.toggle("tall", wanted.length > 30);
+    Array.from(this.body.rows).forEach((row, place) => this.writeRow(row, look, wanted[place], last));
+  }
+
+  writeRow(row, look, index, last) {
+    const test = this.editable ? look.state.tests.find((one) => String(one.label) === index) : null;
+    if (test) {
+      row.classList.toggle("excluded", !test.used);
+      row.querySelector("[data-use]").checked = test.used;
+    }
+    for (let n = 0; n < this.columns.length; n++) {
+      const { name } = this.columns[n], place = look.trace.row(name, index);
+      if (!LIVE.columns[name].given && isUnchanged(look, last, name, place, last?.trace.row(name, index) ?? -1)) continue;
+      const box = row.cells[n + 1];
+      const element = LIVE.columns[name].given ? box.querySelector("input") : box;
+      if (place >= 0) writeCell(element, look, name, place);
+      else if (test) writeLeftOut(element, test.cells[name]);
+    }
+  }
+}
+
+// A cell of a test that is left out: its printed number stays, it has no part in anything.
+function writeLeftOut(element, text) {
+  written.delete(element);
+  element.removeAttribute("title");
+  element.removeAttribute("aria-invalid");
+  element.setAttribute("data-value", "");
+  element.setAttribute("data-status", "");
+  element.classList.remove("changed", "added");
+  if (element.tagName === "INPUT") {
+    element.value = text;
+    element.parentElement.className = "p0";
+    element.parentElement.querySelector("a.code")?.remove();
+  } else {
+    element.textContent = "";
+  }
+}
+
+const INPUT_ATTRIBUTES = {
+  inputmode: "decimal", autocomplete: "off", autocapitalize: "off", spellcheck: "false", tabindex: "-1", enterkeyhint: "done",
+};
+
+// --- outside of those tables -----------------------------------------------------------------------------
+
+// How many tests, pairs ... there are, where the text says so.
+function writeCounts(look) {
+  for (const element of all("[data-count]")) element.textContent = look.trace.sheet.layouts[element.dataset.count].size;
+}
+
+// Beside the result: over how many rows it was taken, where some have no value.
+function writeCounted(look) {
+  for (const element of all(".headline [data-cell]")) {
+    const box = element.parentElement, counted = look.trace.sheet.counted[element.dataset.cell] ?? {};
+    all(".counted", box).forEach((old) => old.remove());
+    for (const [axis, rows] of Object.entries(counted)) {
+      const size = look.trace.sheet.layouts[axis].size;
+      if (rows) box.append(make("span", { class: "counted" }, `over ${rows} of ${size} ${axis}`));
+    }
+  }
+}
+
+// The list of the cells where an error begins; its section is made when there is one.
+function writeMissing(look) {
+  const { errors } = look.trace;
+  let section = byId("missing");
+  if (!section && errors.length) {
+    section = byId("live-missing").content.querySelector("section").cloneNode(true);
+    const before = byId("published") ?? byId("equations") ?? byId("reproduce");
+    if (before) before.before(section);
+    else byId("main").append(section);
+  }
+  if (!section) return;
+  section.hidden = errors.length === 0;
+  byId("missing-cells").querySelector("tbody").replaceChildren(
+    ...errors.map(({ name, row }) => {
+      const index = look.trace.index(name, row), code = CODES[look.trace.sheet.status[name][row]];
+      return make(
+        "tr", { id: cellId("why", name, index) },
+        make("th", { scope: "row", class: "row" }, ...part(name, "symbol")),
+        make("td", { class: "row" }, index.replaceAll("-", "–")),
+        make("td", { class: "words" }, make("code", {}, code)),
+        make("td", { class: "words" }, look.trace.why(name, row)),
+      );
+    }),
+  );
+}

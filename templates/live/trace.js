@@ -1,0 +1,114 @@
+// What a cell rests on, what rests on it, and where an error began. Nothing in this file knows the page.
+
+class Trace {
+  constructor(program, columns, sheet) {
+    this.columns = columns;
+    this.sheet = sheet;
+    this.declared = Object.fromEntries(program.columns.map((column) => [column.name, column]));
+    this.order = program.columns;
+    this.found = {};
+  }
+
+  size(name) {
+    return this.sheet.value[name].length;
+  }
+
+  // How a row is called: [2], [1, 2], [] for a scalar.
+  label(name, row) {
+    const axis = this.declared[name].axis;
+    return axis === null ? [] : this.sheet.layouts[axis].labels[row];
+  }
+
+  index(name, row) {
+    return this.label(name, row).join("-");
+  }
+
+  address(name, row) {
+    const index = this.index(name, row);
+    return index ? `${name}[${index}]` : name;
+  }
+
+  // The row of an index such as "1-2"; -1 if there is none.
+  row(name, index) {
+    const axis = this.declared[name]?.axis;
+    if (axis === undefined) return -1;
+    if (axis === null) return index === "" ? 0 : -1;
+    this.found[axis] ??= new Map(this.sheet.layouts[axis].labels.map((label, row) => [label.join("-"), row]));
+    return this.found[axis].get(index) ?? -1;
+  }
+
+  isOk(name, row) {
+    return this.sheet.status[name][row] === STATUS.OK;
+  }
+
+  // The cells that a cell is computed from: for each name in its rule the rows that it stands for.
+  precedents(name, row) {
+    const column = this.declared[name];
+    return column.refs.map(([other, index, scope]) => {
+      if (index === null) return { name: other, rows: [0], summed: false };
+      const layout = this.sheet.layouts[scope], named = layout.rows[index];
+      if (scope === column.axis) return { name: other, rows: [named[row]], summed: false };
+      return { name: other, rows: Array.from(named), summed: true };
+    });
+  }
+
+  // The cells that are computed from a cell directly.
+  dependents(name, row) {
+    const found = [];
+    for (const column of this.order) {
+      const rows = new Set();
+      for (const [other, index, scope] of column.refs) {
+        if (other !== name) continue;
+        const own = scope === column.axis && index !== null, all = this.size(column.name);
+        const named = index === null ? null : this.sheet.layouts[scope].rows[index];
+        if (!own) for (let n = 0; n < all && (named === null || named.includes(row)); n++) rows.add(n);
+        else for (let n = 0; n < all; n++) if (named[n] === row) rows.add(n);
+      }
+      if (rows.size) found.push({ name: column.name, rows: [...rows].sort((a, b) => a - b) });
+    }
+    return found;
+  }
+
+  // The cell where an error began: the first precedent in error, followed to its end.
+  culprit(name, row) {
+    for (const { name: other, rows } of this.precedents(name, row)) {
+      if (rows.length && !this.isOk(other, rows[0])) return this.culprit(other, rows[0]);
+    }
+    return { name, row };
+  }
+
+  // Why a cell where an error begins has no value.
+  why(name, row) {
+    const { source, none, two, requires } = this.columns[name], status = this.sheet.status[name][row];
+    if (status === STATUS.INPUT) return this.sheet.refused[name]?.[row] ?? "the datum is missing or invalid";
+    if (status === STATUS.NOROOT) return `${source} has no root here: ${none}`;
+    if (status === STATUS.TWOROOTS) {
+      const roots = Array.from(this.sheet.roots[name]?.[row] ?? [], brief).join(" and ");
+      return `${source} has more than one root here: ${roots ? `${roots} (${two})` : two}`;
+    }
+    return `outside the domain of ${source}${requires ? `: ${requires}` : ""}`;
+  }
+
+  // The sentence that a cell without a value shows.
+  reason(name, row) {
+    const code = CODES[this.sheet.status[name][row]], origin = this.culprit(name, row), here = this.address(name, row);
+    const why = this.why(origin.name, origin.row);
+    const itself = origin.name === name && origin.row === row;
+    return itself ? `${code} ${here}: ${why}` : `${code} ${here} needs ${this.address(origin.name, origin.row)}: ${why}`;
+  }
+
+  // All cells where an error begins.
+  get errors() {
+    if (this.begun) return this.begun;
+    this.begun = [];
+    for (const { name } of this.order) {
+      const codes = this.sheet.status[name];
+      for (let row = 0; row < codes.length; row++) {
+        if (codes[row] === STATUS.OK) continue;
+        const origin = this.culprit(name, row);
+        if (origin.name === name && origin.row === row) this.begun.push(origin);
+      }
+    }
+    return this.begun;
+  }
+}

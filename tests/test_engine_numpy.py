@@ -1,0 +1,310 @@
+"""The NumPy engine: what it prints, scopes of sums, batches, and what it refuses."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sympy import (
+    And,
+    Expr,
+    Function,
+    Integer,
+    Max,
+    Min,
+    Ne,
+    Or,
+    Piecewise,
+    Rational,
+    Sum,
+    Symbol,
+    exp,
+    log,
+    oo,
+    pi,
+    sqrt,
+)
+
+from loopsheet.derivations.equation import Equation
+from loopsheet.report.engines import exact
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.engines.numpy import Program, kernel
+from loopsheet.report.engines.numpy_code import Printer
+from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Sheet, SheetError
+from loopsheet.report.values import Status, Values
+from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
+
+x, y, z = (Symbol(name, positive=True) for name in "xyz")
+
+
+# ----------------------------------------------------------------------------------------- printing
+@pytest.mark.parametrize(
+    ("expression", "code"),
+    [
+        (x**2, "(x*x)"),
+        (x**3, "(x*x*x)"),
+        ((x + y) ** 3, "(x + y)**3"),
+        (x**-1, "(1/x)"),
+        (x**-2, "(1/(x*x))"),
+        (x / y**2, "x/(y*y)"),
+        (x**y, "x**y"),
+        (sqrt(x), "numpy.sqrt(x)"),
+        (x * pi / 6, "(1/6)*numpy.pi*x"),
+        (exp(x) + log(y), "numpy.exp(x) + numpy.log(y)"),
+        (Max(x, y, z), "numpy.maximum(numpy.maximum(x, y), z)"),
+        (Min(x, y), "numpy.minimum(x, y)"),
+        (Or(Ne(x, y), Ne(y, z)), "numpy.logical_or(numpy.not_equal(x, y), numpy.not_equal(y, z))"),
+        (And(x > y, y > z), "numpy.logical_and(numpy.greater(x, y), numpy.greater(y, z))"),
+        (Piecewise((x, x > y), (y, True)), "numpy.where(numpy.greater(x, y), x, y)"),
+        (Piecewise((x, x > y)), "numpy.where(numpy.greater(x, y), x, numpy.nan)"),
+        (
+            Piecewise((x, x > 2), (y, x > 1), (z, True)),
+            "numpy.where(numpy.greater(x, 2), x, numpy.where(numpy.greater(x, 1), y, z))",
+        ),
+        (Rational(1, 3) * x, "(1/3)*x"),
+        (Integer(2) * oo, "numpy.inf"),
+    ],
+)
+def test_an_expression_is_printed_as(expression: Expr, code: str) -> None:
+    assert Printer().doprint(expression) == code
+
+
+def test_a_kernel_is_called_with_its_cells_in_the_order_of_their_names() -> None:
+    a, c = Column("a", ROWS, Given()), Column("c", None, Given())
+    found = kernel([a[k] * c.symbol, Sum(a[k], (k, 1, n)) + c.symbol], {k: ROWS})
+    assert [str(cell) for cell in found.arguments] == ["a[k]", "a[k]", "c"]
+    assert [reference.over for reference in found.references] == [None, ROWS, None]
+    assert found.source == (
+        "def kernel(a_of_k, a_of_k_, c, total_rows):\n    return (a_of_k*c, c + total_rows(a_of_k_),)"
+    )
+    own, total = found.run(np.array([1.0, 2.0]), np.array([1.0, 2.0]), 3.0, np.sum)
+    assert (own.tolist(), total) == ([3.0, 6.0], 6.0)
+
+
+def test_common_parts_are_computed_once() -> None:
+    t_0 = Symbol("t_0", positive=True)
+    found = kernel([exp(x + y) * t_0, exp(x + y) + 1], {})
+    assert found.source.count("numpy.exp") == 1
+    assert found.run(1.0, 0.5, 0.25)[0] == np.exp(0.75) * 1.0
+
+
+def test_what_numpy_has_no_word_for_is_refused() -> None:
+    with pytest.raises(SheetError, match=r"^NumPy cannot compute this: .*unheard"):
+        kernel([Function("unheard")(x)], {})
+
+
+# ------------------------------------------------------------------------------------------- scopes
+def whole(name: str) -> Symbol:
+    return Symbol(name, integer=True, positive=True)
+
+
+k, i, j, p, q, s = (whole(name) for name in "kijpqs")
+n, n_pairs, n_points = whole("n"), whole("n_pairs"), whole("n_points")
+ROWS = Axis("rows", k, n)
+PAIRS = PairAxis("pairs", p, n_pairs, of=ROWS, first=i, second=j)
+POINTS = RepeatAxis("points", q, n_points, of=PAIRS, step=s, count="count")
+a, w, count = Column("a", ROWS, Given()), Column("w", None, Given()), Column("count", None, Given())
+
+
+def formula(name: str, expression: Expr, axis: Axis | None = None, positive: bool = False) -> Column:
+    equation = Equation("(1)", (Symbol(name), expression), "")
+    return Column(name, axis, Formula(equation), positive=positive)
+
+
+gap = formula("gap", a[j] - a[i], PAIRS)
+SCOPES: dict[str, tuple[Expr, Axis | None, Any]] = {
+    # On the points a pair's cell is its own pair's; in a sum over the pairs it is each in turn.
+    "own and summed": (
+        gap[p] / Sum(gap[p], (p, 1, n_pairs)),
+        POINTS,
+        lambda A, G, W: np.repeat(G, 2) / G.sum(),
+    ),
+    "own in a sum": (a[k] - Sum(a[k], (k, 1, n)) / n, ROWS, lambda A, G, W: A - A.mean()),
+    "a constant in a sum": (Sum(w.symbol, (k, 1, n)), None, lambda A, G, W: [len(A) * W]),
+    "a number in a sum": (Sum(2, (k, 1, n)), None, lambda A, G, W: [2 * len(A)]),
+    "a sum in a sum": (
+        Sum(a[k] * Sum(gap[p] ** 2, (p, 1, n_pairs)), (k, 1, n)),
+        None,
+        lambda A, G, W: [A.sum() * (G**2).sum()],
+    ),
+    "members in a sum": (Sum(a[i] * a[j], (p, 1, n_pairs)), None, lambda A, G, W: [2 * 3 + 2 * 7 + 3 * 7]),
+    "a running number": (
+        s * w.symbol + gap[p],
+        POINTS,
+        lambda A, G, W: np.repeat(G, 2) + W * np.tile([1, 2], 3),
+    ),
+    "a running number in a sum": (Sum(s * gap[p], (q, 1, n_points)), None, lambda A, G, W: [3 * G.sum()]),
+    "a size without a sum": (gap[p] / n_pairs, PAIRS, lambda A, G, W: G / 3),
+    "a scalar on an axis": (w.symbol + 0 * w.symbol, PAIRS, lambda A, G, W: [W] * 3),
+    "a number on an axis": (Integer(4), PAIRS, lambda A, G, W: [4] * 3),
+}
+
+
+@pytest.mark.parametrize("case", SCOPES)
+def test_both_engines_know_which_row_is_meant(case: str) -> None:
+    expression, axis, expected = SCOPES[case]
+    used = formula("used", s + 0 * gap[p], POINTS)
+    sheet = Sheet((a, w, count, gap, used, formula("f", expression, axis)))
+    data: dict[str, Any] = {"a": [2.0, 3.0, 7.0], "w": 0.5, "count": 2}
+    values = engine.evaluate(sheet, {"rows": [1, 2, 3]}, data)
+    A = np.array(data["a"])
+    want = np.asarray(expected(A, np.array([1.0, 5.0, 4.0]), 0.5), dtype=float)
+    np.testing.assert_allclose(values.value["f"], want, rtol=1e-15)
+    judged = exact.evaluate(sheet, {"rows": [1, 2, 3]}, data)
+    np.testing.assert_allclose([float(value) for value in judged.value["f"]], want, rtol=1e-15)
+
+
+def test_columns_may_be_called_as_the_program_calls_its_own() -> None:
+    names = ("numpy", "t_0", "total_rows", "kernel", "a_of_k")
+    scalars = [Column(name, None, Given()) for name in names]
+    product = sum((column.symbol for column in scalars), Integer(0))
+    sheet = Sheet((a, *scalars, formula("f", (product + a[k]) * (product + Sum(a[k], (k, 1, n))), ROWS)))
+    values = engine.evaluate(sheet, {"rows": [1, 2]}, {"a": [1.0, 2.0], **dict.fromkeys(names, 1.0)})
+    assert values.value["f"].tolist() == [6 * 8, 7 * 8]
+
+
+# ------------------------------------------------------------------------------------------ batches
+SHEET = soft_impact(frozenset({"ball_diameter", "ball_density", "target_mass"}))
+PROGRAM = Program.of(SHEET)
+PAPER = {
+    "v": np.array([2.334, 2.940, 4.089, 4.504, 4.993]),
+    "e": np.array([0.530, 0.512, 0.479, 0.467, 0.453]),
+    "x_p": np.array([23.5, 29.7, 41.6, 45.97, 51.03]) * 1e-6,
+}
+PARAMETERS = {
+    "ball_diameter": 0.0127,
+    "ball_density": 7800.0,
+    "target_mass": 3.0,
+    "beta": 1.5,
+    "points_per_pair": 7,
+}
+TESTS = {"tests": [1, 2, 3, 4, 5]}
+
+
+def run(data: Mapping[str, Any]) -> Values:
+    return engine.evaluate(SHEET, TESTS, {**PAPER, **PARAMETERS, **data}, PROGRAM)
+
+
+def noisy(shape: tuple[int, ...], seed: int, noise: float = 0.05) -> dict[str, Any]:
+    """Campaigns with noise, so large that pairs without a root and with two are among them, and lost data."""
+    rng = np.random.default_rng(seed)
+    data = {name: values * rng.normal(1, noise, (*shape, 5)) for name, values in PAPER.items()}
+    data["e"] = np.clip(data["e"], 0, 1)
+    data["x_p"][rng.random((*shape, 5)) < 0.02] = np.nan
+    data["beta"] = rng.uniform(1, 2.5, (*shape, 1))
+    return data
+
+
+@pytest.mark.parametrize("shape", [(40,), (3, 7), (1,), (2, 1, 3)])
+def test_a_batch_is_the_same_as_one_by_one_bit_for_bit(shape: tuple[int, ...]) -> None:
+    data = noisy(shape, seed=len(shape))
+    together = run(data)
+    codes = set()
+    for place in np.ndindex(*shape):
+        alone = run({name: values[place] for name, values in data.items()})
+        for column in SHEET.columns:
+            name = column.name
+            many = np.broadcast_to(together.value[name], (*shape, alone.value[name].shape[-1]))
+            status = np.broadcast_to(together.status[name], many.shape)
+            np.testing.assert_array_equal(many[place], alone.value[name], err_msg=name)
+            np.testing.assert_array_equal(status[place], alone.status[name], err_msg=name)
+            codes |= set(status[place].tolist())
+    if np.prod(shape) >= 20:
+        assert codes == set(Status)
+
+
+def test_only_what_rests_on_a_batch_has_one() -> None:
+    values = run({"beta": np.array([[1.25], [1.5], [2.0]])})
+    assert values.value["m_red"].shape == (1,)
+    assert values.value["alpha"].shape == (3, 10)
+    assert values.value["alpha_log"].shape == (3, 1)
+    assert values.value["v"].shape == (5,)
+
+
+def test_a_parameter_may_be_a_batch_against_measurements_of_another() -> None:
+    rng = np.random.default_rng(5)
+    v = PAPER["v"] * rng.normal(1, 0.01, (4, 1, 5))
+    values = run({"v": v, "beta": np.array([[1.25], [1.5]])})
+    assert values.value["alpha"].shape == (4, 2, 10)
+    one = run({"v": v[2, 0], "beta": 1.5})
+    np.testing.assert_array_equal(values.value["alpha"][2, 1], one.value["alpha"])
+    np.testing.assert_array_equal(values.value["alpha_lin"][2, 1], one.value["alpha_lin"])
+
+
+def test_sums_leave_out_what_is_in_error_in_each_element_of_a_batch() -> None:
+    x_p = np.tile(PAPER["x_p"], (3, 1))
+    x_p[1, 4] = np.nan
+    x_p[2, 1:] = np.nan
+    values = run({"x_p": x_p})
+    alpha = values.value["alpha"]
+    without_last = [0, 1, 2, 4, 5, 7]
+    np.testing.assert_allclose(
+        values.value["alpha_mean"][:2, 0], [alpha[0].mean(), alpha[0][without_last].mean()]
+    )
+    assert values.status["alpha_mean"][:, 0].tolist() == [Status.OK, Status.OK, Status.INPUT]
+    assert values.status["alpha_lin"][:, 0].tolist() == [Status.OK, Status.OK, Status.INPUT]
+
+
+def test_the_blocks_in_which_roots_are_sought_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    data = noisy((60,), seed=9)
+    whole_batch = run(data)
+    rows = {"tests": list(range(1, 31))}
+    rng = np.random.default_rng(2)
+    long = {
+        "v": np.sort(rng.uniform(1, 6, 30)),
+        "e": rng.uniform(0.45, 0.6, 30),
+        "x_p": np.sort(rng.uniform(1e-5, 6e-5, 30)),
+    }
+    long_campaign = engine.evaluate(SHEET, rows, {**PARAMETERS, **long}, PROGRAM)
+    monkeypatch.setattr(engine, "BLOCK", 37)
+    blocks = run(data)
+    small = engine.evaluate(SHEET, rows, {**PARAMETERS, **long}, PROGRAM)
+    np.testing.assert_array_equal(whole_batch.value["alpha"], blocks.value["alpha"])
+    np.testing.assert_array_equal(long_campaign.value["alpha"], small.value["alpha"])
+    assert long_campaign.roots == small.roots
+    assert long_campaign.roots["alpha"]
+
+
+# --------------------------------------------------------------------------------- wrong or odd data
+def test_a_column_must_have_the_rows_of_its_axis() -> None:
+    with pytest.raises(ValueError, match=r"^v has 4 rows, not 5: the last dimension is the rows$"):
+        run({"v": [1.0, 2.0, 3.0, 4.0]})
+    with pytest.raises(ValueError, match=r"^beta has 2 rows, not 1: the last dimension is the rows$"):
+        run({"beta": [1.0, 2.0]})
+
+
+@pytest.mark.parametrize("number", [2.5, np.nan, np.inf])
+def test_a_count_must_be_one_whole_number(number: float) -> None:
+    with pytest.raises(ValueError, match=r"^points_per_pair must be one whole number of at least 1, not "):
+        run({"points_per_pair": number})
+    with pytest.raises(ValueError, match=r"not 2\.0, 3\.0$"):
+        run({"points_per_pair": [[2], [3]]})
+
+
+numbers = st.one_of(
+    st.floats(1e-3, 1e3),
+    st.sampled_from([0.0, -1.0, 1.0, 1e-300, 1e300, 5e-324, 1.7e308, float("nan"), float("inf")]),
+)
+
+
+@settings(derandomize=True, max_examples=150)
+@given(st.lists(st.tuples(numbers, numbers, numbers), min_size=2, max_size=4), numbers)
+def test_whatever_the_data_nothing_is_ok_without_a_number_and_nothing_warns(
+    rows: list[tuple[float, float, float]], beta: float
+) -> None:
+    v, e, x_p = zip(*rows, strict=True)
+    data = {**PARAMETERS, "v": v, "e": e, "x_p": x_p, "beta": beta}
+    values = engine.evaluate(SHEET, {"tests": range(1, len(rows) + 1)}, data, PROGRAM)
+    for name, status in values.status.items():
+        assert (np.isfinite(values.value[name]) == (status == Status.OK)).all(), name
+        if SHEET[name].positive and isinstance(SHEET[name].rule, Formula):
+            assert (values.value[name][status == Status.OK] > 0).all(), name
+    for cell in values.errors():
+        assert cell.why
+
+
+def test_the_program_can_be_read() -> None:
+    assert "# alpha_mean\ndef kernel(alpha_of_p, n_pairs, total_pairs):" in PROGRAM.source
+    assert "# alpha\n# fixed\ndef kernel(" in PROGRAM.source

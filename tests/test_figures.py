@@ -1,0 +1,297 @@
+"""The drawings: the same bytes everywhere, nothing clipped or overlapping, small, and true to the report."""
+
+import hashlib
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from functools import cache
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
+from matplotlib.text import Text
+from matplotlib.transforms import Bbox
+
+from loopsheet.report.build import PAPER, compute
+from loopsheet.report.result import Report
+from loopsheet.report.views import figures
+from loopsheet.report.views.drawing import evenly
+from loopsheet.report.workbooks.soft_impact import WORKBOOK
+
+CAMPAIGNS = ("paper", "2", "3", "10", "40", "in error", "no pair", "falling", "equal")
+DRAWINGS = tuple(figures.NAMES)
+
+TOML = """
+title = "synthetic"
+workbook = "soft_impact"
+[parameters]
+ball_diameter = "12.7 mm"
+ball_density = "7800 kg/m^3"
+[measurements]
+file = "measurements.csv"
+"""
+
+
+def rows_of(campaign: str) -> list[tuple[float, float, float]]:
+    """Speed in m/s, restitution coefficient and imprint depth in um of each test."""
+    table_1 = [
+        (2.334, 0.53, 23.5),
+        (2.94, 0.512, 29.7),
+        (4.089, 0.479, 41.6),
+        (4.504, 0.467, 45.97),
+        (4.993, 0.453, 51.03),
+    ]
+    match campaign:
+        case "in error":  # the second imprint is shallower than the first, the last is missing its root too
+            return [(2.334, 0.53, 30.0), *table_1[1:4], (4.993, 0.453, 45.0)]
+        case "no pair":
+            return [(2.0, 0.5, 30.0), (3.0, 0.5, 20.0)]
+        case "falling":
+            return [*table_1[:4], (2.4965, 0.453, 51.03)]
+        case "equal":  # nearly one speed: the axis must not fall back on an offset
+            return [(3.0001, 0.5, 30.0001), (3.0002, 0.5, 30.0015), (3.0003, 0.5, 30.003)]
+    tests = int(campaign)
+    noise = np.random.default_rng(tests).standard_normal((3, tests))
+    v = np.linspace(2.3, 5.0, tests)
+    e = 0.55 - 0.04 * (v - 2.3)
+    x_m = (2.31 * 8.366e-3 * v**2 / 2 / 1.1e9) ** (1 / 2.31)
+    x_p = x_m * (1 - 2.5 / 2.31 * e**2) * 1e6
+    given = v * (1 + 0.001 * noise[0]), e * (1 + 0.003 * noise[1]), x_p * (1 + 0.01 * noise[2])
+    return [(float(a), float(b), float(c)) for a, b, c in zip(*given, strict=True)]
+
+
+@pytest.fixture(scope="session")
+def report_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Report]:
+    @cache
+    def report(campaign: str, depth: str = "um", scale: float = 1.0) -> Report:
+        if campaign == "paper":
+            return compute(PAPER, prove=False)
+        folder = tmp_path_factory.mktemp("campaign")
+        lines = [f"test,v [m/s],e [1],x_p [{depth}]"]
+        lines += [
+            f"{n},{v:.6g},{e:.4g},{x * scale:.6g}" for n, (v, e, x) in enumerate(rows_of(campaign), start=1)
+        ]
+        (folder / "measurements.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+        (folder / "report.toml").write_text(TOML, encoding="utf-8")
+        return compute(folder, prove=False)
+
+    return report
+
+
+def texts_of(figure: Figure) -> list[tuple[str, Bbox]]:
+    """Every text that is seen, with its place."""
+    renderer = FigureCanvasAgg(figure).get_renderer()  # type: ignore[no-untyped-call]
+    (axes,) = figure.axes
+    ticks: set[Text] = set()
+    seen: list[Text] = []
+    for axis in (axes.xaxis, axes.yaxis):
+        assert isinstance(axis, Axis)
+        low, high = sorted(axis.get_view_interval())
+        for tick in axis.get_major_ticks():
+            ticks |= {tick.label1, tick.label2}
+            if axes.axison and low <= tick.get_loc() <= high:
+                seen.append(tick.label1)
+    seen += [text for text in figure.findobj(Text) if text not in ticks and text.get_visible()]
+    # An annotation's own extent would include the line that leads to it.
+    boxes = ((text.get_text(), Text.get_window_extent(text, renderer)) for text in seen if text.get_text())
+    hidden = {id(axes.xaxis.label), id(axes.yaxis.label)} if not axes.axison else set()
+    shown = [id(text) for text in seen if text.get_text()]
+    return [pair for pair, which in zip(boxes, shown, strict=True) if which not in hidden]
+
+
+# ------------------------------------------------------------------------------- every campaign draws
+
+
+@pytest.mark.parametrize("name", DRAWINGS)
+@pytest.mark.parametrize("campaign", CAMPAIGNS)
+def test_every_drawing_draws_as_svg_and_pdf(
+    report_of: Callable[..., Report], campaign: str, name: str
+) -> None:
+    report = report_of(campaign)
+    svg = figures.svg(report, name)
+    root = ElementTree.fromstring(svg)
+    assert root.get("width") == f"{16 / 2.54 * 72:.6f}pt"
+    assert len(svg) < 65_000
+    assert "<text" not in svg  # outlines: an image may load no font
+    assert set(re.findall(r'https?://[^"]*', svg)) <= {
+        "http://www.w3.org/2000/svg",
+        "http://www.w3.org/1999/xlink",
+    }
+    pdf = figures.pdf(report, name)
+    assert pdf.startswith(b"%PDF-")
+    assert len(pdf) < 65_000
+
+
+@pytest.mark.parametrize("name", DRAWINGS)
+@pytest.mark.parametrize("campaign", CAMPAIGNS)
+def test_no_text_overlaps_another_or_leaves_the_page(
+    report_of: Callable[..., Report], campaign: str, name: str
+) -> None:
+    figure = figures.draw(report_of(campaign), name)
+    texts = texts_of(figure)
+    assert texts
+    for text, box in texts:
+        assert box.x0 >= 0, text
+        assert box.y0 >= 0, text
+        assert box.x1 <= figure.bbox.x1, text
+        assert box.y1 <= figure.bbox.y1, text
+    for (one, its), (other, others) in combinations(texts, 2):
+        assert not its.overlaps(others), f"{one!r} overlaps {other!r}"
+
+
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_no_letter_is_smaller_than_8_points(report_of: Callable[..., Report], name: str) -> None:
+    figure = figures.draw(report_of("paper"), name)
+    assert figure.get_size_inches()[0] == pytest.approx(16 / 2.54)
+    assert min(float(text.get_fontsize()) for text in figure.findobj(Text)) >= 8
+
+
+def test_a_drawing_that_is_not_there_is_told() -> None:
+    with pytest.raises(KeyError, match="'loop'; there are hysteresis, lankarani, loops, alpha_pairs"):
+        figures.draw(None, "loop")  # type: ignore[arg-type]
+
+
+def test_every_figure_of_the_workbook_has_its_drawing() -> None:
+    assert {figure.draw for figure in WORKBOOK.figures} <= set(figures.NAMES)
+
+
+# ------------------------------------------------------------------------------------------ same bytes
+
+DIGEST = """
+import hashlib
+from loopsheet.report.build import PAPER, compute
+from loopsheet.report.views import figures
+import sys
+report = compute(PAPER, prove=False)
+for name in figures.NAMES:
+    svg, pdf = figures.svg(report, name).encode(), figures.pdf(report, name)
+    print(name, hashlib.sha256(svg).hexdigest(), hashlib.sha256(pdf).hexdigest())
+print("pyplot", "matplotlib.pyplot" in sys.modules)
+"""
+
+
+def test_same_bytes_in_another_process_time_zone_and_with_other_settings(
+    report_of: Callable[..., Report], tmp_path: Path
+) -> None:
+    settings = tmp_path / "matplotlibrc"
+    settings.write_text("font.size: 21\nlines.linewidth: 7\nsvg.fonttype: none\nsavefig.transparent: True\n")
+    report = report_of("paper")
+    expected = ["pyplot False"]
+    for name in reversed(figures.NAMES):
+        svg, pdf = figures.svg(report, name).encode(), figures.pdf(report, name)
+        expected.insert(0, f"{name} {hashlib.sha256(svg).hexdigest()} {hashlib.sha256(pdf).hexdigest()}")
+    for change in (
+        {"PYTHONHASHSEED": "1", "TZ": "Asia/Tokyo"},
+        {"PYTHONHASHSEED": "2", "MATPLOTLIBRC": str(settings), "LC_ALL": "C"},
+    ):
+        run = subprocess.run(
+            [sys.executable, "-W", "error", "-c", DIGEST],
+            capture_output=True, text=True, check=False, env={**os.environ, **change},
+        )  # fmt: skip
+        assert run.returncode == 0, run.stderr
+        assert run.stdout.splitlines() == expected
+        assert run.stderr == ""
+
+
+def test_a_drawing_leaves_the_settings_of_matplotlib_alone(report_of: Callable[..., Report]) -> None:
+    import matplotlib
+
+    before = dict(matplotlib.rcParams)
+    figures.svg(report_of("paper"), "loops")
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_matplotlib_loads_when_something_is_drawn() -> None:
+    code = "import sys, loopsheet.report.views.figures; print('matplotlib' in sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == ["False"]
+
+
+# ----------------------------------------------------------------------------------- what is to be seen
+
+
+def words(figure: Figure) -> list[str]:
+    return [text for text, _ in texts_of(figure)]
+
+
+def test_every_test_and_every_pair_of_the_paper_is_named(report_of: Callable[..., Report]) -> None:
+    report = report_of("paper")
+    loops = words(figures.draw(report, "loops"))
+    assert {"1", "2", "3", "4", "5", "approach $x$ / µm", "force $F$ / kN", "points of 10 pairs"} <= set(
+        loops
+    )
+    assert r"compression fitted to them, $\alpha$ = 1.302" in loops
+    pairs = words(figures.draw(report, "alpha_pairs"))
+    assert {f"{i}–{j}" for i, j in combinations(range(1, 6), 2)} | {"mean 1.303"} <= set(pairs)
+
+
+def test_the_lines_are_the_reports_curves(report_of: Callable[..., Report]) -> None:
+    report = report_of("paper")
+    (axes,) = figures.draw(report, "loops").axes
+    curves = {(c.role, c.label): c for c in report.curves if c.figure == "loops"}
+    *ways, fit = axes.lines
+    assert len(ways) == 5
+    for n, line in enumerate(ways, start=1):
+        curve = curves["restitution", str(n)]
+        some = evenly(len(curve.x), np.size(line.get_xdata()))
+        np.testing.assert_array_equal(line.get_xdata(), curve.x[some] / 1e-6)
+        np.testing.assert_array_equal(line.get_ydata(), curve.y[some] / 1e3)
+    np.testing.assert_array_equal(fit.get_xdata(), curves["compression", ""].x / 1e-6)
+    (points,) = (a for a in axes.get_children() if isinstance(a, PathPatch))
+    assert np.shape(points.get_path().vertices) == (2 * 500, 2)  # none of the paper's points is left out
+
+
+def test_the_depth_is_shown_in_the_users_unit(report_of: Callable[..., Report]) -> None:
+    (um,) = figures.draw(report_of("3"), "loops").axes
+    (mm,) = figures.draw(report_of("3", "mm", 1e-3), "loops").axes
+    assert (um.get_xlabel(), mm.get_xlabel()) == ("approach $x$ / µm", "approach $x$ / mm")
+    assert um.get_xlim()[1] == pytest.approx(1e3 * mm.get_xlim()[1], rel=1e-4)
+
+
+def test_what_is_left_out_of_the_picture_is_told(report_of: Callable[..., Report]) -> None:
+    report = report_of("40")
+    (told,) = (word for word in words(figures.draw(report, "loops")) if word.startswith("points of"))
+    points = [c for c in report.curves if (c.figure, c.role) == ("loops", "points")]
+    assert told.startswith(f"points of {len(points)} pairs, one in ")
+    assert f" of {sum(len(c.x) for c in points)} lie outside" in told
+    (told,) = (word for word in words(figures.draw(report, "alpha_pairs")) if word.startswith("outside"))
+    pairs = [c for c in report.curves if (c.figure, c.role) == ("alpha_pairs", "pair")]
+    assert re.fullmatch(rf"outside the frame: [1-9]\d* of {len(pairs)}", told)
+
+
+@pytest.mark.parametrize(
+    ("campaign", "name", "sentence"),
+    [
+        ("no pair", "loops", "No loop"),
+        ("falling", "loops", "No loop"),
+        ("no pair", "alpha_pairs", "No exponent"),
+    ],
+)
+def test_nothing_to_draw_is_said(
+    report_of: Callable[..., Report], campaign: str, name: str, sentence: str
+) -> None:
+    (said,) = words(figures.draw(report_of(campaign), name))
+    assert said.startswith(sentence)
+
+
+def test_the_loops_are_told_apart_without_colour(report_of: Callable[..., Report]) -> None:
+    """Their greys climb from the smallest loop to the largest, and stay dark enough on white."""
+    (axes,) = figures.draw(report_of("paper"), "loops").axes
+
+    def luminance(colour: Any) -> float:
+        linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
+        return float(np.dot(linear, [0.2126, 0.7152, 0.0722]))
+
+    greys = [luminance(line.get_color()) for line in axes.lines[:5]]
+    assert (np.diff(greys) > 0).all()
+    assert all(1.05 / (grey + 0.05) >= 3 for grey in greys)

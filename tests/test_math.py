@@ -1,0 +1,223 @@
+"""Mathematics in the author's order: a literal for each construct."""
+
+import pytest
+from sympy import (
+    And,
+    Expr,
+    Integer,
+    Integral,
+    Le,
+    Max,
+    Mul,
+    Piecewise,
+    Rational,
+    Sum,
+    Symbol,
+    besselj,
+    exp,
+    log,
+    pi,
+    sqrt,
+    symbols,
+)
+from sympy.core.parameters import evaluate
+
+from loopsheet.derivations import soft_impact
+from loopsheet.derivations.symbols import TABLE, F_of, k, q
+from loopsheet.report.views.math import Printer, name_latex, with_index
+from loopsheet.report.views.typeset import TEXT_WIDTH, block, mathml, mathml_block, width
+
+a, b, c, x, y = symbols("a b c x y", positive=True)
+V, XM, CP, E = (TABLE[name] for name in ("v", "x_m", "Cprime", "e"))
+n = Symbol("n_points")
+
+with evaluate(False):
+    CASES: list[tuple[Expr, str]] = [
+        # the author's order
+        (y - x, "y - x"),
+        (b + a, "b + a"),
+        (c + (b + a), "c + b + a"),
+        (c * b * a, "c b a"),
+        (c - (b + a), "c - (b + a)"),
+        (-(b * a), "-b a"),
+        (2 * (b + a), "2 (b + a)"),
+        (1 * x, "x"),
+        (Mul(Integer(2), Integer(3)), r"2 \cdot 3"),
+        # fractions
+        (b / a, r"\frac{b}{a}"),
+        (b * a / c, r"\frac{b a}{c}"),
+        (b / c * a, r"\frac{b}{c} a"),
+        (b / c * (a / x), r"\frac{b}{c} \frac{a}{x}"),
+        (b / (c * a), r"\frac{b}{c a}"),
+        (1 / (1 - x), r"\frac{1}{1 - x}"),
+        ((b + 1) / (a + 1), r"\frac{b + 1}{a + 1}"),
+        (Rational(1, 2) * b * a, r"\frac{1}{2} b a"),
+        (b * a / 2, r"\frac{b a}{2}"),
+        (-(b / a), r"-\frac{b}{a}"),
+        # powers
+        (x**2, "x^{2}"),
+        (x ** Rational(3, 2), "x^{3/2}"),
+        (x ** (2 / (a + 1)), "x^{2/(a + 1)}"),
+        ((b / a) ** x, r"\left(\frac{b}{a}\right)^{x}"),
+        ((b * a) ** 2, "(b a)^{2}"),
+        (sqrt(x), r"\sqrt{x}"),
+        # names
+        (V[2], "v'_{2}"),
+        (V[2] ** 2, r"v_{2}^{\prime 2}"),
+        (XM[k], "x_{m_{k}}"),
+        (XM[2] ** a, "x_{m_{2}}^{a}"),
+        (CP[1], "C'_{1}"),
+        (TABLE["alpha"][1], r"\alpha_{1}"),
+        (TABLE["m_red"].symbol, r"m_{\mathrm{red}}"),
+        (F_of(x), "F"),
+        # functions
+        (log(b / a), r"\ln\left(\frac{b}{a}\right)"),
+        (exp(-x), r"\exp(-x)"),
+        (Max(XM[1], XM[2]), r"\max(x_{m_{1}}, x_{m_{2}})"),
+        # sums and integrals
+        (Integral(F_of(x), (x, 0, a)), r"\int_{0}^{a} F \, dx"),
+        (-Integral(b + x, (x, 0, a)), r"-\int_{0}^{a} (b + x) \, dx"),
+        (Sum(E[q], (q, 1, n)) / n, r"\frac{1}{n_{\mathrm{points}}} \sum_{q=1}^{n_{\mathrm{points}}} e_{q}"),
+        (Sum(E[q] - a, (q, 1, n)), r"\sum_{q=1}^{n_{\mathrm{points}}} (e_{q} - a)"),
+        (
+            Sum(E[q], (q, 1, n)) * Sum(V[q], (q, 1, n)),
+            r"\left(\sum_{q=1}^{n_{\mathrm{points}}} e_{q}\right) \sum_{q=1}^{n_{\mathrm{points}}} v'_{q}",
+        ),
+        # cases and conditions
+        (And(Le(0, x), Le(x, a)), r"0 \le x \le a"),
+        (x > a, "x > a"),
+        (
+            Piecewise((b * x, And(Le(0, x), Le(x, a))), (c, True)),
+            r"\begin{cases} b x, & 0 \le x \le a \\ c, & \text{otherwise} \end{cases}",
+        ),
+    ]
+
+
+@pytest.mark.parametrize(("expression", "latex"), CASES, ids=[latex for _, latex in CASES])
+def test_printed(expression: Expr, latex: str) -> None:
+    assert Printer().doprint(expression) == latex
+
+
+def test_what_sympy_has_ordered_begins_with_a_positive_term_and_is_one_fraction() -> None:
+    assert Printer().doprint(a - x) == "a - x"
+    assert Printer().doprint(pi * a / (b * c)) == r"\frac{\pi a}{b c}"
+
+
+def test_half_an_equation_is_worse_than_none() -> None:
+    with pytest.raises(TypeError, match="no LaTeX for Unknown"):
+        Printer().doprint(type("Unknown", (Expr,), {})(x))
+    assert "J" in Printer().doprint(besselj(1, x))  # sympy's own printer knows it
+
+
+def test_a_workbook_names_its_own_columns() -> None:
+    assert Printer({"alpha_mean": r"\bar{\alpha}%s"}).doprint(Symbol("alpha_mean")) == r"\bar{\alpha}"
+
+
+@pytest.mark.parametrize(
+    ("name", "index", "latex"),
+    [
+        ("x_p", "", "x_{p}"),
+        ("x_p", "2", "x_{p_{2}}"),
+        ("n_pairs", "", r"n_{\mathrm{pairs}}"),
+        ("gamma", "", r"\gamma"),
+        ("speed", "3", r"\mathrm{speed}_{3}"),
+        ("drop_height_m", "", r"\mathrm{drop}_{\mathrm{height\_m}}"),
+    ],
+)
+def test_names(name: str, index: str, latex: str) -> None:
+    assert name_latex(name, index=index) == latex
+
+
+def test_an_index_has_its_place_or_follows() -> None:
+    assert with_index("x_{m%s}", "k") == "x_{m_{k}}"
+    assert with_index("X", "k") == "X_{k}"
+    assert with_index(r"\bar{x}_{1}", "k") == r"{\bar{x}_{1}}_{k}"
+
+
+def test_equation_11_as_the_paper_prints_it() -> None:
+    assert block(Printer(), soft_impact.eq11.members).latex == (
+        r"\frac{\alpha + 1}{\beta + 1} + \frac{x_{p_{1}}}{x_{p_{2}}} "
+        r"\left(e_{2}^{2} - \frac{\alpha + 1}{\beta + 1}\right) "
+        r"\left(\frac{v'_{2}}{v'_{1}}\right)^{2/(\alpha + 1)} - e_{1}^{2} = 0"
+    )
+
+
+def test_equation_12c_keeps_its_two_fractions() -> None:
+    assert block(Printer(), soft_impact.eq12c.members).latex == (
+        r"C = \frac{m_{\mathrm{red}} v_{2}^{\prime 2}}{2} \frac{\alpha + 1}{x_{m_{2}}^{\alpha + 1}}"
+    )
+
+
+def test_every_equation_of_the_ledger_has_latex_and_mathml() -> None:
+    for equation in soft_impact.LEDGER.equations():
+        made = block(Printer(), equation.members)
+        assert made.latex.count("{") == made.latex.count("}")
+        page = mathml_block(made)
+        assert page.startswith('<math display="block"')
+        assert "style=" not in page
+        assert "xmlns" not in page
+
+
+# --- lines ---------------------------------------------------------------------------------------------
+
+
+def _sum_of(terms: int) -> Expr:
+    with evaluate(False):
+        total: Expr = x
+        for _ in range(terms - 1):
+            total = total + x
+        return total
+
+
+def test_a_short_equation_stays_on_one_line() -> None:
+    assert block(Printer(), (y, _sum_of(3))).rows == ("y = x + x + x",)
+
+
+def test_a_long_sum_is_broken_between_its_terms_and_loses_none() -> None:
+    made = block(Printer(), (y, _sum_of(40)))
+    assert made.left == "y"
+    assert len(made.rows) > 1
+    assert all(width(row) <= TEXT_WIDTH for row in made.rows)
+    assert made.latex == "y = " + " + ".join("x" * 40)
+    assert made.aligned.startswith(r"\begin{aligned} y &= x + x")
+
+
+def test_a_chain_too_long_for_a_line_has_one_equality_a_line() -> None:
+    made = block(Printer(), (y, _sum_of(12), _sum_of(12)))
+    assert [row[0] for row in made.rows] == ["=", "="]
+
+
+def test_two_long_sides_part_at_the_sign() -> None:
+    made = block(Printer(), (_sum_of(15), _sum_of(15)))
+    assert made.left == ""
+    assert [row[:3] for row in made.rows] == ["x +", "= x"]
+
+
+@pytest.mark.parametrize(
+    ("narrow", "wide"),
+    [
+        ("a", "a b"),
+        (r"\frac{a}{b}", "a + b"),
+        ("a^{b}", "a b"),
+        ("a_{b}^{c}", "a_{b c d}"),
+        (r"\left(a\right)", "(a b)"),
+    ],
+)
+def test_widths(narrow: str, wide: str) -> None:
+    assert width(narrow) < width(wide)
+
+
+# --- MathML --------------------------------------------------------------------------------------------
+
+
+def test_a_word_is_one_upright_name() -> None:
+    assert "<mi>red</mi>" in mathml(r"m_{\mathrm{red}}")
+
+
+def test_the_latex_goes_with_it_escaped() -> None:
+    assert 'alttext="a &lt; b"' in mathml("a < b")
+
+
+def test_a_sign_behind_a_relation_is_no_operation() -> None:
+    assert '<mo form="prefix">&#x02212;</mo>' in mathml("a = -b")
+    assert '<mo form="prefix">' not in mathml("a - b")

@@ -1,0 +1,260 @@
+"""The sheet: what it refuses, in these words, and the graph and order that it reads from the algebra."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+from sympy import Expr, IndexedBase, Rel, Sum, Symbol
+
+from loopsheet.derivations.equation import Equation
+from loopsheet.report.sheet import (
+    Axis,
+    Column,
+    CycleError,
+    Formula,
+    Given,
+    PairAxis,
+    Reference,
+    RepeatAxis,
+    Root,
+    Sheet,
+    SheetError,
+)
+
+
+def whole(name: str) -> Symbol:
+    return Symbol(name, integer=True, positive=True)
+
+
+k, i, j, p, q, s = (whole(name) for name in "kijpqs")
+n, n_pairs, n_points = whole("n"), whole("n_pairs"), whole("n_points")
+ROWS = Axis("rows", k, n)
+PAIRS = PairAxis("pairs", p, n_pairs, of=ROWS, first=i, second=j)
+POINTS = RepeatAxis("points", q, n_points, of=PAIRS, step=s, count="count")
+
+
+def given(name: str, axis: Axis | None = None) -> Column:
+    return Column(name, axis, Given())
+
+
+def formula(
+    name: str, expression: Expr, axis: Axis | None = None, requires: tuple[tuple[Rel, str], ...] = ()
+) -> Column:
+    equation = Equation("(T)", (Symbol(name, positive=True), expression), "for this test")
+    return Column(name, axis, Formula(equation), requires=requires)
+
+
+def root(name: str, expression: Expr, unknown: Symbol, axis: Axis | None = None) -> Column:
+    equation = Equation("(T)", (expression, 0 * unknown), "for this test")
+    low, high = Symbol("low", positive=True), Symbol("high", positive=True)
+    return Column(name, axis, Root(equation, equation, unknown, unknown, low, high, low))
+
+
+a, b, count = given("a", ROWS), given("b"), given("count")
+mean = formula("mean", Sum(a[k], (k, 1, n)) / n)
+step = formula("step", a[j] - a[i], PAIRS)
+ramp = formula("ramp", step[p] * s / count.symbol, POINTS)
+excess = formula("excess", step[p] - Sum(step[p], (p, 1, n_pairs)) / n_pairs, PAIRS)
+SHEET = Sheet((ramp, excess, step, mean, a, b, count))
+
+
+# ------------------------------------------------------------------------------------------ graph
+def names(columns: tuple[Column, ...]) -> list[str]:
+    return [column.name for column in columns]
+
+
+def test_precedents_come_first_and_ties_break_by_declaration() -> None:
+    assert names(SHEET.order) == ["a", "step", "count", "ramp", "excess", "mean", "b"]
+
+
+def test_the_graph_is_read_from_the_algebra() -> None:
+    assert names(SHEET.precedents(ramp)) == ["step", "count"]
+    assert names(SHEET.dependents(a)) == ["step", "mean"]
+    assert names(SHEET.dependents(step)) == ["ramp", "excess"]
+    assert names(SHEET.ancestors(ramp)) == ["a", "step", "count"]
+    assert SHEET.ancestors(a) == () == SHEET.dependents(b)
+    assert SHEET.summed_axes(mean) == (ROWS,)
+    assert SHEET.axes == (ROWS, PAIRS, POINTS)
+
+
+def test_a_rows_own_cell_and_the_summed_one_are_two_references() -> None:
+    assert SHEET.named(excess) == (Reference(step[p]), Reference(step[p], PAIRS))
+    assert SHEET.references(excess) == (step[p],)
+    assert SHEET.named(step) == (Reference(a[i]), Reference(a[j]))
+
+
+def test_an_axis_that_is_repeated_rests_on_its_count() -> None:
+    total = formula("total", Sum(ramp[q], (q, 1, n_points)))
+    sheet = Sheet((*SHEET.columns, total))
+    assert names(sheet.precedents(total)) == ["ramp", "count"]
+
+
+def test_an_unknown_is_no_precedent() -> None:
+    u = Symbol("u", positive=True)
+    sheet = Sheet((given("low"), given("high"), b, root("r", b.symbol - u, u)))
+    assert names(sheet.precedents(sheet["r"])) == ["low", "high", "b"]
+
+
+def test_the_order_is_the_same_under_every_hash_seed() -> None:
+    code = (
+        "from loopsheet.report.workbooks.soft_impact import sheet\n"
+        "from loopsheet.report.engines.numpy import Program\n"
+        "found = sheet(frozenset({'ball_diameter', 'ball_density', 'target_mass'}))\n"
+        "print([(c.name, found.named(c)) for c in found.order])\n"
+        "print(Program.of(found).source)\n"
+    )
+    outputs = {
+        subprocess.run(
+            [sys.executable, "-c", code],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in ("0", "1", "4242")
+    }
+    assert len(outputs) == 1
+    assert "def kernel" in outputs.pop()
+
+
+# ----------------------------------------------------------------------------------------- cycles
+def test_a_cycle_is_shown_as_the_path_that_closes_it() -> None:
+    x, y, z = (Symbol(name, positive=True) for name in "xyz")
+    columns = (formula("w", x), formula("x", y), formula("y", z + 1), formula("z", x**2))
+    with pytest.raises(
+        CycleError, match=r"^columns depend on one another in a circle: x -> y -> z -> x$"
+    ) as error:
+        Sheet(columns)
+    assert error.value.path == ("x", "y", "z", "x")
+
+
+def test_a_column_that_names_itself_is_a_cycle() -> None:
+    x = Column("x", ROWS, Given())
+    with pytest.raises(CycleError, match=r"circle: x -> x$"):
+        Sheet((formula("x", x[k] + 1, ROWS),))
+
+
+def test_a_condition_can_close_a_cycle_too() -> None:
+    x, y = Symbol("x", positive=True), Symbol("y", positive=True)
+    with pytest.raises(CycleError, match=r"circle: x -> y -> x$"):
+        Sheet((formula("x", b.symbol, requires=((y > 1, "y is small"),)), formula("y", x), b))
+
+
+# --------------------------------------------------------------------------------------- refusals
+unknown_size = whole("n_rows")
+REFUSED: dict[str, tuple[tuple[Column, ...], str]] = {
+    "two rules": ((b, given("b")), "the column 'b' has two rules; a name has exactly one"),
+    "no column": (
+        (a, formula("f", Symbol("velocity", positive=True))),
+        "f: no column is called 'velocity'",
+    ),
+    "near name": (
+        (given("velocity"), formula("f", Symbol("velocty"))),
+        "f: no column is called 'velocty'; did you mean 'velocity'?",
+    ),
+    "near indexed name": (
+        (given("x_p", ROWS), formula("f", IndexedBase("x_m")[k], ROWS)),
+        "f: no column is called 'x_m'; did you mean 'x_p'?",
+    ),
+    "no index": ((a, formula("f", a.symbol)), "f: a has one value for each of rows; say which"),
+    "index of another axis": (
+        (a, formula("f", a[k], PAIRS)),
+        "f: a[k] names a row of nothing: a is on rows; indices here: p (pairs), i (rows), j (rows)",
+    ),
+    "index of no axis": (
+        (a, formula("f", a[k])),
+        "f: a[k] names a row of nothing: a is on rows; indices here: none",
+    ),
+    "scalar with an index": (
+        (a, b, formula("f", b[k], ROWS)),
+        "f: b[k] names a row of nothing: b is a scalar; indices here: k (rows)",
+    ),
+    "two indices": (
+        (a, formula("f", a[k, k], ROWS)),
+        "f: a[k, k] names a row of nothing: a is on rows; indices here: k (rows)",
+    ),
+    "a number as index": (
+        (a, formula("f", a[1], ROWS)),
+        "f: a[1] names a row of nothing: a is on rows; indices here: k (rows)",
+    ),
+    "sum over no axis": (
+        (a, formula("f", Sum(b.symbol, (i, 1, n))), b),
+        "f: a sum runs over all rows of one index set ((k, 1, n)), not over (i, 1, n)",
+    ),
+    "sum to another end": (
+        (a, formula("f", Sum(a[k], (k, 1, unknown_size)))),
+        "f: a sum runs over all rows of one index set ((k, 1, n)), not over (k, 1, n_rows)",
+    ),
+    "sum from another start": (
+        (a, formula("f", Sum(a[k], (k, 2, n)))),
+        "f: a sum runs over all rows of one index set ((k, 1, n)), not over (k, 2, n)",
+    ),
+    "sum over two": (
+        (a, formula("f", Sum(a[k], (k, 1, n), (k, 1, n)))),
+        "f: a sum runs over all rows of one index set ((k, 1, n)), not over (k, 1, n), (k, 1, n)",
+    ),
+    "inner sum that names the outer row": (
+        (a, step, formula("f", Sum(Sum(step[p] * a[k], (p, 1, n_pairs)), (k, 1, n)))),
+        "f: a sum runs over all rows of one index set ((k, 1, n), (p, 1, n_pairs)), "
+        "not over (p, 1, n_pairs), (k, 1, n)",
+    ),
+    "running number of another axis": (
+        (a, step, ramp, count, formula("f", step[p] * s, PAIRS)),
+        "f: no column is called 's'",
+    ),
+    "index as a value": ((a, formula("f", a[k] * k, ROWS)), "f: no column is called 'k'"),
+    "no name": ((given("a b"),), "'a b' cannot be a column's name: letters, digits and _ make a name"),
+    "a word of Python": (
+        (given("lambda"),),
+        "'lambda' cannot be a column's name: letters, digits and _ make a name",
+    ),
+    "named as an index": (
+        (a, given("k")),
+        "the column 'k' is called as the index of rows is; rename one",
+    ),
+    "unknown named as a column": (
+        (given("low"), given("high"), b, root("r", b.symbol, b.symbol)),
+        "r: its unknown 'b' is called as something else of the sheet is",
+    ),
+    "no count": (
+        (a, step, ramp),
+        "points: 'count' must be a given scalar; it says how many rows there are",
+    ),
+    "a computed count": (
+        (a, b, step, ramp, formula("count", b.symbol)),
+        "points: 'count' must be a given scalar; it says how many rows there are",
+    ),
+    "one name for two axes": (
+        (a, given("c", Axis("rows", whole("l"), whole("m")))),
+        "two different index sets are called 'rows'",
+    ),
+    "one symbol for two axes": (
+        (a, given("c", Axis("others", k, whole("m")))),
+        "the symbol 'k' is the index of rows and the index of others",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_is_no_sheet_is_refused_in_these_words(case: str) -> None:
+    columns, message = REFUSED[case]
+    with pytest.raises(SheetError) as error:
+        Sheet(columns)
+    assert str(error.value) == message
+
+
+def test_a_sum_within_a_sum_is_a_sheet() -> None:
+    nested = formula("f", Sum(a[k] * Sum(step[p], (p, 1, n_pairs)), (k, 1, n)))
+    sheet = Sheet((a, step, nested))
+    assert sheet.named(nested) == (Reference(a[k], ROWS), Reference(step[p], PAIRS))
+    assert sheet.summed_axes(nested) == (ROWS, PAIRS)
+
+
+def test_columns_are_found_by_name() -> None:
+    assert SHEET["a"] is a
+    assert "a" in SHEET
+    assert "alpha" not in SHEET
+    assert (a.source, mean.source, a.equation) == ("given", "(T)", None)
+    assert a.cell == a[k]
+    assert mean.cell == mean.symbol

@@ -1,0 +1,204 @@
+"""A workbook of one's own, two axes, a root and a reduction, goes through all that the paper goes through.
+
+Kepler's orbit: a planet is seen at known times; the anomaly E of each sighting is the root of (3), its
+distance follows from (4), and the mean and the changes between sightings from (L1) and (L2).
+"""
+
+import ast
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from loopsheet.derivations.proof import Status as Verdict
+from loopsheet.derivations.proof import prove
+from loopsheet.report import units
+from loopsheet.report.analysis import engines
+from loopsheet.report.build import build, compute, find_workbook
+from loopsheet.report.engines import exact
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.result import Report
+from loopsheet.report.sheet import Sheet
+from loopsheet.report.workbook import Workbook
+
+SOURCE = """\
+from sympy import Abs, Rational, Sum, Symbol, cos, pi, sin
+from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step
+from loopsheet.report.quantity import Bounds
+from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, Root, Sheet
+from loopsheet.report.workbook import Measured, Parameter, TableSpec, Workbook
+
+k, i, j, p, n, n_pairs = (Symbol(s, integer=True, positive=True) for s in ("k", "i", "j", "p", "n", "n_p"))
+SIGHTINGS = Axis("sightings", k, n)
+PAIRS = PairAxis("pairs", p, n_pairs, of=SIGHTINGS, first=i, second=j)
+t, T, a, ecc, rate = (Symbol(name, positive=True) for name in ("t", "T", "a", "ecc", "rate"))
+M, E, r = (Symbol(name, positive=True) for name in ("M", "E", "r"))
+
+eq1 = Equation("(1)", (rate, 2 * pi / T), "one turn a period", Kind.DEFINITION, "mean motion", defines=rate)
+eq2 = Equation("(2)", (M, rate * t), "uniform in time", Kind.DEFINITION, "mean anomaly", defines=M)
+anomaly = Equation("(L1)", (M, 2 * pi * t / T), "put (1) in (2)", title="mean anomaly from the period")
+put_in = Step(anomaly, (eq1, eq2), (rate, M), "Put the mean motion in.")
+eq3 = Equation("(3)", (E - ecc * sin(E) - M, 0 * M), "equal areas", Kind.ASSUMPTION, "Kepler's equation")
+eq4 = Equation("(4)", (r, a * (1 - ecc * cos(E))), "the ellipse", Kind.DEFINITION, "distance", defines=r)
+
+times = Column("t", SIGHTINGS, Given("measured"), "s", "time", "t%s", display="like t")
+period = Column("T", None, Given("parameter"), "s", "period", "T", display="like T")
+axis = Column("a", None, Given("parameter"), "m", "semi-major axis", "a", display="like a")
+shape = Column("ecc", None, Given("parameter"), "1", "eccentricity", "\\\\varepsilon")
+M_k = Column("M", SIGHTINGS, Formula(anomaly.at({M: Symbol("M"), t: times[k]})), "1", "mean anomaly", "M%s")
+kepler = eq3.at({M: M_k[k]})
+root = Root(kepler, kepler, E, E, M_k[k] - 1, M_k[k] + 1, start=M_k[k], steps=5)
+closed = ((shape.symbol < 1, "the orbit is open"),)
+E_k = Column("E", SIGHTINGS, root, "1", "eccentric anomaly", "E%s", requires=closed)
+r_k = Column("r", SIGHTINGS, Formula(eq4.at({E: E_k[k]})), "m", "distance", "r%s", display="like a")
+eqL2 = Equation("(L2)", (Symbol("gap"), Abs(r_k[j] - r_k[i])), "definition", Kind.DEFINITION, "change")
+gap = Column("gap", PAIRS, Formula(eqL2), "m", "change", "g%s", "like a", positive=False)
+eqL3 = Equation("(L3)", (Symbol("r_mean"), Sum(r_k[k], (k, 1, n)) / n), "definition", Kind.DEFINITION, "mean")
+mean = Column("r_mean", None, Formula(eqL3), "m", "mean distance", "\\\\bar{r}", display="like a")
+
+WORKBOOK = Workbook(
+    name="kepler",
+    title="Distances of a planet",
+    source="J Kepler: Astronomia nova",
+    ledger=lambda: Ledger((eq1, eq2, Derivation((put_in,)), eq3, eq4, eqL2, eqL3)),
+    measured=(Measured("t", "s", "time of a sighting", Bounds(low=0)),),
+    parameters=(
+        Parameter("T", "s", "period", Bounds(low=0, low_open=True)),
+        Parameter("a", "m", "semi-major axis", Bounds(low=0, low_open=True)),
+        Parameter("ecc", "1", "eccentricity", Bounds(low=0), default="0.1"),
+    ),
+    sheet=lambda given: Sheet((times, period, axis, shape, M_k, E_k, r_k, gap, mean)),
+    headline=("r_mean",),
+    tables=(TableSpec("seen", "Sightings", ("t", "M", "E", "r")), TableSpec("pairs", "Changes", ("gap",))),
+)
+"""
+FILES = {
+    "workbook.py": SOURCE,
+    "report.toml": 'title = "Mars"\nworkbook = "workbook.py"\n[parameters]\nT = "687 d"\na = "227.9 Gm"\n'
+    'ecc = "0.0934"\n[measurements]\nfile = "seen.csv"\n[published]\nfile = "published.csv"\n',
+    "seen.csv": "test,t [d]\n1,0\n2,100\n3,250\n4,343.5\n",
+    "published.csv": "source,cell,index,value,unit,expect,reason\nTables,r,4,249.2,Gm,,\n",
+}
+DAY = 86400.0
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("mars")
+    for name, text in FILES.items():
+        (place / name).write_text(text, encoding="utf-8")
+    return place
+
+
+@pytest.fixture(scope="module")
+def workbook(folder: Path) -> Workbook:
+    return find_workbook("workbook.py", folder)
+
+
+@pytest.fixture(scope="module")
+def sheet(workbook: Workbook) -> Sheet:
+    return workbook.sheet(frozenset({"T", "a", "ecc"}))
+
+
+@pytest.fixture(scope="module")
+def report(folder: Path) -> Report:
+    return compute(folder)
+
+
+def data(ecc: float = 0.0934) -> dict[str, object]:
+    return {"t": [x * DAY for x in (0.5, 100.0, 250.0, 343.5)], "T": 687 * DAY, "a": 2.279e11, "ecc": ecc}
+
+
+def test_its_claim_is_proved(workbook: Workbook) -> None:
+    verdicts = {proof.equation.label: proof.status for proof in prove(workbook.ledger())}
+    assert verdicts["(L1)"] is Verdict.PROVED
+    assert all(verdict.passes for verdict in verdicts.values())
+
+
+def test_its_dimensions_are_checked(sheet: Sheet) -> None:
+    units.check(sheet)
+
+
+@pytest.mark.parametrize("ecc", [0.0934, 0.5, 0.99, 0.0])
+def test_both_engines_solve_keplers_equation(sheet: Sheet, ecc: float) -> None:
+    labels = {"sightings": [1, 2, 3, 4]}
+    values = engine.evaluate(sheet, labels, data(ecc))
+    E, M = values.value["E"], values.value["M"]
+    np.testing.assert_allclose(E - ecc * np.sin(E), M, rtol=1e-14)
+    agreement = engines.compare(values, labels, data(ecc))
+    assert agreement.findings == ()
+    assert agreement.worst < 1e-14
+    assert exact.evaluate(sheet, labels, data(ecc)).status["gap"] == [0] * 6
+
+
+def test_an_open_orbit_is_an_error_with_its_culprit(sheet: Sheet) -> None:
+    values = engine.evaluate(sheet, {"sightings": [1, 2, 3, 4]}, data(1.2))
+    assert values.cell("r_mean").reason == (
+        "#DOMAIN! r_mean needs E[1]: outside the domain of (3): the orbit is open"
+    )
+
+
+def test_it_is_computed_from_its_folder(report: Report) -> None:
+    values = report.values
+    assert values.labels(report.sheet["gap"]) == [(1, 2), (1, 3), (1, 4), (2, 3), (2, 4), (3, 4)]
+    assert values.cell("r", (1,)).reason.startswith("#DOMAIN! r[1] needs M[1]: ")
+    assert values.cell("r", (4,)).value == pytest.approx(2.279e11 * 1.0934, rel=1e-9)
+    assert values.counted == {"r_mean": {"sightings": 3}}
+    assert [comparison.verdict for comparison in report.comparisons] == ["same"]
+    assert report.proof("(L1)").status is Verdict.PROVED
+
+
+def test_it_is_written_as_a_page_a_paper_and_data(folder: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    build(folder, out, ("html", "latex", "json"))
+    page, paper = ((out / name).read_text(encoding="utf-8") for name in ("report.html", "report.tex"))
+    for text in (page, paper):
+        assert "Distances of a planet" in text or "Mars" in text
+        assert "alpha" not in text.replace("\\alpha", "").lower().replace("alphabet", "")
+    assert 'data-cell="r_mean"' in page
+    cells = json.loads((out / "values.json").read_text(encoding="utf-8"))["cells"]
+    assert cells["gap"]["axis"] == "pairs"
+    assert cells["r"]["status"] == ["#DOMAIN!", "ok", "ok", "ok"]
+
+
+def test_the_command_line_takes_it(folder: Path) -> None:
+    command = [sys.executable, "-m", "loopsheet", "check", str(folder)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stdout + run.stderr
+
+
+# ------------------------------------------------------------------- nothing general knows the paper
+HERE = Path(__file__).resolve().parent.parent
+GENERAL = sorted(
+    path
+    for name in ("column", "sheet", "layout", "units", "values", "engines/*", "views/*")
+    for path in (HERE / "report").glob(f"{name}.py")
+    # figures.py is the registry of drawings, and a drawing is of something.
+    if path.name != "figures.py"
+)
+# Docstrings may take their examples from the paper; code may not.
+OF_THE_PAPER = re.compile(r"\b(soft_impact|Ciornei|x_p|x_m|Cprime|alpha_log|alpha_mean|C_log|m_red)\b")
+
+
+def code_of(path: Path) -> str:
+    """The source without comments and docstrings."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        if isinstance(body, list):
+            node.body = [line for line in body if not _is_text(line)] or [ast.Pass()]  # type: ignore[attr-defined]
+    return ast.unparse(tree)
+
+
+def _is_text(line: ast.stmt) -> bool:
+    value = line.value if isinstance(line, ast.Expr) else None
+    return isinstance(value, ast.Constant) and isinstance(value.value, str)
+
+
+@pytest.mark.parametrize("path", GENERAL, ids=lambda path: path.stem)
+def test_nothing_general_knows_the_paper(path: Path) -> None:
+    assert not set(OF_THE_PAPER.findall(code_of(path)))

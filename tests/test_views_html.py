@@ -1,0 +1,275 @@
+"""The page: complete, correct, self-contained, safe."""
+
+import base64
+import hashlib
+import re
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from urllib.parse import unquote
+
+import html5lib
+import pytest
+
+from loopsheet.report import build
+from loopsheet.report.result import Report
+from loopsheet.report.sheet import Given, RepeatAxis
+from loopsheet.report.views import html
+from loopsheet.report.views.document import Document
+from loopsheet.report.views.parts import index_text
+
+HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ ((( report ))) {{ 7 * 7 }}"
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="360pt" height="180pt"><path d="M0 0"/></svg>'
+XHTML = "{http://www.w3.org/1999/xhtml}"
+
+
+@pytest.fixture(scope="module")
+def report() -> Report:
+    return build.compute(build.PAPER)
+
+
+@pytest.fixture(scope="module")
+def page(report: Report) -> str:
+    return html.render(report, {figure.name: SVG for figure in report.workbook.figures})
+
+
+@pytest.fixture(scope="module")
+def tree(page: str) -> ET.Element:
+    parser = html5lib.HTMLParser(tree=html5lib.getTreeBuilder("etree"))
+    parsed: ET.Element = parser.parse(page)
+    assert parser.errors == []
+    return parsed
+
+
+def _elements(tree: ET.Element, name: str) -> list[ET.Element]:
+    return list(tree.iter(XHTML + name))
+
+
+def _text(element: ET.Element) -> str:
+    return " ".join("".join(element.itertext()).split())
+
+
+def test_identifiers_are_unique_and_every_link_has_a_target(tree: ET.Element) -> None:
+    identifiers = [element.get("id") for element in tree.iter() if element.get("id")]
+    assert len(identifiers) == len(set(identifiers))
+    targets = [link.get("href", "") for link in _elements(tree, "a")]
+    assert targets
+    assert all(target.startswith("#") and target[1:] in identifiers for target in targets)
+    named = [element.get("aria-labelledby") for element in tree.iter() if element.get("aria-labelledby")]
+    assert set(named) <= set(identifiers)
+
+
+def test_nothing_is_loaded_and_nothing_can_run(page: str, tree: ET.Element) -> None:
+    assert not _elements(tree, "script") + _elements(tree, "link") + _elements(tree, "iframe")
+    assert all(image.get("src", "").startswith("data:image/svg+xml") for image in _elements(tree, "img"))
+    for element in tree.iter():
+        assert not any(name == "style" or name.startswith("on") for name in element.attrib)
+    assert not re.search(r"url\(|@import|https?://", re.sub(r"data:[^\"]*", "", page))
+
+
+def test_the_policy_allows_this_style_and_no_other(tree: ET.Element) -> None:
+    (style,) = _elements(tree, "style")
+    digest = base64.b64encode(hashlib.sha256((style.text or "").encode()).digest()).decode()
+    (policy,) = (m.get("content") for m in _elements(tree, "meta") if m.get("http-equiv"))
+    assert policy == (
+        f"default-src 'none'; script-src 'none'; style-src 'sha256-{digest}'; img-src data:; "
+        "base-uri 'none'; form-action 'none'"
+    )
+
+
+def test_every_cell_is_there_with_its_value_in_full(report: Report, tree: ET.Element) -> None:
+    shown = {
+        (element.get("data-cell"), element.get("data-index")): element
+        for element in tree.iter()
+        if element.get("data-cell") and element.get("id")
+    }
+    expected = set()
+    for column in report.sheet.columns:
+        if isinstance(column.axis, RepeatAxis):
+            continue
+        for cell in report.values.cells(column.name):
+            key = (cell.name, index_text(cell.label))
+            expected.add(key)
+            element = shown[key]
+            assert element.get("data-value") == repr(cell.value)
+            assert element.get("data-status") == "ok"
+            assert (element.tag == XHTML + "input") == isinstance(column.rule, Given)
+    assert set(shown) == expected
+
+
+def test_mentions_in_prose_carry_the_same_values(report: Report, tree: ET.Element) -> None:
+    mentions = [e for e in tree.iter() if e.get("data-cell") == "alpha_mean"]
+    assert len(mentions) >= 3
+    assert {e.get("data-value") for e in mentions} == {repr(report.values.scalar("alpha_mean"))}
+    assert {_text(e) for e in mentions} == {"1.303"}
+
+
+def test_given_cells_are_inputs_with_the_printed_string(report: Report, tree: ET.Element) -> None:
+    inputs = {(e.get("data-cell"), e.get("data-index")): e for e in _elements(tree, "input")}
+    for name, printed in report.inputs.measured.items():
+        for test, number in zip(report.inputs.tests, printed, strict=True):
+            element = inputs[name, str(test)]
+            assert element.get("value") == number.text
+            assert element.get("readonly") is not None
+            assert f", {test}" in element.get("aria-label", "")
+    assert inputs["v", "2"].get("value") == "2.940"
+    assert inputs["ball_density", ""].get("value") == "7800"
+
+
+def test_shown_digits_follow_the_inputs(tree: ET.Element) -> None:
+    shown = {e.get("id"): _text(e) for e in tree.iter() if e.get("data-cell") and e.get("id")}
+    assert shown["cell-alpha-1-2"] == "1.258"
+    assert shown["cell-x_m-1"] == "34.00"
+    assert shown["cell-Cprime_eq7-5"] == "3619"
+    assert shown["cell-C_log"] == "1.019 × 10⁹"
+
+
+def test_tables_have_captions_scopes_and_links_to_their_equations(tree: ET.Element) -> None:
+    for table in _elements(tree, "table"):
+        assert table.find(XHTML + "caption") is not None
+        assert all(head.get("scope") in ("col", "row") for head in table.iter(XHTML + "th"))
+    by_id = {element.get("id"): element for element in tree.iter() if element.get("id")}
+    for table, equations in {
+        "table-alpha": {"#eq-11", "#eq-L5"},
+        "table-pairs": {"#eq-12a", "#eq-12b", "#eq-12c", "#eq-12d", "#eq-12e", "#eq-L10"},
+        "table-tests": {"#eq-L3", "#eq-L4", "#eq-9"},
+        "table-fit": {"#eq-L12", "#eq-L17", "#eq-L19", "#eq-L20", "#eq-L21"},
+    }.items():
+        assert equations <= {link.get("href") for link in by_id[table].iter(XHTML + "a")}
+
+
+def test_published_values_stand_beside_recomputed_ones(report: Report, tree: ET.Element) -> None:
+    by_id = {element.get("id"): element for element in tree.iter() if element.get("id")}
+    rows = list(by_id["published-Table-2"].iter(XHTML + "tr"))
+    assert len(rows) == 11
+    assert [_text(cell) for cell in rows[1]][1:7] == ["1–2", "1.234", "1.258", "–", "+24.0", "differs"]
+    assert len(list(by_id["published-Table-3"].iter(XHTML + "tr"))) == 16
+    assert len(list(by_id["published-text"].iter(XHTML + "tr"))) == 3
+    assert "Of 27 published values, none comes out as printed and 27 differ." in _text(by_id["result"])
+
+
+def test_the_fit_that_was_used_is_told_from_the_published_averages(report: Report, tree: ET.Element) -> None:
+    fit = Document(report).fit_used
+    assert fit is not None
+    assert (fit.published.text, fit.log.text, fit.lin.text) == ("−0.001", "−0.0003", "0.0186")
+    assert fit.verdict == "log"
+    (note,) = (e for e in _elements(tree, "aside"))
+    assert "Only the log-log fit is that close to the mean" in _text(note)
+
+
+def test_which_fit_is_not_asked_without_published_averages(report: Report) -> None:
+    few = tuple(c for c in report.comparisons if c.published.cell != "alpha_mean")
+    other = replace(report, comparisons=few)
+    assert Document(other).fit_used is None
+    assert "Which fit was published" not in html.render(other, {})
+
+
+def test_the_ledger_and_every_derivation_are_there(report: Report, tree: ET.Element) -> None:
+    by_id = {element.get("id"): element for element in tree.iter() if element.get("id")}
+    ledger = _text(by_id["ledger"])
+    for proof in report.proofs:
+        identifier = "eq-" + proof.equation.label.strip("()")
+        assert proof.equation.label in ledger
+        claim = by_id[identifier]
+        assert proof.status.value in _text(claim)
+        assert len(list(claim.iter(XHTML + "li"))) == len(proof.steps)
+    assert "50 digits" in _text(by_id["eq-11"])
+
+
+def test_findings_about_the_print_are_there(report: Report, tree: ET.Element) -> None:
+    (section,) = (e for e in _elements(tree, "section") if e.get("id") == "errata")
+    assert len(list(section.iter(XHTML + "li"))) == len(report.errata)
+
+
+def test_landmarks_language_and_skip_link(tree: ET.Element) -> None:
+    assert tree.get("lang") == "en"
+    for landmark in ("header", "nav", "main", "footer", "h1"):
+        assert len(_elements(tree, landmark)) == 1
+    assert _elements(tree, "a")[0].get("href") == "#main"
+    assert all(image.get("alt") for image in _elements(tree, "img"))
+    levels = [int(e.tag[-1]) for e in tree.iter() if re.fullmatch(r"\{.*\}h[1-6]", str(e.tag))]
+    assert all(b - a <= 1 for a, b in pairwise(levels))
+
+
+def test_pictures_keep_their_size_and_their_text(report: Report, tree: ET.Element) -> None:
+    image = _elements(tree, "img")[0]
+    assert (image.get("width"), image.get("height")) == ("480", "240")
+    drawn = ET.fromstring(unquote(image.get("src", "").partition(",")[2]))
+    assert [child.tag for child in drawn] == ["{http://www.w3.org/2000/svg}path"]
+
+
+def test_two_renderings_are_the_same_bytes(report: Report, page: str) -> None:
+    assert html.render(report, {figure.name: SVG for figure in report.workbook.figures}) == page
+
+
+def test_a_hostile_title_and_a_hostile_reason_are_text(report: Report) -> None:
+    first = report.comparisons[0]
+    published = replace(first.published, source=HOSTILE, reason=HOSTILE)
+    comparisons = (replace(first, published=published), *report.comparisons[1:])
+    page = html.render(replace(report, title=HOSTILE, comparisons=comparisons), {})
+    parser = html5lib.HTMLParser(tree=html5lib.getTreeBuilder("etree"))
+    tree = parser.parse(page)
+    assert parser.errors == []
+    assert not _elements(tree, "script")
+    assert _elements(tree, "title")[0].text == HOSTILE
+    assert _text(_elements(tree, "h1")[0]) == HOSTILE
+    assert any(_text(cell) == HOSTILE for cell in _elements(tree, "td"))
+
+
+def test_a_cell_without_a_value_shows_its_code_and_where_it_began(tmp_path: Path) -> None:
+    for name in ("report.toml", "measurements.csv"):
+        text = (build.PAPER / name).read_text(encoding="utf-8").replace("29.7", "19.7")
+        (tmp_path / name).write_text(text.partition("[published]")[0], encoding="utf-8")
+    tree = html5lib.parse(html.render(build.compute(tmp_path, prove=False), {}))
+    by_id = {element.get("id"): element for element in tree.iter() if element.get("id")}
+    for cell in ("cell-alpha-1-2", "cell-C-1-2"):
+        assert by_id[cell].get("data-status") == "#NOROOT!"
+        assert by_id[cell].get("data-value") == ""
+        (link,) = by_id[cell].iter(XHTML + "a")
+        assert (_text(link), link.get("href")) == ("#NOROOT!", "#why-alpha-1-2")
+    assert "has no root here" in _text(by_id["why-alpha-1-2"])
+    assert "over 9 of 10 pairs" in _text(by_id["result"])
+
+
+# --- templates -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("path", sorted(html.TEMPLATES.glob("prose/*.j2")), ids=lambda path: path.name)
+def test_prose_has_no_markup_of_one_format_and_no_typed_number(path: Path) -> None:
+    prose = re.sub(
+        r"\(\(\*.*?\*\)\)|\(\(\(.*?\)\)\)|\(\(#.*?#\)\)", " ", path.read_text(encoding="utf-8"), flags=re.S
+    )
+    assert not set(prose) & set("<>&%#_$~^\\{}\"'`")
+    numbers = re.findall(r"\d+(?:\.\d+)?(?:/\d+)?", prose)
+    assert set(numbers) <= {"1", "3/2"}  # the limits of (4)
+
+
+@pytest.mark.parametrize("name", ["macros.j2"])
+def test_both_formats_have_the_same_macros(name: str) -> None:
+    def macros(form: str) -> set[str]:
+        text = (html.TEMPLATES / form / name).read_text(encoding="utf-8")
+        return set(re.findall(r"\(\(\* macro (\w+)\(", text))
+
+    own = {"html": {"value", "pure"}, "latex": {"heading", "head", "rows", "legend"}}
+    assert macros("html") - own["html"] == macros("latex") - own["latex"]
+
+
+@pytest.mark.parametrize(
+    ("text", "seen"),
+    [
+        ("only alpha is left of (11)", "only α is left of (11)"),
+        ("both x_m2 and v'_1 at C = 8.1e+9", "both xm2 and v1′ at C = 8.1\u00a0×\u00a010⁹"),
+        ("C'*((x - x_p)/(x_m - x_p))^beta", "C′\u202f((x − xp)/(xm − xp))β"),
+        ("C has the unit N/m^alpha and F is in N", "C has the unit N/mα and F is in N"),
+        ("e[2]**2 <= 1, agree within 0e+00", "e22 ≤ 1, agree within 0"),
+        ("a test's mean, e.g. Meyer's (99)", "a test's mean, e.g. Meyer's (99)"),
+    ],
+)
+def test_sentences_of_the_checks_are_set_as_mathematics(report: Report, text: str, seen: str) -> None:
+    printed = html.HtmlWords(Document(report)).rich(text)
+    assert "".join(html5lib.parseFragment(printed).itertext()) == seen
+
+
+def test_a_sentence_is_escaped(report: Report) -> None:
+    assert html.HtmlWords(Document(report)).rich("<div> & 'dd'") == "&lt;div&gt; &amp; &#39;dd&#39;"

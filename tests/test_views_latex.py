@@ -1,0 +1,143 @@
+"""The article: it compiles without complaint, and what is foreign stays text."""
+
+import re
+import shutil
+import subprocess
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report import build
+from loopsheet.report.result import Report
+from loopsheet.report.views import figures, latex
+
+HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ Șα"
+
+
+@pytest.fixture(scope="module")
+def report() -> Report:
+    return build.compute(build.PAPER)
+
+
+@pytest.fixture(scope="module")
+def article(report: Report) -> str:
+    return latex.render(report, [figure.name for figure in report.workbook.figures])
+
+
+def _environments(text: str) -> list[str]:
+    return re.findall(r"\\(begin|end)\{(\w+\*?)\}", text)  # type: ignore[return-value]
+
+
+def test_environments_are_nested(article: str) -> None:
+    open_ones: list[str] = []
+    for kind, name in _environments(article):
+        if kind == "begin":
+            open_ones.append(name)
+        else:
+            assert open_ones.pop() == name
+    assert not open_ones
+
+
+def test_every_reference_has_one_label(article: str) -> None:
+    labels = re.findall(r"\\label\{([^}]*)\}", article)
+    assert len(labels) == len(set(labels))
+    references = re.findall(r"\\(?:ref\{|hyperref\[)([^}\]]*)", article)
+    assert references
+    assert set(references) <= set(labels)
+
+
+def test_equations_carry_the_numbers_of_the_paper(article: str) -> None:
+    tags = re.findall(r"\\tag\*\{([^}]*)\}", article)
+    assert [tag for tag in tags if "L" not in tag and len(tag) < 5] != []
+    for number in ("(3)", "(11)", "(12a)", "(12e)", "(L21)"):
+        assert tags.count(number) == 1
+
+
+def test_numbers_come_from_the_report(article: str) -> None:
+    assert r"$\bar{\alpha}$ = \num{1.303}" in article
+    assert "1–2 & 1.258" in article
+    assert "2 & 2.940 & 0.512 & 29.7" in article
+    assert r"\num{1.019e9}~\unit{N/m^{\alpha_{\log}}}" in article
+    assert "1.234 & 1.258" in article
+
+
+def test_the_same_bytes_are_asked_for(article: str) -> None:
+    for primitive in (r"\pdfinfoomitdate=1", r"\pdftrailerid{}", r"\pdfsuppressptexinfo=-1"):
+        assert primitive in article
+    assert r"\today" not in article
+
+
+def test_a_figure_that_is_not_there_is_not_included(report: Report) -> None:
+    assert r"\includegraphics" not in latex.render(report, [])
+
+
+def test_what_is_foreign_is_escaped(report: Report) -> None:
+    text = latex.render(replace(report, title=HOSTILE), [])
+    assert r"\textbackslash{}input\{/etc/passwd\} \$x\_1\$ [U+2603]" in text
+    assert r"\input{" not in text
+
+
+def _log(folder: Path) -> str:
+    """Run pdflatex by hand: `compile` leaves no log."""
+    for _ in range(3):
+        subprocess.run(
+            ["pdflatex", "-no-shell-escape", "-interaction=nonstopmode", "report.tex"],
+            cwd=folder, capture_output=True, check=False, timeout=120,
+        )  # fmt: skip
+    return (folder / "report.log").read_text(encoding="latin-1")
+
+
+def test_the_paper_compiles_without_complaint(
+    report: Report, tmp_path: Path, require: Callable[..., str]
+) -> None:
+    require("latexmk")
+    hostile = replace(report, title=HOSTILE)
+    names = [figure.name for figure in report.workbook.figures]
+    (tmp_path / "figures").mkdir()
+    for name in names:
+        (tmp_path / "figures" / f"{name}.pdf").write_bytes(figures.pdf(report, name))
+    (tmp_path / "report.tex").write_text(latex.render(hostile, names), encoding="utf-8")
+    latex.compile(tmp_path)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["figures", "report.pdf", "report.tex"]
+    first = (tmp_path / "report.pdf").read_bytes()
+    (tmp_path / "report.pdf").unlink()
+    latex.compile(tmp_path)
+    assert (tmp_path / "report.pdf").read_bytes() == first
+
+    log = _log(tmp_path)
+    assert not re.search(r"^!|Overfull|undefined|multiply defined|Missing character", log, re.MULTILINE)
+    pypdf = pytest.importorskip("pypdf")
+    document = pypdf.PdfReader(tmp_path / "report.pdf")
+    assert document.metadata.title == HOSTILE.replace("☃", "[U+2603]").replace("α", "alpha")
+    assert document.metadata.creation_date is None
+    text = " ".join(page.extract_text() for page in document.pages)
+    assert "alert(1)" in text
+
+
+def test_missing_tex_is_told_with_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    with pytest.raises(latex.TexMissing, match=r"latexmk.*not installed"):
+        latex.compile(tmp_path)
+
+
+def test_a_failure_is_told_with_the_lines_of_the_log(tmp_path: Path, require: Callable[..., str]) -> None:
+    require("latexmk")
+    (tmp_path / "report.tex").write_text("\\documentclass{article}\\begin{document}\\nothing\\end{document}")
+    with pytest.raises(latex.TexFailed, match="Undefined control sequence"):
+        latex.compile(tmp_path)
+    assert [p.name for p in tmp_path.iterdir()] == ["report.tex"]
+
+
+@pytest.mark.parametrize("file", ["/etc/passwd", "../secret.tex"])
+def test_tex_reads_nothing_outside_its_folder(file: str, tmp_path: Path, require: Callable[..., str]) -> None:
+    require("latexmk")
+    folder = tmp_path / "report"
+    folder.mkdir()
+    (tmp_path / "secret.tex").write_text("secret")
+    (folder / "report.tex").write_text(
+        f"\\documentclass{{article}}\\begin{{document}}\\input{{{file}}}\\end{{document}}"
+    )
+    with pytest.raises(latex.TexFailed):
+        latex.compile(folder)
