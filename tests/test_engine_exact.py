@@ -148,7 +148,7 @@ tests = st.tuples(
 )
 
 
-@settings(derandomize=True, max_examples=60)
+@settings(derandomize=True, max_examples=40)
 @given(st.lists(tests, min_size=2, max_size=4), st.sampled_from([1.0, 1.25, 1.5, 2.5]))
 def test_both_engines_agree_on_every_status(
     rows: list[tuple[float, float, float | None]], beta: float

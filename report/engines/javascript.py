@@ -7,7 +7,7 @@ templates/engines/runtime.js runs it, in a browser or in node.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -162,8 +162,15 @@ def _axis(axis: Axis) -> dict[str, str]:
     return entry
 
 
-def program(sheet: Sheet) -> str:
-    """The sheet as a JavaScript object literal, for ``evaluateSheet`` of the runtime."""
+def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
+    """The sheet as a JavaScript object literal, for ``evaluateSheet`` of the runtime.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    constants : mapping of column name to float
+        Given scalars that are no input of the user's.
+    """
     columns = []
     for column in sheet.order:
         kind = {Given: "given", Formula: "formula", Root: "root"}[type(column.rule)]
@@ -185,4 +192,7 @@ def program(sheet: Sheet) -> str:
             text += f', "kernels": (c, a, n, k) => ({{\n{inner}\n  }})'
         columns.append(f"  {text}}}")
     axes = ", ".join(json.dumps(_axis(axis)) for axis in sheet.axes)
-    return f'{{\n "axes": [{axes}],\n "columns": [\n' + ",\n".join(columns) + "\n ]\n}"
+    fixed = json.dumps({name: [value] for name, value in (constants or {}).items()})
+    return (
+        f'{{\n "constants": {fixed},\n "axes": [{axes}],\n "columns": [\n' + ",\n".join(columns) + "\n ]\n}"
+    )

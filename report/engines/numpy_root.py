@@ -226,7 +226,8 @@ class _Rows:
             left, right = np.where(side <= 0, here, left), np.where(side > 0, here, right)
             there, before = here - back, here
             # A step out of the bracket is replaced by the middle of what is left of it.
-            here = np.where((there >= left) & (there <= right), there, (left + right) / 2)
+            inside = (there >= left) & (there <= right)
+            here = there if inside.all() else np.where(inside, there, (left + right) / 2)
         settled = np.abs(f) <= NOISE * self.call(self.program.terms, before)
         # Within the noise the bracket may be closed up already, and the last step out of it by an ulp.
         here = np.where(settled, np.where(np.isfinite(there), np.clip(there, left, right), before), here)

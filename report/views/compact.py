@@ -51,10 +51,10 @@ def _end_of_template(text: str, place: int) -> int:
 
 
 def short_script(text: str) -> str:
-    r"""JavaScript without comments, indentation and idle spaces; a line end stays where only it ends a statement.
+    r"""JavaScript without comments and idle spaces; a line end stays where a statement ends.
 
     >>> short_script('const a = 1; // one\n  const b = `x  ${ a }`;\n')
-    'const a=1;const b=`x  ${ a }`;\n'
+    'const a=1;\nconst b=`x  ${ a }`;\n'
     """
     pieces: list[str] = []
     space = ""
@@ -62,22 +62,15 @@ def short_script(text: str) -> str:
         if kind == "space":
             space = "\n" if "\n" in piece or space == "\n" else " "
             continue
-        if kind == "pattern":
-            piece = piece.lstrip()
         if space and pieces:
             last, first = pieces[-1][-1], piece[0]
             words = (last.isalnum() or last in "_$") and (first.isalnum() or first in "_$")
             signs = last in "+-" and first in "+-"
-            if (
-                words
-                or signs
-                or (space == "\n" and last not in "{(,;[&|?:=+-*<>" and first not in "})],.?:&|*")
-            ):
-                pieces.append(space if space == "\n" else " ")
-            elif space == "\n" and last == ";":
-                pieces.append("\n")
+            ends = space == "\n" and last not in "{(,[&|?:=+-*<>" and first not in "})],.?:&|*"
+            if words or signs or ends:
+                pieces.append(space)
         space = ""
-        pieces.append(piece)
+        pieces.append(piece.lstrip() if kind == "pattern" else piece)
     return "".join(pieces) + ("\n" if space == "\n" else "")
 
 
@@ -87,8 +80,8 @@ def short_script(text: str) -> str:
 def short_style(text: str) -> str:
     """A style without comments and idle spaces.
 
-    >>> short_style("/* all */ td, th { color : red; margin: 0 calc(1ch + 2px) ; }")
-    'td,th{color :red;margin:0 calc(1ch + 2px)}'
+    >>> short_style("/* all */ td, th { color: red; margin: 0 calc(1ch + 2px) ; }")
+    'td,th{color:red;margin:0 calc(1ch + 2px)}'
     """
     plain = re.sub(r"\s+", " ", re.sub(r"/\*[\s\S]*?\*/", "", text)).strip()
     return re.sub(r";\s*}", "}", re.sub(r"\s*([{};,])\s*|(?<=[\w\])])(:) ", r"\1\2", plain))
@@ -105,7 +98,7 @@ _WHOLE = re.compile(r"(<math\b[^>]*>)<mrow>((?:(?!</?mrow)[\s\S])*)</mrow></math
 
 
 def short_mathml(page: str) -> str:
-    """A page whose formulas have no groups of one, no attribute that is the default, no number of a character.
+    """A page whose formulas have no groups of one, no default attributes, no numbers of characters.
 
     What a formula is called in LaTeX is left out too: browsers and screen readers read its elements.
 

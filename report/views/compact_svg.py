@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 __all__ = ["short_svg"]
 
@@ -41,13 +42,16 @@ def short_svg(svg: str) -> str:
 _TEXT = re.compile(
     r"<!-- (?P<text>(?:(?!-->)[\s\S])*) -->\s*"
     r'<g style="fill: (?P<fill>#\w+)" transform="(?P<where>translate\([^)]*\)(?: rotate\([^)]*\))?) '
-    r'scale\((?P<scale>[\d.]+) -[\d.]+\)">\s*(?P<glyphs>(?:<defs>[\s\S]*?</defs>\s*)?(?:<use [^>]*/>\s*)+)</g>'
+    r'scale\((?P<scale>[\d.]+) -[\d.]+\)">\s*'
+    r"(?P<glyphs>(?:<defs>[\s\S]*?</defs>\s*)?(?:<use [^>]*/>\s*)+)</g>"
 )
-_USE = re.compile(r'<use href="#([^"]*)"(?: transform="translate\(([-\d.]+) [-\d.]+\)(?: scale\(([\d.]+)\))?")?/>')
+_USE = re.compile(
+    r'<use href="#([^"]*)"(?: transform="translate\(([-\d.]+) [-\d.]+\)(?: scale\(([\d.]+)\))?")?/>'
+)
 _GLYPH = re.compile(r'<path id="([^"]*)" d="[^"]*" transform="scale\(0.015625\)"/>')
 _PLAIN = 61.0
 """The width of most letters, in hundredths of the size."""
-_OTHER = {"m": 97.0, "w": 82.0, "W": 99.0, "M": 86.0, "i": 28.0, "l": 28.0, "j": 28.0, "r": 41.0, "t": 39.0, "f": 35.0}
+_OTHER = {"m": 97.0, "w": 82.0, "W": 99.0, "M": 86.0, "i": 28.0, "l": 28.0, "j": 28.0, "r": 41.0, "t": 39.0}
 _GREEK = {"alpha": "α", "beta": "β", "mu": "µ"}
 _MATH = re.compile(r"\\(?P<greek>[a-z]+)|_(?P<low>\w)|(?P<prime>')|(?P<letter>[A-Za-z])|(?P<other>.)")
 
@@ -57,7 +61,7 @@ def _with_texts(svg: str) -> str:
     widths: dict[str, float] = {}
     for found in _TEXT.finditer(svg):
         uses = _USE.findall(found["glyphs"])
-        for (name, at, size), (_, there, _) in zip(uses, uses[1:], strict=False):
+        for (name, at, size), (_, there, _) in pairwise(uses):
             if not size:
                 widths.setdefault(name, float(there or 0) - float(at or 0))
     glyphs = {found[1]: found.group() for found in _GLYPH.finditer(svg)}
@@ -81,7 +85,8 @@ def _with_texts(svg: str) -> str:
     text = _GLYPH.sub("", text)
     needed = [glyph for name, glyph in glyphs.items() if f'href="#{name}"' in text]
     defs = f"<defs>{''.join(needed)}</defs>" if needed else ""
-    return re.sub(r"(<svg\b[^>]*)>", rf'\1 font-family="{FONT}">{defs}', re.sub(r"<defs>\s*</defs>", "", text), count=1)
+    text = re.sub(r"<defs>\s*</defs>", "", text)
+    return re.sub(r"(<svg\b[^>]*)>", rf'\1 font-family="{FONT}">{defs}', text, count=1)
 
 
 def _said(text: str) -> str | None:

@@ -151,7 +151,7 @@ def _column(report: Report, document: Document, column: Column) -> dict[str, Any
     head = document.head(column)
     entry: dict[str, Any] = {
         "source": column.source,
-        "unit": unit_text(shown.unit).strip("()"),
+        "unit": unit_text(_unit(report, column)).strip("()"),
         "scale": shown.scale,
         "digits": shown.digits,
     }
@@ -159,7 +159,8 @@ def _column(report: Report, document: Document, column: Column) -> dict[str, Any
         entry["given"] = _given(report, column)
         return entry
     put = Put(document)
-    entry["equations"] = head.sources
+    if head.sources != (column.source,):
+        entry["equations"] = head.sources
     if isinstance(column.rule, Root):
         entry |= {"none": column.rule.none, "two": column.rule.two}
     if column.requires:
@@ -169,6 +170,12 @@ def _column(report: Report, document: Document, column: Column) -> dict[str, Any
     return entry
 
 
+def _unit(report: Report, column: Column) -> str:
+    """The unit in which a column is shown: a given one stays in the unit it was printed in."""
+    printed = _printed(report, column.name) if isinstance(column.rule, Given) else None
+    return report.shown[column.name].unit if printed is None else printed.unit
+
+
 def _status(document: Document, label: str) -> str:
     proof = document.proof(document.equation(label))
     return "not checked" if proof is None else proof.status.value
@@ -176,14 +183,12 @@ def _status(document: Document, label: str) -> str:
 
 def _given(report: Report, column: Column) -> dict[str, Any]:
     """What an input may be, and how large its printed unit is."""
-    declared: Measured | Parameter | None = next(
-        (c for c in (*report.workbook.measured, *report.workbook.parameters) if c.name == column.name), None
-    )
+    inputs: tuple[Measured | Parameter, ...] = (*report.workbook.measured, *report.workbook.parameters)
+    declared = next((one for one in inputs if one.name == column.name), None)
     printed = _printed(report, column.name)
     bounds = declared.bounds if declared is not None else Bounds()
     unit = "" if column.unit == "1" else f" {column.unit}"
     return {
-        "unit": printed.unit if printed else column.unit,
         "scale": _fraction(printed.scale if printed else parse_unit(column.unit).scale),
         "bounds": {
             name: repr(bound) if name in ("low", "high") else True
@@ -282,19 +287,23 @@ class Part:
     column : Column
     latex : str
         Its symbol.
+    unit : str
+        The unit it is shown in.
     equation : str
         Its equation with ``@n@`` for the n-th cell in it; empty if it is given or sums over rows.
     """
 
     column: Column
     latex: str
+    unit: str
     equation: str
 
 
 def parts(report: Report, document: Document) -> Iterator[Part]:
     """What the formula bar shows of every column."""
     for column in report.sheet.columns:
-        yield Part(column, document.latex(column.name), Put(document).equation(column))
+        equation = Put(document).equation(column)
+        yield Part(column, document.latex(column.name), _unit(report, column), equation)
 
 
 _BETWEEN = re.compile(
@@ -346,7 +355,7 @@ class Put(Printer):
             return self._place(
                 expr.name, None if self.sheet[expr.name].axis is None else str(axis and axis.index)
             )
-        return super()._print_Symbol(expr, style)  # type: ignore[no-any-return]
+        return super()._print_Symbol(expr, style)
 
     def _print_Indexed(self, expr: Indexed) -> str:
         return self._place(name_of(expr), str(expr.indices[0]))

@@ -107,9 +107,10 @@ function bisect(root, row, left, right, rising) {
   }
 }
 
-// All columns of a sheet. `labels` numbers the rows of the given index sets, `data` has the given columns in
+// All columns of a sheet. `labels` numbers the rows of the given index sets, `inputs` has the given columns in
 // SI as arrays (of one number for a scalar); NaN is a missing datum.
-function evaluateSheet(program, labels, data) {
+function evaluateSheet(program, labels, inputs) {
+  const data = { ...program.constants, ...inputs };
   const layouts = {}, value = {}, status = {}, roots = {}, counted = {};
   for (const axis of program.axes) layouts[axis.name] = layOut(axis, layouts, labels, data);
   for (const column of program.columns) {

@@ -50,17 +50,20 @@ function fill(id, ...nodes) {
 
 // All digits, in the unit of the report; a given number as it was printed.
 function fullValue(look, name, row) {
-  const { scale, given } = LIVE.columns[name], { texts } = look.column(name);
-  const unit = given ? given.unit : null, nodes = part(name, "unit");
+  const { scale, given, unit } = LIVE.columns[name], { texts } = look.column(name);
   if (!look.trace.isOk(name, row)) return [make("span", { class: "error" }, CODES[look.trace.sheet.status[name][row]])];
   const text = given ? texts[row] : repr(look.trace.sheet.value[name][row] / scale).replace(/\.0$/, "");
   const [mantissa, power] = text.split("e");
   const shown = (power === undefined || given ? text : `${mantissa} × 10${raised(Number(power))}`).replace("-", MINUS);
-  return unit === "1" || (!nodes.length && !unit) ? [shown] : [`${shown}\u00a0`, ...nodes];
+  return unit === "1" ? [shown] : [`${shown}\u00a0`, ...part(name, "unit")];
 }
 
-function sourceLine({ equations, source }) {
-  if (!equations.length) return [`from ${source}`];
+// The numbers of its equations in the ledger; mostly there is one.
+const equationsOf = ({ equations, source }) => equations ?? (LIVE.equations[source] ? [source] : []);
+
+function sourceLine(column) {
+  const equations = equationsOf(column);
+  if (!equations.length) return [`from ${column.source}`];
   return equations.flatMap((label, place) => {
     const { id, status } = LIVE.equations[label];
     const kind = status.startsWith("proved") ? "holds" : /refuted|undecided/.test(status) ? "fails" : "stated";
@@ -70,8 +73,8 @@ function sourceLine({ equations, source }) {
 }
 
 // The equation as the report prints it: a copy from its place there.
-function publishedMath({ equations }, name) {
-  const found = equations.length && byId(LIVE.equations[equations[0]].id)?.querySelector(".eq math");
+function publishedMath(column, name) {
+  const [label] = equationsOf(column), found = label && byId(LIVE.equations[label].id)?.querySelector(".eq math");
   if (!found) return [];
   const copy = found.cloneNode(true);
   const rows = LIVE.columns[name].put ? "" : summedRows(name);

@@ -50,7 +50,7 @@ class Look {
     const { texts, figure } = this.column(name), shown = figure(row);
     if (!this.trace.isOk(name, row)) return CODES[this.trace.sheet.status[name][row]];
     const text = shown ? figureText(shown) : texts[row];
-    const unit = LIVE.columns[name].given?.unit ?? LIVE.columns[name].unit;
+    const { unit } = LIVE.columns[name];
     return unit === "1" ? text : `${text} ${unit}`;
   }
 }

@@ -35,8 +35,8 @@ const largest = (points, place) => {
 
 function drawLoops(look) {
   const { trace } = look, depth = LIVE.columns.x_m;
-  const points = pointsOf(trace, "x", "F", depth.scale), up = pointsOf(trace, "x_load", "F_load", depth.scale);
-  const back = pointsOf(trace, "x_unload", "F_unload", depth.scale);
+  const points = pointsOf(trace, "x", "F", depth.scale), up = pointsOf(trace, "loading_x", "loading_F", depth.scale);
+  const back = pointsOf(trace, "unloading_x", "unloading_F", depth.scale);
   const every = points.flatMap(([, own]) => own);
   const fit = up.reduce((a, [, b]) => (largest(b, 0) > largest(a, 0) ? b : a), []);
   if (!every.length) return null;

@@ -139,7 +139,6 @@ function writeToolbar(edited) {
   const { history } = page, count = differences(history.now, history.issued);
   const differ = count === 1 ? "1 input differs" : `${count} inputs differ`;
   byId("live-banner").textContent = edited ? `Edited: ${count ? differ : "the order of the tests differs"} from the report as issued.` : "";
-  byId("live-banner").hidden = !edited;
   byId("live-reset").disabled = !edited;
   byId("live-undo").disabled = history.place === 0;
   byId("live-redo").disabled = history.place === history.states.length - 1;
@@ -214,7 +213,7 @@ function listen() {
   document.addEventListener("copy", onCopy);
   main.addEventListener("mousedown", onPress);
   main.addEventListener("paste", onPaste);
-  main.addEventListener("input", (event) => isText(event.target) && beginEditing(event.target, false));
+  main.addEventListener("beforeinput", (event) => isText(event.target) && beginEditing(event.target, false));
   main.addEventListener("focusout", (event) => editing?.element === event.target && commit());
   main.addEventListener("change", (event) => event.target.dataset.use && useTest(Number(event.target.dataset.use), event.target.checked));
   document.addEventListener("click", (event) => {

@@ -86,8 +86,9 @@ function significant(x, digits) {
 
 // --- numbers as they are shown ---------------------------------------------------------------------------
 
-// A number of more than six digits before the point, or with more than three zeros behind it, gets a power.
-const isLarge = (first) => first >= 6 || first < -3;
+// A number gets a power if it has more than two digits before the point beyond the known ones, or more than
+// three zeros behind it.
+const isFar = (first, digits) => first >= digits + 2 || first < -3;
 
 function figureOf(text, exponent = null) {
   const plain = text.replace("-", ""), [whole, fraction = ""] = plain.split(".");
@@ -109,7 +110,7 @@ function rounded(value, digits, scientific = null) {
     return figureOf(digits > 1 ? `0.${zeros}` : "0", scientific ? 0 : null);
   }
   const short = significant(value, digits), sign = value < 0 ? "-" : "", all = short.digits;
-  if (scientific ?? isLarge(short.first)) {
+  if (scientific ?? isFar(short.first, digits)) {
     return figureOf(sign + all[0] + (digits > 1 ? `.${all.slice(1)}` : ""), short.first);
   }
   if (short.first >= digits) return figureOf(fixed(value, 0));
@@ -130,7 +131,7 @@ function columnForm(values, scale, digits) {
     zero ||= size === 0;
   }
   const firsts = most ? [least, most].map((size) => significant(size, digits).first) : [0];
-  const scientific = most > 0 && firsts.some(isLarge);
+  const scientific = most > 0 && firsts.some((first) => isFar(first, digits));
   const places = scientific ? digits - 1 : Math.max(0, digits - 1 - firsts[0], zero ? digits - 1 : 0);
   return { scientific, places };
 }

@@ -44,9 +44,11 @@ const slug = (label) => label.replace(/[^A-Za-z0-9_.]+/g, "-").replace(/^-+|-+$/
 const cellId = (kind, name, index) => slug(index ? `${kind}-${name}-${index}` : `${kind}-${name}`);
 const plural = (count, word) => `${count} ${word}${count === 1 ? "" : "s"}`;
 
-// A copy of what the report says of a column, in its own markup: "symbol", "meaning", "unit" or "equation".
+const PARTS = { symbol: "i", meaning: "b", unit: "u", equation: "s" };
+
+// A copy of what the report says of a column, in its own markup.
 function part(name, what) {
-  const found = byId("live-parts").content.querySelector(`[data-of="${CSS.escape(name)}"] > .${what}`);
+  const found = byId("live-parts").content.querySelector(`[data-of="${CSS.escape(name)}"] > ${PARTS[what]}`);
   return found ? Array.from(found.cloneNode(true).childNodes) : [];
 }
 
