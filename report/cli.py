@@ -93,10 +93,11 @@ def _folder(parser: argparse.ArgumentParser) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; return its exit code."""
-    options = _parser().parse_args(arguments)
     from .errors import LoopsheetError, render_all
 
+    options = argparse.Namespace(traceback=False)
     try:
+        options = _parser().parse_args(arguments)
         code: int = options.run(options)
         sys.stdout.flush()
     except LoopsheetError as error:

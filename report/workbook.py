@@ -107,6 +107,9 @@ class Workbook:
         missing or contradictory.
     sheet : callable
         Takes the names of the given parameters; returns the :class:`Sheet`.
+    fits : tuple of str
+        Names of three cells, if a source's choice of fit is to be told: the mean, the fit to logarithms (as
+        published), the fit to the values themselves.
     headline : tuple of str
         The cells that are the result, first in every view.
     tables, figures
@@ -126,6 +129,7 @@ class Workbook:
     sheet: Callable[[frozenset[str]], Sheet]
     check_parameters: Callable[[frozenset[str]], str | None] = lambda given: None
     headline: tuple[str, ...] = ()
+    fits: tuple[str, ...] = ()
     tables: tuple[TableSpec, ...] = ()
     figures: tuple[FigureSpec, ...] = ()
     prose: str = "generic"

@@ -185,3 +185,50 @@ def test_other_units_other_masses_and_other_numbers_of_tests(tmp_path: Path) -> 
         c, d = other.values.cell("C", mine).value, paper.values.cell("C", theirs).value
         assert c == pytest.approx(d * 1000 / 1001, rel=1e-6)
     assert other.shown["x_m"].unit == "mm"
+
+
+def test_a_move_that_fails_half_way_is_taken_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Fail at each replacement in turn: every time the old output is there to the last byte."""
+    import os as system
+
+    folder, out = copy_paper(tmp_path / "in"), tmp_path / "out"
+    build.build(folder, out, ("json",))
+    before = hashes(out)
+    toml = folder / "report.toml"
+    toml.write_text(toml.read_text().replace("Soft steel", "Other steel"))
+    real = system.replace
+    for fatal in range(4):
+        calls = iter(range(100))
+
+        def breaks(source: object, target: object, calls: object = calls, fatal: int = fatal) -> None:
+            if next(calls) == fatal:  # type: ignore[call-overload]
+                raise OSError(28, "No space left on device")
+            real(source, target)  # type: ignore[arg-type]
+
+        with monkeypatch.context() as patch:
+            patch.setattr(system, "replace", breaks)
+            with pytest.raises(OutputError, match="No space left"):
+                build.build(folder, out, ("json",))
+        assert hashes(out) == before, fatal
+
+
+def test_what_is_in_the_way_is_named_and_nothing_is_touched(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    (out / "values.json").mkdir(parents=True)
+    (out / "manifest.json").write_text("mine")
+    with pytest.raises(OutputError, match=r"values\.json"):
+        build.build(build.PAPER, out, ("json",))
+    assert (out / "manifest.json").read_text() == "mine"
+    assert sorted(p.name for p in out.iterdir()) == ["manifest.json", "values.json"]
+
+
+def test_what_an_earlier_build_made_goes_unless_it_was_changed(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    build.build(build.PAPER, out, ("json", "latex"))
+    (out / "report.tex").write_text("changed by hand")
+    build.build(build.PAPER, out, ("json",))
+    assert sorted(p.name for p in out.rglob("*") if p.is_file()) == [
+        "manifest.json",
+        "report.tex",
+        "values.json",
+    ]

@@ -199,14 +199,6 @@ def _is_text(line: ast.stmt) -> bool:
     return isinstance(value, ast.Constant) and isinstance(value.value, str)
 
 
-# The narrative of which fit a source used names three cells of the paper's workbook.
-KNOWING = pytest.mark.xfail(reason="fit_used names cells of the paper's workbook", strict=True)
-
-
-@pytest.mark.parametrize(
-    "path",
-    [pytest.param(p, marks=KNOWING) if p.name == "document.py" else p for p in GENERAL],
-    ids=lambda path: path.stem,
-)
+@pytest.mark.parametrize("path", GENERAL, ids=lambda path: path.stem)
 def test_nothing_general_knows_the_paper(path: Path) -> None:
     assert not set(OF_THE_PAPER.findall(code_of(path)))

@@ -256,8 +256,10 @@ class Document:
         The offset of the printed fit from the printed mean is known to one unit of their last digit, for
         each of the two was rounded. A fit whose offset is further away was not the one.
         """
-        mean, fitted = self.published("alpha_mean"), self.published("alpha_log")
-        names = ("alpha_mean", "alpha_log", "alpha_lin")
+        names = self.report.workbook.fits
+        if not names:
+            return None
+        mean, fitted = self.published(names[0]), self.published(names[1])
         if mean is None or fitted is None or not all(self.has(name) and self.item(name).ok for name in names):
             return None
         published = float(fitted.printed.value - mean.printed.value)

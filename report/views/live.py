@@ -164,7 +164,7 @@ def _column(report: Report, document: Document, column: Column) -> dict[str, Any
     if isinstance(column.rule, Root):
         entry |= {"none": column.rule.none, "two": column.rule.two}
     if column.requires:
-        entry["requires"] = "; ".join(sentence for _, sentence in column.requires)
+        entry["requires"] = [sentence for _, sentence in column.requires]
     if put.equation(column):
         entry["put"] = put.cells
     return entry

@@ -271,6 +271,7 @@ WORKBOOK = Workbook(
     parameters=PARAMETERS,
     check_parameters=_masses_given,
     sheet=sheet,
+    fits=("alpha_mean", "alpha_log", "alpha_lin"),
     headline=("alpha_mean", "alpha_log", "C_log", "alpha_lin", "C_lin"),
     prose="soft_impact",
     tables=(

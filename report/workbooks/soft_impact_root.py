@@ -62,7 +62,7 @@ def alpha_rule(where: Cells) -> Root:
         start=cells(_start()),
         steps=4,
         none="no exponent gives both tests a positive approach on one loading curve; "
-        "a faster impact must leave a deeper imprint",
+        "the imprint does not deepen with the speed, or deepens too steeply for what is given back",
         two="e rises with the speed, and the two tests alone cannot tell which exponent is meant",
     )
 

@@ -86,7 +86,16 @@ class Trace {
       const roots = Array.from(this.sheet.roots[name]?.[row] ?? [], brief).join(" and ");
       return `${source} has more than one root here: ${roots ? `${roots} (${two})` : two}`;
     }
-    return `outside the domain of ${source}${requires ? `: ${requires}` : ""}`;
+    return `outside the domain of ${source}: ${this.outside(name, row, requires ?? [])}`;
+  }
+
+  // Which condition does not hold, or that the formula gives no number.
+  outside(name, row, requires) {
+    const { sums, positive } = this.declared[name], { broken, layouts } = this.sheet;
+    if (broken?.[name]?.[row]) return requires[broken[name][row] - 1];
+    if (!broken && requires.length) return requires.join("; ");
+    const empty = sums.find((axis) => layouts[axis].size === 0);
+    return empty ? `${empty} has no rows` : `it gives no ${positive ? "positive" : "finite"} number here`;
   }
 
   // The sentence that a cell without a value shows.

@@ -1,0 +1,422 @@
+"""The live page: what it embeds, and that its JavaScript reads and prints numbers as Python does."""
+
+import base64
+import hashlib
+import json
+import random
+import re
+import struct
+import subprocess
+import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import html5lib
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from loopsheet.report import build
+from loopsheet.report.analysis.referee import print_as
+from loopsheet.report.engines import javascript
+from loopsheet.report.number_text import NumberError, read_printed
+from loopsheet.report.quantity import Bounds
+from loopsheet.report.result import Report
+from loopsheet.report.unit_text import parse_unit
+from loopsheet.report.views import compact, compact_svg, figures, html, live
+from loopsheet.report.views.document import Document
+from loopsheet.report.views.numbers import decimals, rounded, shown
+
+ROOT = Path(__file__).resolve().parent.parent
+LIVE = ROOT / "templates" / "live"
+RUNTIME = ROOT / "templates" / "engines" / "runtime.js"
+
+# ------------------------------------------------------------------------------------------ the page
+
+
+@pytest.fixture(scope="module")
+def report() -> Report:
+    return build.compute(build.PAPER, prove=False)
+
+
+@pytest.fixture(scope="module")
+def page(report: Report) -> str:
+    drawn = {figure.name: figures.svg(report, figure.name) for figure in report.workbook.figures}
+    return html.render(report, drawn, program=javascript.program(report.sheet))
+
+
+@pytest.fixture(scope="module")
+def known(report: Report) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(live.data(report, Document(report)))
+    return found
+
+
+def element(page: str, pattern: str) -> str:
+    found = re.search(pattern, page, re.DOTALL)
+    assert found is not None
+    return found[1]
+
+
+def script_of(page: str) -> str:
+    return element(page, r"<script>(.*?)</script>")
+
+
+def test_page_of_the_paper_is_small(page: str) -> None:
+    assert len(page.encode()) <= 300_000
+
+
+def test_policy_names_the_hashes_of_exactly_this_style_and_this_script(page: str) -> None:
+    policy = element(page, r'http-equiv="Content-Security-Policy" content="([^"]*)"')
+    policy = policy.replace("&#39;", "'")
+    for directive, text in (("style", element(page, r"<style>(.*?)</style>")), ("script", script_of(page))):
+        digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+        assert f"{directive}-src 'sha256-{digest}';" in policy
+    assert policy.startswith("default-src 'none';")
+    assert "unsafe" not in policy
+
+
+def test_same_report_makes_the_same_page(report: Report, page: str) -> None:
+    drawn = {figure.name: figures.svg(report, figure.name) for figure in report.workbook.figures}
+    assert html.render(report, drawn, program=javascript.program(report.sheet)) == page
+
+
+def test_page_without_a_program_has_no_script(report: Report) -> None:
+    text = html.render(report, {})
+    assert "<script" not in text
+    assert "live-dock" not in text
+
+
+FORBIDDEN = r"\beval\b|\bFunction\(|innerHTML|outerHTML|insertAdjacentHTML|document\.write|DOMParser"
+
+
+def test_nothing_is_evaluated_and_nothing_is_parsed_as_markup() -> None:
+    for path in sorted(LIVE.glob("*.js")):
+        text = path.read_text(encoding="utf-8")
+        assert not re.search(FORBIDDEN, text), path
+        assert len(text.splitlines()) < 300, path
+
+
+def test_scripts_are_all_there_and_all_in_use() -> None:
+    assert sorted(live.SCRIPTS) == sorted(path.name for path in LIVE.glob("*.js"))
+
+
+def test_scripts_are_javascript(require: Callable[..., str], page: str, tmp_path: Path) -> None:
+    path = tmp_path / "script.js"
+    path.write_text(script_of(page), encoding="utf-8")
+    subprocess.run([require("node"), "--check", str(path)], check=True)
+
+
+def test_script_begins_and_ends_as_one_element(page: str) -> None:
+    tree = html5lib.parse(page, namespaceHTMLElements=False)
+    assert len(tree.findall(".//script")) == 2
+
+
+# ------------------------------------------------------------------------------------------ the data
+
+
+def test_data_hold_the_inputs_as_printed(known: dict[str, Any], report: Report) -> None:
+    assert [test["label"] for test in known["tests"]] == [1, 2, 3, 4, 5]
+    cells = {"v": "2.940", "e": "0.512", "x_p": "29.7"}
+    assert known["tests"][1] == {"label": 2, "used": True, "cells": cells}
+    assert known["parameters"]["beta"] == "1.5"
+    assert known["units"] == {"v": "m/s", "e": "1", "x_p": "um"}
+    assert set(known["columns"]) == {column.name for column in report.sheet.columns}
+
+
+def test_data_say_what_inputs_may_be(known: dict[str, Any]) -> None:
+    speed, e, count = (known["columns"][name]["given"] for name in ("v", "e", "points_per_pair"))
+    assert speed["bounds"] == {"low": "0", "low_open": True}
+    assert e["bounds"] == {"low": "0", "high": "1"}
+    assert e["allowed"].startswith("between 0 and 1")
+    assert count["bounds"]["integer"] is True
+    assert known["columns"]["x_p"]["given"]["scale"] == ["1", "1000000"]
+
+
+def test_pieces_of_the_toml_make_the_file_again(known: dict[str, Any], report: Report) -> None:
+    def text(piece: str | dict[str, str]) -> str:
+        if isinstance(piece, str):
+            return piece
+        return "" if "line" in piece else known["parameters"][piece["parameter"]]
+
+    assert "".join(map(text, known["toml"])) == report.inputs.files["report.toml"].decode()
+    places = [piece["parameter"] for piece in known["toml"] if isinstance(piece, dict)]
+    assert sorted(places) == sorted(known["parameters"])
+
+
+def test_published_values_keep_their_digits(known: dict[str, Any]) -> None:
+    (tables, *_) = known["published"]
+    assert tables["id"] == "published-Table-2"
+    assert tables["rows"][0] == ["alpha", "1-2", "1.234", ["1", "1"], True]
+
+
+def test_foreign_text_cannot_end_the_element(tmp_path: Path) -> None:
+    nasty = "</script><!-- <script> ]]>"
+    (tmp_path / "report.toml").write_text(
+        f'title = "{nasty}"\nworkbook = "soft_impact"\n[parameters]\nball_mass = "8.366 g"\n'
+        '[measurements]\nfile = "measurements.csv"\n# </script>\n',
+        encoding="utf-8",
+    )
+    (tmp_path / "measurements.csv").write_bytes((build.PAPER / "measurements.csv").read_bytes())
+    strange = build.compute(tmp_path, prove=False)
+    text = live.data(strange, Document(strange))
+    assert "<" not in text
+    assert json.loads(text)["toml"][-1].endswith("# </script>\n")
+    page = html.render(strange, {}, javascript.program(strange.sheet))
+    tree = html5lib.parse(page, namespaceHTMLElements=False)
+    assert len(tree.findall(".//script")) == 2
+
+
+def test_equations_have_a_place_for_each_cell(report: Report) -> None:
+    document = Document(report)
+    found = {part.column.name: part for part in live.parts(report, document)}
+    put = live.Put(document)
+    assert put.equation(report.sheet["x_m1"]) == found["x_m1"].equation
+    assert put.cells == [["x_m2", "p"], ["alpha", "p"], ["v", "i"], ["v", "j"]]
+    assert r"\left(\frac{\text{@2@}}{\text{@3@}}\right)^{2/(\text{@1@} + 1)}" in found["x_m1"].equation
+    assert r"\text{@0@} \cdot " in found["x_m1"].equation  # two numbers side by side would be read as one
+    assert found["alpha_mean"].equation == ""  # a sum has too many terms
+    assert found["v"].equation == ""
+
+
+# ------------------------------------------------------------------------------------------ shorter text
+
+
+def test_short_script_runs_as_the_long_one(require: Callable[..., str], tmp_path: Path) -> None:
+    text = r"""
+    // a comment with a ` in it
+    const a = 1; /* and
+    another */ let b = `x ${ a > 0 ? `in ${ a }  side` : "no" }  y`; // the end
+    const pattern = /[/"'`]\/ +/g
+    const c = "// no comment", d = 'it\'s', e = a - -a
+    for (let n = 0; n < 3; n++);
+    if (a) { b += "!" }
+    const f = () => { return { a, b: 2 } }
+    console.log(JSON.stringify([a, b, c, d, e, "x/ y".replace(pattern, "z"), f()]))
+    """
+    node = require("node")
+    long, short = (
+        subprocess.run([node, "-e", source], check=True, capture_output=True).stdout
+        for source in (text, compact.short_script(text))
+    )
+    assert long == short
+    assert len(compact.short_script(text)) < len(text)
+
+
+def places(path: str) -> list[tuple[float, float]]:
+    """Where a path goes, told by steps or by places."""
+    here, start, found = (0.0, 0.0), (0.0, 0.0), []
+    for letter, rest in re.findall(r"([A-Za-z])([^A-Za-z]*)", path):
+        numbers = [float(number) for number in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", rest)]
+        if letter in "zh":
+            here = start if letter == "z" else (here[0] + numbers[0], here[1])
+        size = {"Q": 4, "C": 6}.get(letter.upper(), 2)
+        for first in range(0, len(numbers) - size + 1, size) if letter not in "zh" else ():
+            some = numbers[first : first + size]
+            points = list(zip(some[::2], some[1::2], strict=True))
+            if letter.islower():
+                points = [(here[0] + x, here[1] + y) for x, y in points]
+            found += points
+            here = points[-1]
+            start = here if letter in "Mm" else start
+    return found
+
+
+def test_short_picture_goes_the_same_ways_and_says_the_same(report: Report) -> None:
+    for figure in report.workbook.figures:
+        long = figures.svg(report, figure.name)
+        short = compact_svg.short_svg(long)
+        assert len(short) < len(long) / 2
+        root = ET.fromstring(short)
+        said = ["".join(element.itertext()) for element in root.iter("{http://www.w3.org/2000/svg}text")]
+        wanted = re.findall(r"<!-- ((?:(?!-->)[\s\S])*) -->", long)
+        assert len(said) == len(wanted)
+        assert all(ours == theirs or "$" in theirs for ours, theirs in zip(said, wanted, strict=True))
+        outlines = r'<path [^>]*transform="scale\(0.015625\)"/>'
+        drawn = [places(d) for d in re.findall(r' d="([^"]*)"', re.sub(outlines, "", long))]
+        again = [places(d) for d in re.findall(r' d="([^"]*)"', short)]
+        assert len(drawn) == len(again)
+        for ours, theirs in zip(again, drawn, strict=True):
+            assert np.array(ours) == pytest.approx(np.array(theirs), abs=0.006)
+
+
+# ------------------------------------------------------------------------------------------ numbers
+
+HARNESS = """
+const cases = JSON.parse(require("fs").readFileSync(0, "utf8"));
+const bytes = (hex) => Uint8Array.from(hex.match(/../g), (b) => parseInt(b, 16));
+const doubled = (hex) => new DataView(bytes(hex).buffer).getFloat64(0);
+const hexed = (x) => { const view = new DataView(new ArrayBuffer(8)); view.setFloat64(0, x);
+  return view.getBigUint64(0).toString(16).padStart(16, "0"); };
+const plain = (f) => [f.negative, f.whole, f.fraction, f.exponent, figureText(f)];
+const does = {
+  rounded: (x, digits) => plain(rounded(doubled(x), digits)),
+  decimals: (x, places) => plain(decimals(doubled(x), places)),
+  repr: (x) => repr(doubled(x)),
+  brief: (x) => brief(doubled(x)),
+  shown: (xs, scale, digits) => {
+    const values = xs.map((x) => x === null ? NaN : doubled(x));
+    return shownColumn(values, doubled(scale), digits).map((f) => f && plain(f));
+  },
+  beside: (x, text, scale) => beside(doubled(x), text, { n: BigInt(scale[0]), d: BigInt(scale[1]) }),
+  read: (given, text) => {
+    const found = readInput(given, text);
+    return found.why ? null : hexed(found.value);
+  },
+  normalised: (text) => normalised(text),
+};
+console.log(JSON.stringify(cases.map(([name, ...rest]) => does[name](...rest))));
+"""
+
+
+@pytest.fixture(scope="module")
+def in_js(require: Callable[..., str]) -> Callable[[list[list[Any]]], list[Any]]:
+    own = [(LIVE / name).read_text(encoding="utf-8") for name in ("numbers.js", "inputs.js")]
+    source = "\n".join([*own, HARNESS])
+
+    def run(cases: list[list[Any]]) -> list[Any]:
+        done = subprocess.run(
+            [require("node"), "-e", source], input=json.dumps(cases).encode(), capture_output=True, check=True
+        )
+        found: list[Any] = json.loads(done.stdout)
+        return found
+
+    return run
+
+
+def bits(x: float) -> str:
+    return struct.pack(">d", x).hex()
+
+
+def many() -> list[float]:
+    """Numbers of all sizes, and those where rounding is decided by the last bit or not at all."""
+    dice = random.Random(12)
+    found = [dice.uniform(1, 10) * 10.0 ** dice.randint(-12, 15) for _ in range(3000)]
+    found += [dice.randint(1, 99999) / 2 ** dice.randint(0, 12) for _ in range(2000)]  # ties among them
+    found += [dice.randint(1, 99999) / 10 ** dice.randint(0, 7) for _ in range(2000)]
+    found += [0.0, 0.5, 1.5, 2.5, 0.125, 9.995, 99.95, 999999.5, 0.00099995, 0.0009995, 1e-4, 9.5, 1e6]
+    return found + [-x for x in found[::3]]
+
+
+def test_numbers_are_printed_as_python_does(in_js: Callable[[list[list[Any]]], list[Any]]) -> None:
+    cases: list[list[Any]] = []
+    wanted: list[Any] = []
+    for place, x in enumerate(many()):
+        digits = place % 7 + 1
+        for name, figure in (("rounded", rounded(x, digits)), ("decimals", decimals(x, place % 6))):
+            cases.append([name, bits(x), digits if name == "rounded" else place % 6])
+            wanted.append([figure.negative, figure.whole, figure.fraction, figure.exponent, figure.text])
+        cases += [["repr", bits(x)], ["brief", bits(x)]]
+        wanted += [repr(x), f"{x:.6g}"]
+    assert in_js(cases) == wanted
+
+
+@settings(max_examples=25, suppress_health_check=list(HealthCheck))
+@given(st.data())
+def test_columns_are_printed_in_one_notation(
+    in_js: Callable[[list[list[Any]]], list[Any]], data: st.DataObject
+) -> None:
+    sizes = st.floats(1e-12, 1e12) | st.just(0.0) | st.none() | st.floats(-1e9, -1e-9)
+    column = st.lists(sizes, min_size=1, max_size=6)
+    kind = st.tuples(column, st.sampled_from([1.0, 1e-6, 1e-3]), st.integers(2, 6))
+    columns = data.draw(st.lists(kind, min_size=1, max_size=60))
+    cases = [["shown", [x if x is None else bits(x) for x in xs], bits(scale), d] for xs, scale, d in columns]
+    wanted = [
+        [f and [f.negative, f.whole, f.fraction, f.exponent, f.text] for f in shown(xs, scale, d)]
+        for xs, scale, d in columns
+    ]
+    assert in_js(cases) == wanted
+
+
+printed = st.from_regex(
+    r"[+-]?([0-9]{1,18}\.?[0-9]{0,18}|\.[0-9]{1,18})([eE][+-]?[0-9]{1,3})?", fullmatch=True
+)
+
+
+@settings(max_examples=40, suppress_health_check=list(HealthCheck))
+@given(st.data())
+def test_texts_are_read_to_the_same_double(
+    in_js: Callable[[list[list[Any]]], list[Any]], data: st.DataObject
+) -> None:
+    units = ["um", "mm", "g", "kg/m^3", "1", "km/h", "inch"]
+    written = printed | st.text("0123456789.,e+-x ", max_size=8)
+    texts = data.draw(st.lists(st.tuples(written, st.sampled_from(units)), min_size=1, max_size=80))
+    cases: list[list[Any]] = []
+    wanted: list[str | None] = []
+    for text, name in texts:
+        unit = parse_unit(name)
+        scale = [str(unit.scale.numerator), str(unit.scale.denominator)]
+        cases.append(["read", {"scale": scale, "bounds": {}, "allowed": ""}, text])
+        try:
+            value = float(read_printed(text, unit).value)
+        except NumberError:
+            wanted.append(None)
+        else:
+            # The last digit may be smaller than any double; the page asks only for the number itself.
+            wanted.append(bits(value + 0.0))
+    for read, found, expected in zip(texts, in_js(cases), wanted, strict=True):
+        if expected is not None:
+            assert found == expected, read
+
+
+@pytest.mark.parametrize(
+    ("text", "bounds", "allowed"),
+    [
+        ("0", Bounds(low=0, low_open=True), False),
+        ("1e-9", Bounds(low=0, low_open=True), True),
+        ("1", Bounds(low=0, high=1), True),
+        ("1.0000000000000000001", Bounds(low=0, high=1), False),
+        ("0.1", Bounds(low=0.1, low_open=True), False),
+        ("50", Bounds(low=2, high=10000, integer=True), True),
+        ("50.5", Bounds(low=2, high=10000, integer=True), False),
+    ],
+)
+def test_bounds_hold_in_the_page_too(
+    in_js: Callable[[list[list[Any]]], list[Any]], text: str, bounds: Bounds, allowed: bool
+) -> None:
+    known = {
+        name: repr(value) if name in ("low", "high") else True
+        for name in ("low", "high", "low_open", "high_open", "integer")
+        if (value := getattr(bounds, name)) is not None and value is not False
+    }
+    (found,) = in_js([["read", {"scale": ["1", "1"], "bounds": known, "allowed": ""}, text]])
+    assert (found is not None) == allowed == bounds.allow(Fraction(text))
+
+
+@pytest.mark.parametrize(
+    ("text", "plain"),
+    [
+        ("29,8", "29.8"),
+        (" 1 234,5 ", "1234.5"),
+        ("1.234,5", "1234.5"),
+        ("1,234.5", "1234.5"),
+        ("−0.5", "-0.5"),
+        ("1,2,3", "1,2,3"),
+        ("abc", "abc"),
+        ("2.940", "2.940"),
+    ],
+)
+def test_what_people_write_is_put_into_our_notation(
+    in_js: Callable[[list[list[Any]]], list[Any]], text: str, plain: str
+) -> None:
+    assert in_js([["normalised", text]]) == [plain]
+
+
+def test_published_values_are_compared_as_python_does(
+    in_js: Callable[[list[list[Any]]], list[Any]], report: Report
+) -> None:
+    dice = random.Random(4)
+    cases: list[list[Any]] = []
+    wanted: list[dict[str, Any]] = []
+    for comparison in report.comparisons:
+        like = comparison.published.printed
+        for _ in range(40):
+            value = float(like.value) * (1 + dice.gauss(0, 0.01))
+            scale = [str(like.scale.numerator), str(like.scale.denominator)]
+            cases.append(["beside", bits(value), like.text, scale])
+            again = print_as(value, like)
+            distance = float((Fraction(value) - like.value) / (2 * like.half_unit))
+            wanted.append({"again": again, "distance": distance, "same": again == like.text})
+    assert in_js(cases) == wanted
