@@ -1,0 +1,294 @@
+"""A sheet as a workbook's cells: puts every quantity in its place and every formula in its cell.
+
+An axis has a worksheet: the numbers of its rows, its columns in the order of the sheet, what is drawn of
+it, and, to the right, the cells on the way to its roots. Scalars stand one below the other on the
+worksheet ``report``; the cells on the way to a scalar root have the worksheet ``steps``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from ..grid import FIRST_ROW, SCALARS, STEPS, Block, Drawn, Grid, Place
+from ..sheet import Axis, Column, Given, PairAxis, RepeatAxis, Root, Sheet, name_of
+from ..unit_text import UnitError, parse_unit
+from ..values import CODES, Values
+from .excel_formulas import Formulas, Places, carried
+from .excel_roots import Unrolled, unroll
+from .excel_values import auxiliary_values
+from .numpy import evaluate
+
+__all__ = ["MOST_ROWS", "TooManyRows", "grid"]
+
+MOST_ROWS = 200_000
+"""Rows of a worksheet; a million would fit, but no reader opens it gladly."""
+_RESERVED = ("report", "steps", "published", "equations", "history")
+_TOP = 5
+"""The row, from 0, of the first scalar."""
+_ABOVE = 6
+"""How far above the first row of a drawn axis the number stands that says how often it repeats."""
+_GAP = 3
+"""Rows from one group of scalars to the next: one empty, a title, a header."""
+
+
+class TooManyRows(ValueError):
+    """An axis has more rows than a worksheet should hold."""
+
+
+def grid(
+    sheet: Sheet,
+    values: Values,
+    units: Mapping[str, str],
+    first: Sequence[str] = (),
+    drawn: Drawn | None = None,
+) -> Grid:
+    """Lay a sheet out as the cells of a workbook, with the values that they have now.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    values : Values
+        All columns, computed, without a batch dimension.
+    units : mapping of str to str
+        The unit that each column is shown in; one that is no plain multiple of SI's leaves SI.
+    first : sequence of str
+        The scalars that are the result.
+    drawn : Drawn or None
+        What is drawn as native charts.
+
+    Raises
+    ------
+    TooManyRows
+        An axis has more than :data:`MOST_ROWS` rows.
+    NotPrintable
+        A formula has no spreadsheet formula.
+    """
+    for name, layout in values.layouts.items():
+        if layout.size > MOST_ROWS:
+            raise TooManyRows(f"{name} has {layout.size} rows; a worksheet gets at most {MOST_ROWS}")
+    whole, all_values = _with_drawn(sheet, values, drawn)
+    return _Assembly(sheet, whole, all_values, units, first, drawn).grid()
+
+
+def _with_drawn(sheet: Sheet, values: Values, drawn: Drawn | None) -> tuple[Sheet, Values]:
+    """The sheet with the drawn columns, computed."""
+    if drawn is None:
+        return sheet, values
+    whole = Sheet((*sheet.columns, *drawn.columns))
+    given = [column.name for column in sheet.columns if isinstance(column.rule, Given)]
+    labels = {
+        axis.name: values.layouts[axis.name].labels[:, 0].tolist() for axis in sheet.axes if not axis.parents
+    }
+    return whole, evaluate(whole, labels, {**drawn.given, **{name: values.value[name] for name in given}})
+
+
+@dataclass
+class _Room:
+    """Where the next column of a worksheet goes."""
+
+    worksheet: str
+    rows: int
+    column: int = 0
+
+    def next(self, scale: Fraction = Fraction(1)) -> Place:
+        place = Place(self.worksheet, FIRST_ROW, self.column, self.rows, scale)
+        self.column += 1
+        return place
+
+
+class _Assembly:
+    """Blocks being put together: first all places, then all formulas."""
+
+    def __init__(
+        self,
+        sheet: Sheet,
+        whole: Sheet,
+        values: Values,
+        units: Mapping[str, str],
+        first: Sequence[str],
+        drawn: Drawn | None,
+    ) -> None:
+        self.sheet, self.whole, self.values, self.units = sheet, whole, values, units
+        self.first, self.drawn = first, drawn
+        self.names = {axis.name: _worksheet(axis) for axis in whole.axes}
+        self.rooms = {
+            axis.name: _Room(self.names[axis.name], values.layouts[axis.name].size) for axis in whole.axes
+        }
+        self.places: dict[str, Place] = {}
+        self.indices: dict[str, tuple[Place, ...]] = {}
+        self.unrolled = {c.name: unroll(c) for c in sheet.columns if isinstance(c.rule, Root)}
+        self.carried = {k: v for c in whole.columns for k, v in carried(whole, c).items()}
+
+    def grid(self) -> Grid:
+        self.put_all()
+        formulas = Formulas(self.whole, self.values.layouts, Places(self.places, self.indices))
+        blocks = [*self.index_blocks(), *self.column_blocks(formulas), *self.step_blocks(formulas)]
+        order = [SCALARS, *self.names.values(), STEPS]
+        blocks.sort(
+            key=lambda b: (
+                order.index(b.place.worksheet),
+                b.place.column if b.place.worksheet in self.names.values() else 0,
+                b.place.row,
+                b.place.column,
+            )
+        )
+        return Grid(tuple(blocks), {self.names[axis.name]: axis for axis in self.whole.axes}, self.drawn)
+
+    # --- places
+
+    def put_all(self) -> None:
+        for axis in self.whole.axes:
+            parts = self.values.layouts[axis.name].labels.shape[1]
+            self.indices[axis.name] = tuple(self.rooms[axis.name].next() for _ in range(parts))
+        self.put_scalars()
+        for column in self.whole.columns:
+            if column.axis is not None:
+                self.places[column.name] = self.rooms[column.axis.name].next(self.unit(column)[1])
+        for name, (cell, axis) in sorted(self.carried.items()):
+            self.places[name] = self.rooms[axis.name].next(self.places[name_of(cell)].scale)
+        row = _TOP - 2
+        for unrolled in self.unrolled.values():
+            over = unrolled.column.axis
+            if over is not None:
+                for name in (unrolled.check.name, *(cell.name for cell in unrolled.cells)):
+                    self.places[name] = self.rooms[over.name].next()
+            else:
+                row = self.put_steps(unrolled, row)
+
+    def put_scalars(self) -> None:
+        """The result, what is given, and the rest, each group under a title."""
+        for axis in self.whole.axes:
+            if isinstance(axis, RepeatAxis) and axis.count not in self.sheet:
+                self.places[axis.count] = Place(self.names[axis.name], FIRST_ROW - _ABOVE, 1)
+        scalars = [column for column in self.sheet.columns if column.axis is None]
+        groups = (
+            [self.sheet[name] for name in self.first if name in self.sheet and self.sheet[name].axis is None],
+            [c for c in scalars if isinstance(c.rule, Given) and c.name not in self.first],
+            [c for c in scalars if not isinstance(c.rule, Given) and c.name not in self.first],
+        )
+        row = _TOP
+        for group in groups:
+            for column in group:
+                self.places[column.name] = Place(SCALARS, row, 1, 1, self.unit(column)[1])
+                row += 1
+            row += _GAP if group else 0
+
+    def put_steps(self, unrolled: Unrolled, row: int) -> int:
+        """What comes before the steps one below the other, then a table with a row for each step."""
+        place = row + 1
+        self.places[unrolled.check.name] = Place(STEPS, place, 1)
+        for cell in unrolled.cells:
+            if cell.step == 0:
+                place += 1
+                self.places[cell.name] = Place(STEPS, place, 1)
+        table, last = place + 3, place
+        for cell in unrolled.cells:
+            if cell.step > 0:
+                fields = [own.name for own in unrolled.cells if own.step == cell.step]
+                last = table + cell.step - 1
+                self.places[cell.name] = Place(STEPS, last, 1 + fields.index(cell.name))
+        return last + 4
+
+    def unit(self, column: Column) -> tuple[str, Fraction]:
+        """The unit of a column's cells, and its size in SI."""
+        unit = self.units.get(column.name, "")
+        if not unit and column.display.startswith("like "):
+            unit = self.units.get(column.display.removeprefix("like "), "")
+        unit = unit or column.display or column.unit
+        try:
+            return unit, parse_unit(unit).scale
+        except UnitError:
+            return column.unit, Fraction(1)  # an exponent that is a symbol: SI
+
+    # --- blocks
+
+    def index_blocks(self) -> Iterator[Block]:
+        for axis in self.whole.axes:
+            layout = self.values.layouts[axis.name]
+            for part, (place, names) in enumerate(zip(self.indices[axis.name], _parts(axis), strict=True)):
+                title, meaning = names
+                yield Block(
+                    title, "index", title, meaning, place, values=tuple(map(float, layout.labels[:, part]))
+                )
+
+    def column_blocks(self, formulas: Formulas) -> Iterator[Block]:
+        for column in self.whole.columns:
+            place, shown = self.places[column.name], self.shown(column)
+            block = Block(
+                column.name,
+                "given",
+                column.name,
+                column.meaning,
+                place,
+                values=shown,
+                unit=self.unit(column)[0],
+                source=column.source,
+            )
+            if isinstance(column.rule, Given):
+                yield block
+            elif column.name not in self.sheet:
+                shown = tuple(None if isinstance(value, str) else value for value in shown)
+                yield _computed(replace(block, kind="drawn", values=shown), formulas.drawn(column))
+            else:
+                written = formulas.column(column, self.unrolled.get(column.name))
+                yield _computed(replace(block, kind="computed", kept=formulas.kept(column)), written)
+        for name, (cell, axis) in sorted(self.carried.items()):
+            column = self.whole[name_of(cell)]
+            named = self.values.layouts[axis.name].rows[cell.indices[0]]
+            values = self.shown(column)
+            block = Block(
+                name, "carried", str(cell), f"{column.name} of each row, for its sums",
+                self.places[name], values=tuple(values[int(row)] for row in named),
+                unit=self.unit(column)[0], of=column.name,
+            )  # fmt: skip
+            yield _computed(block, formulas.carried(cell, axis))
+
+    def shown(self, column: Column) -> tuple[float | str | None, ...]:
+        """A column's values in the unit of its cells; the code where there is none."""
+        scale = self.places[column.name].scale
+        # Adding zero leaves no minus on a zero.
+        numbers = self.values.value[column.name] * float(scale.denominator) / float(scale.numerator) + 0.0
+        codes = {int(status): code for status, code in CODES.items()}
+        pairs = zip(numbers.tolist(), self.values.status[column.name].tolist(), strict=True)
+        return tuple(number if not status else codes[status] for number, status in pairs)
+
+    def step_blocks(self, formulas: Formulas) -> Iterator[Block]:
+        for unrolled in self.unrolled.values():
+            found = auxiliary_values(self.values, unrolled)
+            name = unrolled.check.name
+            block = Block(
+                name, "step", "precedents", "whether all precedents have values, or the first error",
+                self.places[name], values=found[name], of=unrolled.column.name,
+                source=unrolled.column.source,
+            )  # fmt: skip
+            yield _computed(block, formulas.check(unrolled))
+            for cell in unrolled.cells:
+                block = Block(
+                    cell.name, "step", cell.title, cell.meaning, self.places[cell.name],
+                    values=found[cell.name], of=unrolled.column.name, step=cell.step,
+                )  # fmt: skip
+                yield _computed(block, formulas.auxiliary(unrolled, cell))
+
+
+def _computed(block: Block, formulas: tuple[str, ...]) -> Block:
+    """The block with its formulas; those that work on ranges are array formulas."""
+    return replace(block, formulas=formulas, array=any("SUM(IF(" in formula for formula in formulas[:1]))
+
+
+def _worksheet(axis: Axis) -> str:
+    """The worksheet's name of an axis."""
+    return f"{axis.name}_rows" if axis.name.lower() in _RESERVED else axis.name
+
+
+def _parts(axis: Axis) -> tuple[tuple[str, str], ...]:
+    """What the numbers that name a row are called, and what they are: ``i``, ``j``, ``s``."""
+    if isinstance(axis, RepeatAxis):
+        return (*_parts(axis.of), (str(axis.step), f"running number in each of {axis.of.name}"))
+    if isinstance(axis, PairAxis):
+        return (
+            (str(axis.first), f"first of {axis.of.name}"),
+            (str(axis.second), f"second of {axis.of.name}"),
+        )
+    return ((axis.name.removesuffix("s") or axis.name, "number"),)

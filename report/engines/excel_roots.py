@@ -1,0 +1,268 @@
+"""A root as visible cells: everything the solver does, one quantity a cell, unrolled step by step.
+
+The cells are sympy expressions of the sheet's cells and of one another, so the printer that prints
+formulas prints them as well, and NumPy computes what they show before a spreadsheet has recalculated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from sympy import Abs, And, Eq, Expr, Integer, Piecewise, Sum, Symbol, diff, sign
+from sympy.logic.boolalg import Boolean
+
+from ..sheet import Column, Root
+from .excel import IfError, IsNumber
+from .roots import derivatives, householder
+
+__all__ = ["READY", "Auxiliary", "Unrolled", "unroll"]
+
+READY = "ready"
+"""What the first cell says where all precedents have values."""
+_SETTLED = 10**7
+"""A last step smaller than this part of the unknown leaves, by its order, less than rounding does."""
+_PRIMES = "′″‴"
+_DERIVATIVES = ("its derivative", "its second derivative", "its third derivative")
+_LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+
+
+@dataclass(frozen=True)
+class Auxiliary:
+    """One quantity on the way to a root.
+
+    Parameters
+    ----------
+    symbol : Symbol
+        How other expressions name it: the column's name, a dot and its own.
+    title, meaning : str
+        For the reader.
+    expression : Expr
+        In cells of the sheet and other auxiliaries.
+    step : int
+        Which step it belongs to, from 1; 0 before the first.
+    alone : bool
+        Whether it is only there where there is one root.
+    residual : bool
+        Whether it is a difference that tends to zero, which must not be rounded to it.
+    """
+
+    symbol: Symbol
+    title: str
+    meaning: str
+    expression: Expr
+    step: int = 0
+    alone: bool = False
+    residual: bool = False
+
+    @property
+    def name(self) -> str:
+        """The column's name, a dot and its own."""
+        return str(self.symbol.name)
+
+
+@dataclass(frozen=True)
+class Unrolled:
+    """A root as cells.
+
+    Parameters
+    ----------
+    column : Column
+    check : Symbol
+        The cell that says whether all precedents have values, and the first error if not.
+    cells : tuple of Auxiliary
+        In order of evaluation.
+    number : Symbol
+        How many roots there are; no number where the form has no sign.
+    known, settled : Boolean
+        Whether the form had a value at the last step, and whether that step was so small that the next
+        one would not show.
+    value : Expr
+        The column's value, where there is one root.
+    """
+
+    column: Column
+    check: Symbol
+    cells: tuple[Auxiliary, ...]
+    number: Symbol
+    known: Boolean
+    settled: Boolean
+    value: Expr
+
+
+def unroll(column: Column) -> Unrolled:
+    """Lay the solver of a root out as cells.
+
+    Parameters
+    ----------
+    column : Column
+        Its rule is a :class:`~loopsheet.report.sheet.Root`.
+    """
+    return _Unrolling(column).run()
+
+
+class _Unrolling:
+    """One root being laid out: the cells so far."""
+
+    def __init__(self, column: Column) -> None:
+        assert isinstance(column.rule, Root)
+        self.column, self.rule = column, column.rule
+        self.unknown = column.rule.unknown
+        self.form = column.rule.expression
+        self.cells: list[Auxiliary] = []
+        # Newton's step where a derivative is a sum: three more passes over all points cost more than steps.
+        summed = self.form.has(Sum)
+        self.slopes = (diff(self.form, self.unknown),) if summed else derivatives(self.form, self.unknown)[1:]
+        self.now, self.alone = 0, False
+
+    def run(self) -> Unrolled:
+        places, signs, start = self.ends()
+        number, left, right, rising = self.bracket(places, signs)
+        middle = (left + right) / 2
+        inside = And(IsNumber(start), start > left, start < right)
+        says = "the guess; the middle of the bracket if it lies outside"
+        here = self.place("u_0", self.lowered(0), says, Piecewise((start, inside), (middle, True)))
+        for step in range(1, self.rule.steps + 1):
+            self.now = step
+            left, right, here = self.step(step, left, right, rising, here)
+        form, before = self.known(f"f_{self.rule.steps}"), self.known(f"u_{self.rule.steps - 1}")
+        known, settled = IsNumber(form), Abs(here - before) * _SETTLED <= Abs(here)
+        value = self.rule.value.xreplace({self.unknown: here})
+        return Unrolled(self.column, self.real("check"), tuple(self.cells), number, known, settled, value)
+
+    def known(self, name: str) -> Symbol:
+        return next(cell.symbol for cell in self.cells if cell.name == f"{self.column.name}.{name}")
+
+    # --- cells
+
+    def lowered(self, number: int) -> str:
+        return f"{self.unknown}{str(number).translate(_LOWERED)}"
+
+    def real(self, name: str) -> Symbol:
+        return Symbol(f"{self.column.name}.{name}", real=True)
+
+    def add(self, name: str, title: str, meaning: str, expression: Expr, residual: bool = False) -> Symbol:
+        """A cell; its sums get cells of their own first."""
+        symbol = self.real(name)
+        self.cells.append(self.cell(symbol, title, meaning, self.without_sums(expression), residual))
+        return symbol
+
+    def place(self, name: str, title: str, meaning: str, expression: Expr) -> Symbol:
+        """A cell that holds a value of the unknown: it is assumed to be what the unknown is."""
+        symbol = Symbol(f"{self.column.name}.{name}", **self.unknown.assumptions0)
+        self.cells.append(self.cell(symbol, title, meaning, self.without_sums(expression)))
+        return symbol
+
+    def cell(
+        self, symbol: Symbol, title: str, meaning: str, expression: Expr, residual: bool = False
+    ) -> Auxiliary:
+        return Auxiliary(symbol, title, meaning, expression, self.now, self.alone, residual)
+
+    def without_sums(self, expression: Expr) -> Expr:
+        """The expression with a cell for each of its sums; equal sums share one."""
+        found: dict[Expr, Expr] = {}
+        for total in sorted(expression.atoms(Sum), key=str):
+            number, terms = total.function.as_coeff_Mul()
+            found[total] = number * self.total(Sum(terms, *total.limits))
+        return expression.xreplace(found)
+
+    def total(self, total: Sum) -> Symbol:
+        for cell in self.cells:
+            if cell.expression == total:
+                return cell.symbol
+        before = sum(isinstance(cell.expression, Sum) and cell.step == self.now for cell in self.cells)
+        symbol = self.real(f"sum_{self.now}_{before + 1}")
+        self.cells.append(
+            self.cell(symbol, f"Σ{str(before + 1).translate(_LOWERED)}", self.said(total), total)
+        )
+        return symbol
+
+    def said(self, total: Sum) -> str:
+        """A sum's terms, with the unknown named as the reader knows it."""
+        terms = total.function
+        own = {s: self.unknown for s in terms.free_symbols if s.name.startswith(f"{self.column.name}.")}
+        return f"sum of {str(terms.xreplace(own)).replace('**', '^')}"
+
+    # --- how many roots, and where
+
+    def at(self, place: Symbol) -> Expr:
+        return self.form.xreplace({self.unknown: place})
+
+    def ends(self) -> tuple[list[Symbol], list[Symbol], Symbol]:
+        """The points between which the form changes sign at most once, its signs there, and a first guess."""
+        rule = self.rule
+        low = self.place("low", "low", "lower end of the interval of the unknown", rule.low)
+        high = self.place("high", "high", "upper end of the interval of the unknown", rule.high)
+        start = self.add("start", "start", "first guess: it costs steps, never truth", rule.start)
+        places, signs = [low], [self.sign("low", "at the lower end", rule.sign_low, low)]
+        for number, point in enumerate(rule.turning, start=1):
+            name = "turn" if len(rule.turning) == 1 else f"turn{number}"
+            raw = self.add(
+                f"{name}_raw", "turning", "where the form may turn; empty if there is no such point", point
+            )
+            inside = And(IsNumber(raw), raw > places[-1], raw < high)
+            says = "the turning point if it lies inside, else the point before it"
+            place = self.place(name, "place", says, Piecewise((raw, inside), (places[-1], True)))
+            form = self.add(f"form_{name}", "form", "value of the form there", self.at(place), residual=True)
+            there = Piecewise((sign(form), place > places[-1]), (signs[-1], True))
+            signs.append(self.add(f"sign_{name}", "sign", "sign of the form there", there))
+            places.append(place)
+        places.append(high)
+        signs.append(self.sign("high", "at the upper end", rule.sign_high, high))
+        return places, signs, start
+
+    def sign(self, name: str, where: str, told: Expr | None, place: Symbol) -> Symbol:
+        if told is None:
+            told = self.add(
+                f"form_{name}", "form", f"value of the form {where}", self.at(place), residual=True
+            )
+        return self.add(f"sign_{name}", "sign", f"sign of the form {where}", sign(told))
+
+    def bracket(
+        self, places: Sequence[Symbol], signs: Sequence[Symbol]
+    ) -> tuple[Symbol, Symbol, Symbol, Symbol]:
+        """The number of sign changes, and the stretch with the only one."""
+        crossings = [a * b < 0 for a, b in pairwise(signs)]
+        counted = sum((Piecewise((1, crossing), (0, True)) for crossing in crossings), Integer(0))
+        known = And(*(IsNumber(cell) for cell in (*signs, places[0], places[-1])))
+        number = self.add("roots", "roots", "number of sign changes: of roots", Piecewise((counted, known)))
+        self.alone = True
+
+        def choose(values: Sequence[Symbol]) -> Expr:
+            return Piecewise(*zip(values, [*crossings[:-1], True], strict=True))
+
+        left = self.place("left_0", "left", "left end of the bracket", choose(places[:-1]))
+        right = self.place("right_0", "right", "right end of the bracket", choose(places[1:]))
+        rising = self.add("rising", "rising", "sign of the form at its right end", choose(signs[1:]))
+        return number, left, right, rising
+
+    # --- one step
+
+    def step(
+        self, n: int, left: Symbol, right: Symbol, rising: Symbol, here: Symbol
+    ) -> tuple[Symbol, Symbol, Symbol]:
+        """A step and what it leaves of the bracket, as all engines take it."""
+        f = self.add(f"f_{n}", "f", "value of the form", self.at(here), residual=True)
+        slopes = [
+            self.add(
+                f"slope{order}_{n}", f"f{_PRIMES[order]}", says, form.xreplace({self.unknown: here}), True
+            )
+            for order, (form, says) in enumerate(zip(self.slopes, _DERIVATIVES, strict=False))
+        ]
+        by = f / slopes[0] if len(slopes) == 1 else householder(f, *slopes)
+        by = self.add(f"step_{n}", "step", "what is subtracted from the unknown", by)
+        side = f * rising
+        left = self.place(
+            f"left_{n}", "left", "left end of what is left of the bracket",
+            IfError(Piecewise((here, side <= 0), (left, True)), left),
+        )  # fmt: skip
+        right = self.place(
+            f"right_{n}", "right", "right end of what is left of the bracket",
+            IfError(Piecewise((here, side > 0), (right, True)), right),
+        )  # fmt: skip
+        middle, there = (left + right) / 2, here - by
+        inside = And(there >= left, there <= right)
+        moved = Piecewise((here, Eq(f, 0)), (there, inside), (middle, True))
+        says = "the unknown after the step; a step out of the bracket is replaced by its middle"
+        return left, right, self.place(f"u_{n}", self.lowered(n), says, IfError(moved, middle))

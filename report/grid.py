@@ -1,0 +1,256 @@
+"""A workbook as cells: where every quantity stands, and the formula that is in each of its cells.
+
+The Excel engine makes it, the workbook view draws it; neither knows the other. What a model wants drawn
+as native charts is declared here as well, as columns of the same kind as the sheet's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+
+from .sheet import Axis, Column
+
+__all__ = [
+    "FIRST_ROW",
+    "SCALARS",
+    "STEPS",
+    "Block",
+    "Chart",
+    "Drawn",
+    "Grid",
+    "Place",
+    "Series",
+    "factors",
+    "letters",
+]
+
+FIRST_ROW = 7
+"""The row, from 0, of the first cell below the header of an axis' worksheet."""
+SCALARS = "report"
+"""The worksheet of the scalars."""
+STEPS = "steps"
+"""The worksheet of the steps to a scalar root."""
+
+
+def letters(column: int) -> str:
+    """The letters of a column that is counted from 0.
+
+    >>> letters(0), letters(25), letters(26), letters(16383)
+    ('A', 'Z', 'AA', 'XFD')
+    """
+    text = ""
+    column += 1
+    while column:
+        column, rest = divmod(column - 1, 26)
+        text = chr(ord("A") + rest) + text
+    return text
+
+
+def factors(scale: Fraction) -> tuple[str, str]:
+    """What turns a cell's number into SI, and SI into a cell's number, in whole numbers.
+
+    >>> factors(Fraction(1, 1000000)), factors(Fraction(127, 5000)), factors(Fraction(1))
+    (('/1000000', '*1000000'), ('*127/5000', '*5000/127'), ('', ''))
+    """
+    above, below = scale.numerator, scale.denominator
+    up, down = (f"*{above}" if above > 1 else ""), (f"/{below}" if below > 1 else "")
+    back = (f"*{below}" if below > 1 else "") + (f"/{above}" if above > 1 else "")
+    return up + down, back
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where the cells of a quantity stand, one below the other.
+
+    Parameters
+    ----------
+    worksheet : str
+    row, column : int
+        The first cell, from 0.
+    rows : int
+        How many cells.
+    scale : Fraction
+        The unit of the cells, in SI.
+    """
+
+    worksheet: str
+    row: int
+    column: int
+    rows: int = 1
+    scale: Fraction = Fraction(1)
+
+    def cell(self, row: int = 0, seen_from: str = "") -> str:
+        """The absolute address of a cell, with its worksheet unless it is seen from there."""
+        return f"{self._prefix(seen_from)}${letters(self.column)}${self.row + row + 1}"
+
+    def cells(self, rows: Iterable[int], seen_from: str = "") -> list[str]:
+        """The absolute addresses of many cells."""
+        column = f"{self._prefix(seen_from)}${letters(self.column)}$"
+        return [f"{column}{self.row + row + 1}" for row in rows]
+
+    def range(self, seen_from: str = "", first: int = 0, rows: int | None = None) -> str:
+        """The absolute address of all its cells, or of a stretch of them."""
+        column, last = letters(self.column), self.row + first + (self.rows if rows is None else rows)
+        return f"{self._prefix(seen_from)}${column}${self.row + first + 1}:${column}${last}"
+
+    def _prefix(self, seen_from: str) -> str:
+        return "" if seen_from == self.worksheet else f"{quoted(self.worksheet)}!"
+
+
+def quoted(worksheet: str) -> str:
+    """A worksheet's name as formulas write it; in quotes if it could be read as something else.
+
+    >>> quoted("tests"), quoted("C"), quoted("my pairs")
+    ('tests', "'C'", "'my pairs'")
+    """
+    plain = (
+        len(worksheet) > 3
+        and worksheet.isascii()
+        and worksheet.isalpha()
+        and worksheet.upper() not in ("TRUE", "FALSE")
+    )
+    return worksheet if plain else "'" + worksheet.replace("'", "''") + "'"
+
+
+@dataclass(frozen=True)
+class Block:
+    """The cells of one quantity.
+
+    Parameters
+    ----------
+    name : str
+        The column's name; for a cell on the way to a root the column's, a dot and its own.
+    kind : str
+        ``index`` (the numbers of rows), ``given``, ``computed``, ``carried`` (another axis' cells,
+        repeated for a sum), ``step`` (on the way to a root) or ``drawn`` (for a chart).
+    title, meaning : str
+        What stands above or beside its cells.
+    place : Place
+    formulas : tuple of str
+        One a cell, beginning with ``=``; none if the cells hold values.
+    array : bool
+        Whether they must be entered as array formulas.
+    values : tuple of float, str or None
+        What the cells show, in the cells' unit: a number, an error's code, or None for an error of Excel's.
+    unit : str
+        The unit of its cells, as text.
+    source : str
+        The number of its equation, or where it was given.
+    of : str
+        The column whose root it is on the way to, or the column that it carries.
+    step : int
+        Which step towards the root; 0 before the first.
+    kept : mapping of str to str
+        For each axis that is summed over, the array formula that counts its rows that have values.
+    """
+
+    name: str
+    kind: str
+    title: str
+    meaning: str
+    place: Place
+    formulas: tuple[str, ...] = ()
+    array: bool = False
+    values: tuple[float | str | None, ...] = ()
+    unit: str = "1"
+    source: str = ""
+    of: str = ""
+    step: int = 0
+    kept: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Series:
+    """Points of a chart: two drawn columns of one axis.
+
+    Parameters
+    ----------
+    label : str
+        What the legend says; ``%s`` is where the parent's row is named if there is one series for each.
+    x, y : str
+        Names of drawn columns.
+    style : str
+        ``points``, ``line`` or ``branch`` (one of several lines of a kind).
+    split : bool
+        Whether each row of the parent's axis is a line of its own.
+    """
+
+    label: str
+    x: str
+    y: str
+    style: str = "line"
+    split: bool = False
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A native chart of the workbook.
+
+    Parameters
+    ----------
+    title, x_title, y_title : str
+        The axes' titles without their units.
+    series : tuple of Series
+        The last is drawn on top.
+    from_zero : bool
+        Whether both axes begin at zero.
+    """
+
+    title: str
+    x_title: str
+    y_title: str
+    series: tuple[Series, ...]
+    from_zero: bool = False
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What a workbook wants drawn as charts: columns for their points, and the charts.
+
+    Parameters
+    ----------
+    columns : tuple of Column
+        Formulas as the sheet's. A cell in error shows ``#N/A``, which charts leave out.
+    charts : tuple of Chart
+    given : mapping of str to int
+        Values of the given columns among them: how often an axis that only charts have repeats its parent.
+    """
+
+    columns: tuple[Column, ...]
+    charts: tuple[Chart, ...]
+    given: Mapping[str, int]
+
+
+@dataclass(frozen=True)
+class Grid:
+    """All cells of the workbook that come from the sheet.
+
+    Parameters
+    ----------
+    blocks : tuple of Block
+        Worksheet by worksheet, from left to right or from top to bottom.
+    axes : mapping of worksheet name to Axis
+        Those that hold the rows of an axis.
+    drawn : Drawn or None
+    """
+
+    blocks: tuple[Block, ...]
+    axes: Mapping[str, Axis]
+    drawn: Drawn | None = None
+
+    @cached_property
+    def by_name(self) -> Mapping[str, Block]:
+        """Every block but those of rows' numbers by its name."""
+        return {block.name: block for block in self.blocks if block.kind != "index"}
+
+    def __getitem__(self, name: str) -> Block:
+        return self.by_name[name]
+
+    def on(self, worksheet: str, *kinds: str) -> tuple[Block, ...]:
+        """The blocks of a worksheet, all or some kinds of them."""
+        return tuple(
+            b for b in self.blocks if b.place.worksheet == worksheet and (not kinds or b.kind in kinds)
+        )

@@ -1,0 +1,241 @@
+"""The worksheets for reading: the result and the scalars, the published values, the equations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from ...derivations.text import text, text_of_equation
+from ..grid import SCALARS, Block, Grid, factors, letters
+from ..result import Comparison, Report
+from ..sheet import RepeatAxis
+from .json import proof_statuses
+from .xlsx_style import Style, height
+from .xlsx_tables import Inputs, mark_errors, write_block
+
+__all__ = ["write_equations", "write_published", "write_report"]
+
+
+# --- the result and the scalars -----------------------------------------------------------------------------
+
+
+def write_report(sheet: Any, style: Style, report: Report, grid: Grid, inputs: Inputs) -> None:
+    """Write the first worksheet: what came out, what went in, how to use the workbook."""
+    for column, width in enumerate((18, 17, 15, 52, 12, 10, 22)):
+        sheet.set_column(column, column, width)
+    style.text(sheet, 0, 0, report.title, "title")
+    style.text(sheet, 1, 0, report.workbook.title, "subtitle")
+    row = 0
+    for group in _groups(grid.on(SCALARS)):
+        row = group[0].place.row
+        for at in range(7):
+            style.text(sheet, row - 2, at, _title(report, group) if not at else "", "section")
+        for at, head in enumerate(
+            ("name", "value", "unit", "meaning", "equation", "symbol", "computed from")
+        ):
+            style.text(sheet, row - 1, at, head, "head")
+        for block in group:
+            row = block.place.row
+            _write_scalar(sheet, style, report, grid, block, inputs)
+    _write_notes(sheet, style, report, grid, row + 2)
+    mark_errors(sheet, style, 0, 1, row, 1)
+    sheet.set_landscape()
+    sheet.set_paper(9)
+    sheet.fit_to_pages(1, 0)
+    sheet.hide_gridlines(2)
+
+
+def _groups(blocks: Sequence[Block]) -> Iterator[list[Block]]:
+    """Blocks that stand one below the other."""
+    group: list[Block] = []
+    for block in blocks:
+        if group and block.place.row != group[-1].place.row + 1:
+            yield group
+            group = []
+        group.append(block)
+    if group:
+        yield group
+
+
+def _title(report: Report, group: Sequence[Block]) -> str:
+    if group[0].name in report.workbook.headline:
+        return "Result"
+    return "Given" if group[0].kind == "given" else "On the way"
+
+
+def _write_scalar(sheet: Any, style: Style, report: Report, grid: Grid, block: Block, inputs: Inputs) -> None:
+    column, row = report.sheet[block.name], block.place.row
+    style.text(sheet, row, 0, block.name, "name")
+    write_block(
+        sheet, style, report, block, inputs, "result" if block.name in report.workbook.headline else "number"
+    )
+    style.text(sheet, row, 2, block.unit, "unit")
+    style.text(sheet, row, 3, block.meaning, "wrapped")
+    style.text(sheet, row, 4, column.source, "text")
+    style.symbol(sheet, row, 5, column.latex or column.name, "text")
+    sheet.set_row(row, height([(block.meaning, 52)]))
+    if block.kept:
+        formula, value = _counted(report, grid, block)
+        style.formula(sheet, row, 6, formula, value, style("text"), array=True)
+
+
+def _counted(report: Report, grid: Grid, block: Block) -> tuple[str, str]:
+    """How many rows a scalar was computed from, as a formula and as it is now."""
+    parts, now = [], []
+    for axis, formula in block.kept.items():
+        size = report.values.layouts[axis].size
+        kept = report.values.counted.get(block.name, {}).get(axis, size)
+        parts.append(f'{formula.removeprefix("=")}&" of {size} {axis}"')
+        now.append(f"{kept} of {size} {axis}")
+    return "=" + '&", "&'.join(parts), ", ".join(now)
+
+
+def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int) -> None:
+    given = list(
+        dict.fromkeys(b.place.worksheet for b in grid.blocks if b.kind == "given" and b.name in report.sheet)
+    )
+    counts = sorted(
+        {axis.count for axis in grid.axes.values() if isinstance(axis, RepeatAxis)} & set(report.shown)
+    )
+    notes = [
+        f"Inputs are the yellow cells, on {' and '.join(given)}. Type over them: every other number follows, "
+        "in any spreadsheet program that recalculates.",
+        "Every computed cell is a formula made from the proved equation that its row or header names. "
+        "Names such as ls_" + (report.workbook.headline or ("alpha",))[0] + " stand for whole columns.",
+        "A cell that cannot be computed shows a code: #INPUT! a datum is missing, #DOMAIN! outside the "
+        "equation's domain, #NOROOT! no value satisfies it, #TWOROOTS! several do, #STEPS! the steps of "
+        "this workbook do not reach the root (build the report again: it takes as many as are needed). "
+        "What depends on such a cell shows its code; a sum leaves such rows out and says from how many it "
+        "was made.",
+        "Numbers are stored in full; only what is shown is rounded, to the digits that the inputs warrant.",
+        "How many rows there are is fixed in this workbook: to add a test"
+        + (f" or change {' or '.join(counts)}" if counts else "")
+        + ", build the report again. To leave a test out, empty one of its cells.",
+        f"Source: {report.workbook.source}.",
+        "Computed with " + ", ".join(f"{name} {version}" for name, version in report.versions.items()) + ".",
+    ]
+    style.text(sheet, row, 0, "How to use it", "section")
+    for at in range(1, 7):
+        style.text(sheet, row, at, "", "section")
+    for note in notes:
+        row += 1
+        sheet.merge_range(row, 0, row, 6, "", style("wrapped"))
+        style.text(sheet, row, 0, note, "wrapped")
+        sheet.set_row(row, height([(note, 155)]))
+
+
+# --- the published values ----------------------------------------------------------------------------------
+
+_PUBLISHED = (
+    ("source", 12, "where it is printed"),
+    ("cell", 14, "the cell that it is a value of"),
+    ("index", 8, "which row"),
+    ("unit", 8, "as printed"),
+    ("printed", 12, "with the digits as printed"),
+    ("recomputed", 14, "the workbook's own cell, in the printed unit"),
+    ("difference", 12, "recomputed minus printed"),
+    ("in last digits", 12, "the difference, in units of the last printed digit"),
+    ("verdict", 15, "whether it prints the same"),
+    ("expected", 11, "a difference that is known"),
+    ("as expected", 11, "no: a finding"),
+    ("reason", 70, "why a difference is expected"),
+)
+
+
+def write_published(sheet: Any, style: Style, report: Report, grid: Grid) -> None:
+    """Write every published value beside its live recomputation."""
+    style.text(sheet, 0, 0, "published: printed values beside their recomputation", "title")
+    says = "The recomputed values are live: edit an input and see whether the print is met."
+    style.text(sheet, 1, 0, says, "subtitle")
+    for at, (head, width, meaning) in enumerate(_PUBLISHED):
+        sheet.set_column(at, at, width)
+        style.text(sheet, 3, at, head, "head")
+        style.text(sheet, 4, at, meaning, "meaning")
+    sheet.set_row(4, 0.85 * height([(meaning, width) for _, width, meaning in _PUBLISHED]))
+    for row, comparison in enumerate(report.comparisons, start=5):
+        _write_comparison(sheet, style, report, grid, row, comparison)
+    last = 4 + len(report.comparisons)
+    mark_errors(sheet, style, 5, 5, last, 5)
+    finding = {"type": "cell", "criteria": "==", "value": '"no"', "format": style("finding")}
+    sheet.conditional_format(5, 10, last, 10, finding)
+    sheet.freeze_panes(5, 3)
+    sheet.autofilter(3, 0, last, len(_PUBLISHED) - 1)
+    sheet.set_landscape()
+    sheet.set_paper(9)
+    sheet.fit_to_pages(1, 0)
+    sheet.repeat_rows(3, 4)
+
+
+def _write_comparison(
+    sheet: Any, style: Style, report: Report, grid: Grid, row: int, comparison: Comparison
+) -> None:
+    value, cell = comparison.published, comparison.cell
+    printed, place = value.printed, grid[value.cell].place
+    for at, words in enumerate((value.source, value.cell, "-".join(map(str, value.index)), printed.unit)):
+        style.text(sheet, row, at, words)
+    decimals = printed.decimals
+    shown = style("number", f"0.{'0' * decimals}" if decimals > 0 else "0")
+    sheet.write_number(row, 4, float(printed.value / printed.scale), shown)
+    address = place.cell(report.values.row(report.sheet[value.cell], value.index))
+    cells = {name: f"${letters(column)}${row + 1}" for column, (name, _, _) in enumerate(_PUBLISHED)}
+    again = None if cell.value is None else cell.value / float(printed.scale)
+    live = f"=IF(ISNUMBER({address}),{address}{factors(place.scale / printed.scale)[0]},{address})"
+    style.formula(sheet, row, 5, live, cell.status.code if again is None else again, shown)
+    difference = "" if again is None else again - float(printed.value / printed.scale)
+    live = f'=IF(ISNUMBER({cells["recomputed"]}),{cells["recomputed"]}-{cells["printed"]},"")'
+    style.formula(
+        sheet, row, 6, live, difference, style("number", _signed(f"0.{'0' * max(0, decimals + 1)}"))
+    )
+    unit = f"*{10**decimals}" if decimals >= 0 else f"/{10**-decimals}"
+    live = f'=IF(ISNUMBER({cells["difference"]}),{cells["difference"]}{unit},"")'
+    distance = "" if comparison.distance is None else comparison.distance
+    style.formula(sheet, row, 7, live, distance, style("number", _signed("0.0")))
+    same = f"ROUND({cells['recomputed']},{decimals})={cells['printed']}".replace(",-", ",0-")
+    live = f'=IF(ISNUMBER({cells["recomputed"]}),IF({same},"same","differs"),"not-checkable")'
+    style.formula(sheet, row, 8, live, comparison.verdict, style("unit"))
+    style.text(sheet, row, 9, value.expect or "same")
+    live = f'=IF({cells["verdict"]}={cells["expected"]},"yes","no")'
+    style.formula(sheet, row, 10, live, "yes" if comparison.as_expected else "no", style("text"))
+    style.text(sheet, row, 11, value.reason, "wrapped")
+    sheet.set_row(row, height([(value.reason, 70)]))
+
+
+def _signed(form: str) -> str:
+    """A number format that shows the sign, be it a plus."""
+    return f"+{form};-{form};0"
+
+
+# --- the equations -----------------------------------------------------------------------------------------
+
+_EQUATIONS = (("number", 10), ("title", 34), ("claim", 78), ("status", 16), ("why it holds", 60))
+
+
+def write_equations(sheet: Any, style: Style, report: Report) -> None:
+    """Write every equation with what is known of it."""
+    style.text(sheet, 0, 0, "equations: what the formulas are made from", "title")
+    style.text(sheet, 1, 0, "Numbers that begin with L are not the source's own.", "subtitle")
+    for at, (head, width) in enumerate(_EQUATIONS):
+        sheet.set_column(at, at, width)
+        style.text(sheet, 3, at, head, "head")
+    statuses = proof_statuses(report)
+    for row, equation in enumerate(report.ledger.equations(), start=4):
+        claim = text_of_equation(equation)
+        if equation.conditions:
+            claim += "\nwhere " + ", ".join(map(text, equation.conditions))
+        cells = (
+            equation.label,
+            equation.title,
+            claim,
+            statuses.get(equation.label, "not checked"),
+            equation.because,
+        )
+        for at, words in enumerate(cells):
+            style.text(sheet, row, at, words, "wrapped" if at else "name")
+        sheet.set_row(
+            row, height([(words, width) for words, (_, width) in zip(cells, _EQUATIONS, strict=True)])
+        )
+    sheet.freeze_panes(4, 1)
+    sheet.set_landscape()
+    sheet.set_paper(9)
+    sheet.fit_to_pages(1, 0)
+    sheet.repeat_rows(3)

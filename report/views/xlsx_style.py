@@ -1,0 +1,249 @@
+"""How the workbook's cells look: formats, number formats, symbols, and text that stays text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from fractions import Fraction
+from math import floor, log10
+from typing import Any
+
+from ..quantity import Bounds
+from .math import with_index
+
+__all__ = ["Style", "fragments", "height", "in_unit", "number_format", "number_text", "open_format", "said"]
+
+LONGEST = 32_000
+"""Characters of a cell; Excel takes 32 767."""
+_LINE = 15
+"""Points that a line of text is high."""
+_MOST_DECIMALS = 9
+_INK, _PAPER, _PALE, _LINE_COLOUR = "#1F2A36", "#FFFFFF", "#EEF2F6", "#C9D3DD"
+_INPUT, _INPUT_INK, _ERROR = "#FFF8DC", "#1F4E9E", "#B00020"
+
+_FORMATS: dict[str, dict[str, Any]] = {
+    "title": {"bold": True, "font_size": 16, "font_color": _INK},
+    "subtitle": {"font_color": "#55606B"},
+    "section": {"bold": True, "font_size": 12, "font_color": _INK, "bottom": 1, "bottom_color": _INK},
+    "group": {"bold": True, "font_color": "#55606B"},
+    "head": {
+        "bold": True,
+        "bg_color": _INK,
+        "font_color": _PAPER,
+        "valign": "vcenter",
+        "text_wrap": True,
+        "align": "center",
+    },
+    "meaning": {"text_wrap": True, "valign": "top", "align": "center", "font_size": 9, "bg_color": _PALE},
+    "source": {"align": "center", "bg_color": _PALE, "font_size": 9},
+    "symbol": {
+        "italic": True,
+        "align": "center",
+        "bg_color": _PALE,
+        "bottom": 1,
+        "bottom_color": _LINE_COLOUR,
+    },
+    "lowered": {"italic": True, "font_script": 2},
+    "raised": {"italic": True, "font_script": 1},
+    "italic": {"italic": True},
+    "name": {"bold": True, "valign": "top"},
+    "text": {"valign": "top"},
+    "aside": {"font_color": "#55606B", "align": "left", "indent": 1},
+    "unit": {"valign": "top", "align": "left", "indent": 1},
+    "wrapped": {"text_wrap": True, "valign": "top"},
+    "index": {"align": "center", "num_format": "0", "font_color": "#55606B"},
+    "input": {
+        "bg_color": _INPUT,
+        "font_color": _INPUT_INK,
+        "border": 1,
+        "border_color": _LINE_COLOUR,
+        "valign": "top",
+    },
+    "fixed": {"bg_color": _PALE, "border": 1, "border_color": _LINE_COLOUR, "valign": "top"},
+    "number": {"valign": "top"},
+    "result": {"valign": "top", "bold": True},
+    "step": {"font_color": "#55606B", "num_format": "General", "font_size": 9},
+    "error": {"font_color": _ERROR, "bold": True},
+    "finding": {"font_color": _ERROR, "bold": True, "bg_color": "#FBE9EC"},
+}
+
+
+class Style:
+    """Formats of a workbook by name, each made once, in the order in which they are first used.
+
+    Parameters
+    ----------
+    book : xlsxwriter.Workbook
+    """
+
+    def __init__(self, book: Any) -> None:
+        self._book = book
+        self._made: dict[tuple[str, str], Any] = {}
+
+    def __call__(self, name: str, number_format: str = "") -> Any:
+        """The format of a name, with a number format."""
+        key = (name, number_format)
+        if key not in self._made:
+            properties = {**_FORMATS[name], **({"num_format": number_format} if number_format else {})}
+            self._made[key] = self._book.add_format(properties)
+        return self._made[key]
+
+    # --- cells
+
+    def text(self, worksheet: Any, row: int, column: int, text: str, name: str = "text") -> None:
+        """Write text that stays text, whatever it begins with."""
+        short = text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+        worksheet.write_string(row, column, short, self(name))
+
+    def formula(
+        self, worksheet: Any, row: int, column: int, formula: str, value: Any, form: Any, array: bool = False
+    ) -> None:
+        """Write a formula with the value that it has now."""
+        if value is None:
+            value = "#N/A"
+        if array:
+            worksheet.write_array_formula(row, column, row, column, formula, form, value)
+        else:
+            worksheet.write_formula(row, column, formula, form, value)
+
+    def symbol(self, worksheet: Any, row: int, column: int, latex: str, name: str = "symbol") -> None:
+        """Write the LaTeX of a symbol as letters with subscripts."""
+        parts = fragments(latex)
+        scripts = {"": "italic", "_": "lowered", "^": "raised"}
+        rich = [piece for script, text in parts for piece in (self(scripts[script]), text)]
+        if len(parts) > 1:
+            worksheet.write_rich_string(row, column, *rich, self(name))
+        else:
+            self.text(worksheet, row, column, parts[0][1] if parts else "", name)
+
+
+# --- numbers ---------------------------------------------------------------------------------------------
+
+
+def number_format(values: Iterable[float | str | None], digits: int) -> str:
+    """A number format that shows the digits of a column's typical cell.
+
+    Parameters
+    ----------
+    values : iterable of float, str or None
+        In the unit that is shown; errors do not count.
+    digits : int
+        Significant digits of the largest.
+
+    Examples
+    --------
+    >>> number_format([1.258, 1.371], 4), number_format([1525.4, 3619.0], 4), number_format([9.6e8], 4)
+    ('0.000', '0', '0.000E+00')
+    """
+    known = [abs(value) for value in values if isinstance(value, float) and value]
+    if not known:
+        return "General"
+    # The middle of a column's sizes: a fitted curve begins near zero and must not set the digits.
+    first = sorted(floor(log10(value)) for value in known)[len(known) // 2]
+    if first > 5 or first < -4:
+        return f"0.{'0' * (digits - 1)}E+00" if digits > 1 else "0E+00"
+    decimals = min(_MOST_DECIMALS, max(0, digits - 1 - first))
+    return f"0.{'0' * decimals}" if decimals else "0"
+
+
+def open_format(decimals: int) -> str:
+    """A number format for an input: at least the decimals as printed, and all that somebody types.
+
+    >>> open_format(1), open_format(0)
+    ('0.0########', 'General')
+    """
+    shown = max(0, min(decimals, _MOST_DECIMALS))
+    if not shown:
+        return "General"  # Excel would leave a decimal point behind a whole number
+    return f"0.{'0' * shown}{'#' * (_MOST_DECIMALS - shown)}"
+
+
+def in_unit(bounds: Bounds, scale: Fraction) -> Bounds:
+    """What is allowed, in another unit than SI's."""
+
+    def end(value: float | None) -> float | None:
+        return None if value is None else float(Fraction(repr(value)) / scale)
+
+    return Bounds(end(bounds.low), end(bounds.high), bounds.low_open, bounds.high_open, bounds.integer)
+
+
+def number_text(value: float) -> str:
+    """A number as formulas write it: no power of ten.
+
+    >>> number_text(1e-07), number_text(10000.0)
+    ('0.0000001', '10000')
+    """
+    from decimal import Decimal
+
+    text = f"{Decimal(repr(value)):f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+# --- text ------------------------------------------------------------------------------------------------
+
+_LETTERS = {
+    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ", "eta": "η",
+    "theta": "θ", "kappa": "κ", "lambda": "λ", "mu": "μ", "nu": "ν", "xi": "ξ", "pi": "π", "rho": "ρ",
+    "sigma": "σ", "tau": "τ", "phi": "φ", "chi": "χ", "psi": "ψ", "omega": "ω", "Delta": "Δ",
+    "Lambda": "Λ", "Sigma": "Σ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω", "log": "log", "ln": "ln",
+    ",": "", ";": "", " ": " ", "left": "", "right": "",
+}  # fmt: skip
+_MACRON = "\u0304"
+
+
+def fragments(latex: str) -> list[tuple[str, str]]:
+    r"""The LaTeX of a symbol as pieces of plain text, each with ``_``, ``^`` or nothing for its height.
+
+    Examples
+    --------
+    >>> fragments(r"x_{m_2%s}"), fragments(r"\bar{\alpha}"), fragments("C'_{(7)%s}")
+    ([('', 'x'), ('_', 'm2')], [('', 'ᾱ')], [('', 'C′'), ('_', '(7)')])
+    """
+    text = with_index(latex)
+    text = re.sub(r"\\(?:mathrm|text|mathit|operatorname)\s*\{([^{}]*)\}", r"\1", text)
+    text = re.sub(r"\\(?:bar|overline)\s*\{(\\[A-Za-z]+|.)\}", rf"\1{_MACRON}", text)
+    text = re.sub(r"\\([A-Za-z]+|[,; ])\s?", lambda found: _LETTERS.get(found[1], found[1]), text)
+    text = text.replace("'", "′")
+    pieces: list[tuple[str, str]] = []
+    script, depth = "", 0
+    for place, letter in enumerate(text):
+        if letter in "_^" and not depth:
+            script = letter
+        elif letter == "{":
+            depth += 1
+        elif letter == "}":
+            depth -= 1
+            script = "" if not depth else script
+        elif letter not in "_^":
+            if pieces and pieces[-1][0] == script:
+                pieces[-1] = (script, pieces[-1][1] + letter)
+            else:
+                pieces.append((script, letter))
+            if script and not depth and text[place + 1 : place + 2] != _MACRON:
+                script = ""
+    import unicodedata
+
+    return [(script, unicodedata.normalize("NFC", piece)) for script, piece in pieces]
+
+
+def said(unit: str) -> str:
+    """A unit in brackets behind a name, as in the header of measurements.csv."""
+    return f" [{unit}]"
+
+
+def height(texts: Iterable[tuple[str, float]], least: int = 1) -> int:
+    """How high a row of wrapped texts must be, in points; each with the width of its column in letters."""
+    lines = [sum(_lines(part, 1.08 * width) for part in text.split("\n")) for text, width in texts]
+    return _LINE * max([least, *lines])
+
+
+def _lines(text: str, width: float) -> int:
+    """How many lines a text breaks into, word by word."""
+    lines, used = 1, 0.0
+    for word in text.split(" "):
+        if used and used + 1 + len(word) > width:
+            lines, used = lines + 1, 0.0
+        used += len(word) + (1 if used else 0)
+        while used > width:
+            lines, used = lines + 1, used - width
+    return lines

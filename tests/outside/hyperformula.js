@@ -1,0 +1,60 @@
+"use strict";
+// Recalculates workbooks with HyperFormula. Reads {module, books: {name: {worksheet: {address: cell}}}} from
+// standard input, array formulas in braces, and writes every value in the same shape. With `mutants`, lists of
+// worksheet, address and formula, it also says of each how many cells of the first book it changes.
+const { readFileSync } = require("node:fs");
+const { books, mutants = [], module: path } = JSON.parse(readFileSync(0, "utf8"));
+const { HyperFormula, DetailedCellError } = require(path);
+
+// Nothing is rounded, and nothing small is taken for zero: the comparison is to the last digits.
+const options = { licenseKey: "gpl-v3", smartRounding: false, useArrayArithmetic: false };
+function entered(cell) {
+  return typeof cell === "string" && cell.startsWith("{=") ? `=ARRAYFORMULA(${cell.slice(2, -1)})` : cell ?? null;
+}
+
+function differs(before, after) {
+  return typeof before === "number" && typeof after === "number" ? before !== after : String(before) !== String(after);
+}
+
+const out = {};
+for (const [name, worksheets] of Object.entries(books)) {
+  const sheets = {};
+  for (const [worksheet, cells] of Object.entries(worksheets)) {
+    const rows = [];
+    for (const [address, cell] of Object.entries(cells)) {
+      const [, letters, number] = /^([A-Z]+)(\d+)$/.exec(address);
+      const column = [...letters].reduce((sum, letter) => sum * 26 + letter.charCodeAt(0) - 64, 0) - 1;
+      const row = (rows[Number(number) - 1] ??= []);
+      row[column] = entered(cell);
+    }
+    sheets[worksheet] = Array.from(rows, (row) => Array.from(row ?? [], (cell) => cell ?? null));
+  }
+  const engine = HyperFormula.buildFromSheets(sheets, options);
+  out[name] = {};
+  for (const [worksheet, cells] of Object.entries(worksheets)) {
+    out[name][worksheet] = {};
+    const sheet = engine.getSheetId(worksheet);
+    for (const address of Object.keys(cells)) {
+      const value = engine.getCellValue({ ...engine.simpleCellAddressFromString(address, sheet), sheet });
+      out[name][worksheet][address] = value instanceof DetailedCellError ? value.value : value;
+    }
+  }
+  if (mutants.length && out.mutants === undefined) {
+    const before = engine.getAllSheetsValues();
+    out.mutants = mutants.map(([worksheet, address, formula]) => {
+      const sheet = engine.getSheetId(worksheet);
+      const at = { ...engine.simpleCellAddressFromString(address, sheet), sheet };
+      const changes = engine.setCellContents(at, entered(formula));
+      const value = (change) => (change.newValue instanceof DetailedCellError ? change.newValue.value : change.newValue);
+      const number = changes.filter((change) => {
+        if (change.address === undefined) return true;
+        const { sheet: own, row, col } = change.address;
+        return differs(before[engine.getSheetName(own)][row][col], value(change));
+      }).length;
+      engine.setCellContents(at, entered(worksheets[worksheet][address]));
+      return number;
+    });
+  }
+  engine.destroy();
+}
+process.stdout.write(JSON.stringify(out));

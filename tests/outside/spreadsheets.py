@@ -1,0 +1,291 @@
+"""A workbook in the hands of its users: inputs are edited in the delivered file, other programs recalculate.
+
+The stored values are left in it, stale, so that a reader that recalculates nothing is found out.
+"""
+
+import io
+import re
+import subprocess
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cache, cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from loopsheet.report import build
+from loopsheet.report.engines import excel_grid
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.grid import Drawn, Grid
+from loopsheet.report.result import Report
+from loopsheet.report.sheet import Given, Sheet
+from loopsheet.report.values import CODES, Status, Values
+from loopsheet.report.views import xlsx
+from loopsheet.report.workbooks import soft_impact_charts
+
+Edits = Mapping[tuple[str, int], float | str | None]
+"""What is typed: by column and row (from 0), a number in the cell's unit, a text, or None for nothing."""
+
+LARGEST = 1e-12
+"""Largest difference, relative to the cell or to a millionth of its column's largest."""
+
+
+@dataclass(frozen=True)
+class Delivered:
+    """A report as its workbook."""
+
+    report: Report
+    grid: Grid
+    content: bytes
+
+    @cached_property
+    def whole(self) -> Sheet:
+        """The sheet with what the charts draw."""
+        drawn = self.grid.drawn.columns if self.grid.drawn else ()
+        return Sheet((*self.report.sheet.columns, *drawn))
+
+    @cached_property
+    def program(self) -> engine.Program:
+        return engine.Program.of(self.whole)
+
+    def edited(self, edits: Edits) -> bytes:
+        """The delivered file after somebody typed into it, everything else as it was stored."""
+        by_sheet: dict[str, dict[str, float | str | None]] = {}
+        for (name, row), value in edits.items():
+            place = self.grid[name].place
+            by_sheet.setdefault(place.worksheet, {})[place.cell(row, place.worksheet).replace("$", "")] = (
+                value
+            )
+        return typed(self.content, by_sheet)
+
+    def values(self, edits: Edits) -> Values:
+        """What the NumPy engine makes of the same inputs."""
+        data: dict[str, Any] = {}
+        for column in self.whole.columns:
+            if isinstance(column.rule, Given):
+                block = self.grid[column.name]
+                cells: list[Any] = [self._given(column.name, row) for row in range(block.place.rows)]
+                for (name, row), value in edits.items():
+                    if name == column.name:
+                        cells[row] = value
+                numbers = [
+                    x * block.place.scale if isinstance(x, Fraction) else _number(x, block.place.scale)
+                    for x in cells
+                ]
+                data[column.name] = np.array([float(x) for x in numbers])
+        labels = {a.name: self.report.inputs.tests for a in self.whole.axes if not a.parents}
+        return engine.evaluate(self.whole, labels, data, self.program)
+
+    def _given(self, name: str, row: int) -> Fraction:
+        """An input as it stands in its cell."""
+        value = self.grid[name].values[row]
+        assert isinstance(value, float)
+        printed = self.report.inputs.measured.get(name) or (self.report.inputs.parameters.get(name),)
+        known = printed[row]
+        return Fraction(value) if known is None else known.value / self.grid[name].place.scale
+
+
+def _number(value: float | str | None, scale: Fraction) -> float:
+    if value is None or isinstance(value, str):
+        return float("nan")
+    return float(Fraction(repr(value)) * scale)
+
+
+def deliver(folder: Path = build.PAPER, drawn: bool = True) -> Delivered:
+    """Compute a folder and make its workbook."""
+    report = build.compute(folder, prove=False)
+    charts: Drawn | None = soft_impact_charts.drawn(report.sheet) if drawn else None
+    units = {name: shown.unit for name, shown in report.shown.items()}
+    grid = excel_grid.grid(report.sheet, report.values, units, report.workbook.headline, charts)
+    return Delivered(report, grid, xlsx.render(report, grid))
+
+
+@cache
+def paper() -> Delivered:
+    """The shipped campaign's workbook."""
+    return deliver()
+
+
+def folder_with(folder: Path, tests: Sequence[tuple[float, float, float]], more: str = "") -> Path:
+    """A report folder with other tests: v in m/s, e, x_p in um."""
+    folder.mkdir()
+    rows = [f"{n},{v},{e},{x_p}" for n, (v, e, x_p) in enumerate(tests, start=1)]
+    (folder / "measurements.csv").write_text("\n".join(["test,v [m/s],e [1],x_p [um]", *rows, ""]))
+    (folder / "report.toml").write_text(
+        f'title = "Made for a test"\nworkbook = "soft_impact"\n[parameters]\nball_mass = "8.366 g"\n{more}'
+        '[measurements]\nfile = "measurements.csv"\n'
+    )
+    return folder
+
+
+# --- files --------------------------------------------------------------------------------------------------
+
+
+def parts(content: bytes) -> dict[str, bytes]:
+    """The files in a workbook by their names."""
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def packed(files: Mapping[str, bytes]) -> bytes:
+    """A workbook of files."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return buffer.getvalue()
+
+
+def part_of(files: Mapping[str, bytes], worksheet: str) -> str:
+    """The file of a worksheet: they are numbered in their order."""
+    names = re.findall(r'<sheet name="([^"]+)"', files["xl/workbook.xml"].decode())
+    return f"xl/worksheets/sheet{names.index(worksheet) + 1}.xml"
+
+
+def typed(content: bytes, by_sheet: Mapping[str, Mapping[str, float | str | None]]) -> bytes:
+    """Put other values into cells, as a program does that saves without recalculating."""
+    files = parts(content)
+    for worksheet, cells in by_sheet.items():
+        name = part_of(files, worksheet)
+        text = files[name].decode()
+        for address, value in cells.items():
+            text, found = re.subn(
+                rf'<c r="{address}"( s="\d+")?><v>[^<]*</v></c>', _cell(address, value), text
+            )
+            assert found == 1, (worksheet, address)
+        files[name] = text.encode()
+    return packed(files)
+
+
+def _cell(address: str, value: float | str | None) -> str:
+    if value is None:
+        return f'<c r="{address}"\\1/>'
+    if isinstance(value, str):
+        return f'<c r="{address}"\\1 t="inlineStr"><is><t>{value}</t></is></c>'
+    return f'<c r="{address}"\\1><v>{value!r}</v></c>'
+
+
+# --- comparing -------------------------------------------------------------------------------------------
+
+
+@dataclass
+class Difference:
+    """The largest difference of a comparison, how many cells were compared, and what differs too much."""
+
+    cells: int = 0
+    worst: float = 0.0
+    where: str = ""
+    wrong: list[str] = field(default_factory=list)
+
+
+def compare(
+    delivered: Delivered, values: Values, read: Mapping[str, Mapping[str, Any]], largest: float = LARGEST
+) -> Difference:
+    """Every computed cell against NumPy.
+
+    Parameters
+    ----------
+    read : mapping of worksheet to mapping of address to value
+        What another program shows; an error of Excel's as its text.
+    """
+    found = Difference()
+    for column in delivered.whole.columns:
+        if isinstance(column.rule, Given):
+            continue
+        place, drawn = delivered.grid[column.name].place, column.name not in delivered.report.sheet
+        known = values.value[column.name]
+        scale = 1e-6 * np.nanmax(np.abs(known), initial=0.0) if np.isfinite(known).any() else 0.0
+        # A logarithm near zero has no relative precision of its own; its column has.
+        scale = max(
+            scale, np.nanmax(np.abs(known)) if not column.positive and np.isfinite(known).any() else 0.0
+        )
+        for row, (value, status) in enumerate(zip(known, values.status[column.name], strict=True)):
+            address = place.cell(row, place.worksheet).replace("$", "")
+            cell, code = read[place.worksheet].get(address), CODES[Status(int(status))]
+            name = f"{column.name}, {place.worksheet}!{address}"
+            found.cells += 1
+            if status != Status.OK:
+                expected = "#N/A" if drawn else code
+                if cell != expected:
+                    found.wrong.append(f"{name}: {cell!r} instead of {expected}")
+                continue
+            if not isinstance(cell, int | float) or isinstance(cell, bool):
+                found.wrong.append(f"{name}: {cell!r} instead of {value / float(place.scale)!r}")
+                continue
+            difference = abs(cell * float(place.scale) - value) / max(abs(value), scale, 1e-300)
+            if difference > found.worst:
+                found.worst, found.where = difference, name
+            if difference > largest:
+                found.wrong.append(
+                    f"{name}: {cell!r} instead of {value / float(place.scale)!r}, {difference:.1e}"
+                )
+    return found
+
+
+# --- LibreOffice -----------------------------------------------------------------------------------------
+
+_ALWAYS_RECALCULATE = """<?xml version="1.0" encoding="UTF-8"?>
+<oor:items xmlns:oor="http://openoffice.org/2001/registry" xmlns:xs="http://www.w3.org/2001/XMLSchema"
+ xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance">
+<item oor:path="/org.openoffice.Office.Calc/Formula/Load"><prop oor:name="OOXMLRecalcMode" oor:op="fuse">
+<value>0</value></prop></item>
+</oor:items>
+"""
+
+
+def recalculate(
+    soffice: str, folder: Path, books: Mapping[str, bytes]
+) -> dict[str, dict[str, dict[str, Any]]]:
+    """Let LibreOffice open workbooks, recalculate them and save them; then read every cell.
+
+    Returns
+    -------
+    mapping of name to mapping of worksheet to mapping of address to value
+    """
+    profile, given, made = (folder / name for name in ("profile", "given", "made"))
+    for each in (profile / "user", given, made):
+        each.mkdir(parents=True, exist_ok=True)
+    # Without this LibreOffice believes the stored values.
+    (profile / "user" / "registrymodifications.xcu").write_text(_ALWAYS_RECALCULATE)
+    for name, content in books.items():
+        (given / f"{name}.xlsx").write_bytes(content)
+    command = [soffice, f"-env:UserInstallation=file://{profile}", "--headless", "--convert-to", "xlsx"]
+    files = [str(given / f"{name}.xlsx") for name in books]
+    run = subprocess.run(
+        [*command, "--outdir", str(made), *files], capture_output=True, text=True, timeout=600, check=False
+    )
+    assert run.returncode == 0, run.stderr
+    return {name: cells_of((made / f"{name}.xlsx").read_bytes()) for name in books}
+
+
+def cells_of(content: bytes) -> dict[str, dict[str, Any]]:
+    """Every value of a saved workbook."""
+    import openpyxl
+
+    book = openpyxl.load_workbook(io.BytesIO(content), data_only=True)
+    return {
+        sheet.title: {
+            cell.coordinate: cell.value for row in sheet.iter_rows() for cell in row if cell.value is not None
+        }
+        for sheet in book.worksheets
+    }
+
+
+def formulas_of(content: bytes) -> dict[str, dict[str, Any]]:
+    """Every cell of a delivered workbook: formulas with their equals sign, array formulas in braces."""
+    import openpyxl
+    from openpyxl.worksheet.formula import ArrayFormula
+
+    book = openpyxl.load_workbook(io.BytesIO(content))
+    found: dict[str, dict[str, Any]] = {}
+    for sheet in book.worksheets:
+        cells = found.setdefault(sheet.title, {})
+        for row in sheet.iter_rows():
+            for cell in row:
+                value = cell.value
+                if value is not None:
+                    cells[cell.coordinate] = f"{{{value.text}}}" if isinstance(value, ArrayFormula) else value
+    return found

@@ -1,0 +1,185 @@
+"""The delivered workbook in LibreOffice: edited, recalculated, and compared cell by cell with NumPy."""
+
+import re
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import spreadsheets
+
+from loopsheet.report.values import Status
+
+HOSTILE = "=cmd|' /C calc'!A0"
+
+EDITS: dict[str, spreadsheets.Edits] = {
+    "as issued": {},
+    "x_p of test 2": {("x_p", 1): 29.8},
+    "no root": {("x_p", 1): 42.0},
+    "e of test 3": {("e", 2): 0.9},
+    "two roots": {("e", 0): 0.40, ("e", 1): 0.45, ("e", 2): 0.42},
+    "an empty input": {("x_p", 1): None},
+    "a word for a number": {("v", 3): "fast"},
+    "two equal tests": {("v", 1): 2.334, ("e", 1): 0.53, ("x_p", 1): 23.5},
+    "nothing measured": {("v", row): None for row in range(5)},
+    "no exponent": {("beta", 0): None},
+    "other parameters": {("beta", 0): 1.2, ("ball_diameter", 0): 10.0},
+    "a test gives nothing back": {("e", 0): 0.0},
+    "a negative speed": {("v", 0): -2.0},
+}
+ROOTS: spreadsheets.Edits = {("v", 1): 130.27, ("e", 1): 0.6, ("x_p", 1): 18.5}
+"""A speed and a depth that no drop test has: four steps do not reach the root of pair 1-2."""
+
+TWELVE = [
+    (2.0 + 0.31 * n, round(0.54 - 0.009 * n, 3), round(20.5 + 3.3 * n + 0.3 * (n % 3), 1)) for n in range(12)
+]
+
+
+class Office:
+    """Every book of this module after LibreOffice has recalculated it, in one run of the program."""
+
+    def __init__(self, soffice: str, folder: Path) -> None:
+        self.paper = spreadsheets.paper()
+        few = spreadsheets.folder_with(
+            folder / "few", [(2.2, 0.535, 22.58), (3.1, 0.505, 31.92), (4.3, 0.47, 44.61)]
+        )
+        title = f'title = "{HOSTILE}"\n'
+        many = spreadsheets.folder_with(folder / "many", TWELVE, 'points_per_pair = "20"\n')
+        toml = many / "report.toml"
+        toml.write_text(re.sub(r'title = ".*"\n', lambda _: title, toml.read_text()))
+        self.delivered = {
+            **dict.fromkeys((*EDITS, "steps", "one character"), self.paper),
+            **{
+                name: spreadsheets.deliver(path)
+                for name, path in (("three tests", few), ("twelve tests", many))
+            },
+        }
+        self.edits = {
+            **EDITS,
+            "steps": ROOTS,
+            "three tests": {("e", 1): 0.5},
+            "twelve tests": {("x_p", 4): 36.1},
+        }
+        books = {name: self.delivered[name].edited(edits) for name, edits in self.edits.items()}
+        books["one character"] = mutated(books["as issued"])
+        self.read = spreadsheets.recalculate(soffice, folder, books)
+
+
+def mutated(content: bytes) -> bytes:
+    """The workbook with one character of one formula changed: a square of e becomes a cube."""
+    files = spreadsheets.parts(content)
+    name = spreadsheets.part_of(files, "tests")
+    text = files[name].decode()
+    changed, found = re.subn(r"(<f>IF\([^<]*\(\$C\$9\)\^\()2(\)[^<]*</f>)", r"\g<1>3\2", text, count=1)
+    assert found == 1
+    assert sum(a != b for a, b in zip(text, changed, strict=True)) == 1
+    files[name] = changed.encode()
+    return spreadsheets.packed(files)
+
+
+@pytest.fixture(scope="module")
+def office(require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> Office:
+    return Office(require("soffice", "libreoffice"), tmp_path_factory.mktemp("office"))
+
+
+@pytest.mark.parametrize("name", [*EDITS, "three tests", "twelve tests"])
+def test_recalculates_after_an_edit_as_numpy_does(office: Office, name: str) -> None:
+    delivered = office.delivered[name]
+    values = delivered.values(office.edits[name])
+    found = spreadsheets.compare(delivered, values, office.read[name])
+    assert not found.wrong, (len(found.wrong), found.wrong[:5])
+    assert found.cells == sum(
+        delivered.grid[c.name].place.rows for c in delivered.whole.columns if c.equation is not None
+    )
+
+
+def test_the_edits_reach_every_error(office: Office) -> None:
+    reached = {
+        int(status) for name in EDITS for status in office.paper.values(office.edits[name]).status["alpha"]
+    }
+    assert reached == set(Status)
+
+
+def test_the_promised_edit(office: Office) -> None:
+    alpha, mean = (office.paper.grid[name].place for name in ("alpha", "alpha_mean"))
+    cells = office.read["x_p of test 2"]
+    assert cells["pairs"][alpha.cell(0, "pairs").replace("$", "")] == pytest.approx(1.2277, abs=5e-5)
+    assert cells["report"][mean.cell(0, "report").replace("$", "")] == pytest.approx(1.3049, abs=5e-5)
+
+
+def test_what_is_stored_is_what_is_recalculated(office: Office) -> None:
+    """In every cell of every worksheet: texts, counts, verdicts and the steps to the roots too."""
+    stored = spreadsheets.cells_of(office.paper.content)
+    # What tends to zero is in the end what rounding left of it, and so is the end of the bracket that its
+    # sign moves; no program rounds as another does.
+    rests = {
+        (block.place.worksheet, block.place.cell(row, block.place.worksheet).replace("$", ""))
+        for block in office.paper.grid.blocks
+        if block.kind == "step"
+        and (block.title in ("f", "step") or (block.step > 1 and block.title in ("left", "right")))
+        for row in range(block.place.rows)
+    }
+    compared = 0
+    for worksheet, cells in stored.items():
+        for address, value in cells.items():
+            again = office.read["as issued"][worksheet].get(address, "")
+            if isinstance(value, int | float) and isinstance(again, int | float):
+                near = pytest.approx(value, rel=1e-9, abs=1e-12)
+                assert (worksheet, address) in rests or again == near, (worksheet, address)
+            else:
+                assert again == value, (worksheet, address)
+            compared += 1
+    assert compared > 5000
+
+
+def test_one_changed_character_is_noticed(office: Office) -> None:
+    found = spreadsheets.compare(office.paper, office.paper.values({}), office.read["one character"])
+    assert found.wrong
+
+
+def test_a_root_that_the_steps_do_not_reach_is_told(office: Office) -> None:
+    values = office.paper.values(ROOTS)
+    alpha, depth = (office.paper.grid[name].place for name in ("alpha", "x_m1"))
+    assert values.status["alpha"][0] == Status.OK, "NumPy goes on until it has the root"
+    for place in (alpha, depth):
+        assert office.read["steps"]["pairs"][place.cell(0, "pairs").replace("$", "")] == "#STEPS!"
+    for row in range(1, 10):
+        if values.status["alpha"][row] == Status.OK:
+            cell = office.read["steps"]["pairs"][alpha.cell(row, "pairs").replace("$", "")]
+            assert cell == pytest.approx(values.value["alpha"][row], rel=1e-12)
+
+
+def test_rows_left_out_are_counted(office: Office) -> None:
+    row = office.paper.grid["alpha_mean"].place.row + 1
+    assert office.read["as issued"]["report"][f"G{row}"] == "10 of 10 pairs"
+    assert office.read["an empty input"]["report"][f"G{row}"] == "6 of 10 pairs"
+    assert office.read["nothing measured"]["report"][f"G{row}"] == "0 of 10 pairs"
+
+
+def test_published_values_are_compared_again(office: Office) -> None:
+    cells: dict[str, dict[str, Any]] = office.read
+    assert cells["as issued"]["published"]["I6"] == "differs"
+    assert cells["as issued"]["published"]["K6"] == "yes"
+    assert cells["an empty input"]["published"]["F6"] == "#INPUT!"
+    assert cells["an empty input"]["published"]["I6"] == "not-checkable"
+    assert cells["an empty input"]["published"]["K6"] == "no"
+
+
+def test_text_stays_text(office: Office) -> None:
+    assert office.read["twelve tests"]["report"]["A1"] == HOSTILE
+
+
+def test_is_printed(require: Callable[..., str], tmp_path: Path) -> None:
+    """The first page, the figures and the tables fit on pages; nothing is too narrow for its number."""
+    soffice, pdftotext = require("soffice", "libreoffice"), require("pdftotext")
+    (tmp_path / "report.xlsx").write_bytes(spreadsheets.paper().content)
+    profile = f"-env:UserInstallation=file://{tmp_path / 'profile'}"
+    command = [soffice, profile, "--headless", "--convert-to", "pdf", "--outdir", str(tmp_path)]
+    subprocess.run([*command, str(tmp_path / "report.xlsx")], check=True, capture_output=True, timeout=300)
+    pages = subprocess.run(
+        [pdftotext, "-layout", str(tmp_path / "report.pdf"), "-"], check=True, capture_output=True, text=True
+    ).stdout
+    assert "Soft steel, ball drop" in pages
+    assert "###" not in pages
+    assert "Err:" not in pages

@@ -1,0 +1,495 @@
+"""The Excel engine: what each construct is printed as, and where and how a sheet's formulas stand."""
+
+import os
+import re
+import subprocess
+import sys
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from sympy import (
+    Abs,
+    And,
+    Eq,
+    Float,
+    Function,
+    Integer,
+    Max,
+    Min,
+    Mul,
+    Ne,
+    Not,
+    Or,
+    Piecewise,
+    Rational,
+    S,
+    Sum,
+    Symbol,
+    cos,
+    exp,
+    gamma,
+    log,
+    pi,
+    sign,
+    sqrt,
+    tanh,
+    true,
+)
+from sympy.core.parameters import evaluate
+
+from loopsheet.derivations.equation import Equation, Kind
+from loopsheet.report import build
+from loopsheet.report.engines import excel_grid
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.engines.excel import IfError, IsNumber, NotPrintable, Printer
+from loopsheet.report.engines.excel_roots import unroll
+from loopsheet.report.engines.excel_values import auxiliary_values
+from loopsheet.report.grid import Block, Grid, Place, factors, letters, quoted
+from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
+from loopsheet.report.workbooks import soft_impact_charts
+
+x, y, z = (Symbol(name, real=True) for name in "xyz")
+P = Symbol("P", positive=True)
+
+
+def printed(expression: Any, rows: bool = False) -> str:
+    return Printer(str, rows=rows).doprint(expression)
+
+
+# --- the printer -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("expression", "formula"),
+    [
+        (Integer(3), "3"),
+        (Integer(-3), "(0-3)"),
+        (Rational(1, 1000000), "(1/1000000)"),
+        (Rational(-2, 3), "(0-2/3)"),
+        (Integer(10) ** 18, "(1*(10)^(18))"),
+        (Float("1e-7"), "0.0000001"),
+        (Float("-2.5e10"), "(0-25000000000)"),
+        (pi, "PI()"),
+        (S.Exp1, "EXP(1)"),
+        (x + y, "x+y"),
+        (x - y, "x-y"),
+        (y - x - 1, "y-x-1"),
+        (-x, "(0-x)"),
+        (-x - y, "0-x-y"),
+        (-x * y, "(0-x*y)"),
+        (x * (y + z), "x*(y+z)"),
+        (x - 2 * (y + z), "x-2*y-2*z"),
+        (Mul(-1, x + y, evaluate=False) * z, "(0-z*(x+y))"),
+        (x / y, "x/y"),
+        (x / (y * z), "x/(y*z)"),
+        (x / (y + z), "x/(y+z)"),
+        (2 * x / 3, "2*x/3"),
+        (x / 3, "x/3"),
+        (1 / x, "1/x"),
+        (x**-2, "1/(x)^(2)"),
+        (y * x**-2, "y/(x)^(2)"),
+        (x**2, "(x)^(2)"),
+        (-(x**2), "(0-(x)^(2))"),
+        ((-x) ** 3, "(0-(x)^(3))"),
+        ((x + 1) ** y, "(x+1)^(y)"),
+        (x ** (-y), "(x)^(0-y)"),
+        ((x**y) ** z, "((x)^(y))^(z)"),
+        (x ** (y**z), "(x)^((y)^(z))"),
+        (sqrt(P), "SQRT(P)"),
+        (1 / sqrt(P), "1/SQRT(P)"),
+        (P ** Rational(3, 2), "(P)^(3/2)"),
+        (exp(x), "EXP(x)"),
+        (log(x), "LN(x)"),
+        (Abs(x), "ABS(x)"),
+        (sign(x), "SIGN(x)"),
+        (cos(x) + tanh(y), "COS(x)+TANH(y)"),
+        (Max(x, y, 1), "MAX(1,x,y)"),
+        (Min(x, y), "MIN(x,y)"),
+        (x > y, "x>y"),
+        (x <= y + 1, "x<=(y+1)"),
+        (Eq(x, y), "x=y"),
+        (Ne(x, y), "x<>y"),
+        (And(x > 0, y > 0), "AND(x>0,y>0)"),
+        (Or(x > 0, y > 0), "OR(x>0,y>0)"),
+        (Not(IsNumber(x)), "NOT(ISNUMBER(x))"),
+        (true, "TRUE()"),
+        (Piecewise((x, x > 0), (y, True)), "IF(x>0,x,y)"),
+        (Piecewise((x, x > 0), (y, x < -1), (z, True)), "IF(x>0,x,IF(x<(0-1),y,z))"),
+        (Piecewise((x, x > 0)), "IF(x>0,x,NA())"),
+        (IfError(1 / x, y), "IFERROR(1/x,y)"),
+    ],
+    ids=str,
+)
+def test_every_construct_is_printed(expression: Any, formula: str) -> None:
+    assert printed(expression) == formula
+
+
+@pytest.mark.parametrize(
+    ("expression", "formula"),
+    [
+        (Max(x, y), "IF(x>=y,x,y)"),
+        (Min(x, y, z), "IF(IF(x<=y,x,y)<=z,IF(x<=y,x,y),z)"),
+        (And(x > 0, y > 0), "(x>0)*(y>0)"),
+        (Or(x > 0, y > 0), "(x>0)+(y>0)>0"),
+        (Piecewise((x, And(x > 0, y > 0)), (y, True)), "IF((x>0)*(y>0),x,y)"),
+    ],
+    ids=str,
+)
+def test_nothing_swallows_a_range_inside_of_a_sum(expression: Any, formula: str) -> None:
+    assert printed(expression, rows=True) == formula
+
+
+def test_what_tends_to_zero_is_added_without_rounding() -> None:
+    assert Printer(str).added(x - y) == "SUM(x,0-y)"
+    assert Printer(str).added(x * y) == "x*y"
+
+
+def test_the_authors_order_is_computed_alike() -> None:
+    with evaluate(False):
+        expression = x * (y - z) / (P * P)
+    assert printed(expression) == "x*(y-z)/(P*P)"
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [gamma(x), Function("f")(x), Integer(1234567890123456), S.ComplexInfinity, Sum(x, (x, 1, 3))],
+    ids=str,
+)
+def test_half_a_formula_is_never_printed(expression: Any) -> None:
+    with pytest.raises(NotPrintable):
+        printed(x + expression)
+
+
+# --- places ----------------------------------------------------------------------------------------------
+
+
+def test_places() -> None:
+    place = Place("tests", 7, 27, 3, Fraction(1, 1000))
+    assert place.cell() == "tests!$AB$8"
+    assert place.cell(2, "tests") == "$AB$10"
+    assert place.range("pairs") == "tests!$AB$8:$AB$10"
+    assert place.range("tests", first=1, rows=2) == "$AB$9:$AB$10"
+    assert [letters(n) for n in (0, 25, 26, 701, 702, 16383)] == ["A", "Z", "AA", "ZZ", "AAA", "XFD"]
+
+
+@pytest.mark.parametrize(
+    ("name", "formula"),
+    [("pairs", "pairs"), ("R1C1", "'R1C1'"), ("true", "'true'"), ("it's", "'it''s'"), ("XFD", "'XFD'")],
+)
+def test_a_worksheets_name_is_never_read_as_a_cell(name: str, formula: str) -> None:
+    assert quoted(name) == formula
+
+
+@pytest.mark.parametrize(
+    ("scale", "both"),
+    [
+        (Fraction(1), ("", "")),
+        (Fraction(1000), ("*1000", "/1000")),
+        (Fraction(1, 10**6), ("/1000000", "*1000000")),
+        (Fraction(254, 10000), ("*127/5000", "*5000/127")),
+    ],
+)
+def test_units_are_whole_numbers(scale: Fraction, both: tuple[str, str]) -> None:
+    assert factors(scale) == both
+
+
+# --- the formulas of a sheet -----------------------------------------------------------------------------
+
+k, p, q, i, j, s = (Symbol(name, integer=True, positive=True) for name in "kpqijs")
+n_items, n_pairs, n_points = (
+    Symbol(f"n_{n}", integer=True, positive=True) for n in ("items", "pairs", "points")
+)
+ITEMS = Axis("items", k, n_items)
+PAIRS = PairAxis("pairs", p, n_pairs, of=ITEMS, first=i, second=j)
+POINTS = RepeatAxis("points", q, n_points, of=PAIRS, step=s, count="per")
+
+
+def formula(value: Any) -> Formula:
+    return Formula(Equation("", (Symbol("made"), value), "for a test", Kind.DEFINITION, "made"))
+
+
+def column(name: str, axis: Axis | None, value: Any = None, **more: Any) -> Column:
+    return Column(name, axis, Given() if value is None else formula(value), **more)
+
+
+a, w, per = column("a", ITEMS), column("w", None), column("per", None)
+
+
+def made(*columns: Column, units: dict[str, str] | None = None, **data: Any) -> Grid:
+    given = {"a": [3.0, 5.0], "w": 2.0, "per": 2, **data}
+    sheet = Sheet(columns)
+    values = engine.evaluate(sheet, {"items": (1, 2)}, {name: given[name] for name in given if name in sheet})
+    return excel_grid.grid(sheet, values, units or {})
+
+
+def first(grid: Grid, name: str) -> str:
+    return grid[name].formulas[0]
+
+
+def test_a_row_names_the_cells_of_its_members() -> None:
+    grid = made(a, column("b", PAIRS, a[i] / a[j]))
+    assert first(grid, "b") == (
+        "=IF(AND(ISNUMBER(items!$B$8),ISNUMBER(items!$B$9)),"
+        'IFERROR(items!$B$8/items!$B$9,"#DOMAIN!"),"#INPUT!")'
+    )
+
+
+def test_an_error_is_carried_on_before_anything_is_computed() -> None:
+    b = column("b", ITEMS, a[k] * 2)
+    grid = made(a, w, b, column("c", ITEMS, b[k] + w.symbol))
+    assert first(grid, "c") == (
+        '=IF(ISNUMBER(report!$B$6),IF(ISNUMBER($C$8),IFERROR(report!$B$6+$C$8,"#DOMAIN!"),$C$8),"#INPUT!")'
+    )
+
+
+def test_a_positive_quantity_has_no_other_value() -> None:
+    grid = made(
+        a, w, column("c", ITEMS, a[k] - w.symbol), column("d", ITEMS, a[k] - w.symbol, positive=False)
+    )
+    core = "$B$8-report!$B$6"
+    assert f'IFERROR(IF({core}>0,{core},"#DOMAIN!"),"#DOMAIN!")' in first(grid, "c")
+    assert f'IFERROR({core},"#DOMAIN!")' in first(grid, "d")
+
+
+def test_conditions_come_before_the_value() -> None:
+    needs = ((a[k] > w.symbol, "for a test"), (Ne(a[k], 4), "for a test"))
+    grid = made(a, w, column("c", ITEMS, a[k] + w.symbol, requires=needs))
+    body = 'IFERROR(IF(AND($B$8>report!$B$6,$B$8<>4),report!$B$6+$B$8,"#DOMAIN!"),"#DOMAIN!")'
+    assert body in first(grid, "c")
+
+
+def test_cells_in_other_units_are_converted_where_they_are_named() -> None:
+    length = {"unit": "m"}
+    b = column("b", ITEMS, a[k] * 2, **length)
+    grid = made(column("a", ITEMS, **length), b, units={"a": "mm", "b": "km"})
+    assert 'IFERROR(2*($B$8/1000)/1000,"#DOMAIN!")' in first(grid, "b")
+    assert grid["b"].values == (0.006, 0.01)
+    assert grid["a"].unit == "mm"
+
+
+def test_a_symbol_in_a_unit_leaves_si() -> None:
+    grid = made(a, column("b", ITEMS, a[k] * 2, unit="N/m^alpha"), units={"b": "N/m^alpha"})
+    assert (grid["b"].unit, grid["b"].place.scale) == ("N/m^alpha", 1)
+
+
+def test_a_sum_leaves_rows_without_values_out() -> None:
+    grid = made(a, w, column("c", None, w.symbol * Sum(a[k] ** 2, (k, 1, n_items)) / n_items))
+    cells = "items!$B$8:$B$9"
+    rows = f"SUM(IF(ISNUMBER({cells}),1,0))"
+    assert first(grid, "c") == (
+        f"=IF(AND(OR({rows}>0,ISNUMBER(items!$B$8)),ISNUMBER($B$6)),"
+        f"IFERROR($B$6*SUM(IF(ISNUMBER({cells}),({cells})^(2),0))/"
+        f'{rows},"#DOMAIN!"),"#INPUT!")'
+    )
+    assert grid["c"].array
+    assert grid["c"].kept == {"items": f"={rows}"}
+
+
+def test_the_size_of_an_axis_that_is_not_summed_counts_all_rows() -> None:
+    grid = made(a, column("b", PAIRS, a[i]), w, column("c", None, w.symbol * n_pairs))
+    assert "ROWS(pairs!$A$8:$A$8)*$B$6" in first(grid, "c")
+    assert not grid["c"].array
+
+
+def test_a_sum_reaches_another_axis_through_a_column_of_its_own() -> None:
+    b = column("b", PAIRS, a[i] * a[j])
+    grid = made(a, per, b, column("c", POINTS, b[p] * s), column("d", None, Sum(b[p] * s, (q, 1, n_points))))
+    carried = grid["b[p] of points"]
+    assert (carried.kind, carried.formulas) == ("carried", ("=pairs!$C$8", "=pairs!$C$8"))
+    where = carried.place.range("report")
+    assert f"SUM(IF(ISNUMBER({where}),points!$C$8:$C$9*{where},0))" in first(grid, "d")
+    assert carried.place.column > grid["c"].place.column
+
+
+def test_a_missing_datum_is_carried_as_such() -> None:
+    grid = made(a, per, column("c", POINTS, s / 2 + a[i]), column("d", None, Sum(a[i] * s, (q, 1, n_points))))
+    assert grid["a[i] of points"].formulas[0] == '=IF(ISNUMBER(items!$B$8),items!$B$8,"#INPUT!")'
+
+
+def test_worksheets_of_reserved_names_get_another() -> None:
+    axis = Axis("report", k, n_items)
+    b = Column("a", axis, Given())
+    values = engine.evaluate(Sheet((b,)), {"report": (1, 2)}, {"a": [1.0, 2.0]})
+    assert excel_grid.grid(Sheet((b,)), values, {})["a"].place.worksheet == "report_rows"
+
+
+def test_more_rows_than_a_worksheet_should_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(excel_grid, "MOST_ROWS", 1)
+    with pytest.raises(excel_grid.TooManyRows, match="items has 2 rows; a worksheet gets at most 1"):
+        made(a)
+
+
+# --- roots -----------------------------------------------------------------------------------------------
+
+
+def cubic(steps: int = 3) -> Column:
+    """z^3 - 3z = a between -3 and 3: one root, or three for |a| < 2; none beyond 18."""
+    unknown = Symbol("z", real=True)
+    form = Equation("", (unknown**3 - 3 * unknown - a[k], Integer(0)), "for a test", Kind.DEFINITION, "cubic")
+    turning = (Integer(-1), Integer(1))
+    root = Root(
+        form, form, unknown, unknown**2, Integer(-3), Integer(3), a[k] / 3, turning=turning, steps=steps
+    )
+    return Column("root", ITEMS, root)
+
+
+def test_a_root_is_unrolled_in_the_order_of_its_evaluation() -> None:
+    names = [cell.name for cell in unroll(cubic(1)).cells]
+    assert names == [
+        f"root.{name}"
+        for name in (
+            "low", "high", "start", "form_low", "sign_low", "turn1_raw", "turn1", "form_turn1", "sign_turn1",
+            "turn2_raw", "turn2", "form_turn2", "sign_turn2", "form_high", "sign_high", "roots", "left_0",
+            "right_0",
+            "rising", "u_0", "f_1", "slope0_1", "slope1_1", "slope2_1", "step_1", "left_1", "right_1", "u_1",
+        )
+    ]  # fmt: skip
+
+
+def test_the_cells_of_a_root() -> None:
+    grid = made(a, cubic())
+    at = {
+        name: grid[f"root.{name}"].place.cell(0, "items")
+        for name in ("check", "roots", "u_0", "f_1", "step_1")
+    }
+    assert first(grid, "root.check") == '=IF(ISNUMBER($B$8),"ready","#INPUT!")'
+    assert first(grid, "root.low") == f'=IF({at["check"]}="ready",IFERROR((0-3),""),"")'
+    u = at["u_0"]
+    assert first(grid, "root.f_1") == f'=IF({at["roots"]}=1,IFERROR(SUM(({u})^(3),0-3*{u},0-$B$8),""),"")'
+    f, *slopes = (
+        grid[f"root.{name}"].place.cell(0, "items") for name in ("f_1", "slope0_1", "slope1_1", "slope2_1")
+    )
+    g, h, m = slopes
+    step = f"3*{f}*(2*({g})^(2)-{f}*{h})/(({f})^(2)*{m}+6*({g})^(3)-6*{f}*{g}*{h})"
+    assert first(grid, "root.step_1") == f'=IF({at["roots"]}=1,IFERROR({step},""),"")'
+    last, before, value = (grid[f"root.{name}"].place.cell(0, "items") for name in ("u_3", "u_2", "f_3"))
+    settled = f'IF(10000000*ABS({before}-{last})<=ABS({last}),({last})^(2),"#STEPS!")'
+    n, ready = at["roots"], at["check"]
+    one = f'IF({n}=1,IF(ISNUMBER({value}),{settled},"#DOMAIN!"),IF({n}=0,"#NOROOT!","#TWOROOTS!"))'
+    found = f'IFERROR(IF(ISNUMBER({n}),{one},"#DOMAIN!"),"#DOMAIN!")'
+    assert first(grid, "root") == f'=IF({ready}="ready",{found},{ready})'
+
+
+def test_the_steps_show_what_the_solver_found() -> None:
+    column = cubic(8)
+    sheet = Sheet((a, column))
+    values = engine.evaluate(sheet, {"items": (1, 2, 3, 4)}, {"a": [2.5, 1.0, 30.0, np.nan]})
+    shown = auxiliary_values(values, unroll(column))
+    assert shown["root.check"] == ("ready", "ready", "ready", "#INPUT!")
+    assert shown["root.roots"] == (1.0, 3.0, 0.0, "")
+    assert shown["root.u_8"][1:] == ("", "", "")
+    assert float(shown["root.u_8"][0]) ** 2 == pytest.approx(values.value["root"][0], rel=1e-15)
+
+
+def test_every_sum_of_a_scalar_root_has_a_cell_of_its_own() -> None:
+    unknown = Symbol("u", positive=True)
+    side = Sum(exp(-unknown * a[k]), (k, 1, n_items)) - unknown * Sum(a[k], (k, 1, n_items))
+    form = Equation("", (side, Integer(0)), "for a test", Kind.DEFINITION, "balance")
+    root = Column(
+        "root", None, Root(form, form, unknown, unknown, Integer(0), Integer(9), Integer(1), steps=6)
+    )
+    grid = made(a, root)
+    sums = [b for b in grid.on("steps") if "sum_" in b.name]
+    assert all(b.array and b.formulas[0].count("SUM(") == 1 for b in sums)
+    assert [b.title for b in sums if b.step == 1] == ["Σ₁", "Σ₂"]
+    assert first(grid, "root.step_1").count("/") == 1, "Newton's step: a derivative is a sum"
+    assert grid["root"].values[0] == pytest.approx(float(grid["root.u_6"].values[0] or 0), rel=1e-14)
+
+
+# --- the paper -------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def paper() -> Grid:
+    report = build.compute(build.PAPER, prove=False)
+    units = {name: shown.unit for name, shown in report.shown.items()}
+    drawn = soft_impact_charts.drawn(report.sheet)
+    return excel_grid.grid(report.sheet, report.values, units, report.workbook.headline, drawn)
+
+
+def every(grid: Grid) -> list[tuple[Block, str]]:
+    return [(block, formula) for block in grid.blocks for formula in block.formulas]
+
+
+def test_nothing_younger_than_excel_2016_is_used(paper: Grid) -> None:
+    used = {name for _, formula in every(paper) for name in re.findall(r"([A-Z][A-Z0-9.]*)\(", formula)}
+    assert used <= {
+        "ABS", "AND", "EXP", "IF", "IFERROR", "ISNUMBER", "LN", "MAX", "NA", "OR", "PI", "ROWS", "SIGN",
+        "SQRT", "SUM",
+    }  # fmt: skip
+
+
+def test_formulas_have_no_notation_that_readers_disagree_on(paper: Grid) -> None:
+    for block, formula in every(paper):
+        bare = re.sub(r'"[^"]*"', "", formula)
+        assert not re.search(r"\d[eE][+-]?\d", bare), (block.name, formula)
+        assert not re.search(r"(^=|[(,*/^<>=])-", bare), (block.name, formula)
+        assert not re.search(r"\^(?!\()|(?<!\))\^", bare), (block.name, formula)
+        assert formula.startswith("=")
+        assert len(formula) < 8192
+        assert max(_depth(bare)) <= 64
+
+
+def _depth(formula: str) -> list[int]:
+    depths, depth = [], 0
+    for letter in formula:
+        depth += (letter == "(") - (letter == ")")
+        depths.append(depth)
+    assert depth == 0, formula
+    return depths
+
+
+def test_only_formulas_over_ranges_are_array_formulas(paper: Grid) -> None:
+    for block in paper.blocks:
+        if block.formulas:
+            assert block.array == (":" in block.formulas[0]), block.name
+
+
+def test_no_two_blocks_stand_on_one_cell(paper: Grid) -> None:
+    taken = [
+        (b.place.worksheet, b.place.column, row)
+        for b in paper.blocks
+        for row in range(b.place.row, b.place.row + b.place.rows)
+    ]
+    assert len(taken) == len(set(taken))
+
+
+def test_every_reference_names_a_cell_that_is_there(paper: Grid) -> None:
+    there = {
+        (b.place.worksheet, f"${letters(b.place.column)}${row + 1}")
+        for b in paper.blocks
+        for row in range(b.place.row, b.place.row + b.place.rows)
+    }
+    for block, formula in every(paper):
+        for sheet, cell in re.findall(r"(?:(\w+)!)?(\$[A-Z]+\$\d+)(?!:)", formula):
+            if f":{cell}" not in formula:
+                assert (sheet or block.place.worksheet, cell) in there, (block.name, formula)
+
+
+def test_the_values_are_the_reports(paper: Grid) -> None:
+    assert paper["alpha"].values[0] == pytest.approx(1.2579969787, abs=1e-9)
+    assert paper["x_m2"].values[0] == pytest.approx(41.845, abs=1e-3)
+    assert paper["plotted_x"].values == paper["x"].values
+
+
+def test_the_formulas_do_not_depend_on_the_hash_seed() -> None:
+    code = (
+        "from loopsheet.report import build; from loopsheet.report.engines import excel_grid\n"
+        "r = build.compute(build.PAPER, prove=False)\n"
+        "units = {n: s.unit for n, s in r.shown.items()}\n"
+        "g = excel_grid.grid(r.sheet, r.values, units, r.workbook.headline)\n"
+        "import hashlib; print(hashlib.sha256(repr(g.blocks).encode()).hexdigest())"
+    )
+    found = {
+        subprocess.run(
+            [sys.executable, "-c", code],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in ("0", "4711")
+    }
+    assert len(found) == 1

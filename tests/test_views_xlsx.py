@@ -1,0 +1,395 @@
+"""report.xlsx as it is delivered: what is in which cell, what may be typed, and that text stays text."""
+
+import io
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import zipfile
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import openpyxl
+import pytest
+from openpyxl.worksheet.formula import ArrayFormula
+
+from loopsheet.report import build
+from loopsheet.report.engines import excel_grid
+from loopsheet.report.grid import Grid
+from loopsheet.report.quantity import Bounds
+from loopsheet.report.result import Report
+from loopsheet.report.views import json as json_view
+from loopsheet.report.views import xlsx
+from loopsheet.report.views.xlsx_style import (
+    LONGEST,
+    fragments,
+    height,
+    number_format,
+    number_text,
+    open_format,
+)
+from loopsheet.report.workbooks import soft_impact_charts
+
+
+def grid_of(report: Report) -> Grid:
+    units = {name: shown.unit for name, shown in report.shown.items()}
+    drawn = soft_impact_charts.drawn(report.sheet)
+    return excel_grid.grid(report.sheet, report.values, units, report.workbook.headline, drawn)
+
+
+@pytest.fixture(scope="module")
+def report() -> Report:
+    return build.compute(build.PAPER)
+
+
+@pytest.fixture(scope="module")
+def grid(report: Report) -> Grid:
+    return grid_of(report)
+
+
+@pytest.fixture(scope="module")
+def content(report: Report, grid: Grid) -> bytes:
+    return xlsx.render(report, grid)
+
+
+@pytest.fixture(scope="module")
+def book(content: bytes) -> Any:
+    return openpyxl.load_workbook(io.BytesIO(content))
+
+
+@pytest.fixture(scope="module")
+def shown(content: bytes) -> Any:
+    return openpyxl.load_workbook(io.BytesIO(content), data_only=True)
+
+
+def named(book: Any, name: str) -> list[Any]:
+    """The cells of a defined name."""
+    worksheet, _, cells = book.defined_names[name].attr_text.partition("!")
+    found = book[worksheet.strip("'")][cells.replace("$", "")]
+    return [row[0] for row in found] if isinstance(found, tuple) else [found]
+
+
+# --- what is there ---------------------------------------------------------------------------------------
+
+
+def test_worksheets(book: Any) -> None:
+    assert book.sheetnames == [
+        "report", "figures", "tests", "pairs", "points", "loops", "steps", "published", "equations",
+    ]  # fmt: skip
+
+
+def test_every_column_is_a_defined_name_with_the_values_of_the_report(report: Report, shown: Any) -> None:
+    cells = json.loads(json_view.values(report))["cells"]
+    assert {f"ls_{name}" for name in cells} == set(shown.defined_names)
+    for name, entry in cells.items():
+        scale = report.shown[name].scale
+        values = entry["value"] if isinstance(entry["value"], list) else [entry["value"]]
+        assert [c.value * scale for c in named(shown, f"ls_{name}")] == pytest.approx(values, rel=1e-14), name
+
+
+def test_names_do_not_tell_capitals(report: Report, grid: Grid) -> None:
+    sheet = report.sheet
+    twin = replace(sheet["C"], name="c")
+    more = replace(report, sheet=type(sheet)((*sheet.columns, twin)))
+    blocks = (*grid.blocks, replace(grid["C"], name="c"))
+    content = xlsx.render(more, replace(grid, blocks=blocks))
+    names = openpyxl.load_workbook(io.BytesIO(content)).defined_names
+    assert {"ls_C", "ls_c_2"} <= set(names)
+
+
+def test_inputs_are_numbers_as_printed(book: Any) -> None:
+    tests = book["tests"]
+    assert [tests.cell(4, n).value for n in (2, 3, 4)] == ["v [m/s]", "e [1]", "x_p [um]"]
+    assert [tests.cell(row, 4).value for row in range(8, 13)] == [23.5, 29.7, 41.6, 45.97, 51.03]
+    assert tests["B9"].value == 2.94
+    assert tests["B9"].number_format == "0.000######"
+    assert tests["D9"].fill.fgColor.rgb == "FFFFF8DC"
+
+
+def test_every_computed_cell_is_a_formula(grid: Grid, book: Any) -> None:
+    for block in grid.blocks:
+        if block.kind in ("index", "given"):
+            continue
+        for row in range(block.place.rows):
+            cell = book[block.place.worksheet].cell(block.place.row + row + 1, block.place.column + 1).value
+            assert isinstance(cell, ArrayFormula) == block.array, (block.name, row)
+            assert (cell.text if block.array else cell) == block.formulas[row]
+
+
+def test_headers_say_name_unit_meaning_equation_and_symbol(book: Any) -> None:
+    pairs = book["pairs"]
+    assert [pairs.cell(row, 3).value for row in range(4, 8)] == [
+        "alpha [1]",
+        "exponent of the compression law",
+        "(11)",
+        "α",
+    ]
+    assert [pairs.cell(row, 4).value for row in (4, 6, 7)] == ["x_m2 [um]", "(12a)", "xm2"]
+    assert [c.value for c in pairs[4][:3]] == ["i", "j", "alpha [1]"]
+
+
+def test_panes_are_frozen_and_steps_are_an_outline(grid: Grid, book: Any) -> None:
+    assert book["tests"].freeze_panes == "B8"
+    assert book["points"].freeze_panes == "D8"
+    step = grid["alpha.f_1"].place.column
+    dimension = book["pairs"].column_dimensions
+    level = next(d for d in dimension.values() if d.min <= step + 1 <= d.max)
+    assert (level.outlineLevel, level.hidden) == (1, False)
+
+
+def test_the_first_worksheet(book: Any, shown: Any, report: Report) -> None:
+    cells = shown["report"]
+    assert cells["A1"].value == "Soft steel, ball drop"
+    assert [cells.cell(row, 1).value for row in range(6, 11)] == list(report.workbook.headline)
+    assert cells["B6"].value == pytest.approx(1.30264345, abs=1e-8)
+    assert [cells.cell(6, n).value for n in (3, 4, 5, 7)] == ["1", "mean exponent", "(L12)", "10 of 10 pairs"]
+    text = "\n".join(str(c.value) for row in cells.iter_rows() for c in row if c.value)
+    for code in ("#INPUT!", "#DOMAIN!", "#NOROOT!", "#TWOROOTS!", "#STEPS!"):
+        assert code in text
+    assert isinstance(book["report"]["G6"].value, ArrayFormula)
+
+
+def test_published_values_stand_beside_live_ones(book: Any, shown: Any, report: Report) -> None:
+    live, now = book["published"], shown["published"]
+    assert [now.cell(6, n).value for n in (1, 2, 3, 4, 5)] == ["Table 2", "alpha", "1-2", "1", 1.234]
+    assert live["F6"].value == "=IF(ISNUMBER(pairs!$C$8),pairs!$C$8,pairs!$C$8)"
+    assert live["I6"].value == '=IF(ISNUMBER($F$6),IF(ROUND($F$6,3)=$E$6,"same","differs"),"not-checkable")'
+    for row, comparison in enumerate(report.comparisons, start=6):
+        assert now.cell(row, 9).value == comparison.verdict
+        assert now.cell(row, 11).value == ("yes" if comparison.as_expected else "no")
+        assert now.cell(row, 8).value == pytest.approx(comparison.distance, abs=1e-9)
+        assert now.cell(row, 12).value == comparison.published.reason
+    depth = next(row for row in range(6, 40) if now.cell(row, 2).value == "x_m")
+    assert live.cell(depth, 6).value == "=IF(ISNUMBER(tests!$E$8),tests!$E$8,tests!$E$8)"
+
+
+def test_equations_and_their_proofs(shown: Any) -> None:
+    rows = {row[0].value: [c.value for c in row] for row in shown["equations"].iter_rows(min_row=5)}
+    assert rows["(11)"][3] == "proved"
+    assert rows["(12e)"][3] == "proved with a correction of the print"
+    assert rows["(9)"][2] == "C*x_m^alpha = C'"
+    assert "where x_m > x_p" in rows["(L4)"][2]
+
+
+# --- what may be typed -----------------------------------------------------------------------------------
+
+
+def validations(sheet: Any) -> dict[str, Any]:
+    return {str(v.sqref): v for v in sheet.data_validations.dataValidation}
+
+
+def test_what_may_be_typed_is_checked(book: Any, grid: Grid) -> None:
+    tests = validations(book["tests"])
+    assert tests["B8:B12"].formula1 == "AND(ISNUMBER(B8),B8>0)"
+    assert tests["C8:C12"].formula1 == "AND(ISNUMBER(C8),C8>=0,C8<=1)"
+    assert tests["D8:D12"].error == "x_p must be greater than 0, in um."
+    count = grid["points_per_pair"].place.cell(0, "report").replace("$", "")
+    assert validations(book["report"])[count].formula1 == f"AND(ISNUMBER({count}),{count}>=50,{count}<=50)"
+
+
+def test_notes_say_meaning_bounds_and_origin(book: Any, grid: Grid) -> None:
+    note = book["tests"]["D9"].comment.text
+    assert "x_p: imprint depth" in note
+    assert "It must be greater than 0, in um." in note
+    assert "Given as 29.7 um in measurements.csv:3:15." in note
+    fixed = book["report"][grid["points_per_pair"].place.cell(0, "report").replace("$", "")].comment.text
+    assert "build again" in fixed
+    assert "The default." in fixed
+
+
+def test_bounds_are_told_in_the_unit_of_the_cells(report: Report) -> None:
+    high = tuple(
+        replace(m, bounds=Bounds(low=1e-6, high=0.001, high_open=True)) for m in report.workbook.measured
+    )
+    inputs = replace(report.inputs, workbook=replace(report.workbook, measured=high))
+    changed = replace(report, workbook=inputs.workbook, inputs=inputs)
+    book = openpyxl.load_workbook(io.BytesIO(xlsx.render(changed, grid_of(changed))))
+    assert validations(book["tests"])["D8:D12"].formula1 == "AND(ISNUMBER(D8),D8>=1,D8<1000)"
+
+
+# --- charts ----------------------------------------------------------------------------------------------
+
+
+def files(content: bytes) -> dict[str, bytes]:
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def test_charts_are_native_and_drawn_from_cells(content: bytes) -> None:
+    charts = [
+        text.decode()
+        for name, text in files(content).items()
+        if re.fullmatch(r"xl/charts/chart\d+\.xml", name)
+    ]
+    assert len(charts) == 2
+    loops = next(text for text in charts if "Figure 4" in text)
+    assert len(re.findall("<c:ser>", loops)) == 1 + 5 + 5
+    assert "points!$H$8:$H$507" in loops
+    assert "loops!$C$8:$C$48" in loops
+    assert "restitution, test 5" in loops
+    assert "strRef" not in re.sub(r"<c:tx>.*?</c:tx>", "", loops), "numbers that are read as labels"
+    assert len(re.findall("<c:legendEntry>", loops)) == 4, "the fitted curve is named once"
+
+
+def test_what_has_no_value_is_left_out_of_a_chart(tmp_path: Path) -> None:
+    shutil.copytree(build.PAPER, tmp_path / "in")
+    table = tmp_path / "in" / "measurements.csv"
+    table.write_text(table.read_text().replace("0.479", "0.9"))
+    (tmp_path / "in" / "published.csv").unlink()
+    toml = tmp_path / "in" / "report.toml"
+    toml.write_text(toml.read_text().partition("[published]")[0])
+    report = build.compute(tmp_path / "in", prove=False)
+    assert (report.values.status["alpha"] != 0).any()
+    content = xlsx.render(report, grid_of(report))
+    shown = openpyxl.load_workbook(io.BytesIO(content), data_only=True)
+    assert "#N/A" in {c.value for c in shown["pairs"]["J"]}
+    assert "#NOROOT!" in {c.value for c in shown["pairs"]["C"]}
+    assert "published" not in shown.sheetnames
+    for name, text in files(content).items():
+        if name.startswith("xl/charts/chart"):
+            assert b"#N/A" not in text
+            assert b"#NOROOT!" not in text
+
+
+# --- bytes and text --------------------------------------------------------------------------------------
+
+
+def test_same_bytes_for_the_same_report(report: Report, content: bytes) -> None:
+    assert xlsx.render(report, grid_of(report)) == content
+
+
+def test_same_bytes_under_another_hash_seed() -> None:
+    code = (
+        "import sys\n"
+        "from loopsheet.report import build\n"
+        "from loopsheet.report.engines import excel_grid\n"
+        "from loopsheet.report.views import xlsx\n"
+        "from loopsheet.report.workbooks import soft_impact_charts as charts\n"
+        "r = build.compute(build.PAPER, prove=False)\n"
+        "u = {n: s.unit for n, s in r.shown.items()}\n"
+        "g = excel_grid.grid(r.sheet, r.values, u, r.workbook.headline, charts.drawn(r.sheet))\n"
+        "sys.stdout.buffer.write(xlsx.render(r, g))"
+    )
+    made = set()
+    for seed, zone in (("0", "UTC"), ("4711", "Asia/Tokyo")):
+        environment = {**os.environ, "PYTHONHASHSEED": seed, "TZ": zone}
+        made.add(
+            subprocess.run(
+                [sys.executable, "-c", code], env=environment, capture_output=True, check=True
+            ).stdout
+        )
+    assert len(made) == 1
+
+
+def test_no_clock_and_no_place(content: bytes) -> None:
+    core = files(content)["docProps/core.xml"].decode()
+    assert "2000-01-01T00:00:00Z" in core
+    for name, text in files(content).items():
+        assert str(build.PAPER).encode() not in text, name
+        assert b"/tmp" not in text, name
+
+
+HOSTILE = (
+    "=cmd|' /C calc'!A0",
+    "+1",
+    "-1+1",
+    "@SUM(1)",
+    '=HYPERLINK("http://x.test")',
+    '<b>"&amp;</b>',
+    "http://x.test",
+    "_x0041_",
+)
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_text_stays_text(report: Report, grid: Grid, text: str) -> None:
+    published = tuple(
+        replace(c, published=replace(c.published, reason=text, source=text)) for c in report.comparisons[:1]
+    )
+    changed = replace(report, title=text, comparisons=published)
+    content = xlsx.render(changed, grid)
+    book = openpyxl.load_workbook(io.BytesIO(content))
+    assert book["report"]["A1"].data_type == "s"
+    assert book["published"]["L6"].data_type == "s"
+    strings = files(content)["xl/sharedStrings.xml"].decode()
+    escaped = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    assert f">{escaped.replace('_x0041_', '_x005F_x0041_')}<" in strings
+    rels = [name for name in files(content) if name.endswith(".rels")]
+    assert not any(b"External" in files(content)[name] for name in rels)
+
+
+def test_a_very_long_text_is_cut(report: Report, grid: Grid) -> None:
+    long = replace(report, title="x" * 40_000)
+    title = openpyxl.load_workbook(io.BytesIO(xlsx.render(long, grid)))["report"]["A1"].value
+    assert len(title) == LONGEST
+    assert title.endswith("…")
+
+
+# --- how it looks ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("values", "digits", "form"),
+    [
+        ([1.258, 1.371], 4, "0.000"),
+        ([41.845, 55.61], 4, "0.00"),
+        ([1525.4, 3619.0], 4, "0"),
+        ([9.6e8, 2.1e9], 4, "0.000E+00"),
+        ([3.2e-6], 3, "0.00E+00"),
+        ([8.366], 4, "0.000"),
+        ([0.5, "#NOROOT!", None], 3, "0.000"),
+        (["#INPUT!"], 4, "General"),
+        ([0.0], 4, "General"),
+        ([0.8, *[30.0] * 9], 4, "0.00"),
+    ],
+)
+def test_number_formats_show_the_digits_that_are_known(values: list[Any], digits: int, form: str) -> None:
+    assert number_format(values, digits) == form
+
+
+def test_an_input_shows_all_that_is_typed() -> None:
+    assert open_format(1) == "0.0########"
+    assert open_format(3) == "0.000######"
+    assert open_format(-2) == open_format(0) == "General"
+
+
+@pytest.mark.parametrize(
+    ("latex", "pieces"),
+    [
+        ("x_{p%s}", [("", "x"), ("_", "p")]),
+        (r"\alpha_{\mathrm{lin}}", [("", "α"), ("_", "lin")]),
+        (r"\bar{X}", [("", "X̄")]),
+        ("C'_{(7)%s}", [("", "C′"), ("_", "(7)")]),
+        ("m_1", [("", "m"), ("_", "1")]),
+        (r"x_{\mathrm{ref}%s}", [("", "x"), ("_", "ref")]),
+        (r"\chi^2", [("", "χ"), ("^", "2")]),
+        ("", []),
+    ],
+)
+def test_symbols_are_letters_with_subscripts(latex: str, pieces: list[tuple[str, str]]) -> None:
+    assert fragments(latex) == pieces
+
+
+def test_rows_are_as_high_as_their_text() -> None:
+    assert height([("short", 20)]) == 15
+    assert height([("a word or two more than fit", 10)]) == 45
+    assert height([("one\ntwo", 20)]) == 30
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(1e-7, "0.0000001"), (1e4, "10000"), (0.5, "0.5"), (1e22, "1" + "0" * 22)]
+)
+def test_numbers_in_checks_have_no_power_of_ten(value: float, text: str) -> None:
+    assert number_text(value) == text
+
+
+def test_a_report_without_anything_to_draw_or_to_compare(report: Report) -> None:
+    units: Mapping[str, str] = {name: shown.unit for name, shown in report.shown.items()}
+    plain = excel_grid.grid(report.sheet, report.values, units)
+    content = xlsx.render(replace(report, comparisons=()), plain)
+    names = openpyxl.load_workbook(io.BytesIO(content)).sheetnames
+    assert names == ["report", "tests", "pairs", "points", "steps", "equations"]
