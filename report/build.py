@@ -22,6 +22,7 @@ from .unit_text import parse_unit
 from .workbooks import SHIPPED
 
 if TYPE_CHECKING:
+    from .grid import Drawn
     from .result import Report, Shown
     from .sheet import Column, Sheet
     from .workbook import Workbook
@@ -41,8 +42,8 @@ __all__ = [
 PAPER = Path(__file__).resolve().parent.parent / "data" / "soft_steel"
 """The shipped campaign."""
 
-FORMATS = ("html", "latex", "json", "pdf")
-DEFAULT_FORMATS = ("html", "latex", "json")
+FORMATS = ("html", "latex", "xlsx", "json", "pdf")
+DEFAULT_FORMATS = ("html", "latex", "xlsx", "json")
 
 Step = Callable[[str], None]
 """Told what is begun, for whoever watches."""
@@ -252,7 +253,7 @@ def versions() -> dict[str, str]:
     """What computed: this program, its libraries and the interpreter's minor version."""
     from importlib.metadata import version
 
-    libraries = ("numpy", "sympy", "mpmath", "jinja2", "matplotlib", "latex2mathml")
+    libraries = ("numpy", "sympy", "mpmath", "jinja2", "matplotlib", "latex2mathml", "xlsxwriter")
     from .. import __version__
 
     python = f"{sys.version_info.major}.{sys.version_info.minor}"
@@ -308,10 +309,13 @@ def build(
     """
     with _staged(out) as stage:
         report = _evaluated(folder, step)
+        drawn = report.workbook.drawn(report.sheet) if report.workbook.drawn is not None else None
+        if "xlsx" in formats:
+            _refuse_too_many_rows(report)
         drawing = Background(lambda: _pictures(report, formats))
         try:
             report = _proved(report, step)
-            _write(report, stage, formats, drawing, step)
+            _write(report, drawn, stage, formats, drawing, step)
         finally:
             drawing.cancel()
         names = sorted(p.relative_to(stage) for p in stage.rglob("*") if p.is_file())
@@ -334,7 +338,12 @@ def _pictures(report: Report, formats: Collection[str]) -> dict[str, bytes]:
 
 
 def _write(
-    report: Report, stage: Path, formats: Collection[str], drawing: Background[dict[str, bytes]], step: Step
+    report: Report,
+    drawn: Drawn | None,
+    stage: Path,
+    formats: Collection[str],
+    drawing: Background[dict[str, bytes]],
+    step: Step,
 ) -> None:
     from .views import json
 
@@ -345,20 +354,26 @@ def _write(
 
         step("writing report.tex")
         _put(stage / "report.tex", latex.render(report, [figure.name for figure in report.workbook.figures]))
+    if "xlsx" in formats:
+        step("writing report.xlsx")
+        _put(stage / "report.xlsx", _workbook(report, drawn))
     step("drawing the figures")
-    drawn = drawing.result()
-    for name, content in drawn.items():
+    pictures = drawing.result()
+    for name, content in pictures.items():
         _put(stage / "figures" / name, content)
     if "html" in formats:
+        from .engines import javascript
         from .views import html
 
         step("writing report.html")
+        sheet = report.sheet if drawn is None else drawn.with_curves(report.sheet)
+        program = javascript.program(sheet, drawn.given if drawn is not None else {})
         svg = {
             name.removesuffix(".svg"): content.decode()
-            for name, content in drawn.items()
+            for name, content in pictures.items()
             if name.endswith(".svg")
         }
-        _put(stage / "report.html", html.render(report, svg))
+        _put(stage / "report.html", html.render(report, svg, program))
     if "pdf" in formats:
         step("running latexmk")
         latex.compile(stage)
@@ -366,6 +381,33 @@ def _write(
         p.relative_to(stage).as_posix(): p.read_bytes() for p in sorted(stage.rglob("*")) if p.is_file()
     }
     _put(stage / "manifest.json", json.manifest(report.inputs.files, outputs, report.versions))
+
+
+def _refuse_too_many_rows(report: Report) -> None:
+    """Before anything long is begun."""
+    from .engines.excel_grid import MOST_ROWS, TooManyRows, check_rows
+
+    try:
+        check_rows(report.values)
+    except TooManyRows as error:
+        known = f"at most {MOST_ROWS} rows in a worksheet; fewer points_per_pair make fewer rows"
+        raise UsageError(diagnose("LS606", reason=error, known=known)) from error
+
+
+def _workbook(report: Report, drawn: Drawn | None) -> bytes:
+    """The sheet as a workbook with live formulas."""
+    from .engines import excel_grid
+    from .engines.excel import NotPrintable
+    from .views import xlsx
+
+    units = {name: how.unit for name, how in report.shown.items()}
+    try:
+        grid = excel_grid.grid(report.sheet, report.values, units, report.workbook.headline, drawn)
+    except NotPrintable as error:
+        raise UsageError(
+            diagnose("LS606", reason=error, known="functions that every spreadsheet has")
+        ) from error
+    return xlsx.render(report, grid)
 
 
 def _put(path: Path, content: str | bytes) -> None:

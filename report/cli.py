@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 if TYPE_CHECKING:
     from ..derivations.proof import Proof
     from .result import Comparison, Report
+    from .sheet import Column
 
 __all__ = ["main"]
 
@@ -35,7 +36,8 @@ examples:
   loopsheet new my-campaign            a folder to start your own from
   loopsheet build my-campaign --to html,pdf
   loopsheet prove "(11)"               how equation (11) follows, step by step
-  loopsheet show "alpha[1-2]"          one number, and what it is computed from
+  loopsheet show alpha                 all cells of a column, with all digits
+  loopsheet why "alpha[1-2]"           one number: its equation, its proof, what it rests on
 """
 
 
@@ -65,8 +67,8 @@ def _parser() -> argparse.ArgumentParser:
     build.add_argument(
         "--to",
         metavar="FORMATS",
-        default="html,latex,json",
-        help="html, latex, json, pdf (default: html,latex,json)",
+        default="html,latex,xlsx,json",
+        help="html, latex, xlsx, json, pdf (default: html,latex,xlsx,json)",
     )
     check = verb(
         "check", _check, "check the proofs, the engines against each other, and the published values"
@@ -79,6 +81,9 @@ def _parser() -> argparse.ArgumentParser:
     show = verb("show", _show, "show a cell: its value, its equation, what it is computed from")
     show.add_argument("cell", metavar="CELL", help="alpha, alpha[1-2], x_m[3] or alpha_mean")
     _folder(show)
+    why = verb("why", _why, "tell where one number comes from and what is computed from it")
+    why.add_argument("cell", metavar="CELL", help="alpha[1-2], x_m[3] or alpha_mean")
+    _folder(why)
     new = verb("new", _new, "make a folder to start a campaign from")
     new.add_argument("folder", metavar="FOLDER", type=Path)
     new.add_argument(
@@ -173,7 +178,7 @@ def _build(options: argparse.Namespace) -> int:
     names = {path.name: path for path in files}
     first = next(
         names[n]
-        for n in ("report.html", "report.pdf", "report.tex", "values.json", "manifest.json")
+        for n in ("report.html", "report.pdf", "report.tex", "report.xlsx", "values.json", "manifest.json")
         if n in names
     )
     print(f"{len(files)} files in {options.out}; look at {first}")
@@ -319,22 +324,10 @@ def _print_proof(proof: Proof, steps: bool) -> None:
 def _show(options: argparse.Namespace) -> int:
     from ..derivations.text import text_of_equation
     from . import build
-    from .errors import UsageError, diagnose, listing, suggest
 
     report = build.compute(options.folder or build.PAPER, prove=False)
-    name, _, index = options.cell.rstrip("]").partition("[")
-    if name not in report.sheet:
-        names = [column.name for column in report.sheet.columns]
-        known, hint = listing(names, most=60), suggest(name, names)
-        raise UsageError(diagnose("LS604", kind="cell", text=name, known=known, suggestion=hint))
-    column = report.sheet[name]
-    labels = report.values.labels(column)
-    if index:
-        wanted = [label for label in labels if "-".join(map(str, label)) == index]
-        if not wanted:
-            known = listing(["-".join(map(str, label)) for label in labels])
-            raise UsageError(diagnose("LS604", kind=f"row of {name}", text=index, known=known, suggestion=""))
-        labels = wanted
+    column, labels = _find(report, options.cell)
+    name = column.name
     print(f"{name}  {column.meaning}  [{report.shown[name].unit}]  {column.source}")
     if column.equation is not None:
         print(f"  {text_of_equation(column.equation)}")
@@ -346,6 +339,44 @@ def _show(options: argparse.Namespace) -> int:
             scale = report.shown[name].scale
             print(f"  {cell.address:16} {cell.reason if cell.value is None else repr(cell.value / scale)}")
     return OK
+
+
+def _why(options: argparse.Namespace) -> int:
+    from . import build
+    from .errors import UsageError, diagnose, listing
+    from .views.why import why
+
+    progress = _Progress(sys.stderr)
+    try:
+        report = build.compute(options.folder or build.PAPER, progress)
+    finally:
+        progress.done()
+    column, labels = _find(report, options.cell)
+    if len(labels) != 1:
+        known = listing(report.values.cell(column.name, label).address for label in labels)
+        raise UsageError(diagnose("LS604", kind="single cell", text=options.cell, known=known, suggestion=""))
+    print(why(report, column.name, labels[0]))
+    return OK
+
+
+def _find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
+    """The column of an address such as ``alpha[1-2]``, and the rows that it names: all without an index."""
+    from .errors import UsageError, diagnose, listing, suggest
+
+    name, _, index = address.rstrip("]").partition("[")
+    if name not in report.sheet:
+        names = [column.name for column in report.sheet.columns]
+        known, hint = listing(names, most=60), suggest(name, names)
+        raise UsageError(diagnose("LS604", kind="cell", text=name, known=known, suggestion=hint))
+    column = report.sheet[name]
+    labels = report.values.labels(column)
+    if not index:
+        return column, labels
+    wanted = [label for label in labels if "-".join(map(str, label)) == index]
+    if not wanted:
+        known = listing(["-".join(map(str, label)) for label in labels])
+        raise UsageError(diagnose("LS604", kind=f"row of {name}", text=index, known=known, suggestion=""))
+    return column, wanted
 
 
 def _line(report: Report, name: str) -> str:

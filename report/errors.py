@@ -280,6 +280,12 @@ CATALOGUE: dict[str, Entry] = {
     ),
     "LS604": Entry("unknown word", "unknown {kind} '{text}'", "{known}", "{suggestion}"),
     "LS605": Entry("program missing", "{kind} needs {text}, which is not installed", hint="install {known}"),
+    "LS606": Entry(
+        "no workbook",
+        "report.xlsx cannot be made: {reason}",
+        "{known}",
+        "--to html,latex,json makes the report without it",
+    ),
 }
 
 

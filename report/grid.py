@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 
-from .sheet import Axis, Column
+from .sheet import Axis, Column, Sheet
 
 __all__ = [
     "FIRST_ROW",
@@ -222,6 +222,11 @@ class Drawn:
     columns: tuple[Column, ...]
     charts: tuple[Chart, ...]
     given: Mapping[str, int]
+
+    def with_curves(self, sheet: Sheet) -> Sheet:
+        """The sheet with the curves: without what only copies its columns for a chart."""
+        known = set(sheet.axes)
+        return Sheet((*sheet.columns, *(c for c in self.columns if c.axis not in known)))
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from .quantity import Bounds
 
 if TYPE_CHECKING:
     from ..derivations.equation import Ledger
+    from .grid import Drawn
     from .result import Curve
     from .sheet import Sheet
     from .values import Values
@@ -116,6 +117,8 @@ class Workbook:
         What a reader is shown.
     curves : callable or None
         Takes the sheet and its values; returns what the figures draw.
+    drawn : callable or None
+        Takes the sheet; returns the columns and charts that a view which recalculates draws itself.
     prose : str
         Name of the narrative template under templates/prose.
     """
@@ -140,3 +143,4 @@ class Workbook:
     example_parameters: Mapping[str, str] = field(default_factory=dict)
     """The parameters that go with it, as printed, by name."""
     curves: Callable[[Sheet, Values], tuple[Curve, ...]] | None = None
+    drawn: Callable[[Sheet], Drawn] | None = None

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from loopsheet.report import build
-from loopsheet.report.errors import InputError, OutputError
+from loopsheet.report.errors import InputError, OutputError, UsageError
 
 
 def copy_paper(folder: Path) -> Path:
@@ -34,9 +34,32 @@ def hashes(folder: Path) -> dict[str, str]:
 def test_default_outputs(tmp_path: Path) -> None:
     _, files = build.build(build.PAPER, tmp_path / "out")
     names = {p.relative_to(tmp_path / "out").as_posix() for p in files}
-    assert {"report.html", "report.tex", "values.json", "manifest.json"} <= names
+    assert {"report.html", "report.tex", "report.xlsx", "values.json", "manifest.json"} <= names
     assert {n for n in names if n.startswith("figures/")} >= {"figures/loops.svg", "figures/loops.pdf"}
     assert all(p.stat().st_size for p in files)
+
+
+def test_the_page_gets_the_program_of_sheet_and_curves(tmp_path: Path) -> None:
+    build.build(build.PAPER, tmp_path, ["html"])
+    page = (tmp_path / "report.html").read_text()
+    assert "evaluateSheet" in page
+    assert "unloading_F" in page
+    assert len(page.encode()) <= 300_000
+
+
+def test_too_many_rows_for_a_worksheet_are_refused_before_anything_is_written(tmp_path: Path) -> None:
+    folder = copy_paper(tmp_path / "in")
+    toml = folder / "report.toml"
+    toml.write_text(toml.read_text().replace("[measurements]", 'points_per_pair = "10000"\n[measurements]'))
+    table = folder / "measurements.csv"
+    more = "".join(f"{n},{n}.1,0.{500 - 10 * n},{9 * n}.3\n" for n in (6, 7))
+    table.write_text(table.read_text() + more)
+    with pytest.raises(UsageError) as refused:
+        build.build(folder, tmp_path / "out")
+    (finding,) = refused.value.diagnostics
+    assert finding.code == "LS606"
+    assert "points has 210000 rows" in finding.message
+    assert not (tmp_path / "out").exists()
 
 
 def test_same_bytes_everywhere(tmp_path: Path) -> None:

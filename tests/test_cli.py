@@ -43,13 +43,13 @@ def test_help_answers_without_loading_anything_heavy() -> None:
     code += "print(sorted(heavy & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
-    for verb in ("build", "check", "prove", "show", "new"):
+    for verb in ("build", "check", "prove", "show", "why", "new"):
         assert f"  {verb} " in done.stdout
     assert "exit codes" in done.stdout
 
 
 def test_every_verb_has_help(capsys: pytest.CaptureFixture[str]) -> None:
-    for verb in ("build", "check", "prove", "show", "new"):
+    for verb in ("build", "check", "prove", "show", "why", "new"):
         with pytest.raises(SystemExit) as stopped:
             main([verb, "--help"])
         assert stopped.value.code == 0
@@ -61,6 +61,41 @@ def test_no_command_is_a_usage_error(capsys: pytest.CaptureFixture[str]) -> None
         main([])
     assert stopped.value.code == 2
     assert "COMMAND" in capsys.readouterr().err
+
+
+def test_why_tells_what_the_formula_bar_tells(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["why", "alpha[1-2]"]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("alpha[1-2] = 1.25799697873")
+    assert "(11) proved, solved as (L5) proved" in out
+    assert "0.512^2" in out  # the equation with the values put in
+    for cell in ("v[2] = 2.940 m/s", "x_p[2] = 29.7 um", "alpha_mean = 1.303", "F (50 rows)"):
+        assert cell in out
+
+
+@pytest.mark.parametrize(
+    ("cell", "said"),
+    [
+        ("x_p[2]", ["given     as 29.7 um, measurements.csv:3:", "used by   alpha[1-2] = 1.258"]),
+        ("m_red", ["(L", "ball_mass = 8.366 g"]),
+        ("alpha_mean", ["over 10 pairs", "alpha[4-5] = 1.371"]),
+        ("alpha_log", ["over 500 points", "ln_x (500 rows)"]),
+        ("x[1-2-3]", ["in SI     x[1-2-3] =", "points_per_pair = 50"]),
+    ],
+)
+def test_why_of_every_kind_of_cell(cell: str, said: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["why", cell]) == 0
+    out = capsys.readouterr().out
+    assert [words for words in said if words not in out] == [], out
+
+
+def test_why_names_the_first_culprit(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = campaign / "measurements.csv"
+    table.write_text(table.read_text().replace("0.512", "0.9"))
+    assert main(["why", "x_m1[1-2]", str(campaign)]) == 0
+    out = capsys.readouterr().out
+    assert "x_m1[1-2] = #NOROOT!" in out
+    assert "#NOROOT! x_m1[1-2] needs alpha[1-2]: (11) has no root here" in out
 
 
 def test_show_tells_value_equation_and_precedents(capsys: pytest.CaptureFixture[str]) -> None:
@@ -77,6 +112,7 @@ def test_show_tells_value_equation_and_precedents(capsys: pytest.CaptureFixture[
     [
         (["show", "alhpa"], "did you mean 'alpha'?"),
         (["show", "alpha[1-9]"], "unknown row of alpha '1-9'"),
+        (["why", "alpha"], "unknown single cell 'alpha'"),
         (["prove", "(99)"], "unknown equation '(99)'"),
         (["build", "--to", "htlm"], "did you mean 'html'?"),
         (["build", "no-such-folder"], "no-such-folder"),

@@ -236,6 +236,9 @@ CASES: dict[str, Callable[[], None]] = {
         suggestion=suggest("htm", ["html", "latex", "xlsx", "json"]),
     ),
     "LS605": raises(OutputError, "LS605", kind="pdf", text="latexmk", known="TeX Live, or leave out pdf"),
+    "LS606": raises(
+        UsageError, "LS606", reason="points has 995000 rows", known="at most 200000 rows in a worksheet"
+    ),
 }
 
 

@@ -20,7 +20,7 @@ from .excel_roots import Unrolled, unroll
 from .excel_values import auxiliary_values
 from .numpy import evaluate
 
-__all__ = ["MOST_ROWS", "TooManyRows", "grid"]
+__all__ = ["MOST_ROWS", "TooManyRows", "check_rows", "grid"]
 
 MOST_ROWS = 200_000
 """Rows of a worksheet; a million would fit, but no reader opens it gladly."""
@@ -65,11 +65,22 @@ def grid(
     NotPrintable
         A formula has no spreadsheet formula.
     """
-    for name, layout in values.layouts.items():
-        if layout.size > MOST_ROWS:
-            raise TooManyRows(f"{name} has {layout.size} rows; a worksheet gets at most {MOST_ROWS}")
+    check_rows(values)
     whole, all_values = _with_drawn(sheet, values, drawn)
     return _Assembly(sheet, whole, all_values, units, first, drawn).grid()
+
+
+def check_rows(values: Values) -> None:
+    """Refuse what no worksheet should hold.
+
+    Raises
+    ------
+    TooManyRows
+        An axis has more than :data:`MOST_ROWS` rows.
+    """
+    for name, layout in values.layouts.items():
+        if layout.size > MOST_ROWS:
+            raise TooManyRows(f"{name} has {layout.size} rows")
 
 
 def _with_drawn(sheet: Sheet, values: Values, drawn: Drawn | None) -> tuple[Sheet, Values]:

@@ -18,6 +18,7 @@ from ..workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook
 from .soft_impact_root import alpha_rule, two_tests
 
 if TYPE_CHECKING:
+    from ..grid import Drawn
     from ..result import Curve
     from ..values import Values
 
@@ -261,6 +262,13 @@ def _curves(sheet: Sheet, values: Values) -> tuple[Curve, ...]:
     return curves(sheet, values)
 
 
+def _drawn(sheet: Sheet) -> Drawn:
+    """The figures' curves as columns; loaded only for the views that recalculate."""
+    from .soft_impact_charts import drawn
+
+    return drawn(sheet)
+
+
 WORKBOOK = Workbook(
     name="soft_impact",
     title="Exponent of the force law from drop tests on a soft target",
@@ -365,4 +373,5 @@ WORKBOOK = Workbook(
     ),
     example_parameters={"ball_mass": "8.366 g", "beta": "1.5"},
     curves=_curves,
+    drawn=_drawn,
 )

@@ -91,7 +91,7 @@ function computeSheet(program, columns, state) {
   const tests = usedTests(state), labels = {}, data = {}, refused = {};
   for (const axis of program.axes) if (axis.kind === "given") labels[axis.name] = tests.map((test) => test.label);
   for (const { name, axis, kind } of program.columns) {
-    if (kind !== "given") continue;
+    if (kind !== "given" || program.constants[name]) continue;
     const texts = axis === null ? [state.parameters[name]] : tests.map((test) => test.cells[name]);
     data[name] = texts.map((text, row) => {
       const read = readInput(columns[name].given, text);

@@ -5,7 +5,8 @@ class Trace {
     this.columns = columns;
     this.sheet = sheet;
     this.declared = Object.fromEntries(program.columns.map((column) => [column.name, column]));
-    this.order = program.columns;
+    // What is only drawn is no cell of the report.
+    this.order = program.columns.filter(({ name }) => columns[name]);
     this.found = {};
   }
 

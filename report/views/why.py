@@ -1,0 +1,181 @@
+"""What a cell rests on, for a terminal: the same that the formula bar of the page tells."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from sympy import Expr, Sum, Symbol
+
+from ...derivations.text import text, text_of_equation
+from ..result import Report
+from ..sheet import Column, Formula, Given, Root, name_of
+from ..trace import Group, dependents_of, precedents_of
+from ..values import Cell
+
+__all__ = ["why"]
+
+MOST = 12
+"""Cells of one column that are told one by one."""
+_INDENT = "  "
+_WIDTH = 10
+
+
+def why(report: Report, name: str, label: tuple[int, ...] = ()) -> str:
+    """Tell where a cell comes from and what is computed from it.
+
+    Parameters
+    ----------
+    report : Report
+        With its proofs.
+    name : str
+        Of a column.
+    label : tuple of int
+        ``(1, 2)`` for a pair, empty for a scalar.
+
+    Raises
+    ------
+    KeyError
+        There is no such cell.
+    """
+    column = report.sheet[name]
+    row = report.values.row(column, label)
+    cell = report.values.cell(name, label)
+    given = _is_given(column) and cell.value is not None
+    value = _brief(report, cell) if given else _full(report, cell)
+    lines = [f"{cell.address} = {value}  {column.meaning}".rstrip()]
+    if cell.reason:
+        lines.append(_line("reason", cell.reason))
+    if _is_given(column):
+        lines.append(_line("given", _where(report, name, row)))
+    else:
+        lines += list(_sources(report, column))
+        lines += list(_equation(report, column, row, cell))
+    before = _told(report, precedents_of(report.values, column, row))
+    after = _told(report, dependents_of(report.values, column, row))
+    lines += [_line("rests on", before)] if before else []
+    lines += [_line("used by", after)] if after else []
+    return "\n".join(lines)
+
+
+def _line(what: str, text: str) -> str:
+    return f"{_INDENT}{what:{_WIDTH}}{text}"
+
+
+# --- numbers ---------------------------------------------------------------------------------------------
+
+
+def _printed(report: Report, name: str, row: int) -> str:
+    """A given number as it was printed; nothing for a computed one."""
+    inputs = report.inputs
+    if name in inputs.measured:
+        return inputs.measured[name][row].text
+    return inputs.parameters[name].text if name in inputs.parameters else ""
+
+
+def _unit(report: Report, name: str) -> str:
+    unit = report.shown[name].unit
+    return "" if unit == "1" else f" {unit}"
+
+
+def _full(report: Report, cell: Cell) -> str:
+    """All digits, in the unit of the report."""
+    if cell.value is None:
+        return cell.status.code
+    return f"{cell.value / report.shown[cell.name].scale!r}{_unit(report, cell.name)}"
+
+
+def _brief(report: Report, cell: Cell) -> str:
+    if cell.value is None:
+        return cell.status.code
+    column = report.sheet[cell.name]
+    how = report.shown[cell.name]
+    printed = _printed(report, cell.name, report.values.row(column, cell.label))
+    printed = printed or f"{cell.value / how.scale:#.{how.digits}g}".rstrip(".")
+    return f"{printed}{_unit(report, cell.name)}"
+
+
+def _is_given(column: Column) -> bool:
+    return isinstance(column.rule, Given)
+
+
+def _where(report: Report, name: str, row: int) -> str:
+    """Where a given number was printed, and as what."""
+    inputs = report.inputs
+    if name in inputs.measured:
+        number = inputs.measured[name][row]
+    elif name in inputs.parameters:
+        number = inputs.parameters[name]
+    else:
+        return "by the workbook"
+    unit = "" if number.unit == "1" else f" {number.unit}"
+    return f"as {number.text}{unit}, {number.where or 'by default'} ({number.mode})"
+
+
+# --- equations -------------------------------------------------------------------------------------------
+
+
+def _sources(report: Report, column: Column) -> Iterator[str]:
+    """The numbers of its equations with what the proofs say of them."""
+    equations = [column.equation] if column.equation is not None else []
+    if isinstance(column.rule, Root) and column.rule.form.label != column.rule.equation.label:
+        equations.append(column.rule.form)
+    statuses = {proof.equation.label: proof.status.value for proof in report.proofs}
+    told = [f"{e.label} {statuses[e.label]}" for e in equations if e.label in statuses]
+    yield _line("from", ", solved as ".join(told) or column.source)
+
+
+def _equation(report: Report, column: Column, row: int, cell: Cell) -> Iterator[str]:
+    equation = column.equation
+    assert equation is not None
+    yield _line("", text_of_equation(equation.origin))
+    summed = report.sheet.summed_axes(column)
+    if any(member.has(Sum) for member in equation.members):
+        counted = report.values.counted.get(column.name, {})
+        sizes = (f"{counted.get(a.name, report.values.layouts[a.name].size)} {a.name}" for a in summed)
+        yield _line("", f"over {', '.join(sizes)}")
+    elif cell.value is not None:
+        # A formula's own side is the cell itself; a root's equation shows the cell inside of it.
+        numbers = [text(member) for member in equation.at(_numbers(report, column, row)).members]
+        if isinstance(column.rule, Formula):
+            numbers = [cell.address, numbers[-1], _number(cell.value)]
+        yield _line("in SI", " = ".join(numbers))
+
+
+def _number(value: float) -> str:
+    return f"{value:.6g}"
+
+
+def _stand_in(value: float) -> Symbol:
+    """A number as it is to be read, in a place where a cell stood."""
+    number = _number(value)
+    return Symbol(f"({number})" if value < 0 or "e" in number else number, positive=True)
+
+
+def _numbers(report: Report, column: Column, row: int) -> dict[Expr, Symbol]:
+    """What to write in the place of every cell, size and running number of a column's equation."""
+    values, axis = report.values, column.axis
+    own = column.symbol if axis is None else column[axis.index]
+    put: dict[Expr, Symbol] = {own: _stand_in(values.value[column.name][row])}
+    for reference, group in zip(report.sheet.named(column), precedents_of(values, column, row), strict=True):
+        put[reference.cell] = _stand_in(values.value[name_of(reference.cell)][group.rows[0]])
+    for size, its_axis in report.sheet.sizes.items():
+        put[size] = _stand_in(values.layouts[its_axis.name].size)
+    if axis is not None:
+        for ordinal, numbers in values.layouts[axis.name].ordinals.items():
+            put[ordinal] = _stand_in(numbers[row])
+    return put
+
+
+# --- cells -----------------------------------------------------------------------------------------------
+
+
+def _told(report: Report, groups: Iterable[Group]) -> str:
+    """Cells with their values; those of a long sum as a number of rows."""
+    told: dict[str, None] = {}
+    for group in groups:
+        if len(group.rows) > MOST:
+            told[f"{group.column.name} ({len(group.rows)} rows)"] = None
+        else:
+            for cell in group.cells(report.values):
+                told[f"{cell.address} = {_brief(report, cell)}"] = None
+    return ", ".join(told)
