@@ -35,6 +35,12 @@ class Background(Generic[T]):
             self._process.start()
         sender.close()
 
+    def __enter__(self) -> Background[T]:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.cancel()
+
     def result(self) -> T:
         """Wait for the result; what the work raised is raised here."""
         if self._process is None:

@@ -312,14 +312,12 @@ def build(
         drawn = report.workbook.drawn(report.sheet) if report.workbook.drawn is not None else None
         if "xlsx" in formats:
             _refuse_too_many_rows(report)
-        drawing = Background(lambda: _pictures(report, formats))
-        try:
-            report = _proved(report, step)
-            _write(report, drawn, stage, formats, drawing, step)
-        finally:
-            drawing.cancel()
+        with Background(lambda: _pictures(report, formats)) as drawing:
+            proved = _proved(report, step)
+            with Background(lambda: _workbook(proved, drawn) if "xlsx" in formats else b"") as workbook:
+                _write(proved, drawn, stage, formats, drawing, workbook, step)
         names = sorted(p.relative_to(stage) for p in stage.rglob("*") if p.is_file())
-    return report, [out / name for name in names]
+    return proved, [out / name for name in names]
 
 
 def _pictures(report: Report, formats: Collection[str]) -> dict[str, bytes]:
@@ -343,6 +341,7 @@ def _write(
     stage: Path,
     formats: Collection[str],
     drawing: Background[dict[str, bytes]],
+    workbook: Background[bytes],
     step: Step,
 ) -> None:
     from .views import json
@@ -354,9 +353,6 @@ def _write(
 
         step("writing report.tex")
         _put(stage / "report.tex", latex.render(report, [figure.name for figure in report.workbook.figures]))
-    if "xlsx" in formats:
-        step("writing report.xlsx")
-        _put(stage / "report.xlsx", _workbook(report, drawn))
     step("drawing the figures")
     pictures = drawing.result()
     for name, content in pictures.items():
@@ -374,6 +370,9 @@ def _write(
             if name.endswith(".svg")
         }
         _put(stage / "report.html", html.render(report, svg, program))
+    if "xlsx" in formats:
+        step("writing report.xlsx")
+        _put(stage / "report.xlsx", workbook.result())
     if "pdf" in formats:
         step("running latexmk")
         latex.compile(stage)
