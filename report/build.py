@@ -22,7 +22,7 @@ from .unit_text import parse_unit
 from .workbooks import SHIPPED
 
 if TYPE_CHECKING:
-    from .grid import Drawn
+    from .grid import Drawn, Grid
     from .result import Report, Shown
     from .sheet import Column, Sheet
     from .workbook import Workbook
@@ -35,6 +35,7 @@ __all__ = [
     "compute",
     "find_workbook",
     "given_data",
+    "judged",
     "prepare",
     "versions",
 ]
@@ -224,6 +225,35 @@ def _proved(report: Report, step: Step) -> Report:
     return replace(report, proofs=proofs, errata=errata)
 
 
+def judged(report: Report, every: bool = True, step: Step = _silent) -> Report:
+    """The report with its engines compared with 50 digits.
+
+    Parameters
+    ----------
+    report : Report
+    every : bool
+        Whether to run what else is installed too: JavaScript, and the workbook in LibreOffice.
+    step : callable
+        Told what is begun.
+    """
+    from .analysis import engines
+
+    step("judging the engines at 50 digits")
+    prepared = Prepared(report.inputs, report.sheet)
+    if not every:
+        agreement = engines.compare(report.values, prepared.labels, prepared.exact_data)
+        return replace(report, engines=(agreement,))
+    from .analysis.readers import Book
+
+    try:
+        grid, content = _workbook(report)
+        book = Book(content, grid)
+    except UsageError:
+        book = None  # there is no such workbook, and nothing to judge
+    agreements = engines.compare_all(report.values, prepared.labels, prepared.data, prepared.exact_data, book)
+    return replace(report, engines=agreements)
+
+
 def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
     """In which unit a column is shown, and with how many digits.
 
@@ -283,7 +313,11 @@ def parse_formats(words: str) -> tuple[str, ...]:
 
 
 def build(
-    folder: Path, out: Path, formats: Collection[str] = DEFAULT_FORMATS, step: Step = _silent
+    folder: Path,
+    out: Path,
+    formats: Collection[str] = DEFAULT_FORMATS,
+    step: Step = _silent,
+    every_engine: bool = False,
 ) -> tuple[Report, list[Path]]:
     """Compute a report and write it.
 
@@ -300,6 +334,8 @@ def build(
         Of :data:`FORMATS`.
     step : callable
         Told what is begun.
+    every_engine : bool
+        Whether JavaScript and the workbook are judged too, by the programs that are installed here.
 
     Returns
     -------
@@ -309,15 +345,19 @@ def build(
     """
     with _staged(out) as stage:
         report = _evaluated(folder, step)
-        drawn = report.workbook.drawn(report.sheet) if report.workbook.drawn is not None else None
         if "xlsx" in formats:
             _refuse_too_many_rows(report)
-        with Background(lambda: _pictures(report, formats)) as drawing:
-            proved = _proved(report, step)
-            with Background(lambda: _workbook(proved, drawn) if "xlsx" in formats else b"") as workbook:
-                _write(proved, drawn, stage, formats, drawing, workbook, step)
+        with (
+            Background(lambda: _pictures(report, formats)) as drawing,
+            Background(lambda: judged(report, every_engine).engines) as judging,
+        ):
+            report = _proved(report, step)
+            step("judging the engines at 50 digits")
+            report = replace(report, engines=judging.result())
+            with Background(lambda: _workbook(report)[1] if "xlsx" in formats else b"") as workbook:
+                _write(report, stage, formats, drawing, workbook, step)
         names = sorted(p.relative_to(stage) for p in stage.rglob("*") if p.is_file())
-    return proved, [out / name for name in names]
+    return report, [out / name for name in names]
 
 
 def _pictures(report: Report, formats: Collection[str]) -> dict[str, bytes]:
@@ -337,7 +377,6 @@ def _pictures(report: Report, formats: Collection[str]) -> dict[str, bytes]:
 
 def _write(
     report: Report,
-    drawn: Drawn | None,
     stage: Path,
     formats: Collection[str],
     drawing: Background[dict[str, bytes]],
@@ -362,6 +401,7 @@ def _write(
         from .views import html
 
         step("writing report.html")
+        drawn = _drawn(report)
         sheet = report.sheet if drawn is None else drawn.with_curves(report.sheet)
         program = javascript.program(sheet, drawn.given if drawn is not None else {})
         svg = {
@@ -393,20 +433,26 @@ def _refuse_too_many_rows(report: Report) -> None:
         raise UsageError(diagnose("LS606", reason=error, known=known)) from error
 
 
-def _workbook(report: Report, drawn: Drawn | None) -> bytes:
-    """The sheet as a workbook with live formulas."""
+def _drawn(report: Report) -> Drawn | None:
+    """What the page and the workbook draw themselves."""
+    return None if report.workbook.drawn is None else report.workbook.drawn(report.sheet)
+
+
+def _workbook(report: Report) -> tuple[Grid, bytes]:
+    """The sheet as a workbook with live formulas: where its cells are, and the file."""
+    _refuse_too_many_rows(report)
     from .engines import excel_grid
     from .engines.excel import NotPrintable
     from .views import xlsx
 
     units = {name: how.unit for name, how in report.shown.items()}
     try:
-        grid = excel_grid.grid(report.sheet, report.values, units, report.workbook.headline, drawn)
+        grid = excel_grid.grid(report.sheet, report.values, units, report.workbook.headline, _drawn(report))
     except NotPrintable as error:
         raise UsageError(
             diagnose("LS606", reason=error, known="functions that every spreadsheet has")
         ) from error
-    return xlsx.render(report, grid)
+    return grid, xlsx.render(report, grid)
 
 
 def _put(path: Path, content: str | bytes) -> None:

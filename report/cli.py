@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
     from ..derivations.proof import Proof
-    from .result import Comparison, Report
+    from .result import Report
     from .sheet import Column
 
 __all__ = ["main"]
@@ -69,6 +69,11 @@ def _parser() -> argparse.ArgumentParser:
         metavar="FORMATS",
         default="html,latex,xlsx,json",
         help="html, latex, xlsx, json, pdf (default: html,latex,xlsx,json)",
+    )
+    build.add_argument(
+        "--engines",
+        action="store_true",
+        help="judge JavaScript and the workbook too, and put that into the report",
     )
     check = verb(
         "check", _check, "check the proofs, the engines against each other, and the published values"
@@ -165,14 +170,16 @@ def _build(options: argparse.Namespace) -> int:
     formats = build.parse_formats(options.to)
     progress = _Progress(sys.stderr)
     try:
-        report, files = build.build(options.folder or build.PAPER, options.out, formats, progress)
+        report, files = build.build(
+            options.folder or build.PAPER, options.out, formats, progress, options.engines
+        )
     finally:
         progress.done()
     for name in report.workbook.headline:
         print(_line(report, name))
     for cell in report.values.errors():
         print(cell.reason)
-    findings = _findings(report.proofs, report.comparisons)
+    findings = _findings(report)
     for finding in findings:
         print(f"finding: {finding}")
     names = {path.name: path for path in files}
@@ -187,18 +194,14 @@ def _build(options: argparse.Namespace) -> int:
 
 def _check(options: argparse.Namespace) -> int:
     from . import build
-    from .analysis import engines
 
     progress = _Progress(sys.stderr)
-    folder = options.folder or build.PAPER
     try:
-        report = build.compute(folder, progress)
-        progress("comparing engines at 50 digits")
-        prepared = build.prepare(folder)
-        agreement = engines.compare(report.values, prepared.labels, prepared.exact_data)
+        report = build.compute(options.folder or build.PAPER, progress)
+        report = build.judged(report, step=progress)
     finally:
         progress.done()
-    findings = _findings(report.proofs, report.comparisons) + list(agreement.findings)
+    findings = _findings(report)
     if options.format == "json":
         import json
 
@@ -216,7 +219,12 @@ def _check(options: argparse.Namespace) -> int:
         ]
         print(
             json.dumps(
-                {"findings": findings, "proofs": proofs, "engines": agreement.summary, "published": compared},
+                {
+                    "findings": findings,
+                    "proofs": proofs,
+                    "engines": [agreement.data for agreement in report.engines],
+                    "published": compared,
+                },
                 indent=1,
             )
         )
@@ -225,7 +233,8 @@ def _check(options: argparse.Namespace) -> int:
     print(f"proofs     {passed} of {len(report.proofs)} equations stand")
     for erratum in report.errata:
         print(f"  erratum  {erratum.sentence}")
-    print(f"engines    {agreement.summary}")
+    for agreement in report.engines:
+        print(f"engine     {agreement.line}")
     same = sum(c.verdict == "same" for c in report.comparisons)
     known = sum(c.verdict == "differs" and c.as_expected for c in report.comparisons)
     print(f"published  {len(report.comparisons)} values: {same} print the same, {known} differ as is known")
@@ -240,14 +249,14 @@ def _check(options: argparse.Namespace) -> int:
     return FINDINGS if findings else OK
 
 
-def _findings(proofs: Sequence[Proof], comparisons: Sequence[Comparison]) -> list[str]:
+def _findings(report: Report) -> list[str]:
     """What is not as expected."""
-    found = []
-    for proof in proofs:
+    found = [finding for agreement in report.engines for finding in agreement.findings]
+    for proof in report.proofs:
         if not proof.status.passes:
             why = next((s.sentence for s in proof.steps if not s.status.passes), proof.remark)
             found.append(f"{proof.equation.label} is {proof.status.value}: {why}")
-    for c in comparisons:
+    for c in report.comparisons:
         if not c.as_expected:
             where = f"{c.published.where}: {c.published.source} {c.cell.address}"
             if c.verdict == "same":

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ..derivations.equation import Erratum, Ledger
 from ..derivations.proof import Proof
+from .agreement import Agreement
 from .inputs import Inputs, PublishedValue
 from .sheet import Sheet
 from .values import Cell, Values
@@ -110,6 +111,8 @@ class Report:
         In the order of published.csv.
     curves : tuple of Curve
         For the figures.
+    engines : tuple of Agreement
+        What the judge of the engines found, NumPy first; empty if it was not asked.
     versions : mapping of str to str
         What computed it: this program and its libraries.
     """
@@ -125,6 +128,7 @@ class Report:
     errata: tuple[Erratum, ...]
     comparisons: tuple[Comparison, ...]
     curves: tuple[Curve, ...] = ()
+    engines: tuple[Agreement, ...] = ()
     versions: Mapping[str, str] = field(default_factory=dict)
 
     def proof(self, label: str) -> Proof:

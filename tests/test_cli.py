@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from loopsheet.report.build import PAPER
 from loopsheet.report.cli import main
+from loopsheet.report.engines import javascript
 
 
 def run(*arguments: str, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -152,11 +154,38 @@ def test_prove_one_equation_shows_its_steps(capsys: pytest.CaptureFixture[str]) 
     assert out.count("residual 0") == 4
 
 
-def test_check_of_the_paper_is_as_expected() -> None:
+def test_check_of_the_paper_is_as_expected(require: Callable[..., str]) -> None:
+    require("node")
+    require("soffice", "libreoffice")
     done = run("check")
     assert done.returncode == 0, done.stdout + done.stderr
     assert "everything as expected" in done.stdout
-    assert "numpy agrees with 50 digits" in done.stdout
+    engines = [line.split()[1:5] for line in done.stdout.splitlines() if line.startswith("engine ")]
+    assert engines == [[name, "2116", "cells,", "at"] for name in ("numpy", "JavaScript", "xlsx")]
+
+
+def test_a_wrong_engine_is_a_finding(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One operator in the generated JavaScript: check says which engine is off, and where."""
+    program = javascript.program
+    monkeypatch.setattr(
+        javascript, "program", lambda *a, **k: program(*a, **k).replace("*Math.pow($x", "/Math.pow($x", 1)
+    )
+    assert main(["check"]) == 1
+    out = capsys.readouterr().out
+    assert "finding: " in out
+    assert "JavaScript" in out.partition("finding: ")[2]
+    assert "numpy is off" not in out
+
+
+def test_the_report_says_how_its_engines_agree(tmp_path: Path) -> None:
+    assert main(["build", "--engines", "--out", str(tmp_path), "--to", "html,latex"]) == 0
+    page = (tmp_path / "report.html").read_text()
+    section = page.partition('id="engines"')[2].partition("</section>")[0]
+    assert "2116 cells" in section
+    assert all(name in section for name in ("numpy", "JavaScript", "xlsx"))
+    assert "How the engines agree" in (tmp_path / "report.tex").read_text()
 
 
 def test_a_known_difference_that_vanishes_is_a_finding(campaign: Path) -> None:

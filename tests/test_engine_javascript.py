@@ -10,13 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sympy import Max, Piecewise, Symbol, exp, log, pi, sqrt
+from sympy import Max, Piecewise, Sum, Symbol, exp, log, pi, sqrt
 
+from loopsheet.derivations.equation import Equation
 from loopsheet.report import build
 from loopsheet.report.engines import javascript
 from loopsheet.report.engines.javascript import RUNTIME, Printer
 from loopsheet.report.engines.numpy import Program, evaluate
-from loopsheet.report.sheet import Sheet
+from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Sheet
 from loopsheet.report.values import Status
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
@@ -33,7 +34,7 @@ for (const [tests, data] of cases) {
     const value = Array.from(found.value[name], (v) => (Number.isNaN(v) ? null : v));
     out[name] = [value, Array.from(found.status[name])];
   }
-  console.log(JSON.stringify({ out, roots: found.roots, counted: found.counted }));
+  console.log(JSON.stringify({ out, roots: found.roots, counted: found.counted, broken: found.broken }));
 }
 """
 
@@ -176,34 +177,77 @@ def test_the_paper_in_node(node: Callable[[list[Any]], list[Any]], tmp_path: Pat
         assert np.abs(mine - theirs).max() <= 1e-13 * np.abs(mine).max(), name
 
 
-def test_a_character_changed_in_the_program_is_noticed(
-    require: Callable[..., str], sheet: Sheet, tmp_path: Path
-) -> None:
-    """Flip one operator at a time in the kernel of the root: every change shows in the result."""
-    program = require("node")
-    text = javascript.program(sheet)
-    start = text.index('"name": "x_m2"')
-    place = text.index("return [", start)
-    kernel = text[place : text.index("];", place)]
-    spots = [n for n, c in enumerate(kernel) if c in "+-*/" and kernel[n : n + 2] not in ("//", "/*")]
-    assert len(spots) >= 4
-    (case,) = campaigns(1, 3)
-    results = []
-    for spot in [None, *spots]:
-        changed = kernel
-        if spot is not None:
-            flipped = {"+": "-", "-": "+", "*": "/", "/": "*"}[kernel[spot]]
-            changed = kernel[:spot] + flipped + kernel[spot + 1 :]
-        script = tmp_path / "mutant.js"
-        whole = text[:place] + changed + text[place + len(kernel) :]
-        source = RUNTIME.read_text(encoding="utf-8")
-        script.write_text(f"{source}\nconst program = {whole};\n{CASES}", encoding="utf-8")
-        done = subprocess.run(
-            [program, str(script)],
-            input=json.dumps([None, [case]]),
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        results.append(done.stdout if done.returncode == 0 else "failed")
-    assert all(other != results[0] for other in results[1:])
+# --- a sheet of no model: labels, nested sums, conditions -------------------------------------------------
+
+
+def whole(name: str) -> Symbol:
+    return Symbol(name, integer=True, positive=True)
+
+
+k, i, j, p, q, s, n, n_pairs, n_points = (
+    whole(name) for name in ("k", "i", "j", "p", "q", "s", "n", "n_pairs", "n_points")
+)
+ROWS = Axis("rows", k, n)
+PAIRS = PairAxis("pairs", p, n_pairs, of=ROWS, first=i, second=j)
+POINTS = RepeatAxis("points", q, n_points, of=PAIRS, step=s, count="count")
+a, count, gap = Column("a", ROWS, Given()), Column("count", None, Given()), Column("gap", PAIRS, Given())
+
+
+def formula(name: str, expression: Any, axis: Axis | None = None, **more: Any) -> Column:
+    equation = Equation("(1)", (Symbol(name), expression), "")
+    return Column(name, axis, Formula(equation), positive=False, **more)
+
+
+TOY = Sheet(
+    (
+        a,
+        count,
+        formula("gap", a[j] - a[i], PAIRS, requires=((a[j] > a[i], "rises"), (a[j] < a[i] + 5, "not far"))),
+        formula("place", gap[p] * s, POINTS),
+        formula("twice", Sum(2 * a[k], (k, 1, n)) - Sum(a[k], (k, 1, n))),
+        formula("nested", Sum(a[k] * Sum(gap[p] ** 2, (p, 1, n_pairs)), (k, 1, n))),
+        formula("powers", Sum(Symbol("count", positive=True) ** (2 * a[k]), (k, 1, n))),
+        formula("none", Sum(gap[p], (p, 1, n_pairs)) + 1),
+    )
+)
+
+TOY_CASES = """
+const found = JSON.parse(require("fs").readFileSync(0, "utf8")).map(([rows, data]) => {
+  const { value, status, broken, counted, layouts } = evaluateSheet(program, { rows }, data), labels = {};
+  for (const name in layouts) labels[name] = layouts[name].labels;
+  for (const name in value) [value[name], status[name]] = [Array.from(value[name]), Array.from(status[name])];
+  return { value, status, broken, counted, labels };
+});
+console.log(JSON.stringify(found));
+"""
+
+
+def test_a_sheet_of_no_model_in_node(require: Callable[..., str], tmp_path: Path) -> None:
+    """Labels, broken conditions, sums in sums and sums over no rows are what NumPy makes of them."""
+    cases: list[tuple[list[int], dict[str, list[float]]]] = [
+        ([2, 3, 7], {"a": [1.0, 2.0, 4.0], "count": [2]}),
+        ([1, 2, 5, 6], {"a": [3.0, 1.0, 9.0, 4.0], "count": [3]}),
+        ([4], {"a": [1.5], "count": [2]}),
+    ]
+    script = tmp_path / "toy.js"
+    runtime = RUNTIME.read_text(encoding="utf-8")
+    script.write_text(f"{runtime}\nconst program = {javascript.program(TOY)};\n{TOY_CASES}", encoding="utf-8")
+    done = subprocess.run(
+        [require("node"), str(script)], input=json.dumps(cases), capture_output=True, text=True, check=True
+    )
+    broken = []
+    for (rows, data), theirs in zip(cases, json.loads(done.stdout), strict=True):
+        ours = evaluate(TOY, {"rows": rows}, data)
+        for column in TOY.order:
+            name = column.name
+            assert theirs["status"][name] == ours.status[name].tolist(), name
+            value = np.array(theirs["value"][name], dtype=float)
+            np.testing.assert_allclose(value, ours.value[name], rtol=1e-15, err_msg=name)
+        assert theirs["counted"] == ours.counted
+        codes = ours.broken["gap"]
+        rows_broken = {str(row): int(codes[row]) for row in np.flatnonzero(codes)}
+        assert theirs["broken"] == ({"gap": rows_broken} if rows_broken else {})
+        broken += list(rows_broken.values())
+        for axis, layout in ours.layouts.items():
+            assert theirs["labels"][axis] == layout.labels.tolist()
+    assert set(broken) == {1, 2}

@@ -41,8 +41,8 @@ SHEET = WORDS | {
     "report.units",
     "report.workbook",
 }
-VALUES = SHEET | {"report.layout", "report.values"}
-RESULT = VALUES | {"report.published", "report.result"}
+VALUES = SHEET | {"report.layout", "report.trace", "report.values"}
+RESULT = VALUES | {"report.agreement", "report.published", "report.result"}
 ALGEBRA = {"sympy", "mpmath"}
 
 MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
@@ -53,10 +53,14 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     **{part: (WORDS, {"pint"} if part == "report.unit_text" else set()) for part in WORDS},
     "report.sheet": (SHEET, ALGEBRA),
     "report.units": (SHEET, ALGEBRA | {"pint"}),
+    "report.conditions": (SHEET, ALGEBRA),
     "report.workbook": (RESULT, ALGEBRA),
     "report.workbooks": (RESULT | {"report.workbooks", "report.analysis"}, ALGEBRA),
     "report.engines": (VALUES | {"report.engines"}, RUNTIME - {"jinja2", "matplotlib"}),
-    "report.analysis": (RESULT | {"report.engines", "report.analysis"}, RUNTIME - {"jinja2", "matplotlib"}),
+    "report.analysis": (
+        RESULT | {"report.conditions", "report.engines", "report.analysis"},
+        RUNTIME - {"jinja2", "matplotlib"},
+    ),
     "report.views": (RESULT | {"report.views"}, RUNTIME - {"scipy", "mpmath"}),
 }
 # Parts that only these modules may import, whatever the table says.

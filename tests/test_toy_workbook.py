@@ -156,6 +156,8 @@ def test_it_is_written_as_a_page_a_paper_and_data(folder: Path, tmp_path: Path) 
     out = tmp_path / "out"
     build(folder, out, ("html", "latex", "json"))
     page, paper = ((out / name).read_text(encoding="utf-8") for name in ("report.html", "report.tex"))
+    # The script of every page can draw the figures of the shipped workbook; what is read must not show it.
+    page = re.sub(r"<script(?: [^>]*)?>.*?</script>", "", page, flags=re.DOTALL)
     for text in (page, paper):
         assert "Distances of a planet" in text or "Mars" in text
         assert "alpha" not in text.replace("\\alpha", "").lower().replace("alphabet", "")

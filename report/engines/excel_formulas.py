@@ -251,7 +251,9 @@ class _Writing:
     def value(self, expression: Expr, otherwise: str) -> str:
         """A formula's value; a quantity that is positive has none that is not."""
         text = self.number(expression)
-        if self.column.positive and not expression.is_positive:
+        # What is typed may be anything; what is computed was checked in its own cell.
+        typed = any(isinstance(c.rule, Given) for c in self.sheet.precedents(self.column))
+        if self.column.positive and (typed or not expression.is_positive):
             text = f"IF({text}>0,{text},{otherwise})"
         return self.where_it_holds(text, otherwise)
 

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import count
 from pathlib import Path
 from typing import Any
 
-from sympy import Basic, Indexed, Sum, Symbol, cse, numbered_symbols
+from sympy import Basic, Dummy, Indexed, Integer, Pow, Sum, Symbol, cse, diff, exp, log, numbered_symbols
 from sympy.printing.jscode import JavascriptCodePrinter
 
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet, name_of
@@ -20,6 +21,9 @@ from .roots import derivatives, householder, magnitude
 __all__ = ["RUNTIME", "program"]
 
 RUNTIME = Path(__file__).resolve().parents[2] / "templates" / "engines" / "runtime.js"
+
+_NULL = Dummy()
+"""JavaScript's null."""
 
 
 class Printer(JavascriptCodePrinter):
@@ -47,100 +51,179 @@ class Printer(JavascriptCodePrinter):
 
 
 class _Scope:
-    """Prints the expressions of one column: which array a cell is, which row of it, which sums it needs."""
+    """Prints the functions of one column and, before them, what they share.
+
+    That is the arrays of the cells by short names, with a dollar in them that no column's name has, the
+    totals, and logarithms of rows that the steps towards a root would take again and again.
+    """
 
     def __init__(self, sheet: Sheet, column: Column, unknown: Symbol | None) -> None:
         self.sheet, self.column, self.unknown = sheet, column, unknown
         self.printer = Printer()
+        self.names: dict[str, str] = {}
+        self.head: list[str] = []
+        self.fixed: dict[Sum, Symbol] = {}
+        self.logs: dict[Any, Symbol] = {}
+        self.numbers = count()
 
     def leaf(self, cell: Basic, axis: Axis | None, row: str) -> Symbol:
         """A cell as JavaScript: a symbol whose name is the text to print."""
         if cell == self.unknown:
             text = "u"
+        elif cell == _NULL:
+            text = "null"
         elif cell in self.sheet.sizes:
             text = f"n.{self.sheet.sizes[cell].name}"
         elif isinstance(cell, Indexed):
             assert axis is not None
-            index = cell.indices[0]
-            where = row if index == axis.index else f"a.{axis.name}.rows.{index}[{row}]"
-            text = f"c.{name_of(cell)}[{where}]"
+            name, index = name_of(cell), cell.indices[0]
+            if index != axis.index:
+                row = f"{self.named(f'{axis.name}${index}', f'a.{axis.name}.rows.{index}')}[{row}]"
+            text = f"{self.named(f'${name}', f'c.{name}')}[{row}]"
         elif axis is not None and cell in axis.ordinals:
-            text = f"a.{axis.name}.ordinals.{cell}[{row}]"
+            text = f"{self.named(f'{axis.name}${cell}', f'a.{axis.name}.ordinals.{cell}')}[{row}]"
         else:
-            text = f"c.{cell}[0]"
+            text = self.named(f"${cell}", f"c.{cell}[0]")
         return Symbol(text, **cell.assumptions0)
 
-    def plain(self, expression: Any, axis: Axis | None, row: str, sums: list[Sum]) -> Any:
-        """Replace cells by what is printed for them, and sums by elements of an array of totals."""
+    def named(self, name: str, text: str) -> str:
+        self.names[name] = text
+        return name
+
+    def plain(self, expression: Any, axis: Axis | None, row: str, sums: dict[Sum, Symbol]) -> Any:
+        """Replace cells by what is printed for them, and sums by the names of their totals."""
         if isinstance(expression, Sum):
-            if expression not in sums:
-                sums.append(expression)
-            return Symbol(f"T[{sums.index(expression)}]", real=True)
+            # Twice a sum is not another sum.
+            number, terms = expression.function.as_coeff_Mul()
+            total = Sum(terms, *expression.limits)
+            name = self.fixed.get(total) or sums.get(total) or Symbol(f"S{next(self.numbers)}", real=True)
+            if total not in self.fixed:
+                sums[total] = name
+            return number * name
         if isinstance(expression, (Indexed, Symbol)):
             return self.leaf(expression, axis, row)
         if not expression.args:
             return expression
         return expression.func(*(self.plain(argument, axis, row, sums) for argument in expression.args))
 
-    def body(self, expressions: Sequence[Any], indent: str, assign: str = "") -> list[str]:
-        """Statements that compute expressions, common parts once; the last returns or assigns them."""
+    def body(self, expressions: Sequence[Any], indent: str) -> tuple[list[str], list[str]]:
+        """Statements that compute what expressions have in common, and the texts of the expressions."""
         common, reduced = cse(list(expressions), symbols=numbered_symbols("t_"), order="none", list=True)
         lines = [f"{indent}const {name} = {self.printer.doprint(value)};" for name, value in common]
-        printed = [self.printer.doprint(value) for value in reduced]
-        if assign:
-            return lines + [f"{indent}{assign}[{n}] = {text};" for n, text in enumerate(printed)]
-        return [*lines, f"{indent}return [{', '.join(printed)}];"]
+        return lines, [self.printer.doprint(value) for value in reduced]
 
-    def function(self, expressions: Sequence[Any]) -> str:
-        """A function of the row (and the unknown) that returns the expressions' values as an array."""
-        sums: list[Sum] = []
+    def function(self, *expressions: Any, alone: bool = False) -> str:
+        """A function of the row (and the unknown): it returns the expressions' values, or the only one's."""
+        sums: dict[Sum, Symbol] = {}
         plain = [self.plain(e, self.column.axis, "r", sums) for e in expressions]
-        moving = any(self.unknown is not None and total.has(self.unknown) for total in sums)
-        totals = self.totals(sums, "        " if moving else "      ")
-        lines = ["(() => {", *([] if moving else totals), "      return (r, u) => {"]
-        lines += [*(totals if moving else []), *self.body(plain, "        "), "      };", "    })()"]
-        return "\n".join(lines)
+        lines, texts = self.body(plain, "      ")
+        lines = self.totals(sums) + lines
+        result = texts[0] if alone else f"[{', '.join(texts)}]"
+        if not lines:
+            return f"(r, u) => {result}"
+        return "\n".join(["(r, u) => {", *lines, f"      return {result};", "    }"])
 
-    def totals(self, sums: Sequence[Sum], indent: str) -> list[str]:
+    def moves(self, expression: Any) -> bool:
+        return self.unknown is not None and bool(expression.has(self.unknown))
+
+    def totals(self, sums: dict[Sum, Symbol]) -> list[str]:
+        """Statements for the sums that move with the unknown; all others are taken once, at the head."""
+        still = {total: name for total, name in sums.items() if not self.moves(total)}
+        self.fixed |= still
+        self.head += self.passes(still)
+        return self.passes({total: name for total, name in sums.items() if total not in still})
+
+    def passes(self, sums: dict[Sum, Symbol]) -> list[str]:
         """One pass over each axis for all its sums: they share most of their work."""
-        lines = [f"{indent}const T = [];"] if sums else []
+        lines: list[str] = []
         for axis in self.sheet.axes:
-            mine = [n for n, total in enumerate(sums) if total.limits[0][0] == axis.index]
+            mine = [total for total in sums if total.limits[0][0] == axis.index]
             if not mine:
                 continue
-            inner: list[Sum] = []
-            terms = [self.plain(sums[n].function, axis, "q", inner) for n in mine]
-            name = f"sum_{axis.name}"
+            inner: dict[Sum, Symbol] = {}
+            terms = [self.plain(total.function, axis, "q", inner) for total in mine]
+            lines += self.totals(inner)
+            powers, terms = self.powers(terms, axis)
+            common, texts = self.body(terms, " " * 10)
+            common = [
+                f"          const {name} = {self.printer.doprint(p)};" for p, name in powers.items()
+            ] + common
+            parts = [f"s_{n}" for n in range(len(mine))]
             lines += [
-                f"{indent}const {name} = total(a.{axis.name}.size, k.{axis.name}, {len(mine)}, (q, out) => {{"
+                f"      const [{', '.join(sums[total].name for total in mine)}] = "
+                f"total(k.{axis.name}, {len(mine)}, (q, end, kept) => {{",
+                f"        let {', '.join(f'{part} = 0' for part in parts)};",
+                "        for (; q < end; q++) if (kept[q]) {",
+                *common,
+                *(f"          {part} += {text};" for part, text in zip(parts, texts, strict=True)),
+                "        }",
+                f"        return [{', '.join(parts)}];",
+                "      });",
             ]
-            lines += [*self.body(terms, indent + "  ", assign="out"), f"{indent}}});"]
-            lines += [f"{indent}T[{n}] = {name}[{place}];" for place, n in enumerate(mine)]
         return lines
 
+    def powers(self, terms: Sequence[Any], axis: Axis) -> tuple[dict[Any, Symbol], list[Any]]:
+        """Powers in terms by names, the square of one as its square: one pow or exp serves both."""
+        found: dict[Any, Symbol] = {}
+        u = Symbol("u", **(self.unknown.assumptions0 if self.unknown is not None else {}))
 
-def _kernels(sheet: Sheet, column: Column) -> dict[str, str]:
-    """The functions of a column, by the names that the runtime calls them."""
+        def log_of(base: Any) -> Any:
+            if base not in self.logs:
+                self.logs[base] = Symbol(f"L{len(self.logs)}", real=True)
+                text = self.printer.doprint(log(base))
+                self.head.append(f"      const {self.logs[base]} = each(k.{axis.name}, (q) => {text});")
+            return Symbol(f"{self.logs[base]}[q]", real=True)
+
+        def power(base: Any, exponent: Any) -> Any:
+            number, rest = exponent.as_coeff_Mul()
+            if rest.is_Number or not base.is_positive or base.has(u):
+                return base**exponent
+            times = number if number.is_Integer and number > 0 else Integer(1)
+            once = exponent / times
+            value = exp(once * log_of(base)) if once.has(u) else base**once
+            return found.setdefault(value, Symbol(f"E{len(found)}", positive=True)) ** times
+
+        named = [term.replace(Pow, power) for term in terms]
+        if self.unknown is not None:
+            named = [
+                term.replace(lambda e: isinstance(e, log) and not e.has(u), lambda e: log_of(e.args[0]))
+                for term in named
+            ]
+        return found, named
+
+
+def _kernels(sheet: Sheet, column: Column) -> str:
+    """The functions of a column, by the names that the runtime calls them; nothing for a given one."""
     rule = column.rule
+    scope = _Scope(sheet, column, rule.unknown if isinstance(rule, Root) else None)
     found: dict[str, str] = {}
     if isinstance(rule, Formula):
-        found["value"] = _Scope(sheet, column, None).function([rule.expression])
+        found["value"] = scope.function(rule.expression, alone=True)
     elif isinstance(rule, Root):
-        scope, f, unknown = _Scope(sheet, column, rule.unknown), rule.expression, rule.unknown
-        low = rule.sign_low if rule.sign_low is not None else f.subs(unknown, rule.low)
-        high = rule.sign_high if rule.sign_high is not None else f.subs(unknown, rule.high)
-        names = [Symbol(f"f_{n}", real=True) for n in range(4)]
-        step = householder(*names).xreplace(dict(zip(names, derivatives(f, unknown), strict=True)))
-        found["ends"] = scope.function([rule.low, rule.high, rule.start, low, high, *rule.turning])
-        found["at"] = scope.function([f])
-        found["noise"] = scope.function([f, magnitude(f)])
-        found["step"] = scope.function([f, step])
-        found["value"] = scope.function([rule.value])
+        f, unknown = rule.expression, rule.unknown
+        # An end whose sign is not given is evaluated as any other point.
+        signs = [_NULL if sign is None else sign for sign in (rule.sign_low, rule.sign_high)]
+        ends = [rule.low, rule.high, rule.start, *signs, *rule.turning]
+        found["ends"] = scope.function(*ends)
+        found["at"] = scope.function(f, alone=True)
+        found["step"] = scope.function(f, _step(f, unknown), magnitude(f))
+        found["value"] = scope.function(rule.value, alone=True)
     if column.requires:
-        found["requires"] = _Scope(sheet, column, None).function(
-            [condition for condition, _ in column.requires]
-        )
-    return found
+        found["requires"] = scope.function(*(condition for condition, _ in column.requires))
+    if not found:
+        return ""
+    arrays = ", ".join(f"{name} = {text}" for name, text in sorted(scope.names.items()))
+    lines = [f"      const {arrays};"] if arrays else []
+    inner = ",\n".join(f"    {name}: {function}" for name, function in found.items())
+    return "\n".join(["(c, a, n, k) => {", *lines, *scope.head, f"    return {{\n{inner}\n    }};", "  }"])
+
+
+def _step(f: Any, unknown: Symbol) -> Any:
+    """What is subtracted from the unknown, as :func:`~loopsheet.report.engines.roots.step` chooses it."""
+    if f.has(Sum):
+        return f / diff(f, unknown)
+    names = [Symbol(f"f_{n}", real=True) for n in range(4)]
+    return householder(*names).xreplace(dict(zip(names, derivatives(f, unknown), strict=True)))
 
 
 def _references(sheet: Sheet, column: Column) -> Iterable[tuple[str, str | None, str | None]]:
@@ -188,8 +271,7 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
         text = json.dumps(entry)[:-1]
         kernels = _kernels(sheet, column)
         if kernels:
-            inner = ",\n".join(f"    {name}: {function}" for name, function in kernels.items())
-            text += f', "kernels": (c, a, n, k) => ({{\n{inner}\n  }})'
+            text += f', "kernels": {kernels}'
         columns.append(f"  {text}}}")
     axes = ", ".join(json.dumps(_axis(axis)) for axis in sheet.axes)
     fixed = json.dumps({name: [value] for name, value in (constants or {}).items()})

@@ -104,17 +104,19 @@ def picture(svg: str, alt: str) -> Markup:
 
 
 class Count(int):
-    """How many rows an axis has, marked where it stands so that it can follow."""
+    """How many rows an axis has, or a column sums, marked where it stands so that it can follow."""
 
-    def __new__(cls, number: int, axis: str) -> Count:
+    def __new__(cls, number: int, axis: str, column: str = "") -> Count:
         made = super().__new__(cls, number)
-        made.axis = axis
+        made.axis, made.column = axis, column
         return made
 
     axis: str
+    column: str
 
     def __html__(self) -> str:
-        return str(Markup('<span data-count="{}">{}</span>').format(self.axis, int(self)))
+        column = Markup(' data-counted="{}"').format(self.column) if self.column else Markup()
+        return str(Markup('<span data-count="{}"{}>{}</span>').format(self.axis, column, int(self)))
 
 
 class HtmlDocument(Document):
@@ -123,6 +125,10 @@ class HtmlDocument(Document):
     def count(self, axis: str) -> int:
         """How many rows an axis has."""
         return Count(super().count(axis), axis)
+
+    def counted(self, name: str, axis: str) -> int:
+        """Over how many rows of an axis a column sums."""
+        return Count(super().counted(name, axis), axis, name)
 
 
 def finalize(value: Any) -> Markup:

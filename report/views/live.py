@@ -133,6 +133,7 @@ def data(report: Report, document: Document) -> str:
                     ]
                     for pair in group.pairs
                 ],
+                "called": [pair.row for pair in group.pairs],
             }
             for group in document.groups
         ],

@@ -4,78 +4,80 @@
 
 const STATUS = { OK: 0, INPUT: 1, DOMAIN: 2, NOROOT: 3, TWOROOTS: 4 };
 const NOISE = 16 * Number.EPSILON; // the share of its terms below which rounding hides a form
+const BLOCK = 16; // rows that a sum adds as they come
 const CODES = ["ok", "#INPUT!", "#DOMAIN!", "#NOROOT!", "#TWOROOTS!"];
 
 // The rows of an index set, and for each index that formulas use the rows that it names.
 function layOut(axis, layouts, labels, data) {
-  const rows = {}, ordinals = {};
-  let names = [];
+  const rows = {}, ordinals = {}, parent = layouts[axis.of];
+  let size, label;
   if (axis.kind === "pairs") {
-    const parent = layouts[axis.of], first = [], second = [];
-    for (let i = 0; i < parent.size; i++) {
-      for (let j = i + 1; j < parent.size; j++) {
-        first.push(i);
-        second.push(j);
-        names.push([...parent.labels[i], ...parent.labels[j]]);
+    size = (parent.size * (parent.size - 1)) / 2;
+    const first = (rows[axis.first] = new Int32Array(size)), second = (rows[axis.second] = new Int32Array(size));
+    for (let i = 0, row = 0; i < parent.size; i++) {
+      for (let j = i + 1; j < parent.size; j++, row++) {
+        first[row] = i;
+        second[row] = j;
       }
     }
-    rows[axis.first] = first;
-    rows[axis.second] = second;
+    label = (row) => [...parent.labels[first[row]], ...parent.labels[second[row]]];
   } else if (axis.kind === "repeat") {
-    const parent = layouts[axis.of], count = data[axis.count][0], which = [], step = [];
-    for (let row = 0; row < parent.size; row++) {
-      for (let s = 1; s <= count; s++) {
-        which.push(row);
-        step.push(s);
-        names.push([...parent.labels[row], s]);
-      }
+    const count = data[axis.count][0] | 0; // a count that was refused is NaN: no rows
+    const step = (ordinals[axis.step] = new Float64Array((size = parent.size * count)));
+    for (let row = 0; row < size; row++) step[row] = (row % count) + 1;
+    for (const index of Object.keys(parent.rows)) {
+      const named = parent.rows[index], every = (rows[index] = new Int32Array(size));
+      for (let row = 0, of = 0; of < parent.size; of++) every.fill(named[of], row, (row += count));
     }
-    for (const index of Object.keys(parent.rows)) rows[index] = which.map((row) => parent.rows[index][row]);
-    ordinals[axis.step] = step;
+    label = (row) => [...parent.labels[Math.floor(row / count)], step[row]];
   } else {
-    names = labels[axis.name].map((label) => [label]);
+    size = labels[axis.name].length;
+    label = (row) => [labels[axis.name][row]];
   }
-  rows[axis.index] = names.map((_, row) => row);
-  return { size: names.length, rows, ordinals, labels: names };
+  const own = (rows[axis.index] = new Int32Array(size).map((_, row) => row));
+  let named; // What rows are called is asked for seldom, and of the largest set hardly ever.
+  return { size, rows, ordinals, get labels() { return (named ??= Array.from(own, label)); } };
 }
 
-// Sums of several terms over the rows that are kept, each compensated (Neumaier): no engine may lose digits
-// to the order of its additions.
-function total(size, keep, count, terms) {
-  const sum = new Float64Array(count), lost = new Float64Array(count), term = new Float64Array(count);
-  for (let row = 0; row < size; row++) {
-    if (keep && !keep[row]) continue;
-    terms(row, term);
+function each(kept, value) {
+  const out = new Float64Array(kept.length);
+  for (let row = 0; row < out.length; row++) out[row] = value(row);
+  return out;
+}
+
+// Sums of several terms over the rows that are kept. Of a few rows `terms` adds them as they come, then every
+// addition is compensated (Neumaier): no engine may lose digits to the order of its additions.
+function total(kept, count, terms) {
+  const sum = new Float64Array(count), lost = new Float64Array(count);
+  for (let row = 0; row < kept.length; row += BLOCK) {
+    const part = terms(row, Math.min(row + BLOCK, kept.length), kept);
     for (let n = 0; n < count; n++) {
-      const before = sum[n], after = before + term[n];
-      lost[n] += Math.abs(before) >= Math.abs(term[n]) ? before - after + term[n] : term[n] - after + before;
+      const term = part[n], before = sum[n], after = before + term;
+      lost[n] += Math.abs(before) >= Math.abs(term) ? before - after + term : term - after + before;
       sum[n] = after;
     }
   }
-  for (let n = 0; n < count; n++) {
-    if (Number.isFinite(lost[n])) sum[n] += lost[n];
-  }
-  return sum;
+  return sum.map((all, n) => (Number.isFinite(lost[n]) ? all + lost[n] : all));
 }
 
 // The only root of a form in its interval: counted first by the signs between turning points, then taken in
 // fixed steps inside the bracket.
 function solveRoot(root, row) {
   const [low, high, start, atLow, atHigh, ...turning] = root.ends(row);
-  const places = [low], signs = [Math.sign(atLow)];
+  const places = [low], signs = [Math.sign(atLow ?? root.at(row, low))];
   for (const point of turning) {
     if (point > places[places.length - 1] && point < high) {
       places.push(point);
-      signs.push(Math.sign(root.at(row, point)[0]));
+      signs.push(Math.sign(root.at(row, point)));
     }
   }
   places.push(high);
-  signs.push(Math.sign(atHigh));
+  signs.push(Math.sign(atHigh ?? root.at(row, high)));
   if (signs.some(Number.isNaN)) return null; // outside the domain
   const found = [];
   for (let n = 0; n + 1 < places.length; n++) {
     if (signs[n] * signs[n + 1] < 0) {
-      found.push(root.value(row, polish(root, row, places[n], places[n + 1], signs[n + 1], start))[0]);
+      found.push(root.value(row, polish(root, row, places[n], places[n + 1], signs[n + 1], start)));
     }
   }
   return found;
@@ -84,23 +86,21 @@ function solveRoot(root, row) {
 function polish(root, row, left, right, rising, start) {
   let here = start > left && start < right ? start : (left + right) / 2;
   for (let n = 0; n < root.steps; n++) {
-    const [f, step] = root.step(row, here);
-    if (f === 0) break;
+    const [f, step, terms] = root.step(row, here), there = here - step;
     if (f * rising > 0) right = here;
-    else left = here;
-    const there = here - step;
+    if (f * rising <= 0) left = here;
+    // Where rounding leaves nothing of the form, this step was the last; it may leave the bracket by an ulp.
+    if (Math.abs(f) <= NOISE * terms) return Number.isFinite(there) ? Math.min(Math.max(there, left), right) : here;
     here = there >= left && there <= right ? there : (left + right) / 2;
   }
-  // A row that the steps left anywhere but where rounding leaves nothing of the form is bisected.
-  const [f, terms] = root.noise(row, here);
-  return Math.abs(f) <= NOISE * terms ? here : bisect(root, row, left, right, rising);
+  return bisect(root, row, left, right, rising);
 }
 
 function bisect(root, row, left, right, rising) {
   for (;;) {
     const middle = left + (right - left) / 2;
     if (!(middle > left && middle < right)) return right;
-    const side = root.at(row, middle)[0] * rising;
+    const side = root.at(row, middle) * rising;
     if (Number.isNaN(side)) return NaN;
     if (side <= 0) left = middle;
     else right = middle;
@@ -111,77 +111,87 @@ function bisect(root, row, left, right, rising) {
 // SI as arrays (of one number for a scalar); NaN is a missing datum.
 function evaluateSheet(program, labels, inputs) {
   const data = { ...program.constants, ...inputs };
-  const layouts = {}, value = {}, status = {}, roots = {}, counted = {};
+  const sheet = { layouts: {}, value: {}, status: {}, roots: {}, counted: {}, broken: {} };
+  const { layouts, value, status } = sheet, faulty = {};
   for (const axis of program.axes) layouts[axis.name] = layOut(axis, layouts, labels, data);
-  for (const column of program.columns) {
-    const size = column.axis === null ? 1 : layouts[column.axis].size;
-    const out = new Float64Array(size).fill(NaN), codes = new Uint8Array(size);
-    value[column.name] = out;
-    status[column.name] = codes;
-    if (column.kind === "given") {
-      for (let row = 0; row < size; row++) {
-        const datum = data[column.name][row];
-        if (Number.isFinite(datum)) out[row] = datum;
-        else codes[row] = STATUS.INPUT;
-      }
+  for (const { name, kind, axis, refs, sums, ...column } of program.columns) {
+    const size = axis === null ? 1 : layouts[axis].size;
+    const out = (value[name] = new Float64Array(size)), codes = (status[name] = new Uint8Array(size));
+    const note = (list, row, what) => ((sheet[list][name] ??= {})[row] = what);
+    if (kind === "given") {
+      faulty[name] = fill(out, codes, (row) => data[name][row], false, STATUS.INPUT);
       continue;
     }
+    // Only what names a cell in error, or sums over no rows, can inherit an error.
+    const doubtful = refs.filter(([other, , over]) => faulty[other] || (over !== null && layouts[over].size === 0));
     const keep = {}, sizes = {};
-    for (const axis of program.axes) sizes[axis.name] = layouts[axis.name].size;
-    for (const name of column.sums) {
-      keep[name] = rowsKept(column, name, layouts, status);
-      sizes[name] = keep[name].reduce((sum, kept) => sum + kept, 0);
-      if (sizes[name] < layouts[name].size) (counted[column.name] ??= {})[name] = sizes[name];
+    for (const other in layouts) sizes[other] = layouts[other].size;
+    for (const summed of sums) {
+      keep[summed] = new Uint8Array(sizes[summed]).fill(1);
+      const lost = leaveOut(keep[summed], doubtful, summed, layouts, status);
+      if (lost) note("counted", summed, (sizes[summed] -= lost));
     }
-    const kernels = column.kernels(value, layouts, sizes, keep);
-    for (let row = 0; row < size; row++) {
-      codes[row] = inherited(column, row, layouts, status, keep);
-      if (codes[row] !== STATUS.OK) continue;
+    const kernels = column.kernels(value, layouts, sizes, keep), { requires } = kernels;
+    for (let row = 0; doubtful.length && row < size; row++) codes[row] = inherited(doubtful, axis, row, layouts, status, sizes);
+    for (let row = 0; requires && row < size; row++) {
       // What breaks a condition is outside the domain, whatever the rule would make of it.
-      if (kernels.requires && !kernels.requires(row).every(Boolean)) {
-        codes[row] = STATUS.DOMAIN;
-        continue;
-      }
-      let number;
-      if (column.kind === "root") {
-        const found = solveRoot({ ...kernels, steps: column.steps }, row);
-        if (found === null) codes[row] = STATUS.DOMAIN;
-        else if (found.length === 0) codes[row] = STATUS.NOROOT;
-        else if (found.length > 1) {
-          codes[row] = STATUS.TWOROOTS;
-          (roots[column.name] ??= {})[row] = found.sort((a, b) => a - b);
-        } else number = found[0];
-      } else {
-        number = kernels.value(row)[0];
-        if (column.positive && !(number > 0)) codes[row] = STATUS.DOMAIN;
-      }
-      if (codes[row] === STATUS.OK && !Number.isFinite(number)) codes[row] = STATUS.DOMAIN;
-      if (codes[row] === STATUS.OK) out[row] = number;
+      const failed = codes[row] ? 0 : requires(row).indexOf(false) + 1;
+      if (!failed) continue;
+      codes[row] = STATUS.DOMAIN;
+      note("broken", row, failed);
     }
+    const root = { ...kernels, steps: column.steps };
+    const only = (row) => {
+      const found = solveRoot(root, row);
+      if (found?.length === 0) codes[row] = STATUS.NOROOT;
+      if (found?.length > 1) {
+        codes[row] = STATUS.TWOROOTS;
+        note("roots", row, found.sort((a, b) => a - b));
+      }
+      return found?.length === 1 ? found[0] : NaN;
+    };
+    faulty[name] = fill(out, codes, kind === "root" ? only : kernels.value, column.positive, STATUS.DOMAIN);
   }
-  return { layouts, value, status, roots, counted };
+  return sheet;
 }
 
-// The rows of a summed index set whose cells all have values: one that has none must not take the sum with it.
-function rowsKept(column, axis, layouts, status) {
-  const keep = new Uint8Array(layouts[axis].size).fill(1);
-  for (const [name, index, scope] of column.refs) {
-    if (scope !== axis) continue;
-    const rows = index === null ? null : layouts[axis].rows[index];
-    for (let row = 0; row < keep.length; row++) {
-      if (status[name][rows === null ? 0 : rows[row]] !== STATUS.OK) keep[row] = 0;
+// Computes the rows that have no error yet; what is no number gets a code. Says whether there is any error.
+function fill(out, codes, compute, positive, code) {
+  let faulty = false;
+  for (let row = 0; row < out.length; row++) {
+    const number = codes[row] ? NaN : compute(row);
+    if (Number.isFinite(number) && (number > 0 || !positive)) out[row] = number;
+    else {
+      out[row] = NaN;
+      codes[row] ||= code;
+      faulty = true;
     }
   }
-  return keep;
+  return faulty;
+}
+
+// Leaves out of a sum the rows where a cell has no value: one that has none must not take the sum with it.
+function leaveOut(keep, doubtful, axis, layouts, status) {
+  let lost = 0;
+  for (const [name, index, over] of doubtful) {
+    if (over !== axis) continue;
+    const codes = status[name], rows = index === null ? null : layouts[axis].rows[index];
+    for (let row = 0; row < keep.length; row++) {
+      if (!keep[row] || codes[rows === null ? 0 : rows[row]] === STATUS.OK) continue;
+      keep[row] = 0;
+      lost++;
+    }
+  }
+  return lost;
 }
 
 // The first error among the precedents; a sum has one only if none of its rows has a value.
-function inherited(column, row, layouts, status, keep) {
-  for (const [name, index, scope] of column.refs) {
-    let code;
-    if (index === null) code = status[name][0];
-    else if (scope === column.axis) code = status[name][layouts[scope].rows[index][row]];
-    else code = keep[scope].includes(1) ? STATUS.OK : status[name][layouts[scope].rows[index][0]];
+function inherited(doubtful, axis, row, layouts, status, sizes) {
+  for (const [name, index, over] of doubtful) {
+    const own = over === null || over === axis, codes = status[name];
+    if (!own && sizes[over] > 0) continue;
+    const place = index === null ? 0 : layouts[over].rows[index][own ? row : 0];
+    const code = own || layouts[over].size > 0 ? codes[place] : STATUS.DOMAIN;
     if (code !== STATUS.OK) return code;
   }
   return STATUS.OK;

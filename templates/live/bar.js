@@ -34,16 +34,16 @@ function fillBar(look, name, row, index) {
   byId("bar-value").replaceChildren(...fullValue(look, name, row));
   if (!trace.isOk(name, row)) {
     const origin = trace.culprit(name, row), itself = origin.name === name && origin.row === row;
-    fill("bar-reason", itself ? "" : "needs ", ...(itself ? [] : [cellButton(look, origin.name, origin.row), ": "]), trace.why(origin.name, origin.row));
+    fillLine("bar-reason", itself ? "" : "needs ", ...(itself ? [] : [cellButton(look, origin.name, origin.row), ": "]), trace.why(origin.name, origin.row));
   }
-  if (column.given) fill("bar-source", `given, ${here.axis === null ? "in report.toml" : `in measurements.csv, test ${index}`}`);
-  else fill("bar-source", ...sourceLine(column), ...publishedMath(column, name));
-  if (column.put && trace.isOk(name, row)) fill("bar-put", ...putIn(look, name, row));
+  if (column.given) fillLine("bar-source", `given, ${here.axis === null ? "in report.toml" : `in measurements.csv, test ${index}`}`);
+  else fillLine("bar-source", ...sourceLine(column), ...publishedMath(column, name));
+  if (column.put && trace.isOk(name, row)) fillLine("bar-put", ...putIn(look, name, row));
   fillCells(look, "bar-precedents", "rests on", trace.precedents(name, row));
   fillCells(look, "bar-dependents", "used by", trace.dependents(name, row));
 }
 
-function fill(id, ...nodes) {
+function fillLine(id, ...nodes) {
   byId(id).replaceChildren(...nodes);
   byId(id).hidden = false;
 }
@@ -132,7 +132,7 @@ function fillCells(look, id, says, groups) {
     if (fresh.length <= MOST_BUTTONS) nodes.push(...fresh.map((row) => cellButton(look, name, row)));
     else nodes.push(make("span", { class: "many" }, make("code", {}, name), ` ${fresh.length} rows`));
   }
-  if (nodes.length) fill(id, make("span", { class: "says" }, says), ...nodes);
+  if (nodes.length) fillLine(id, make("span", { class: "says" }, says), ...nodes);
 }
 
 // Where each cell stands in the page.

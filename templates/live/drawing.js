@@ -106,9 +106,10 @@ class Picture {
 
   // What the marks are, above the picture: [mark, text], the mark an element around 0 0.
   key(entries) {
-    let x = 10;
+    let x = 10, y = 11;
     for (const { mark, text, plain } of entries) {
-      const group = draw("g", { transform: `translate(${x.toFixed(1)} 11)` }, mark);
+      if (x > 10 && x + 19 + textWidth(plain, 8.5) > WIDTH) [x, y] = [10, y + 11];
+      const group = draw("g", { transform: `translate(${x.toFixed(1)} ${y})` }, mark);
       group.append(draw("text", { x: 19, y: 3.1, "font-size": 8.5 }, ...text));
       this.svg.append(group);
       x += 19 + textWidth(plain, 8.5) + 16;

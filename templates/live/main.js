@@ -99,9 +99,10 @@ function show() {
   const begin = performance.now(), before = page.look, { now, issued } = page.history;
   const focus = document.activeElement?.closest?.("[data-cell], [data-use]");
   page.look = lookAt(now, page.issued);
-  const edited = !sameState(now, issued);
+  const edited = !sameState(now, issued), wasEdited = document.documentElement.hasAttribute("data-edited");
   document.documentElement.toggleAttribute("data-edited", edited);
-  if (edited) writePage(page.look, before);
+  // As issued, the page holds the numbers of another engine: none of them is left between ours.
+  if (edited) writePage(page.look, wasEdited ? before : null);
   else restore();
   writeToolbar(edited);
   writeBar(page.look);
@@ -127,7 +128,11 @@ function restore() {
   page.places = null;
   for (const [element, model] of page.kept) become(element, model);
   if (!page.hadMissing) byId("missing")?.remove();
+  page.loose = looseCells();
 }
+
+// The cells outside of the tables whose rows come and go; found again when elements were replaced.
+const looseCells = () => all("main [data-cell]").filter((cell) => !cell.closest("table:not(.list)"));
 
 function refocus(element) {
   const { cell, index, use } = element.dataset;
@@ -178,6 +183,7 @@ function begin() {
   writeBar(page.look);
   toggleBar(matchMedia("(min-width: 48rem)").matches);
   new ResizeObserver(makeRoom).observe(byId("live-dock"));
+  new ResizeObserver(letScroll).observe(byId("main"));
   document.documentElement.dataset.live = "ready";
 }
 
@@ -188,6 +194,13 @@ function makeRoom([entry]) {
   document.documentElement.style.scrollPaddingBottom = height;
 }
 
+// Equations and pictures that are wider than the page are scrolled with the keyboard, too.
+function letScroll() {
+  const boxes = all("main .eq .scroll, main .card");
+  const wide = boxes.map((box) => box.scrollWidth > box.clientWidth || box.scrollHeight > box.clientHeight);
+  boxes.forEach((box, n) => (wide[n] ? box.setAttribute("tabindex", "0") : box.removeAttribute("tabindex")));
+}
+
 function prepareInputs() {
   for (const input of all("main input[data-cell]")) {
     input.removeAttribute("readonly");
@@ -196,7 +209,7 @@ function prepareInputs() {
   const tables = all("main table:not(.list)").filter((table) => table.querySelector("tbody [data-cell]"));
   page.tables = tables.map((table) => new Table(table));
   page.tables.find(({ inputs }) => inputs.length)?.makeEditable();
-  page.loose = all("main [data-cell]").filter((cell) => !cell.closest("table:not(.list)"));
+  page.loose = looseCells();
   for (const cell of page.loose) {
     if (cell.tagName === "SPAN") furnished(cell, { tabindex: "0", role: "button", "aria-controls": "formula-bar" }, []);
   }

@@ -10,11 +10,11 @@ function compared(look, [cell, index, text, scale, differs]) {
   return { again, distance, verdict: same ? "same" : "differs", expected: same !== differs };
 }
 
-const distanceText = (distance) => signedText(decimals(distance, Math.abs(distance) >= 9.95 ? 0 : 1));
+const distanceText = (distance) => signedText(decimals(distance, 1));
 
 function writePublished(look) {
   const groups = LIVE.published.map((group) => ({ ...group, found: group.rows.map((row) => compared(look, row)) }));
-  for (const { id, rows, found } of groups) {
+  for (const { id, rows, called, found } of groups) {
     const body = byId(id)?.querySelector("tbody");
     if (!body) continue;
     found.forEach(({ again, distance, verdict, expected }, place) => {
@@ -27,7 +27,7 @@ function writePublished(look) {
       const same = now >= 0 && before >= 0 && isSameCell(look, cell, now, look.issued, before);
       cells[3].classList.toggle("changed", !same);
     });
-    writeGroup(groups.findIndex((group) => group.id === id), rows, found);
+    writeGroup(groups.findIndex((group) => group.id === id), rows, called, found);
   }
   writeTally(groups.flatMap((group) => group.found));
 }
@@ -52,19 +52,19 @@ function writeTally(found) {
 }
 
 // The line that sums up one table of the source: rewritten behind its title.
-function writeGroup(place, rows, found) {
+function writeGroup(place, rows, called, found) {
   const element = all("#published > ul > li")[place], start = `: of ${rows.length} value`;
   const node = element && Array.from(element.childNodes).find((one) => one.nodeType === Node.TEXT_NODE && one.data.includes(start));
   if (!node) return;
   while (node.nextSibling) node.nextSibling.remove();
   const same = found.filter((one) => one.verdict === "same").length;
-  const known = found.map((one, row) => ({ ...one, index: rows[row][1], text: rows[row][2] })).filter((one) => one.distance !== undefined);
+  const known = found.map((one, row) => ({ ...one, called: called[row], text: rows[row][2] })).filter((one) => one.distance !== undefined);
   const furthest = known.reduce((a, b) => (a && Math.abs(a.distance) >= Math.abs(b.distance) ? a : b), null);
-  const of = furthest?.index ? ` of ${furthest.index.replaceAll("-", "–")}` : "";
+  const of = furthest?.called ? ` of ${furthest.called}` : "";
   const off = furthest && same < found.length
     ? `; the furthest is off by ${distanceText(furthest.distance)} units, ${furthest.again} against the published ${furthest.text}${of}`
     : "";
-  node.data = `${node.data.slice(0, node.data.indexOf(start))}${start}${rows.length === 1 ? "" : "s"} ${comes(same)} out as printed${off}.`;
+  node.data = `${node.data.slice(0, node.data.indexOf(start))}${start}s ${comes(same)} out as printed${off}.`;
 }
 
 // What no script can rewrite says that it is about the report as issued.

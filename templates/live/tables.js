@@ -113,7 +113,10 @@ const INPUT_ATTRIBUTES = {
 
 // How many tests, pairs ... there are, where the text says so.
 function writeCounts(look) {
-  for (const element of all("[data-count]")) element.textContent = look.trace.sheet.layouts[element.dataset.count].size;
+  for (const element of all("[data-count]")) {
+    const { count, counted } = element.dataset;
+    element.textContent = look.trace.sheet.counted[counted]?.[count] || look.trace.sheet.layouts[count].size;
+  }
 }
 
 // Beside the result: over how many rows it was taken, where some have no value.
@@ -145,7 +148,7 @@ function writeMissing(look) {
       const index = look.trace.index(name, row), code = CODES[look.trace.sheet.status[name][row]];
       return make(
         "tr", { id: cellId("why", name, index) },
-        make("th", { scope: "row", class: "row" }, ...part(name, "symbol")),
+        make("th", { scope: "row", class: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
         make("td", { class: "row" }, index.replaceAll("-", "–")),
         make("td", { class: "words" }, make("code", {}, code)),
         make("td", { class: "words" }, look.trace.why(name, row)),

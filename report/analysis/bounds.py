@@ -1,0 +1,165 @@
+"""What rounding may do to every cell: all roundings of a sheet, each times what it does to the cell.
+
+To first order the error of a cell is at most eps times the sum, over all cells and sums s that it rests on,
+of |dc/ds| R_s, with the total derivative dc/ds along all ways from s to c: what cancels between two ways
+cancels here too. This bound over |c|, at least 1, is the condition of the cell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from sympy import Indexed
+
+from ..conditions import Conditions, Node, Slope, conditions
+from ..engines.numpy import evaluate
+from ..layout import Layout, precedents, rows_of
+from ..sheet import Sheet, name_of
+from ..values import Status, Values, rows_kept
+
+__all__ = ["bounds"]
+
+Array = NDArray[np.float64]
+Masks = Mapping[str, NDArray[np.bool_]]
+
+
+def bounds(
+    sheet: Sheet, layouts: Mapping[str, Layout], value: Mapping[str, Array], made: Conditions | None = None
+) -> dict[str, Array]:
+    """Bound the rounding error of every cell.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    layouts : mapping of axis name to Layout
+    value : mapping of column name to float array (rows,)
+        All columns in SI; NaN where a cell has no value.
+    made : Conditions, optional
+        What :func:`~loopsheet.report.conditions.conditions` makes of the sheet, if that was done before.
+
+    Returns
+    -------
+    mapping of column name to float array (rows,)
+        In SI and units of eps, at least the cell's own size; infinite where nothing is known, NaN where
+        the cell has no value.
+    """
+    made = made or conditions(sheet)
+    labels = {axis.name: layouts[axis.name].labels[:, 0].tolist() for axis in sheet.axes if not axis.parents}
+    status = {name: np.where(np.isnan(each), Status.INPUT, Status.OK) for name, each in value.items()}
+    kept = {
+        column.name: rows_kept(precedents(sheet, layouts, column), layouts, status)
+        for column in sheet.columns
+        if sheet.summed_axes(column)
+    }
+    data: dict[str, Any] = {column.name: value[column.name] for column in sheet.columns}
+    for name, (of, axis) in made.counts.items():
+        data[name] = np.count_nonzero(kept[of].get(axis.name, np.ones(layouts[axis.name].size, dtype=bool)))
+    return _Spread(sheet, evaluate(made.sheet, labels, data), made, kept).bounds()
+
+
+EXPANDED = 1 << 24
+"""Up to so many numbers, what scalars do to a column's rows is added up source by source; beyond, their
+bounds are added, which is never less."""
+
+
+class _Spread:
+    """The total derivatives of every node, in the sheet's order, by all roundings there are.
+
+    Those of a row are kept in two parts: `direct`, by ways that pass no scalar, has few entries a row;
+    `scalars` has the derivatives by the scalars, which rest on almost everything.
+    """
+
+    def __init__(self, sheet: Sheet, found: Values, made: Conditions, kept: Mapping[str, Masks]) -> None:
+        self.sheet, self.found, self.made, self.kept = sheet, found, made, kept
+        self.sizes = {node.name: self.size(node) for node in made.nodes}
+        ends = np.cumsum(list(self.sizes.values())).tolist()
+        self.start = {name: end - self.sizes[name] for name, end in zip(self.sizes, ends, strict=True)}
+        self.sources = ends[-1] if ends else 0
+        self.rounding = np.zeros(self.sources)
+        alone = [node.name for node in made.nodes if node.axis is None]
+        self.scalar = {name: n for n, name in enumerate(alone)}
+        self.whole = np.zeros((len(alone), self.sources))
+        self.direct: dict[str, Any] = {}
+        self.scalars: dict[str, Any] = {}
+
+    def size(self, node: Node) -> int:
+        return 1 if node.axis is None else self.found.layouts[node.axis.name].size
+
+    def bounds(self) -> dict[str, Array]:
+        for node in self.made.nodes:
+            self.spread(node)
+        of_scalars, found = self.weighed(self.whole), {}
+        for name in self.sheet.by_name:
+            own, total = np.abs(self.found.value[name]), self.total(name, of_scalars)
+            found[name] = np.where(np.isnan(own), np.nan, np.maximum(total, own))
+        return found
+
+    def total(self, name: str, of_scalars: Array) -> Array:
+        """All roundings times what they do to each row of a column."""
+        if name in self.scalar:
+            return of_scalars[[self.scalar[name]]]
+        direct, scalars = self.direct[name], self.scalars[name]
+        if scalars.nnz and self.sizes[name] * self.sources <= EXPANDED:
+            return self.weighed(direct.toarray() + scalars @ self.whole)
+        return self.weighed(direct) + _weighed(scalars, of_scalars)
+
+    def weighed(self, derivatives: Any) -> Array:
+        """The sizes of derivatives times all roundings."""
+        return _weighed(derivatives, self.rounding)
+
+    def spread(self, node: Node) -> None:
+        """The derivatives of one node: by its own rounding, and by what it names times its slopes."""
+        size, start = self.sizes[node.name], self.start[node.name]
+        rounding = self.found.value[node.rounding].copy()
+        alive = node.over is not None or ~np.isnan(self.found.value[node.name])
+        rows = np.arange(size)
+        direct = sparse.csr_array((np.ones(size), (rows, start + rows)), shape=(size, self.sources))
+        scalars = sparse.csr_array((size, len(self.scalar)))
+        for slope in node.slopes:
+            values, columns = self.found.value[slope.column], self.rows_named(slope, node)
+            by = slope.by if isinstance(slope.by, str) else name_of(slope.by)
+            positions = np.arange(values.size)
+            if node.over is not None:
+                values, positions = np.where(self.summed(node), values, 0.0), np.zeros_like(positions)
+            rounding[positions[np.isnan(values)]] = np.nan
+            entries = np.nan_to_num(values)
+            if by in self.scalar:
+                columns = np.full_like(columns, self.scalar[by])
+                scalars += sparse.csr_array((entries, (positions, columns)), shape=scalars.shape)
+            else:
+                step = sparse.csr_array((entries, (positions, columns)), shape=(size, self.sizes[by]))
+                direct += step @ self.direct[by]
+                scalars += step @ self.scalars[by]
+        # What has no value has no error; a value of which a slope is unknown may be wrong by anything.
+        rounding = np.where(np.isfinite(rounding), rounding, np.inf)
+        self.rounding[start : start + size] = np.where(alive, rounding, 0.0)
+        if node.name in self.scalar:
+            self.whole[self.scalar[node.name]] = (direct.toarray() + scalars @ self.whole)[0]
+        else:
+            self.direct[node.name], self.scalars[node.name] = direct, scalars
+
+    def rows_named(self, slope: Slope, node: Node) -> NDArray[np.intp]:
+        """The row of what a slope is by, for each row of the slope."""
+        number = self.found.value[slope.column].size
+        if not isinstance(slope.by, Indexed):
+            return np.zeros(number, dtype=np.intp)
+        rows = rows_of(slope.by, node.over or node.axis, self.found.layouts)
+        return np.arange(number) if rows is None else rows
+
+    def summed(self, node: Node) -> NDArray[np.bool_]:
+        """The rows that a sum runs over."""
+        assert node.over is not None
+        everything = np.ones(self.found.layouts[node.over.name].size, dtype=bool)
+        return self.kept[node.of].get(node.over.name, everything)
+
+
+def _weighed(derivatives: Any, errors: Array) -> Array:
+    """The sizes of derivatives times errors; an infinite error counts only where something rests on it."""
+    sizes, known = abs(derivatives), np.isfinite(errors)
+    with np.errstate(all="ignore"):
+        total: Array = sizes @ np.where(known, errors, 0.0)
+        return np.where((sizes @ (~known).astype(float) > 0) | ~np.isfinite(total), np.inf, total)

@@ -1,0 +1,78 @@
+"""One Chromium for all tests of the page; every test gets a page of its own that must not report an error."""
+
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, sync_playwright
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE))
+
+import driving  # noqa: E402 - it stands beside this file
+
+from loopsheet.report import build  # noqa: E402
+
+CACHE = Path.home() / ".cache" / "loopsheet" / "page"
+
+Open = Callable[..., driving.Live]
+
+
+@pytest.fixture(scope="session")
+def issued(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page of the paper, as `loopsheet build` writes it."""
+    out = tmp_path_factory.mktemp("issued")
+    build.build(build.PAPER, out, ("html",))
+    return out / "report.html"
+
+
+@pytest.fixture(scope="session")
+def browser(require: Callable[..., str]) -> Iterator[Browser]:
+    program = require("chromium", "chromium-browser", "google-chrome")
+    with sync_playwright() as playwright:
+        found = playwright.chromium.launch(executable_path=program, args=["--no-sandbox", "--disable-gpu"])
+        yield found
+        found.close()
+
+
+@pytest.fixture
+def open_page(browser: Browser, issued: Path) -> Iterator[Open]:
+    """Open a file, the page of the paper without one, in a browser that has no network."""
+    opened: list[driving.Live] = []
+
+    def open_it(path: Path | None = None, **options: Any) -> driving.Live:
+        context = browser.new_context(offline=True, **options)
+        live = driving.Live(context.new_page(), path or issued)
+        opened.append(live)
+        live.load()
+        return live
+
+    yield open_it
+    for live in opened:
+        live.page.context.close()
+    assert [error for live in opened for error in live.errors] == []
+
+
+@pytest.fixture
+def live(open_page: Open) -> driving.Live:
+    return open_page()
+
+
+@pytest.fixture(scope="session")
+def packages(require: Callable[..., str]) -> Path:
+    """The pinned packages of npm, installed once, outside of the checkout."""
+    npm, lock = require("npm"), (HERE / "package-lock.json").read_text(encoding="utf-8")
+    installed = CACHE / "package-lock.json"
+    if not installed.exists() or installed.read_text(encoding="utf-8") != lock:
+        CACHE.mkdir(parents=True, exist_ok=True)
+        shutil.copy(HERE / "package.json", CACHE)
+        (CACHE / "npm-shrinkwrap.json").write_text(lock, encoding="utf-8")
+        command = [npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--no-update-notifier"]
+        run = subprocess.run(command, cwd=CACHE, capture_output=True, text=True, timeout=300, check=False)
+        assert run.returncode == 0, run.stderr
+        installed.write_text(lock, encoding="utf-8")
+    return CACHE / "node_modules"

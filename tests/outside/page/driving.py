@@ -1,0 +1,222 @@
+"""The live page in a browser: what a user does to it, what it shows, and what it should show.
+
+What it should show comes from a build of a folder with the same inputs, never from the page.
+"""
+
+import csv
+import io
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from playwright.sync_api import Locator, Page
+
+from loopsheet.report import build
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.result import Report
+from loopsheet.report.values import CODES, Status, Values
+from loopsheet.report.views import html
+
+LARGEST = 1e-12
+"""Largest relative difference between a cell of the page and NumPy's."""
+
+Tests = Mapping[int, Mapping[str, str]]
+"""Printed measurements by test and column."""
+
+# --- what a page shows ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A cell of the page."""
+
+    name: str
+    index: str
+    value: str
+    status: str
+    text: str
+    layout: str
+    """How far it is padded, so that the decimal points stand below each other."""
+    changed: bool
+    added: bool
+    title: str
+
+
+_CELLS = """() => Array.from(document.querySelectorAll("main [data-cell][data-value]"), (cell) => {
+  const box = cell.tagName === "INPUT" ? cell.parentElement : cell;
+  return [cell.dataset.cell, cell.dataset.index, cell.dataset.value, cell.dataset.status,
+    cell.tagName === "INPUT" ? cell.value : cell.textContent,
+    Array.from(box.classList).filter((word) => /^(p[0-9]|nopoint|error)$/.test(word)).sort().join(" "),
+    cell.classList.contains("changed"), cell.classList.contains("added"), cell.title];
+})"""
+
+# What stands beside the cells and follows from them.
+_AROUND = """() => {
+  const text = (element) => element.textContent.replace(/\\s+/g, " ").trim();
+  const all = (selector) => Array.from(document.querySelectorAll(selector), text);
+  const missing = document.getElementById("missing");
+  return [...all("#published tbody tr"), ...(missing && !missing.hidden ? all("#missing tbody tr") : []),
+    ...all("#result > p"), ...all(".headline dd"), ...all("#published > ul > li")];
+}"""
+
+_STATE = """() => [document.getElementById("main").innerHTML,
+  ...Array.from(document.querySelectorAll("main input"), (input) => `${input.value} ${input.checked}`)]"""
+
+
+@dataclass
+class Live:
+    """A page in a browser, and everything that went wrong in it."""
+
+    page: Page
+    path: Path
+    errors: list[str] = field(default_factory=list)
+    requests: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.on("console", lambda said: said.type == "error" and self.errors.append(said.text))
+        self.page.on("request", lambda request: self.requests.append(request.url))
+
+    def load(self) -> None:
+        self.page.goto(self.path.as_uri())
+
+    # what it shows
+
+    def cells(self) -> list[Shown]:
+        return [Shown(*fields) for fields in self.page.evaluate(_CELLS)]
+
+    def cell(self, name: str, index: str = "") -> Shown:
+        return next(cell for cell in self.cells() if (cell.name, cell.index) == (name, index))
+
+    def around(self) -> list[str]:
+        found: list[str] = self.page.evaluate(_AROUND)
+        return found
+
+    def state(self) -> list[str]:
+        """Every character of the report, and what stands in its inputs."""
+        found: list[str] = self.page.evaluate(_STATE)
+        return found
+
+    def paths(self, figure: str) -> list[str]:
+        found: list[str] = self.page.eval_on_selector_all(
+            f"#figure-{figure} svg path", "paths => paths.map((path) => path.getAttribute('d'))"
+        )
+        return found
+
+    def text(self, identifier: str) -> str:
+        return self.page.locator(f"#{identifier}").inner_text()
+
+    def focused(self) -> str:
+        """The address of the cell that has the focus, or the id of another element."""
+        found: str = self.page.evaluate(
+            "() => { const { dataset, id } = document.activeElement;"
+            " return dataset.cell ? `${dataset.cell}[${dataset.index}]` : id; }"
+        )
+        return found
+
+    # what a user does
+
+    def input(self, name: str, index: str | int = "") -> Locator:
+        return self.page.locator(f'main input[data-cell="{name}"][data-index="{index}"]')
+
+    def type(self, name: str, index: str | int, text: str, key: str = "Enter") -> None:
+        self.input(name, index).click()
+        self.page.keyboard.type(text)
+        self.page.keyboard.press(key)
+
+    def press(self, *keys: str) -> None:
+        for key in keys:
+            self.page.keyboard.press(key)
+
+    def click(self, identifier: str) -> None:
+        self.page.locator(f"#{identifier}").click()
+
+
+# --- what it should show ----------------------------------------------------------------------------------
+
+TITLES = {"v": "v [m/s]", "e": "e [1]", "x_p": "x_p [um]"}
+
+
+def paper() -> dict[int, dict[str, str]]:
+    """The measurements as they are shipped."""
+    rows = csv.DictReader(io.StringIO((build.PAPER / "measurements.csv").read_text(encoding="utf-8")))
+    return {int(row["test"]): {name: row[title] for name, title in TITLES.items()} for row in rows}
+
+
+def edited(edits: Mapping[tuple[str, int], str]) -> dict[int, dict[str, str]]:
+    tests = paper()
+    for (name, test), text in edits.items():
+        tests[test][name] = text
+    return tests
+
+
+def write(folder: Path, tests: Tests, published: bool = False) -> Path:
+    """A report folder; without the published values, which need the tests that they are about."""
+    folder.mkdir(parents=True)
+    lines = [",".join(["test", *TITLES.values()])]
+    lines += [",".join([str(test), *(cells[name] for name in TITLES)]) for test, cells in tests.items()]
+    (folder / "measurements.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    toml = (build.PAPER / "report.toml").read_text(encoding="utf-8")
+    if published:
+        (folder / "published.csv").write_bytes((build.PAPER / "published.csv").read_bytes())
+    else:
+        toml = re.sub(r"^\[published\].*", "", toml, flags=re.MULTILINE | re.DOTALL)
+    (folder / "report.toml").write_text(toml, encoding="utf-8")
+    return folder
+
+
+def built(folder: Path, tests: Tests, published: bool = False) -> Report:
+    return build.compute(write(folder, tests, published), prove=False)
+
+
+def static(report: Report, path: Path) -> Path:
+    """The page of a report, without a script: what it shows was written by Python."""
+    path.write_text(html.render(report, {}), encoding="utf-8")
+    return path
+
+
+def with_missing(report: Report, name: str, test: int) -> Values:
+    """The same values where one datum is refused."""
+    data: dict[str, Any] = dict(build.given_data(report.inputs))
+    column = np.array(data[name], dtype=float)
+    column[report.inputs.tests.index(test)] = math.nan
+    labels = {axis.name: report.inputs.tests for axis in report.sheet.axes if not axis.parents}
+    return engine.evaluate(report.sheet, labels, data | {name: column})
+
+
+def differences(cells: list[Shown], values: Values) -> list[str]:
+    """Every cell of the page against NumPy; a cell of a test that is left out says nothing."""
+    wrong, seen = [], set()
+    for cell in cells:
+        if cell.status == "" and cell.value == "":
+            continue
+        address = f"{cell.name}[{cell.index}]"
+        labels = ["-".join(map(str, label)) for label in values.labels(values.sheet[cell.name])]
+        if cell.index not in labels:
+            wrong.append(f"{address} is on the page only")
+            continue
+        seen.add((cell.name, cell.index))
+        row = labels.index(cell.index)
+        status = Status(int(values.status[cell.name][row]))
+        if cell.status != CODES[status]:
+            wrong.append(f"{address}: {cell.status} instead of {CODES[status]}")
+        elif status != Status.OK:
+            if cell.value:
+                wrong.append(f"{address}: {cell.value} beside {cell.status}")
+        elif not close(cell.value, float(values.value[cell.name][row])):
+            wrong.append(f"{address}: {cell.value} instead of {values.value[cell.name][row]!r}")
+    for name in {cell.name for cell in cells}:
+        for label in values.labels(values.sheet[name]):
+            index = "-".join(map(str, label))
+            if (name, index) not in seen:
+                wrong.append(f"{name}[{index}] is not on the page")
+    return wrong
+
+
+def close(text: str, value: float) -> bool:
+    # A cell without a number compares as different.
+    return bool(re.fullmatch(r"[-+.0-9e]+", text)) and abs(float(text) - value) <= LARGEST * abs(value)

@@ -1,0 +1,418 @@
+"""The live page as its users meet it: typed into, pasted into, taken back, saved; always against NumPy."""
+
+import random
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import driving
+import pytest
+from driving import Live
+
+from loopsheet.report import build
+from loopsheet.report.views import live as live_view
+
+Open = Callable[..., Live]
+
+DEEPER = {("x_p", 2): "29.8"}
+# As many digits as the others have: fewer would show in every number of a build.
+LIVELIER = {("e", 2): ".900"}
+
+
+# --- an edit ------------------------------------------------------------------------------------------------
+
+
+def test_edit_recalculates_every_cell_as_numpy_does(live: Live, open_page: Open, tmp_path: Path) -> None:
+    before = {(cell.name, cell.index, n): cell for n, cell in enumerate(live.cells())}
+    live.type("x_p", 2, "29.8")
+    report = driving.built(tmp_path / "folder", driving.edited(DEEPER), published=True)
+    cells = live.cells()
+    assert driving.differences(cells, report.values) == []
+    assert float(live.cell("alpha", "1-2").value) == pytest.approx(1.2277, abs=5e-5)
+    assert float(live.cell("alpha_mean").value) == pytest.approx(1.3049, abs=5e-5)
+    # What it shows is what Python would have printed.
+    fresh = open_page(driving.static(report, tmp_path / "edited.html"))
+    assert [(c.name, c.index, c.text, c.layout) for c in cells] == [
+        (c.name, c.index, c.text, c.layout) for c in fresh.cells()
+    ]
+    assert live.around() == fresh.around()
+    # Marked is what changed, nothing else.
+    differing = {
+        place for place, cell in before.items() if not driving.close(cells[place[2]].value, float(cell.value))
+    }
+    assert differing == {(cell.name, cell.index, n) for n, cell in enumerate(cells) if cell.changed}
+    assert {("x_p", "2"), ("alpha", "1-2"), ("alpha_mean", "")} < {place[:2] for place in differing}
+    assert ("alpha", "1-3") not in {place[:2] for place in differing}
+    assert not any(cell.added for cell in cells)
+    assert live.text("live-banner") == "Edited: 1 input differs from the report as issued."
+    assert live.cell("alpha", "1-2").title == "as issued: 1.258"
+
+
+def test_figures_are_drawn_again(live: Live) -> None:
+    assert live.paths("loops") == []  # the issued picture is an image
+    live.type("x_p", 2, "29.8")
+    first = {name: live.paths(name) for name in ("loops", "alpha_pairs")}
+    live.type("x_p", 2, "31")
+    for name, paths in first.items():
+        again = live.paths(name)
+        assert len(paths) > 3
+        assert again != paths
+        assert not re.search("NaN|Infinity|undefined", "".join(again))
+    live.click("live-undo")
+    assert live.paths("loops") == first["loops"]
+
+
+def test_pair_without_a_root_says_why_as_the_terminal_does(
+    live: Live, open_page: Open, tmp_path: Path
+) -> None:
+    live.type("e", 2, ".900")
+    report = driving.built(tmp_path / "folder", driving.edited(LIVELIER), published=True)
+    assert driving.differences(live.cells(), report.values) == []
+    assert live.cell("alpha", "1-2").status == "#NOROOT!"
+    broken = [cell for cell in live.cells() if cell.status != "ok"]
+    assert len({cell.name for cell in broken}) > 3
+    for cell in broken:
+        label = tuple(int(part) for part in cell.index.split("-")) if cell.index else ()
+        assert cell.text == cell.status
+        assert cell.title.startswith(report.values.cell(cell.name, label).reason), cell
+    fresh = open_page(driving.static(report, tmp_path / "edited.html"))
+    assert live.around() == fresh.around()
+    # The formula bar names the cell where the error began, and leads there.
+    live.page.locator("#cell-C-1-2").click(position={"x": 3, "y": 3})
+    origin = report.values.cell("C", (1, 2)).culprit
+    assert origin is not None
+    assert live.text("bar-reason").startswith(f"needs {origin.address} #NOROOT!: ")
+    assert origin.why in live.text("bar-reason")
+    live.page.locator(f'#bar-reason button[data-goto="{origin.address}"]').click()
+    assert live.focused() == "alpha[1-2]"
+    assert live.text("bar-reason") == origin.why
+    # The code in the cell leads to the row that says why.
+    live.page.locator("#cell-C-1-2 a").click()
+    assert live.page.url.endswith("#why-alpha-1-2")
+    assert live.page.locator("#why-alpha-1-2").is_visible()
+
+
+NO_NUMBERS = ("abc", "-3", "0", "1e999", "", "1..2", "0x10", "NaN", "<b>1</b>", "∞")
+
+
+def test_input_that_is_no_number_says_so(live: Live, tmp_path: Path) -> None:
+    report = driving.built(tmp_path / "folder", driving.paper())
+    values = driving.with_missing(report, "x_p", 3)
+    for text in NO_NUMBERS:
+        if text:
+            live.type("x_p", 3, text)
+        else:
+            live.input("x_p", 3).click()
+            live.press("Delete")
+        assert driving.differences(live.cells(), values) == [], text
+        cell = live.cell("x_p", "3")
+        assert (cell.status, cell.text) == ("#INPUT!", text)
+        assert cell.title.startswith("#INPUT! x_p[3]: ")
+        assert "; it must be " in cell.title
+        assert live.cell("alpha", "3-4").title.startswith("#INPUT! alpha[3-4] needs x_p[3]: ")
+    assert live.input("x_p", 3).get_attribute("aria-invalid") == "true"
+    # The page goes on.
+    live.type("x_p", 3, "41.6")
+    assert driving.differences(live.cells(), report.values) == []
+    assert live.text("live-banner") == ""
+    assert live.input("x_p", 3).get_attribute("aria-invalid") is None
+
+
+def test_parameters_are_edited_too(live: Live, tmp_path: Path) -> None:
+    live.type("beta", "", "1,25")
+    folder = driving.write(tmp_path / "folder", driving.paper())
+    toml = folder / "report.toml"
+    toml.write_text(toml.read_text(encoding="utf-8").replace('"1.5"', '"1.25"'), encoding="utf-8")
+    assert driving.differences(live.cells(), build.compute(folder, prove=False).values) == []
+    assert live.input("beta").input_value() == "1.25"
+
+
+def test_scripts_do_not_take_each_others_names() -> None:
+    """They share one scope with the program that computes, where the last of two functions would win."""
+    templates = Path(live_view.__file__).parents[2] / "templates"
+    paths = [templates / "engines" / "runtime.js", *(templates / "live" / name for name in live_view.SCRIPTS)]
+    names: list[str] = []
+    for path in paths:
+        text = path.read_text(encoding="utf-8")
+        names += re.findall(r"^(?:async )?(?:function\*?|const|let|class) (\w+)", text, re.MULTILINE)
+    assert len(names) > 100
+    assert [name for name in set(names) if names.count(name) > 1] == []
+
+
+# --- taking back --------------------------------------------------------------------------------------------
+
+
+def test_reset_restores_every_character(live: Live) -> None:
+    before = live.state()
+    live.type("e", 2, ".9")
+    live.page.locator("#cell-C-1-2").click(position={"x": 3, "y": 3})
+    live.page.locator('[data-use="4"]').click()
+    live.page.locator('[data-remove="5"]').click()
+    live.click("live-add")
+    live.page.keyboard.type("5.2")
+    live.press("Enter")
+    live.type("beta", "", "xyz")
+    assert live.state() != before
+    live.click("live-reset")
+    assert live.state() == before
+    assert live.text("live-banner") == ""
+    assert not live.page.evaluate("() => 'edited' in document.documentElement.dataset")
+    # A reset can be taken back as well.
+    live.click("live-undo")
+    assert live.cell("beta").status == "#INPUT!"
+
+
+def test_undo_and_redo(live: Live, tmp_path: Path) -> None:
+    undo, redo = live.page.locator("#live-undo"), live.page.locator("#live-redo")
+    assert undo.is_disabled()
+    assert redo.is_disabled()
+    live.type("x_p", 2, "29.8")
+    once = live.cells()
+    live.type("v", 4, "4.6")
+    twice = live.cells()
+    undo.click()
+    assert live.cells() == once
+    live.press("Control+z")
+    assert [c for c in live.cells() if c.changed] == []
+    assert undo.is_disabled()
+    live.press("Control+y")
+    assert live.cells() == once
+    live.press("Control+Shift+z")
+    assert live.cells() == twice
+    assert redo.is_disabled()
+    undo.click()
+    undo.click()
+    assert live.page.locator("#live-reset").is_disabled()
+    assert live.text("live-banner") == ""
+    redo.click()
+    assert live.cells() == once
+    # A new edit ends what could be redone.
+    live.type("e", 1, "0.5")
+    assert redo.is_disabled()
+    both = driving.edited({**DEEPER, ("e", 1): "0.5"})
+    assert driving.differences(live.cells(), driving.built(tmp_path / "f", both).values) == []
+
+
+# --- tests come and go --------------------------------------------------------------------------------------
+
+
+def test_excluded_test_has_no_part_and_comes_back(live: Live, tmp_path: Path) -> None:
+    before = live.cells()
+    live.page.locator('[data-use="3"]').click()
+    four = driving.paper()
+    del four[3]
+    report = driving.built(tmp_path / "four", four)
+    assert driving.differences(live.cells(), report.values) == []
+    assert live.input("x_p", 3).input_value() == "41.6"
+    assert live.page.locator('tr.excluded[data-label="3"]').count() == 1
+    # An edit of it changes nothing but itself.
+    live.type("x_p", 3, "40")
+    assert driving.differences(live.cells(), report.values) == []
+    live.type("x_p", 3, "41.6")
+    live.page.locator('[data-use="3"]').click()
+    assert live.cells() == before
+    live.page.locator('[data-remove="3"]').click()
+    assert driving.differences(live.cells(), report.values) == []
+    assert live.page.locator('tr[data-label="3"] input').count() == 0
+    live.press("Control+z")
+    assert [(c.name, c.index, c.value) for c in live.cells()] == [(c.name, c.index, c.value) for c in before]
+
+
+def test_two_tests_stay(live: Live) -> None:
+    for test in (1, 2, 3):
+        live.page.locator(f'[data-use="{test}"]').click()
+    live.page.locator('[data-use="4"]').click()
+    assert live.page.locator('[data-use="4"]').is_checked()
+    live.page.locator('[data-remove="5"]').click()
+    assert "Two tests" in live.text("live-said")
+    assert live.input("v", 5).count() == 1
+
+
+def test_sixth_test(live: Live, open_page: Open, tmp_path: Path) -> None:
+    live.click("live-add")
+    assert live.focused() == "v[6]"
+    assert live.cell("v", "6").status == "#INPUT!"
+    for text in ("5.5", "0.44", "56.6"):
+        live.page.keyboard.type(text)
+        live.press("Tab")
+    six = {**driving.paper(), 6: {"v": "5.5", "e": "0.44", "x_p": "56.6"}}
+    report = driving.built(tmp_path / "six", six)
+    cells = live.cells()
+    assert driving.differences(cells, report.values) == []
+    assert {(c.name, c.index) for c in cells if c.added} > {("v", "6"), ("alpha", "1-6"), ("x_m", "6")}
+    fresh = open_page(driving.static(report, tmp_path / "six.html"))
+    # Measured digits as they were typed; the page decides with the report as issued how precise a column is.
+    assert [(c.name, c.index) for c in fresh.cells()] == [(c.name, c.index) for c in cells]
+    assert live.page.locator("#live-downloads").is_hidden()
+
+
+# --- the clipboard ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "block",
+    [
+        "2,334\t0,530\t23,5\r\n2,940\t0,512\t29,8\r\n",  # as a spreadsheet gives it, with its last line end
+        "v\te\tx_p\n2.334\t0.530\t23.5\n2.940\t.512\t29.8",  # with a head
+    ],
+)
+def test_block_is_pasted(open_page: Open, tmp_path: Path, block: str) -> None:
+    live = open_page(permissions=["clipboard-read", "clipboard-write"])
+    live.input("v", 1).click()
+    live.page.evaluate("text => navigator.clipboard.writeText(text)", block)
+    live.press("Control+v")
+    report = driving.built(tmp_path / "folder", driving.edited(DEEPER))
+    assert driving.differences(live.cells(), report.values) == []
+    assert live.text("live-banner").startswith("Edited: ")
+    live.press("Control+z")
+    assert live.text("live-banner") == ""
+
+
+def test_pasted_block_makes_new_tests_and_stays_within_its_columns(open_page: Open, tmp_path: Path) -> None:
+    live = open_page(permissions=["clipboard-read", "clipboard-write"])
+    live.input("e", 5).click()
+    live.page.evaluate("text => navigator.clipboard.writeText(text)", "0.453\t51.03\t999\n0.44\t56.6\t999\n")
+    live.press("Control+v")
+    assert live.cell("v", "6").status == "#INPUT!"
+    live.type("v", 6, "5.5")
+    six = {**driving.paper(), 6: {"v": "5.5", "e": "0.44", "x_p": "56.6"}}
+    assert driving.differences(live.cells(), driving.built(tmp_path / "six", six).values) == []
+
+
+def test_one_number_is_pasted_into_a_cell(open_page: Open) -> None:
+    live = open_page(permissions=["clipboard-read", "clipboard-write"])
+    live.input("x_p", 2).click()
+    live.page.evaluate("text => navigator.clipboard.writeText(text)", "29,8\n")
+    live.press("Control+v", "Enter")
+    assert live.input("x_p", 2).input_value() == "29.8"
+    assert float(live.cell("alpha", "1-2").value) == pytest.approx(1.2277, abs=5e-5)
+
+
+# --- saving -------------------------------------------------------------------------------------------------
+
+
+def test_saved_files_give_the_numbers_of_the_page(live: Live, tmp_path: Path) -> None:
+    live.type("x_p", 2, "29.8")
+    live.type("beta", "", "1.4")
+    live.page.locator('[data-use="4"]').click()
+    downloads: list[Any] = []
+
+    def keep(download: Any) -> None:
+        downloads.append(download)
+
+    live.page.on("download", keep)
+    live.click("live-save")
+    links = live.page.locator("#live-downloads a[download]")
+    assert links.all_inner_texts() == ["measurements.csv", "report.toml"]
+    while len(downloads) < 2:
+        live.page.wait_for_timeout(20)
+    folder = tmp_path / "saved"
+    for download in downloads:
+        download.save_as(folder / download.suggested_filename)
+    text = (folder / "measurements.csv").read_text(encoding="utf-8")
+    assert text.splitlines() == [
+        "test,v [m/s],e [1],x_p [um]", "1,2.334,0.530,23.5", "2,2.940,0.512,29.8", "3,4.089,0.479,41.6",
+        "5,4.993,0.453,51.03",
+    ]  # fmt: skip
+    toml = (folder / "report.toml").read_text(encoding="utf-8")
+    assert toml == (build.PAPER / "report.toml").read_text(encoding="utf-8").replace('"1.5"', '"1.4"')
+    # The published values are about five tests.
+    (folder / "report.toml").write_text(toml[: toml.index("[published]")], encoding="utf-8")
+    assert driving.differences(live.cells(), build.compute(folder, prove=False).values) == []
+
+
+# --- what a page must not do --------------------------------------------------------------------------------
+
+
+def test_page_asks_for_nothing_but_itself(live: Live) -> None:
+    live.type("e", 2, ".9")
+    live.page.locator("#cell-alpha-2-3").click()
+    live.click("live-reset")
+    assert live.requests == [live.path.as_uri()]
+
+
+_INJECT = """async () => {
+  const seen = [];
+  document.addEventListener("securitypolicyviolation", (event) => seen.push(event.effectiveDirective));
+  const script = document.createElement("script");
+  script.textContent = "window.ran = 'script'";
+  const button = document.createElement("button");
+  button.setAttribute("onclick", "window.ran = 'attribute'");
+  const image = document.createElement("img"), styled = document.createElement("p");
+  image.src = "https://example.org/pixel.png";
+  styled.setAttribute("style", "color: red");
+  document.body.append(script, button, image, styled);
+  button.click();
+  try { await fetch("https://example.org/"); } catch { seen.push("fetch failed"); }
+  await new Promise((resolve) => setTimeout(resolve, 50));
+  return { ran: window.ran ?? null, seen: [...new Set(seen)].sort(), width: image.naturalWidth };
+}"""
+
+
+def test_policy_stops_what_is_injected(live: Live) -> None:
+    found = live.page.evaluate(_INJECT)
+    assert found["ran"] is None
+    assert found["width"] == 0
+    assert found["seen"] == [
+        "connect-src", "fetch failed", "img-src", "script-src-attr", "script-src-elem",
+        "style-src-attr",
+    ]  # fmt: skip
+    assert live.errors
+    live.errors.clear()  # the browser reports every one of them
+
+
+# --- the comparison itself ----------------------------------------------------------------------------------
+
+_OTHERS = {"+": "-", "-": "+", "*": "/", "/": "*"}
+
+
+def mutants(text: str, names: set[str]) -> list[str]:
+    """The page with one operator of one column's kernel changed, one page for each column that is shown."""
+    found = []
+    chance = random.Random(7)
+    for name in sorted(names):
+        kernel = re.search(
+            rf'\{{"name":"{name}",[^{{}}]*?"kernels":.*?value:(?P<code>.*?)(?=\}}\)\}},\{{"name"|\}}\)\}}\]|,requires:)',
+            text,
+            re.DOTALL,
+        )
+        if kernel is None:
+            continue
+        places = [
+            kernel.start("code") + found_at.start()
+            for found_at in re.finditer(r"(?<=[\w\])])[-+*/](?=[\w(])", kernel["code"])
+        ]
+        if places:
+            place = chance.choice(places)
+            found.append(text[:place] + _OTHERS[text[place]] + text[place + 1 :])
+    return found
+
+
+def test_one_changed_character_of_the_program_is_noticed(
+    live: Live, open_page: Open, issued: Path, tmp_path: Path
+) -> None:
+    values = driving.built(tmp_path / "folder", driving.edited(DEEPER)).values
+    text = issued.read_text(encoding="utf-8")
+    changed = mutants(text, {cell.name for cell in live.cells()})
+    assert len(changed) > 10
+    changed = random.Random(20).sample(changed, 10)
+    # The policy knows the hash of the right script and would run none of these.
+    other = open_page(bypass_csp=True)
+    for number, mutant in enumerate(changed):
+        other.path = tmp_path / f"{number}.html"
+        other.path.write_text(mutant, encoding="utf-8")
+        other.load()
+        other.type("x_p", 2, "29.8")
+        assert driving.differences(other.cells(), values) != [], number
+    other.errors.clear()
+
+
+def test_policy_refuses_a_changed_program(open_page: Open, issued: Path, tmp_path: Path) -> None:
+    (mutant,) = mutants(issued.read_text(encoding="utf-8"), {"alpha_mean"})
+    (tmp_path / "changed.html").write_text(mutant, encoding="utf-8")
+    live = open_page(tmp_path / "changed.html")
+    assert not live.page.evaluate("() => 'live' in document.documentElement.dataset")
+    assert live.page.locator("#live-dock").is_hidden()
+    assert len(live.errors) == 1
+    live.errors.clear()

@@ -1,0 +1,279 @@
+"""The live page without a mouse, with a screen reader, on a telephone, in the dark; and as a document."""
+
+import json
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import driving
+import pytest
+from driving import Live
+
+Open = Callable[..., Live]
+
+# --- the keyboard -------------------------------------------------------------------------------------------
+
+
+def test_keys_move_as_in_a_spreadsheet(live: Live) -> None:
+    live.input("v", 1).click()
+    for key, there in (
+        ("ArrowDown", "v[2]"), ("Enter", "v[3]"), ("Shift+Enter", "v[2]"), ("Tab", "e[2]"), ("Tab", "x_p[2]"),
+        ("Tab", "v[3]"), ("Shift+Tab", "x_p[2]"), ("ArrowUp", "x_p[1]"), ("ArrowLeft", "e[1]"),
+        ("ArrowRight", "x_p[1]"), ("Control+ArrowDown", "x_p[5]"), ("Control+ArrowUp", "x_p[1]"),
+    ):  # fmt: skip
+        live.press(key)
+        assert live.focused() == there, key
+    live.press("Home", "ArrowRight", "Control+End")
+    assert live.page.evaluate("() => document.activeElement.closest('tr').dataset.label") == "5"
+    # Tables that cannot be edited are walked through as well, and Tab leaves them.
+    live.page.locator("#cell-x_m1-1-2").click()
+    live.press("ArrowRight", "ArrowDown")
+    assert live.focused() == "x_m2[1-3]"
+    live.press("End")
+    assert live.focused() == "Cprime_2[1-3]"
+    live.press("Home")
+    assert live.focused() == "x_m1[1-3]"
+    live.press("Tab")
+    assert not live.focused().endswith("[1-3]")
+    assert live.errors == []
+
+
+def test_typing_replaces_and_escape_takes_it_back(live: Live) -> None:
+    live.input("x_p", 2).click()
+    before = live.state()
+    live.page.keyboard.type("123")
+    assert live.input("x_p", 2).input_value() == "123"
+    live.press("Escape")
+    assert live.input("x_p", 2).input_value() == "29.7"
+    assert live.state() == before
+    # F2 keeps the text, and then the arrows move in it.
+    live.press("F2", "Backspace")
+    live.page.keyboard.type("8")
+    live.press("ArrowLeft", "Home")
+    assert live.focused() == "x_p[2]"
+    assert live.input("x_p", 2).input_value() == "29.8"
+    live.press("Escape")
+    assert live.state() == before
+    live.press("F2", "Backspace", "8", "Enter")
+    assert live.focused() == "x_p[3]"
+    assert live.cell("x_p", "2").text == "29.8"
+    assert live.cell("x_p", "2").changed
+    # Leaving a cell by any way enters what was typed.
+    live.input("e", 1).click()
+    live.page.keyboard.type("0.5")
+    live.page.locator("h1").click()
+    assert live.cell("e", "1").text == "0.5"
+    live.page.locator('main input[data-cell="e"][data-index="1"]').dblclick()
+    live.press("End", "5", "Enter")
+    assert live.cell("e", "1").text == "0.55"
+
+
+def test_an_edit_without_a_mouse(live: Live) -> None:
+    """From the top of the page with Tab alone."""
+    for _ in range(60):
+        live.press("Tab")
+        if live.focused() == "v[1]":
+            break
+    assert live.focused() == "v[1]"
+    live.press("ArrowDown", "ArrowRight", "ArrowRight")
+    live.page.keyboard.type("29.8")
+    live.press("Enter")
+    assert live.cell("alpha", "1-2").value.startswith("1.2277")
+
+
+def outline(live: Live) -> tuple[str, float]:
+    style, width = live.page.evaluate(
+        "() => { const style = getComputedStyle(document.activeElement);"
+        " return [style.outlineStyle, style.outlineWidth]; }"
+    )
+    return style, float(width.removesuffix("px"))
+
+
+def test_focus_is_seen(live: Live) -> None:
+    live.press("Tab")
+    for _ in range(40):
+        style, width = outline(live)
+        assert style != "none", live.focused()
+        assert width >= 1, live.focused()
+        live.press("Tab")
+    live.page.locator("#cell-alpha-1-2").click()
+    assert outline(live)[1] >= 2
+    live.input("x_p", 2).click()
+    assert outline(live)[1] >= 2
+
+
+def test_focus_does_not_hide_behind_the_bar(open_page: Open) -> None:
+    live = open_page(viewport={"width": 390, "height": 844})
+    live.page.locator("#cell-alpha-1-2").click()
+    for _ in range(9):
+        live.press("ArrowDown")
+        cell, dock = (
+            live.page.evaluate(f"() => {what}.getBoundingClientRect().toJSON()")
+            for what in ("document.activeElement", "document.getElementById('live-dock')")
+        )
+        assert cell["bottom"] <= dock["top"], live.focused()
+
+
+def test_tables_say_what_they_are(live: Live) -> None:
+    grids = live.page.locator("main table[role=grid]")
+    assert grids.count() >= 6
+    for number in range(grids.count()):
+        grid = grids.nth(number)
+        # One stop for Tab in each, apart from links.
+        assert grid.locator("tbody [tabindex='0']").count() == 1
+    assert live.page.locator("table[role=grid]:not([aria-readonly]) input[data-cell]").count() > 0
+    assert live.page.locator("table[role=grid][aria-readonly] input[data-cell]").count() == 0
+    live.type("x_p", 2, "29.8")
+    assert "mean exponent (alpha_mean) changed from 1.303 to 1.305" in live.text("live-said")
+    labels = live.page.eval_on_selector_all("main input", "all => all.map((one) => one.ariaLabel)")
+    assert all(labels)
+    assert len(set(labels)) == len(labels)
+
+
+# --- the formula bar ----------------------------------------------------------------------------------------
+
+
+def test_formula_bar_says_where_a_number_comes_from(live: Live) -> None:
+    assert live.page.locator("#bar-hint").is_visible()
+    live.page.locator("#cell-x_m2-1-2").click()
+    assert live.page.locator("#formula-bar").get_attribute("data-cell") == "x_m2"
+    assert live.text("bar-name").endswith("x_m2[1-2]")
+    assert live.text("bar-value").endswith("µm")
+    assert "approach of the pair's second test" in live.text("bar-meaning").replace("’", "'")
+    assert live.text("bar-source").startswith("from (")
+    assert live.page.locator("#bar-source .status").inner_text() in ("proved", "proved numerically", "stated")
+    assert live.page.locator("#bar-source math").count() == 1
+    put = live.text("bar-put")
+    for value in ("0.512", "2.97", "1.5", "1.258"):
+        assert value in put.replace("\u202f", ""), put
+    names = live.page.locator("#bar-precedents button").evaluate_all(
+        "all => all.map((one) => one.dataset.goto)"
+    )
+    assert names == ["e[2]", "x_p[2]", "beta", "alpha[1-2]"]
+    marked = live.page.eval_on_selector_all(
+        "main .precedent", "all => [...new Set(all.map(({ dataset: d }) => `${d.cell} ${d.index}`))].sort()"
+    )
+    assert marked == ["alpha 1-2", "beta ", "e 2", "x_p 2"]
+    assert live.page.locator("main .selected").count() == 1
+    live.page.locator('#bar-precedents button[data-goto="x_p[2]"]').click()
+    assert live.focused() == "x_p[2]"
+    assert live.page.locator("#formula-bar").get_attribute("data-cell") == "x_p"
+    assert "29.7" in live.text("bar-value")
+    assert "measurements.csv, test 2" in live.text("bar-source")
+    assert live.page.locator('#bar-dependents button[data-goto="x_m2[1-2]"]').count() == 1
+
+
+def test_formula_bar_follows_the_focus_and_folds(live: Live) -> None:
+    live.input("x_p", 2).click()
+    live.press("ArrowDown")
+    assert live.text("bar-name").endswith("x_p[3]")
+    live.page.locator(".headline [data-cell]").first.focus()
+    live.press("Enter")
+    assert live.page.locator("#formula-bar").get_attribute("data-cell") == "alpha_mean"
+    toggle = live.page.locator("#bar-toggle")
+    assert toggle.get_attribute("aria-expanded") == "true"
+    toggle.click()
+    assert toggle.get_attribute("aria-expanded") == "false"
+    assert live.page.locator("#bar-body").is_hidden()
+    # What it shows follows an edit.
+    before = live.text("bar-value")
+    live.type("x_p", 2, "29.8", "Escape")
+    live.page.locator("#cell-alpha_mean").click()
+    assert live.text("bar-value") == before
+    live.type("x_p", 2, "29.8")
+    live.page.locator("#cell-alpha_mean").click()
+    assert live.text("bar-value") != before
+
+
+@pytest.mark.parametrize("selector", ["main td[data-cell]", "main input[data-cell]"])
+def test_formula_bar_has_something_for_every_cell(live: Live, selector: str) -> None:
+    broken = live.page.evaluate(
+        """(selector) => {
+          const wrong = [];
+          for (const cell of document.querySelectorAll(selector)) {
+            cell.focus();
+            if (cell.tabIndex < 0 && document.activeElement !== cell) cell.tabIndex = -1, cell.focus();
+            const { textContent: text, dataset: of } = document.getElementById("formula-bar");
+            const { cell: name, index } = cell.dataset;
+            if (of.cell !== name || of.index !== index) wrong.push(name);
+            if (/@|NaN|undefined|\\[object/.test(text)) wrong.push(text);
+          }
+          return wrong;
+        }""",
+        selector,
+    )
+    assert broken == []
+
+
+# --- judged by others ---------------------------------------------------------------------------------------
+
+
+def violations(live: Live, packages: Path) -> list[Any]:
+    if not live.page.evaluate("() => 'axe' in window"):
+        live.page.add_script_tag(path=packages / "axe-core" / "axe.min.js")
+    found: list[Any] = live.page.evaluate(
+        """async () => {
+          const { violations } = await axe.run(document, { resultTypes: ["violations"] });
+          const named = ({ target, failureSummary }) => `${target}: ${failureSummary}`;
+          return violations.map(({ id, nodes }) => [id, nodes.length, nodes.slice(0, 3).map(named)]);
+        }"""
+    )
+    return found
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [390, 1280])
+def test_axe_finds_nothing(open_page: Open, packages: Path, scheme: str, width: int) -> None:
+    # The policy would not let the judge in.
+    live = open_page(color_scheme=scheme, viewport={"width": width, "height": 900}, bypass_csp=True)
+    if scheme == "light":
+        assert violations(live, packages) == []
+    live.type("e", 2, ".9")
+    live.type("x_p", 3, "x")
+    live.page.locator('[data-use="4"]').click()
+    live.click("live-add")
+    live.page.locator("#cell-C-1-2").click(position={"x": 3, "y": 3})
+    if live.page.locator("#bar-toggle").get_attribute("aria-expanded") == "false":
+        live.click("bar-toggle")
+    assert violations(live, packages) == []
+
+
+def test_axe_finds_what_is_wrong(open_page: Open, packages: Path) -> None:
+    live = open_page(bypass_csp=True)
+    live.page.evaluate("() => document.querySelector('#cell-x_p-2').removeAttribute('aria-label')")
+    assert [name for name, _, _ in violations(live, packages)] == ["label"]
+
+
+def test_validator_finds_nothing(
+    live: Live, issued: Path, packages: Path, require: Callable[..., str]
+) -> None:
+    text = issued.read_text(encoding="utf-8")
+    live.type("e", 2, ".9")
+    live.type("x_p", 3, "x")
+    live.click("live-add")
+    live.page.locator("#cell-C-1-2").click(position={"x": 3, "y": 3})
+    pages = {
+        "as issued": text,
+        "edited": "<!DOCTYPE html>\n" + live.page.evaluate("() => document.documentElement.outerHTML"),
+        "wrong": text.replace("<main", "<main><p><div></div></p>", 1),
+    }
+    run = subprocess.run(
+        [require("node"), str(Path(driving.__file__).parent / "validate.cjs")],
+        input=json.dumps({"module": str(packages / "html-validate"), "pages": pages}),
+        capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    found = json.loads(run.stdout)
+    assert found["wrong"], "the validator finds nothing at all"
+    assert found["as issued"] == []
+    assert found["edited"] == []
+
+
+@pytest.mark.parametrize("width", [320, 390, 768, 1280])
+def test_page_does_not_scroll_sideways(open_page: Open, width: int) -> None:
+    live = open_page(viewport={"width": width, "height": 800})
+    live.type("e", 2, ".9")
+    live.page.locator("#cell-C-1-3").click()
+    found = live.page.evaluate("() => [document.documentElement.scrollWidth, innerWidth]")
+    assert found[0] <= found[1]

@@ -1,0 +1,234 @@
+"""Engines against 50 digits: honest ones agree within their condition, every other is named with its cell."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import pytest
+
+from loopsheet.report import build
+from loopsheet.report.analysis import engines, readers
+from loopsheet.report.analysis.readers import Book, Reading
+from loopsheet.report.engines import exact, excel_grid
+from loopsheet.report.grid import Place
+from loopsheet.report.result import Report
+from loopsheet.report.views import xlsx
+
+CELLS = 2116
+
+
+@pytest.fixture(scope="module")
+def report() -> Report:
+    return build.compute(build.PAPER, prove=False)
+
+
+@pytest.fixture(scope="module")
+def prepared() -> build.Prepared:
+    return build.prepare(build.PAPER)
+
+
+@pytest.fixture(scope="module")
+def judge(report: Report, prepared: build.Prepared) -> engines.Judge:
+    return engines.Judge.of(prepared.sheet, report.values.layouts, prepared.labels, prepared.exact_data)
+
+
+@pytest.fixture(scope="module")
+def book(report: Report) -> Book:
+    units = {name: shown.unit for name, shown in report.shown.items()}
+    grid = excel_grid.grid(report.sheet, report.values, units, report.workbook.headline)
+    return Book(xlsx.render(report, grid), grid)
+
+
+def honest(agreement: engines.Agreement) -> bool:
+    return not agreement.findings and agreement.cells == CELLS and 0 < agreement.units < 2
+
+
+def test_numpy(report: Report, prepared: build.Prepared) -> None:
+    agreement = engines.compare(report.values, prepared.labels, prepared.exact_data)
+    assert honest(agreement), agreement
+    assert agreement.unbounded == 0
+    assert agreement.line.startswith("numpy       2116 cells, at most 0.")
+    assert agreement.line.endswith(f" eps x condition ({agreement.units_where})")
+    assert json.loads(json.dumps(agreement.data))["eps_condition"] == agreement.units
+
+
+def test_javascript_in_node(
+    require: Callable[..., str], judge: engines.Judge, prepared: build.Prepared
+) -> None:
+    require("node")
+    agreement = judge.agreement(readers.run_javascript(prepared.sheet, prepared.labels, prepared.data))
+    assert honest(agreement), agreement
+    assert agreement.line.startswith("JavaScript  2116 cells, at most ")
+    assert ", node " in agreement.line
+
+
+def test_javascript_in_chromium(
+    require: Callable[..., str],
+    judge: engines.Judge,
+    prepared: build.Prepared,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    require(*readers._BROWSERS)
+    monkeypatch.setattr(readers, "_find", without(readers._find, "node"))
+    agreement = judge.agreement(readers.run_javascript(prepared.sheet, prepared.labels, prepared.data))
+    assert honest(agreement), agreement
+    assert agreement.program.startswith("Chromium ")
+
+
+def test_the_workbook_in_libreoffice(
+    require: Callable[..., str], judge: engines.Judge, prepared: build.Prepared, book: Book
+) -> None:
+    require("soffice", "libreoffice")
+    agreement = judge.agreement(readers.run_workbook(prepared.sheet, book))
+    assert honest(agreement), agreement
+    assert ", LibreOffice " in agreement.line
+
+
+# --- what is wrong is found -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("engine", ["numpy", "JavaScript", "xlsx"])
+def test_a_wrong_value_and_a_wrong_status_are_named(
+    report: Report, judge: engines.Judge, engine: str
+) -> None:
+    found = readers.of_values(report.values, engine)
+    value, status = ({name: list(each) for name, each in m.items()} for m in (found.value, found.status))
+    assert value["alpha"][3] is not None
+    value["alpha"][3] = float(value["alpha"][3]) + 100 * engines.EPS * judge.bounds["alpha"][3]
+    status["F"][7] = "#DOMAIN!"
+    agreement = judge.agreement(Reading(engine, "", value, status))
+    assert len(agreement.findings) == 2
+    assert agreement.findings[0].startswith(f"alpha[1-5]: {engine} is off by ")
+    assert agreement.findings[1] == f"F[1-2-8]: {engine} says #DOMAIN!, 50 digits say ok"
+    assert agreement.units == pytest.approx(100, abs=1)
+    assert agreement.units_where == "alpha[1-5]"
+
+
+def test_steps_that_do_not_settle_are_told_as_such(report: Report, judge: engines.Judge) -> None:
+    found = readers.of_values(report.values, "xlsx")
+    status = {**found.status, "alpha": ["#STEPS!", *found.status["alpha"][1:]]}
+    (finding,) = judge.agreement(replace(found, status=status)).findings
+    assert finding == "alpha[1-2]: the steps of xlsx to a root do not settle (#STEPS!), 50 digits say ok"
+
+
+def test_many_findings_are_counted(report: Report, judge: engines.Judge) -> None:
+    found = readers.of_values(report.values)
+    value = {name: [x and x * (1 + 1e-6) for x in each] for name, each in found.value.items()}
+    findings = judge.agreement(replace(found, value=value)).findings
+    assert len(findings) == engines.MOST_FINDINGS + 1
+    assert findings[-1].endswith(" more cells differ")
+
+
+def test_rows_that_are_missing_are_a_finding(report: Report, judge: engines.Judge) -> None:
+    found = readers.of_values(report.values)
+    agreement = judge.agreement(replace(found, value={**found.value, "alpha": [1.0]}))
+    assert agreement.findings == ("alpha: numpy has 1 rows, not 10",)
+
+
+def test_what_a_file_has_cut_is_not_held_against_the_engine(report: Report, judge: engines.Judge) -> None:
+    found = readers.of_values(report.values, "xlsx")
+    cut = {name: [float(f"{x:.14e}") for x in each] for name, each in found.value.items()}
+    lost = {name: [readers._lost(x) for x in each] for name, each in cut.items()}
+    before, after = (judge.agreement(replace(found, value=cut, rounded=each)) for each in ({}, lost))
+    assert before.units > 1 > after.units
+    assert honest(after)
+    cut["alpha"][0] += 1e-11
+    assert judge.agreement(replace(found, value=cut, rounded=lost)).findings
+
+
+# --- programs that are missing or fail --------------------------------------------------------------------
+
+
+def without(find: Any, *names: str) -> Any:
+    return lambda *wanted: find(*(name for name in wanted if name not in names))
+
+
+def test_a_missing_program_is_told_and_is_no_finding(
+    monkeypatch: pytest.MonkeyPatch, report: Report, prepared: build.Prepared, book: Book
+) -> None:
+    monkeypatch.setattr(readers, "_find", lambda *names: None)
+    found = engines.compare_all(report.values, prepared.labels, prepared.data, prepared.exact_data, book)
+    assert [agreement.line for agreement in found[1:]] == [
+        "JavaScript  node or Chromium not found",
+        "xlsx        LibreOffice not found",
+    ]
+    assert not any(agreement.findings for agreement in found)
+    assert honest(found[0])
+
+
+@pytest.mark.parametrize(
+    ("script", "said"),
+    [
+        ("raise SystemExit('no memory')", "ended with code 1: no memory"),
+        ("import time; time.sleep(60)", "took more than 1 s"),
+        ("print('{}')", "its answer cannot be read"),
+        ("", "its answer cannot be read"),
+    ],
+)
+def test_a_program_that_fails_is_a_finding(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    judge: engines.Judge,
+    prepared: build.Prepared,
+    script: str,
+    said: str,
+) -> None:
+    program = tmp_path / "node"
+    program.write_text(f"#!{sys.executable}\n{script}\n")
+    program.chmod(0o755)
+    monkeypatch.setattr(readers, "SCRIPT_SECONDS", 1)
+    monkeypatch.setattr(readers, "_version", lambda path, name: f"{name} 1.0")
+    monkeypatch.setattr(readers, "_find", lambda *names: ("node", str(program)))
+    agreement = judge.agreement(readers.run_javascript(prepared.sheet, prepared.labels, prepared.data))
+    (finding,) = agreement.findings
+    assert finding.startswith(f"JavaScript (node 1.0) failed: {said}")
+    assert agreement.line == "JavaScript  failed, node 1.0"
+
+
+def test_an_office_that_makes_no_file_is_a_finding(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, prepared: build.Prepared, book: Book
+) -> None:
+    program = tmp_path / "soffice"
+    program.write_text(f"#!{sys.executable}\n")
+    program.chmod(0o755)
+    monkeypatch.setattr(readers, "_find", lambda *names: ("soffice", str(program)))
+    assert readers.run_workbook(prepared.sheet, book).failure == "made no file"
+
+
+# --- files ------------------------------------------------------------------------------------------------
+
+
+def test_a_delivered_workbook_is_read_as_it_is_stored(report: Report, book: Book) -> None:
+    cells = readers.read_cells(book.content)
+    value, status, _ = readers._columns(report.sheet, book.grid, cells)
+    assert float(value["alpha"][0] or 0) == report.values.value["alpha"][0]
+    assert set(status["alpha"]) == {"ok"}
+    bare = readers.read_cells(readers.without_results(book.content))
+    value, status, _ = readers._columns(report.sheet, book.grid, bare)
+    assert set(status["alpha"]) == {"nothing"}
+    assert set(status["v"]) == {"ok"}
+
+
+def test_a_number_that_was_not_typed_is_a_missing_input(report: Report, book: Book) -> None:
+    cells: dict[str, dict[str, float | str]] = {
+        name: dict(each) for name, each in readers.read_cells(book.content).items()
+    }
+    place: Place = book.grid["v"].place
+    first, second, _ = (place.cell(row, place.worksheet).replace("$", "") for row in range(3))
+    cells[place.worksheet][first] = "fast"
+    del cells[place.worksheet][second]
+    _, status, _ = readers._columns(report.sheet, book.grid, cells)
+    assert status["v"][:3] == ["#INPUT!", "#INPUT!", "ok"]
+
+
+def test_digits_of_the_caller_do_not_matter(report: Report, judge: engines.Judge) -> None:
+    with mpmath.workdps(15):
+        few = judge.agreement(readers.of_values(report.values))
+    with mpmath.workdps(exact.DIGITS):
+        assert few == judge.agreement(readers.of_values(report.values))

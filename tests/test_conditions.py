@@ -1,0 +1,211 @@
+"""Bounds of rounding errors: by hand on small sheets, and on the paper against 50-digit differences."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from sympy import Expr, IndexedBase, Integer, Max, Piecewise, Sum, Symbol, floor, log, sqrt
+
+from loopsheet.derivations.equation import Equation, Kind
+from loopsheet.report import build, conditions
+from loopsheet.report.analysis import bounds as numbers
+from loopsheet.report.engines import exact
+from loopsheet.report.engines.numpy import evaluate
+from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
+
+k, n = Symbol("k", integer=True, positive=True), Symbol("n", integer=True, positive=True)
+ROWS = Axis("rows", k, n)
+a, b = (Column(name, None, Given()) for name in "ab")
+x = Column("x", ROWS, Given())
+u = Symbol("u", positive=True)
+
+
+def formula(name: str, value: Expr, axis: Axis | None = None) -> Column:
+    return Column(
+        name, axis, Formula(Equation("", (Symbol(name), value), "", Kind.DEFINITION)), positive=False
+    )
+
+
+def root(name: str, form: Expr, value: Expr, low: float = 0.01, high: float = 10.0) -> Column:
+    equation = Equation("", (form, Integer(0)), "", Kind.DEFINITION)
+    start = (low + high) / 2
+    rule = Root(
+        equation, equation, u, value, Integer(0) + low, Integer(0) + high, Integer(0) + start, steps=8
+    )
+    return Column(name, None, rule, positive=False)
+
+
+def bounded(*columns: Column, **data: Any) -> dict[str, Any]:
+    sheet = Sheet((a, b, x, *columns))
+    data = {"a": 3.0, "b": 2.0, "x": [1.0, 2.0, 5.0], **data}
+    values = evaluate(sheet, {"rows": [1, 2, 3]}, data)
+    return {"value": values.value, **numbers.bounds(sheet, values.layouts, values.value)}
+
+
+A, B = a.symbol, b.symbol
+
+
+@pytest.mark.parametrize(
+    ("value", "bound"),
+    [
+        (A * B, 6 + 2 * 3 + 3 * 2),
+        (A / B, 1.5 + 3 / 2 + 3 / 4 * 2),
+        (A - B, (3 + 2) + 3 + 2),
+        (-A, 3),
+        (log(A), np.log(3) + 1),
+        (A**B, 9 + 6 * 3 + 9 * np.log(3) * 2),
+        (sqrt(A - B), 1 + 5 / 2 + (3 + 2) / 2),
+        (Max(A, B), 3),
+        (Piecewise((A * B, A < B), (A + B, True)), 5 + 5),
+        (A * B / A, 2),
+    ],
+)
+def test_one_formula(value: Expr, bound: float) -> None:
+    assert bounded(formula("c", value))["c"] == pytest.approx([bound])
+
+
+def test_a_difference_that_cancels() -> None:
+    found = bounded(formula("c", A - B), a=1.0 + 1e-9, b=1.0)
+    assert found["c"] / found["value"]["c"] == pytest.approx([4e9], rel=1e-6)
+
+
+def test_what_cancels_between_two_cells_cancels() -> None:
+    """d = a b, c = d / a: the error of a goes both ways and is lost, that of the operations stays."""
+    d = formula("d", A * B)
+    found = bounded(d, formula("c", d.symbol / A))
+    assert found["c"] == pytest.approx([2 + 6 / 3 + 3 * 2 / 3])
+
+
+def test_a_row_is_its_own() -> None:
+    found = bounded(formula("c", x[k] ** 2 * A, ROWS))
+    own = np.array([1.0, 4.0, 25.0])
+    assert found["c"] == pytest.approx(own * 3 + own * 3 + 2 * own * 3 + own * 3)
+
+
+def test_a_sum() -> None:
+    terms = Sum(x[k] * A, (k, 1, n))
+    assert bounded(formula("c", terms))["c"] == pytest.approx([24 + 24 + 24 + 24])
+    # Twice the same datum with the other sign: only what the operations round is left of it.
+    less = terms - A * Sum(x[k], (k, 1, n))
+    assert bounded(formula("c", less))["c"] == pytest.approx([24 + 24 + 24 + 24 + 24 + 3 * 8])
+
+
+def test_a_sum_leaves_rows_out() -> None:
+    found = bounded(formula("c", Sum(x[k] * A, (k, 1, n)) / n), x=[1.0, None, 5.0])
+    assert found["c"] == pytest.approx([(4 * 18 + 18) / 2])
+    assert np.isnan(found["x"][1])
+
+
+@pytest.mark.parametrize(("value", "slope"), [(u, 1.0), (1 / u - 1, -1 / 1.5**2), (u**3 - u, 3 * 1.5**2 - 1)])
+def test_a_root(value: Expr, slope: float) -> None:
+    """b u = a at u = 1.5: it may be off by what the equation rounds and by both data, over b."""
+    found = bounded(root("c", B * u - A, value))
+    here = 1.5 + (3 + 3 + 3) / 2 + 3 / 2 + 1.5 * 2 / 2
+    own = {0: 0.0, 1: 1 / 1.5 + 1 / 1.5 + 1, 2: 1.5**3 + 1.5**3 + 1.5}[(u, 1 / u - 1, u**3 - u).index(value)]
+    assert found["c"] == pytest.approx([own + abs(slope) * here])
+
+
+def test_a_root_of_sums() -> None:
+    found = bounded(root("c", Sum(x[k], (k, 1, n)) * u - A, u))
+    at, total = 3 / 8, 8.0
+    assert found["c"] == pytest.approx([at + (3 + 3 + 3) / total + 3 / total + at / total * (8 + 8)])
+
+
+def test_what_is_not_known_is_infinite() -> None:
+    d = formula("d", sqrt(A - B))
+    found = bounded(d, formula("c", d.symbol + 1), formula("e", B + 1), formula("f", floor(A)), a=2.0)
+    assert np.isinf([found["d"], found["c"], found["f"]]).all()
+    assert found["e"] == pytest.approx([5])
+
+
+@pytest.mark.parametrize("most", [0, numbers.EXPANDED])
+def test_a_large_sheet_has_no_smaller_bounds(monkeypatch: pytest.MonkeyPatch, most: int) -> None:
+    monkeypatch.setattr(numbers, "EXPANDED", most)
+    mean = formula("m", Sum(x[k], (k, 1, n)) / n)
+    found = bounded(mean, formula("c", x[k] - mean.symbol, ROWS))["c"]
+    exactly = np.array([1.0, 2.0, 5.0])
+    m = 8 / 3
+    rest = m + 8 / 3  # the quotient and the sum
+    apart, alone = exactly + 8 / 3, exactly * 2 / 3 + (8 - exactly) / 3
+    assert found == pytest.approx(exactly + m + rest + (apart if most == 0 else alone))
+
+
+def test_names_that_are_taken_stay_free() -> None:
+    taken = formula("c_rounding", A + 1)
+    made = conditions.conditions(Sheet((a, b, x, taken, formula("c", A * IndexedBase(x.symbol)[k], ROWS))))
+    assert len({column.name for column in made.sheet.columns}) == len(made.sheet.columns)
+
+
+# --- the paper --------------------------------------------------------------------------------------------
+
+
+def slopes_of(prepared: build.Prepared, name: str, row: int) -> tuple[dict[Any, float], float]:
+    """The derivatives of a cell by every measured datum, by differences at 50 digits; and their sum."""
+    step, found, size = Fraction(1, 10**15), {}, 0.0
+    for given in ("v", "e", "x_p"):
+        for test, value in enumerate(prepared.exact_data[given][:2]):
+            ends = []
+            for sign in (1, -1):
+                data = {c: list(v)[:2] if isinstance(v, list) else v for c, v in prepared.exact_data.items()}
+                data[given][test] = value * (1 + sign * step)
+                ends.append(exact.evaluate(prepared.sheet, {"tests": [1, 2]}, data).value[name][row])
+            found[given, test] = float((ends[0] - ends[1]) / (2 * step))
+            size += abs(found[given, test])
+    return found, size
+
+
+@pytest.fixture(scope="module")
+def prepared() -> build.Prepared:
+    return build.prepare(build.PAPER)
+
+
+def spread_of(prepared: build.Prepared, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The derivatives behind the bounds of the first two tests."""
+    data = {c: v[:2] if isinstance(v, list) else v for c, v in prepared.data.items()}
+    values = evaluate(prepared.sheet, {"tests": [1, 2]}, data)
+    made: list[Any] = []
+    whole = numbers._Spread.bounds
+    monkeypatch.setattr(numbers._Spread, "bounds", lambda self: made.append(self) or whole(self))
+    numbers.bounds(prepared.sheet, values.layouts, values.value)
+    return made[0]
+
+
+@pytest.mark.parametrize("name", ["alpha", "x_m1", "C", "alpha_log", "C_lin", "alpha_lin"])
+def test_the_paper_against_differences(
+    prepared: build.Prepared, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    spread, (known, size) = spread_of(prepared, monkeypatch), slopes_of(prepared, name, 0)
+    for (given, test), slope in known.items():
+        source = spread.start[given] + test
+        if name in spread.scalar:
+            own = spread.whole[spread.scalar[name], source]
+        else:
+            own = spread.direct[name][[0], :].toarray()[0, source]
+        assert own * spread.found.value[given][test] == pytest.approx(slope, rel=1e-7, abs=1e-9 * size)
+
+
+def test_a_term_that_is_dropped_is_noticed(prepared: build.Prepared, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A derivative that forgets one of the form's terms: the differences do not fit any more."""
+    whole = conditions.diff
+
+    def dropped(expression: Any, symbol: Symbol) -> Expr:
+        found = whole(expression, symbol)
+        return found.func(*found.args[1:]) if found.is_Add else found
+
+    monkeypatch.setattr(conditions, "diff", dropped)
+    with pytest.raises(AssertionError):
+        test_the_paper_against_differences(prepared, monkeypatch, "alpha")
+
+
+def test_bounds_of_the_paper(prepared: build.Prepared) -> None:
+    """At least the cell, and at least what the data's own roundings amount to; not a thousand times that."""
+    values = evaluate(prepared.sheet, prepared.labels, prepared.data)
+    found = numbers.bounds(prepared.sheet, values.layouts, values.value)
+    for column in prepared.sheet.columns:
+        assert np.isfinite(found[column.name]).all(), column.name
+        assert (found[column.name] >= np.abs(values.value[column.name])).all(), column.name
+    _, size = slopes_of(prepared, "alpha", 0)
+    assert size <= found["alpha"][0] <= 20 * size
