@@ -229,7 +229,7 @@ def first(grid: Grid, name: str) -> str:
 
 
 def test_a_row_names_the_cells_of_its_members() -> None:
-    grid = made(a, column("b", PAIRS, a[i] / a[j]))
+    grid = made(a, column("b", PAIRS, a[i] / a[j], positive=False))
     assert first(grid, "b") == (
         "=IF(AND(ISNUMBER(items!$B$8),ISNUMBER(items!$B$9)),"
         'IFERROR(items!$B$8/items!$B$9,"#DOMAIN!"),"#INPUT!")'
@@ -238,7 +238,7 @@ def test_a_row_names_the_cells_of_its_members() -> None:
 
 def test_an_error_is_carried_on_before_anything_is_computed() -> None:
     b = column("b", ITEMS, a[k] * 2)
-    grid = made(a, w, b, column("c", ITEMS, b[k] + w.symbol))
+    grid = made(a, w, b, column("c", ITEMS, b[k] + w.symbol, positive=False))
     assert first(grid, "c") == (
         '=IF(ISNUMBER(report!$B$6),IF(ISNUMBER($C$8),IFERROR(report!$B$6+$C$8,"#DOMAIN!"),$C$8),"#INPUT!")'
     )
@@ -253,15 +253,22 @@ def test_a_positive_quantity_has_no_other_value() -> None:
     assert f'IFERROR({core},"#DOMAIN!")' in first(grid, "d")
 
 
+def test_what_is_typed_may_be_zero_although_its_symbol_is_positive() -> None:
+    twice = column("b", ITEMS, a[k] * 2)
+    grid = made(a, twice, column("c", ITEMS, twice[k] * 2))
+    assert 'IF(2*$B$8>0,2*$B$8,"#DOMAIN!")' in first(grid, "b")
+    assert ">0" not in first(grid, "c")  # its precedent was checked in its own cell
+
+
 def test_conditions_come_before_the_value() -> None:
     needs = ((a[k] > w.symbol, "for a test"), (Ne(a[k], 4), "for a test"))
-    grid = made(a, w, column("c", ITEMS, a[k] + w.symbol, requires=needs))
+    grid = made(a, w, column("c", ITEMS, a[k] + w.symbol, requires=needs, positive=False))
     body = 'IFERROR(IF(AND($B$8>report!$B$6,$B$8<>4),report!$B$6+$B$8,"#DOMAIN!"),"#DOMAIN!")'
     assert body in first(grid, "c")
 
 
 def test_cells_in_other_units_are_converted_where_they_are_named() -> None:
-    length = {"unit": "m"}
+    length: dict[str, Any] = {"unit": "m", "positive": False}
     b = column("b", ITEMS, a[k] * 2, **length)
     grid = made(column("a", ITEMS, **length), b, units={"a": "mm", "b": "km"})
     assert 'IFERROR(2*($B$8/1000)/1000,"#DOMAIN!")' in first(grid, "b")
@@ -275,7 +282,7 @@ def test_a_symbol_in_a_unit_leaves_si() -> None:
 
 
 def test_a_sum_leaves_rows_without_values_out() -> None:
-    grid = made(a, w, column("c", None, w.symbol * Sum(a[k] ** 2, (k, 1, n_items)) / n_items))
+    grid = made(a, w, column("c", None, w.symbol * Sum(a[k] ** 2, (k, 1, n_items)) / n_items, positive=False))
     cells = "items!$B$8:$B$9"
     rows = f"SUM(IF(ISNUMBER({cells}),1,0))"
     assert first(grid, "c") == (
@@ -317,7 +324,7 @@ def test_worksheets_of_reserved_names_get_another() -> None:
 
 def test_more_rows_than_a_worksheet_should_hold(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(excel_grid, "MOST_ROWS", 1)
-    with pytest.raises(excel_grid.TooManyRows, match="items has 2 rows; a worksheet gets at most 1"):
+    with pytest.raises(excel_grid.TooManyRows, match="items has 2 rows"):
         made(a)
 
 
