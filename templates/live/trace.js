@@ -94,7 +94,6 @@ class Trace {
   outside(name, row, requires) {
     const { sums, positive } = this.declared[name], { broken, layouts } = this.sheet;
     if (broken?.[name]?.[row]) return requires[broken[name][row] - 1];
-    if (!broken && requires.length) return requires.join("; ");
     const empty = sums.find((axis) => layouts[axis].size === 0);
     return empty ? `${empty} has no rows` : `it gives no ${positive ? "positive" : "finite"} number here`;
   }

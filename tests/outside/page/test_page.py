@@ -373,7 +373,7 @@ def mutants(text: str, names: set[str]) -> list[str]:
     chance = random.Random(7)
     for name in sorted(names):
         kernel = re.search(
-            rf'\{{"name":"{name}",[^{{}}]*?"kernels":.*?value:(?P<code>.*?)(?=\}}\)\}},\{{"name"|\}}\)\}}\]|,requires:)',
+            rf'\{{"name":"{name}",[^{{}}]*?"kernels":.*?value:(?P<code>.*?)(?=,requires:|\}};\}}\}}[,\]\n])',
             text,
             re.DOTALL,
         )
