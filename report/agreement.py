@@ -18,9 +18,9 @@ class Agreement:
     Where an engine's numbers are read from a file that does not keep all digits, differences are those that
     are left when every number is moved towards the exact one by what its storage may have cut.
 
-    What does not depend on the machine for given inputs is `cells`, and that `findings` is empty if the
-    engines work. Differences do: NumPy takes another logarithm on another processor, and the
-    programs are whatever is installed. Only `numpy`'s may stand in a report, and only as within a limit.
+    For given inputs `cells` is the same everywhere. Differences depend on the machine: NumPy takes another
+    logarithm on another processor, and the programs are whatever is installed. A report therefore has
+    NumPy's alone unless the others are asked for.
 
     Parameters
     ----------

@@ -274,8 +274,7 @@ def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
     digits = []
     for given in (*sheet.ancestors(column), column):
         if isinstance(given.rule, Given) and not given.exact:
-            measured = inputs.measured.get(given.name) or (inputs.parameters[given.name],)
-            digits.append(min(printed.digits for printed in measured))
+            digits.append(min(printed.digits for printed in inputs.printed(given.name)))
     return Shown(unit, scale, min(digits, default=5) + 1)
 
 

@@ -154,7 +154,10 @@ class _Progress:
             self.shown = stage
         self.stream.flush()
 
-    def done(self) -> None:
+    def __enter__(self) -> _Progress:
+        return self
+
+    def __exit__(self, *_: object) -> None:
         """Clear the moving line."""
         if self.stream.isatty() and self.shown:
             self.stream.write("\r" + " " * len(self.shown) + "\r")
@@ -168,13 +171,10 @@ def _build(options: argparse.Namespace) -> int:
     from . import build
 
     formats = build.parse_formats(options.to)
-    progress = _Progress(sys.stderr)
-    try:
+    with _Progress(sys.stderr) as progress:
         report, files = build.build(
             options.folder or build.PAPER, options.out, formats, progress, options.engines
         )
-    finally:
-        progress.done()
     for name in report.workbook.headline:
         print(_line(report, name))
     for cell in report.values.errors():
@@ -195,12 +195,9 @@ def _build(options: argparse.Namespace) -> int:
 def _check(options: argparse.Namespace) -> int:
     from . import build
 
-    progress = _Progress(sys.stderr)
-    try:
+    with _Progress(sys.stderr) as progress:
         report = build.compute(options.folder or build.PAPER, progress)
         report = build.judged(report, step=progress)
-    finally:
-        progress.done()
     findings = _findings(report)
     if options.format == "json":
         import json
@@ -294,11 +291,8 @@ def _prove(options: argparse.Namespace) -> int:
             raise UsageError(
                 diagnose("LS604", kind="equation", text=options.equation, known=known, suggestion=hint)
             )
-    progress = _Progress(sys.stderr)
-    try:
+    with _Progress(sys.stderr) as progress:
         proofs = prove(ledger, lambda equation: progress(f"proving {equation.label}"))
-    finally:
-        progress.done()
     shown = [proof for proof in proofs if proof.equation.label in wanted]
     for proof in shown:
         _print_proof(proof, steps=bool(options.equation))
@@ -355,11 +349,8 @@ def _why(options: argparse.Namespace) -> int:
     from .errors import UsageError, diagnose, listing
     from .views.why import why
 
-    progress = _Progress(sys.stderr)
-    try:
+    with _Progress(sys.stderr) as progress:
         report = build.compute(options.folder or build.PAPER, progress)
-    finally:
-        progress.done()
     column, labels = _find(report, options.cell)
     if len(labels) != 1:
         known = listing(report.values.cell(column.name, label).address for label in labels)

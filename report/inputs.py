@@ -66,6 +66,12 @@ class Inputs:
     published: tuple[PublishedValue, ...]
     files: dict[str, bytes]
 
+    def printed(self, name: str) -> tuple[Printed, ...]:
+        """The numbers of a given column as they were printed, one a row; none if the folder has none."""
+        if name in self.measured:
+            return self.measured[name]
+        return (self.parameters[name],) if name in self.parameters else ()
+
 
 def load(folder: Path, find_workbook: Callable[[str, Path], Workbook]) -> Inputs:
     """Read a report folder.

@@ -29,7 +29,7 @@ from ..grid import Grid
 from ..sheet import Given, Sheet
 from ..values import CODES, Status, Values
 
-__all__ = ["Book", "Reading", "of_values", "run_javascript", "run_workbook"]
+__all__ = ["ALWAYS_RECALCULATE", "Book", "Reading", "of_values", "run_javascript", "run_workbook"]
 
 SCRIPT_SECONDS = 120
 BOOK_SECONDS = 300
@@ -252,7 +252,7 @@ def _in_page(path: str, folder: Path, body: str, text: str) -> str:
 
 # --- the workbook -----------------------------------------------------------------------------------------
 
-_ALWAYS_RECALCULATE = """<?xml version="1.0" encoding="UTF-8"?>
+ALWAYS_RECALCULATE = """<?xml version="1.0" encoding="UTF-8"?>
 <oor:items xmlns:oor="http://openoffice.org/2001/registry" xmlns:xs="http://www.w3.org/2001/XMLSchema"
  xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance">
 <item oor:path="/org.openoffice.Office.Calc/Formula/Load"><prop oor:name="OOXMLRecalcMode" oor:op="fuse">
@@ -295,7 +295,7 @@ def _recalculated(soffice: str, content: bytes) -> dict[str, dict[str, float | s
         profile, made = Path(folder) / "profile", Path(folder) / "made"
         (profile / "user").mkdir(parents=True)
         # Without this LibreOffice would believe the values of a file that says where it comes from.
-        (profile / "user" / "registrymodifications.xcu").write_text(_ALWAYS_RECALCULATE, encoding="utf-8")
+        (profile / "user" / "registrymodifications.xcu").write_text(ALWAYS_RECALCULATE, encoding="utf-8")
         given = Path(folder) / "report.xlsx"
         given.write_bytes(without_results(content))
         command = [soffice, f"-env:UserInstallation={profile.as_uri()}", "--headless", "--convert-to", "xlsx"]

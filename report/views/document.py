@@ -11,7 +11,6 @@ from functools import cached_property
 
 from ...derivations.equation import Derivation, Equation
 from ...derivations.proof import Proof
-from ..quantity import Printed
 from ..result import Report
 from ..sheet import Axis, Column, Given, RepeatAxis, Root
 from ..values import Cell
@@ -57,21 +56,14 @@ class Document:
             tuple(source for source in sources if source in known),
         )
 
-    def _printed(self, name: str) -> tuple[Printed, ...] | None:
-        """The numbers of a given column, as they were printed."""
-        inputs = self.report.inputs
-        if name in inputs.measured:
-            return inputs.measured[name]
-        return (inputs.parameters[name],) if name in inputs.parameters else None
-
     def items(self, name: str) -> tuple[Head, tuple[Item, ...]]:
         """All cells of a column, in one notation."""
         column = self.report.sheet[name]
         head, cells = self.head(column), list(self.report.values.cells(name))
-        printed = self._printed(name) if head.given else None
+        printed = self.report.inputs.printed(name) if head.given else ()
         form = self.report.shown[name]
         figures: list[Figure | None]
-        if printed is None:
+        if not printed:
             figures = shown((cell.value for cell in cells), form.scale, form.digits)
             texts: tuple[str | None, ...] = (None,) * len(cells)
         else:

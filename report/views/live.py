@@ -202,9 +202,7 @@ def _given(report: Report, column: Column) -> dict[str, Any]:
 
 def _printed(report: Report, name: str) -> Printed | None:
     """A number of an input, for its unit."""
-    if name in report.inputs.measured:
-        return next(iter(report.inputs.measured[name]), None)
-    return report.inputs.parameters.get(name)
+    return next(iter(report.inputs.printed(name)), None)
 
 
 def _uncertainties(

@@ -64,14 +64,6 @@ def _line(what: str, text: str) -> str:
 # --- numbers ---------------------------------------------------------------------------------------------
 
 
-def _printed(report: Report, name: str, row: int) -> str:
-    """A given number as it was printed; nothing for a computed one."""
-    inputs = report.inputs
-    if name in inputs.measured:
-        return inputs.measured[name][row].text
-    return inputs.parameters[name].text if name in inputs.parameters else ""
-
-
 def _unit(report: Report, name: str) -> str:
     unit = report.shown[name].unit
     return "" if unit == "1" else f" {unit}"
@@ -89,9 +81,12 @@ def _brief(report: Report, cell: Cell) -> str:
         return cell.status.code
     column = report.sheet[cell.name]
     how = report.shown[cell.name]
-    printed = _printed(report, cell.name, report.values.row(column, cell.label))
-    printed = printed or f"{cell.value / how.scale:#.{how.digits}g}".rstrip(".")
-    return f"{printed}{_unit(report, cell.name)}"
+    printed = report.inputs.printed(cell.name) if _is_given(column) else ()
+    if printed:
+        number = printed[report.values.row(column, cell.label)].text
+    else:
+        number = f"{cell.value / how.scale:#.{how.digits}g}".rstrip(".")
+    return f"{number}{_unit(report, cell.name)}"
 
 
 def _is_given(column: Column) -> bool:
@@ -100,13 +95,10 @@ def _is_given(column: Column) -> bool:
 
 def _where(report: Report, name: str, row: int) -> str:
     """Where a given number was printed, and as what."""
-    inputs = report.inputs
-    if name in inputs.measured:
-        number = inputs.measured[name][row]
-    elif name in inputs.parameters:
-        number = inputs.parameters[name]
-    else:
+    printed = report.inputs.printed(name)
+    if not printed:
         return "by the workbook"
+    number = printed[row]
     unit = "" if number.unit == "1" else f" {number.unit}"
     return f"as {number.text}{unit}, {number.where or 'by default'} ({number.mode})"
 

@@ -38,20 +38,13 @@ class Inputs:
         self.bounds |= {each.name: each.bounds for each in report.workbook.parameters}
         self.counts = {axis.count: axis for axis in grid.axes.values() if isinstance(axis, RepeatAxis)}
 
-    def printed(self, name: str) -> tuple[Printed, ...]:
-        """The numbers of a given column as they were printed; none for one that only charts have."""
-        measured = self.report.inputs.measured.get(name)
-        if measured is not None:
-            return measured
-        return (self.report.inputs.parameters[name],) if name in self.report.inputs.parameters else ()
-
     def allowed(self, block: Block) -> Bounds:
         """What is allowed, in the unit of the cells."""
         return in_unit(self.bounds.get(block.name, Bounds()), block.place.scale)
 
     def note(self, block: Block, row: int) -> str:
         """What a cell is, what it may be, and where it comes from."""
-        printed = self.printed(block.name)[row]
+        printed = self.report.inputs.printed(block.name)[row]
         lines = [f"{block.name}: {block.meaning}."]
         if block.name in self.counts:
             lines.append(
@@ -70,7 +63,7 @@ class Inputs:
         bounds = self.allowed(block)
         message = f"{block.name} must be {bounds}, in {block.unit}."
         if block.name in self.counts:
-            (printed,) = self.printed(block.name)
+            (printed,) = self.report.inputs.printed(block.name)
             bounds = Bounds(float(printed.value), float(printed.value))
             message = f"{block.name} decides how many rows there are: change report.toml and build again."
         tests = [f"ISNUMBER({cell})", *([f"{cell}=INT({cell})"] if bounds.integer else [])]
@@ -113,7 +106,7 @@ def _number_format(report: Report, block: Block) -> str:
 
 
 def _write_given(sheet: Any, style: Style, block: Block, inputs: Inputs) -> None:
-    printed, place = inputs.printed(block.name), block.place
+    printed, place = inputs.report.inputs.printed(block.name), block.place
     fixed = block.name in inputs.counts
     if not printed:
         for row, number in enumerate(block.values):

@@ -1,6 +1,32 @@
 """Lets the tests beside it import what they share."""
 
+import shutil
+import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
+import pytest
+
 sys.path.insert(0, str(Path(__file__).parent))
+
+
+@pytest.fixture(scope="session")
+def npm_packages(require: Callable[..., str]) -> Callable[[Path], Path]:
+    """Install the pinned packages of a folder of tests, once and outside of the checkout."""
+
+    def install(folder: Path) -> Path:
+        npm, lock = require("npm"), (folder / "package-lock.json").read_text(encoding="utf-8")
+        cache = Path.home() / ".cache" / "loopsheet" / folder.name
+        installed = cache / "package-lock.json"
+        if not installed.exists() or installed.read_text(encoding="utf-8") != lock:
+            cache.mkdir(parents=True, exist_ok=True)
+            shutil.copy(folder / "package.json", cache)
+            (cache / "npm-shrinkwrap.json").write_text(lock, encoding="utf-8")
+            command = [npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--no-update-notifier"]
+            run = subprocess.run(command, cwd=cache, capture_output=True, text=True, timeout=300, check=False)
+            assert run.returncode == 0, run.stderr
+            installed.write_text(lock, encoding="utf-8")
+        return cache / "node_modules"
+
+    return install

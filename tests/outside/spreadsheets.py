@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from loopsheet.report import build
+from loopsheet.report.analysis.readers import ALWAYS_RECALCULATE
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.grid import Drawn, Grid
@@ -227,14 +228,6 @@ def compare(
 
 # --- LibreOffice -----------------------------------------------------------------------------------------
 
-_ALWAYS_RECALCULATE = """<?xml version="1.0" encoding="UTF-8"?>
-<oor:items xmlns:oor="http://openoffice.org/2001/registry" xmlns:xs="http://www.w3.org/2001/XMLSchema"
- xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance">
-<item oor:path="/org.openoffice.Office.Calc/Formula/Load"><prop oor:name="OOXMLRecalcMode" oor:op="fuse">
-<value>0</value></prop></item>
-</oor:items>
-"""
-
 
 def recalculate(
     soffice: str, folder: Path, books: Mapping[str, bytes]
@@ -249,7 +242,7 @@ def recalculate(
     for each in (profile / "user", given, made):
         each.mkdir(parents=True, exist_ok=True)
     # Without this LibreOffice believes the stored values.
-    (profile / "user" / "registrymodifications.xcu").write_text(_ALWAYS_RECALCULATE)
+    (profile / "user" / "registrymodifications.xcu").write_text(ALWAYS_RECALCULATE)
     for name, content in books.items():
         (given / f"{name}.xlsx").write_bytes(content)
     command = [soffice, f"-env:UserInstallation=file://{profile}", "--headless", "--convert-to", "xlsx"]

@@ -2,7 +2,6 @@
 
 import json
 import random
-import shutil
 import subprocess
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -20,28 +19,17 @@ from loopsheet.report.sheet import Given
 from loopsheet.report.values import CODES, Status
 
 HERE = Path(__file__).parent
-CACHE = Path.home() / ".cache" / "loopsheet" / "outside"
 
 Recalculate = Callable[..., dict[str, Any]]
 
 
 @pytest.fixture(scope="session")
-def hyperformula(require: Callable[..., str]) -> Recalculate:
+def hyperformula(require: Callable[..., str], npm_packages: Callable[[Path], Path]) -> Recalculate:
     """Recalculate books of formulas; the package is installed once, outside of the checkout."""
-    node, npm = require("node"), require("npm")
-    lock = (HERE / "package-lock.json").read_text(encoding="utf-8")
-    installed = CACHE / "package-lock.json"
-    if not installed.exists() or installed.read_text(encoding="utf-8") != lock:
-        CACHE.mkdir(parents=True, exist_ok=True)
-        shutil.copy(HERE / "package.json", CACHE)
-        (CACHE / "npm-shrinkwrap.json").write_text(lock, encoding="utf-8")
-        command = [npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--no-update-notifier"]
-        run = subprocess.run(command, cwd=CACHE, capture_output=True, text=True, timeout=300, check=False)
-        assert run.returncode == 0, run.stderr
-        installed.write_text(lock, encoding="utf-8")
+    node, packages = require("node"), npm_packages(HERE)
 
     def recalculate(books: Mapping[str, Any], mutants: list[list[str]] | None = None) -> dict[str, Any]:
-        module = str(CACHE / "node_modules" / "hyperformula")
+        module = str(packages / "hyperformula")
         run = subprocess.run(
             [node, str(HERE / "hyperformula.js")],
             input=json.dumps({"module": module, "books": books, "mutants": mutants or []}),

@@ -1,7 +1,5 @@
 """One Chromium for all tests of the page; every test gets a page of its own that must not report an error."""
 
-import shutil
-import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -16,8 +14,6 @@ sys.path.insert(0, str(HERE))
 import driving  # noqa: E402 - it stands beside this file
 
 from loopsheet.report import build  # noqa: E402
-
-CACHE = Path.home() / ".cache" / "loopsheet" / "page"
 
 Open = Callable[..., driving.Live]
 
@@ -63,16 +59,6 @@ def live(open_page: Open) -> driving.Live:
 
 
 @pytest.fixture(scope="session")
-def packages(require: Callable[..., str]) -> Path:
-    """The pinned packages of npm, installed once, outside of the checkout."""
-    npm, lock = require("npm"), (HERE / "package-lock.json").read_text(encoding="utf-8")
-    installed = CACHE / "package-lock.json"
-    if not installed.exists() or installed.read_text(encoding="utf-8") != lock:
-        CACHE.mkdir(parents=True, exist_ok=True)
-        shutil.copy(HERE / "package.json", CACHE)
-        (CACHE / "npm-shrinkwrap.json").write_text(lock, encoding="utf-8")
-        command = [npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--no-update-notifier"]
-        run = subprocess.run(command, cwd=CACHE, capture_output=True, text=True, timeout=300, check=False)
-        assert run.returncode == 0, run.stderr
-        installed.write_text(lock, encoding="utf-8")
-    return CACHE / "node_modules"
+def packages(npm_packages: Callable[[Path], Path]) -> Path:
+    """axe-core and html-validate."""
+    return npm_packages(HERE)
