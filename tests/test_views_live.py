@@ -23,7 +23,7 @@ from loopsheet.report import build
 from loopsheet.report.analysis.referee import print_as
 from loopsheet.report.engines import javascript
 from loopsheet.report.number_text import NumberError, read_printed
-from loopsheet.report.quantity import Bounds
+from loopsheet.report.quantity import Bounds, Printed
 from loopsheet.report.result import Report
 from loopsheet.report.unit_text import parse_unit
 from loopsheet.report.views import compact, compact_svg, figures, html, live
@@ -146,6 +146,18 @@ def test_pieces_of_the_toml_make_the_file_again(known: dict[str, Any], report: R
     assert sorted(places) == sorted(known["parameters"])
 
 
+def test_digits_follow_from_what_a_column_rests_on(known: dict[str, Any], report: Report) -> None:
+    columns, grounds = known["columns"], known["grounds"]
+    assert grounds[columns["alpha"]["ground"]] == [4, ["v", "e", "x_p"]]  # beta is exact
+    assert grounds[columns["m_red"]["ground"]] == [4, ["ball_diameter", "ball_density"]]
+    for name, column in columns.items():
+        assert ("given" in column) != ("ground" in column)
+        if "ground" in column:
+            digits, rests = grounds[column["ground"]]
+            printed = [number.digits for given in rests for number in report.inputs.printed(given)]
+            assert report.shown[name].digits == digits == min(printed, default=5) + 1
+
+
 def test_published_values_keep_their_digits(known: dict[str, Any]) -> None:
     (tables, *_) = known["published"]
     assert tables["id"] == "published-Table-2"
@@ -266,6 +278,7 @@ const does = {
     return found.why ? null : hexed(found.value);
   },
   normalised: (text) => normalised(text),
+  digits: (text) => digitsOf(text),
 };
 console.log(JSON.stringify(cases.map(([name, ...rest]) => does[name](...rest))));
 """
@@ -359,6 +372,16 @@ def test_texts_are_read_to_the_same_double(
     for read, found, expected in zip(texts, in_js(cases), wanted, strict=True):
         if expected is not None:
             assert found == expected, read
+
+
+@settings(max_examples=15, suppress_health_check=list(HealthCheck))
+@given(st.lists(printed, min_size=1, max_size=80))
+def test_printed_digits_are_counted_as_python_does(
+    in_js: Callable[[list[list[Any]]], list[Any]], texts: list[str]
+) -> None:
+    texts = [*texts, "0", "0.00", ".9", "0.90", "+2.940", "12E+2", "-.050e-3"]
+    wanted = [Printed(text, "1", Fraction(0), Fraction(1)).digits for text in texts]
+    assert in_js([["digits", text] for text in texts]) == wanted
 
 
 @pytest.mark.parametrize(

@@ -77,6 +77,9 @@ def script(program: str, runtime: str) -> str:
     return text
 
 
+Ground = tuple[int, tuple[str, ...]]
+"""How many digits a column has as issued, and the given columns, not exact, that it rests on."""
+
 # --- the data --------------------------------------------------------------------------------------------
 
 
@@ -93,8 +96,10 @@ def data(report: Report, document: Document) -> str:
     sheet = report.sheet
     measured = {name: numbers for name, numbers in inputs.measured.items() if name in sheet}
     parameters = {name: number for name, number in inputs.parameters.items() if name in sheet}
+    grounds = _grounds(report)
     known = {
-        "columns": {column.name: _column(report, document, column) for column in sheet.columns},
+        "columns": {column.name: _column(report, document, column, grounds) for column in sheet.columns},
+        "grounds": grounds,
         "tests": [
             {
                 "label": test,
@@ -147,18 +152,18 @@ def _fraction(value: Fraction) -> list[str]:
     return [str(value.numerator), str(value.denominator)]
 
 
-def _column(report: Report, document: Document, column: Column) -> dict[str, Any]:
+def _column(report: Report, document: Document, column: Column, grounds: list[Ground]) -> dict[str, Any]:
     shown = report.shown[column.name]
     head = document.head(column)
     entry: dict[str, Any] = {
         "source": column.source,
         "unit": unit_text(_unit(report, column)).strip("()"),
         "scale": shown.scale,
-        "digits": shown.digits,
     }
     if isinstance(column.rule, Given):
         entry["given"] = _given(report, column)
         return entry
+    entry["ground"] = grounds.index(_ground(report, column))
     put = Put(document)
     if head.sources != (column.source,):
         entry["equations"] = head.sources
@@ -169,6 +174,18 @@ def _column(report: Report, document: Document, column: Column) -> dict[str, Any
     if put.equation(column):
         entry["put"] = put.cells
     return entry
+
+
+def _grounds(report: Report) -> list[Ground]:
+    """What the digits of the computed columns follow from; most columns share one of a few."""
+    computed = (column for column in report.sheet.columns if not isinstance(column.rule, Given))
+    return list(dict.fromkeys(_ground(report, column) for column in computed))
+
+
+def _ground(report: Report, column: Column) -> Ground:
+    ancestors = report.sheet.ancestors(column)
+    measured = tuple(given.name for given in ancestors if isinstance(given.rule, Given) and not given.exact)
+    return report.shown[column.name].digits, measured
 
 
 def _unit(report: Report, column: Column) -> str:

@@ -84,7 +84,7 @@ function publishedMath(column, name) {
 // Over how many rows a sum runs: its terms are too many to be put in.
 function summedRows(name) {
   const { look } = page, column = look.trace.declared[name], counted = look.trace.sheet.counted[name] ?? {};
-  return column.sums.map((axis) => ` over ${counted[axis] ?? look.trace.sheet.layouts[axis].size} ${axis}`).join(",");
+  return column.sums.map((axis) => ` over ${counted[axis] ?? look.trace.sheet.layouts[axis].size}\u00a0${axis}`).join(",");
 }
 
 // The equation with the values put in, in SI.
@@ -101,10 +101,22 @@ function putIn(look, name, row) {
     if (found) place.replaceWith(...numberMath(valueOf(put[found[1]])));
   }
   math.setAttribute("display", "block");
-  const shown = make("span", { class: "math" }, math);
+  const shown = make("span", { class: "math" }, ...breakable(math));
   if (none !== undefined) return [make("span", { class: "si" }, "in SI: "), shown];
   const value = numberMath(trace.sheet.value[name][row]).map((node) => node.textContent).join("").replace(/^\((.*)\)$/, "$1");
   return [make("span", { class: "si" }, "in SI: "), ...part(name, "symbol"), " = ", shown, ` = ${value}`];
+}
+
+// A formula in pieces, each but the first beginning with an operator: a line may end between them.
+function breakable(math) {
+  const row = math.childElementCount === 1 && math.firstChild.localName === "mrow" ? math.firstChild : math, pieces = [];
+  for (const node of Array.from(row.childNodes)) {
+    const operator = node.localName === "mo" && "+\u2212·=".includes(node.textContent);
+    if (pieces.length && operator) node.setAttribute("form", "infix"); // the first of a row would be a prefix
+    if (!pieces.length || operator) pieces.push(math.cloneNode(false));
+    pieces.at(-1).append(node);
+  }
+  return pieces;
 }
 
 // A number for a formula: six digits, in parentheses where it would not hold together.

@@ -8,6 +8,7 @@ class Look {
     this.issued = issued;
     this.tests = usedTests(state);
     this.known = {};
+    this.least = {};
   }
 
   // The printed texts of a given column, row by row.
@@ -16,17 +17,30 @@ class Look {
     return axis === null ? [this.state.parameters[name]] : this.tests.map((test) => test.cells[name]);
   }
 
+  // The digits of the least precise text of a given column; what is no datum says nothing.
+  leastDigits(name) {
+    const codes = this.trace.sheet.status[name];
+    return (this.least[name] ??= Math.min(...this.texts(name).filter((_, row) => codes[row] === STATUS.OK).map(digitsOf)));
+  }
+
+  // One digit more than the least precise number that a computed column rests on, as it is typed now.
+  digits(name) {
+    const [issued, measured] = LIVE.grounds[LIVE.columns[name].ground];
+    const least = Math.min(...measured.map((given) => this.leastDigits(given)));
+    return least < Infinity ? least + 1 : issued;
+  }
+
   column(name) {
     if (this.known[name]) return this.known[name];
-    const { scale, digits, given } = LIVE.columns[name], values = this.trace.sheet.value[name];
+    const { scale, given } = LIVE.columns[name], values = this.trace.sheet.value[name];
     if (given) {
       const texts = this.texts(name), figures = texts.map(readFigure);
       const places = Math.max(0, ...figures.map((figure) => figure?.fraction.length ?? 0));
       return (this.known[name] = { texts, places, scientific: false, figure: (row) => figures[row] });
     }
-    const form = columnForm(values, scale, digits);
+    const digits = this.digits(name), form = columnForm(values, scale, digits);
     const figure = (row) => (Number.isNaN(values[row]) ? null : rounded(values[row] / scale, digits, form.scientific));
-    return (this.known[name] = { texts: null, ...form, figure });
+    return (this.known[name] = { texts: null, digits, ...form, figure });
   }
 
   cell(name, row) {
@@ -68,7 +82,7 @@ function isUnchanged(look, last, name, row, before) {
   const now = look.trace.sheet, then = last.trace.sheet;
   if (now.value[name][row] !== then.value[name][before] || now.status[name][row] || then.status[name][before]) return false;
   const form = look.column(name), old = last.column(name);
-  return form.scientific === old.scientific && form.places === old.places;
+  return form.digits === old.digits && form.scientific === old.scientific && form.places === old.places;
 }
 
 // What was last written into an element.
@@ -85,10 +99,13 @@ function writeCell(element, look, name, row) {
   element.setAttribute("data-status", cell.code);
   if (title) element.setAttribute("title", title);
   else element.removeAttribute("title");
+  if (element.tagName === "TD") {
+    writeComputed(element, look, cell);
+    return;
+  }
   element.classList.toggle("changed", cell.mark === "changed");
   element.classList.toggle("added", cell.mark === "added");
   if (element.tagName === "INPUT") writeInput(element, look, cell);
-  else if (element.tagName === "TD") writeComputed(element, look, cell);
   else writeInText(element, cell);
 }
 
@@ -97,10 +114,10 @@ function codeLink(look, { name, row, code }) {
   return make("a", { href: `#${cellId("why", origin.name, index)}`, tabindex: "-1" }, code);
 }
 
+// What the formula bar marks, it marks again after every edit.
 function writeComputed(element, look, cell) {
-  element.classList.remove(...Array.from(element.classList).filter((word) => /^(p\d|nopoint|error)$/.test(word)));
-  element.classList.add(...(cell.ok ? cell.pad.split(" ") : ["error"]));
-  if (cell.ok) element.textContent = cell.text;
+  element.className = `${cell.ok ? cell.pad : "error"} ${cell.mark}`.trim();
+  if (cell.ok) setText(element, cell.text);
   else element.replaceChildren(codeLink(look, cell));
 }
 

@@ -82,7 +82,8 @@ function drawLoops(look) {
 
 function drawAlphaPairs(look) {
   const { trace } = look, { layouts, value } = trace.sheet, speed = LIVE.columns.v;
-  const column = trace.declared.alpha, layout = layouts[column.axis], axis = PROGRAM.axes.find((one) => one.name === column.axis);
+  const { digits } = look.column("alpha"), column = trace.declared.alpha, layout = layouts[column.axis];
+  const axis = PROGRAM.axes.find((one) => one.name === column.axis);
   const pairs = [];
   for (let row = 0; row < layout.size; row++) {
     if (!trace.isOk("alpha", row)) continue;
@@ -121,10 +122,10 @@ function drawAlphaPairs(look) {
       || picture.label(text, [right, mean], [[-4, -4, "end"], [-4, 11, "end"]]);
   }
   for (const pair of few ? outermost : outermost.slice(0, 12)) {
-    const text = pair.held ? `${pair.label}: ${figureText(rounded(pair.at[1], LIVE.columns.alpha.digits))}` : pair.label;
+    const text = pair.held ? `${pair.label}: ${figureText(rounded(pair.at[1], digits))}` : pair.label;
     picture.label(text, pair.held ?? pair.at, pair.held ? AROUND.slice(0, 2) : AROUND, { size: 8.5 });
   }
-  const ends = `${figureText(rounded(ys[0], 4))} to ${figureText(rounded(ys.at(-1), 4))}`;
+  const ends = `${figureText(rounded(ys[0], digits))} to ${figureText(rounded(ys.at(-1), digits))}`;
   return { svg: picture.svg, says: `${plural(pairs.length, "pair")}, exponents from ${ends}.` };
 }
 

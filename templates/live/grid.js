@@ -36,10 +36,23 @@ const placeOf = (element) => {
   return { grid: gridOf(element), row: row.sectionRowIndex, stop: stopsOf(row).indexOf(element) };
 };
 
-function moveTo({ grid, row, stop }) {
+function stopAt({ grid, row, stop }) {
   const rows = grid.tBodies[0].rows, there = rows[Math.max(0, Math.min(row, rows.length - 1))];
   const stops = stopsOf(there);
-  if (stops.length) enter(stops[Math.max(0, Math.min(stop, stops.length - 1))]);
+  return stops[Math.max(0, Math.min(stop, stops.length - 1))];
+}
+
+// The cell that an element shows: its name and its index.
+const cellOf = ({ dataset }) => dataset.published?.split(" ") ?? [dataset.cell, dataset.index];
+
+// Enters what was typed and goes on to what `next` finds. The bar learns first where that is, and is written
+// once; the focus comes last, for it makes the browser lay out the page.
+function commitAndEnter(next) {
+  const there = editing && next();
+  if (there?.dataset.cell) [bar.name, bar.index] = cellOf(there);
+  commit();
+  const element = next(); // an element of the same place: an edit may have replaced the other
+  if (element) enter(element);
 }
 
 // --- editing ---------------------------------------------------------------------------------------------
@@ -78,8 +91,7 @@ function onGridKey(event) {
   const { key, ctrlKey, metaKey, shiftKey } = event, control = ctrlKey || metaKey, here = placeOf(element);
   const go = (place) => {
     event.preventDefault();
-    commit();
-    moveTo({ ...here, ...place });
+    commitAndEnter(() => stopAt({ ...here, ...place }));
   };
   if (ARROWS[key] && !control) {
     const [down, right] = ARROWS[key];
@@ -94,13 +106,9 @@ function onGridKey(event) {
   } else if (key === "Enter" && text) {
     go({ row: here.row + (shiftKey ? -1 : 1) });
   } else if (key === "Tab" && text) {
-    const index = all("input[data-cell]", here.grid.tBodies[0]).indexOf(element) + (shiftKey ? -1 : 1);
-    commit();
-    const next = all("input[data-cell]", here.grid.tBodies[0])[index];
-    if (next) {
-      event.preventDefault();
-      enter(next);
-    }
+    const inputs = () => all("input[data-cell]", here.grid.tBodies[0]), index = inputs().indexOf(element) + (shiftKey ? -1 : 1);
+    if (inputs()[index]) event.preventDefault();
+    commitAndEnter(() => inputs()[index]);
   } else if (key === "Escape" && editing) {
     event.preventDefault();
     cancel();
@@ -162,8 +170,8 @@ function onFocus(event) {
     for (const other of all("tbody [tabindex='0']", grid)) other.setAttribute("tabindex", "-1");
     element.setAttribute("tabindex", "0");
   }
-  const [name, index] = element.dataset.published?.split(" ") ?? [element.dataset.cell, element.dataset.index];
-  if (bar.name !== name || bar.index !== index) showCell(name, index);
+  const [name, index] = cellOf(element), shown = byId("formula-bar").dataset;
+  if (shown.cell !== name || shown.index !== index) showCell(name, index);
 }
 
 // --- the clipboard ---------------------------------------------------------------------------------------

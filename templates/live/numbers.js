@@ -188,6 +188,9 @@ function decimalsOf(text) {
   return (mantissa.split(".")[1] ?? "").length - Number(power);
 }
 
+// Significant digits as printed: 4 for 2.940; zeros count unless they lead.
+const digitsOf = (text) => text.toLowerCase().split("e")[0].replace(/^[+-]/, "").replace(".", "").replace(/^0+/, "").length || 1;
+
 // A double beside a printed number: printed as that is, how far off in units of its last digit, the same?
 function beside(value, text, scale) {
   const exact = ofDouble(value), places = decimalsOf(text), printed = readExact(text);

@@ -40,6 +40,11 @@ function furnished(element, attributes, children) {
   return element;
 }
 
+// Writes a text where it differs: what is left alone needs no new layout.
+function setText(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
 const slug = (label) => label.replace(/[^A-Za-z0-9_.]+/g, "-").replace(/^-+|-+$/g, "") || "x";
 const cellId = (kind, name, index) => slug(index ? `${kind}-${name}-${index}` : `${kind}-${name}`);
 const plural = (count, word) => `${count} ${word}${count === 1 ? "" : "s"}`;
@@ -56,7 +61,9 @@ const meaningOf = (name) => part(name, "meaning").map((node) => node.textContent
 
 // Makes an element what another one is, keeping every element that stays, for one may have the focus.
 function become(element, model) {
-  for (const { name } of Array.from(element.attributes)) if (!model.hasAttribute(name)) element.removeAttribute(name);
+  // In their order, too: a row that a new test brought has them as the script writes them.
+  const names = (one) => Array.from(one.attributes, ({ name }) => name);
+  if (String(names(element)) !== String(names(model))) names(element).forEach((name) => element.removeAttribute(name));
   for (const { name, value } of Array.from(model.attributes)) {
     if (element.getAttribute(name) !== value) element.setAttribute(name, value);
   }

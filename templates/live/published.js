@@ -19,9 +19,9 @@ function writePublished(look) {
     if (!body) continue;
     found.forEach(({ again, distance, verdict, expected }, place) => {
       const row = body.rows[place], cells = row.cells;
-      cells[3].textContent = again;
-      cells[5].textContent = distance === undefined ? "" : distanceText(distance);
-      cells[6].textContent = verdict + (expected ? "" : ", unexpectedly");
+      setText(cells[3], again);
+      setText(cells[5], distance === undefined ? "" : distanceText(distance));
+      setText(cells[6], verdict + (expected ? "" : ", unexpectedly"));
       row.classList.toggle("unexpected", !expected);
       const [cell, index] = rows[place], now = look.trace.row(cell, index), before = look.issued.trace.row(cell, index);
       const same = now >= 0 && before >= 0 && isSameCell(look, cell, now, look.issued, before);
@@ -48,7 +48,8 @@ function writeTally(found) {
     const was = surprises === 1 ? "was" : "were";
     sentences.push(" ", make("strong", {}, `${surprises} of these findings ${was} not expected.`));
   }
-  element.replaceChildren(...sentences);
+  const text = sentences.map((one) => one.textContent ?? one).join("");
+  if (element.textContent !== text) element.replaceChildren(...sentences);
 }
 
 // The line that sums up one table of the source: rewritten behind its title.
@@ -64,7 +65,8 @@ function writeGroup(place, rows, called, found) {
   const off = furthest && same < found.length
     ? `; the furthest is off by ${distanceText(furthest.distance)} units, ${furthest.again} against the published ${furthest.text}${of}`
     : "";
-  node.data = `${node.data.slice(0, node.data.indexOf(start))}${start}s ${comes(same)} out as printed${off}.`;
+  const text = `${node.data.slice(0, node.data.indexOf(start))}${start}s ${comes(same)} out as printed${off}.`;
+  if (node.data !== text) node.data = text;
 }
 
 // What no script can rewrite says that it is about the report as issued.

@@ -115,7 +115,7 @@ const INPUT_ATTRIBUTES = {
 function writeCounts(look) {
   for (const element of all("[data-count]")) {
     const { count, counted } = element.dataset;
-    element.textContent = look.trace.sheet.counted[counted]?.[count] || look.trace.sheet.layouts[count].size;
+    setText(element, String(look.trace.sheet.counted[counted]?.[count] || look.trace.sheet.layouts[count].size));
   }
 }
 
@@ -123,10 +123,13 @@ function writeCounts(look) {
 function writeCounted(look) {
   for (const element of all(".headline [data-cell]")) {
     const box = element.parentElement, counted = look.trace.sheet.counted[element.dataset.cell] ?? {};
-    all(".counted", box).forEach((old) => old.remove());
+    for (const old of all(".counted", box)) {
+      if (!old.previousSibling?.data?.trim()) old.previousSibling?.remove();
+      old.remove();
+    }
     for (const [axis, rows] of Object.entries(counted)) {
       const size = look.trace.sheet.layouts[axis].size;
-      if (rows) box.append(make("span", { class: "counted" }, `over ${rows} of ${size} ${axis}`));
+      if (rows) box.append(" ", make("span", { class: "counted" }, `over ${rows} of ${size} ${axis}`));
     }
   }
 }

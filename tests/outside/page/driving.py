@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from playwright.sync_api import Locator, Page
+from playwright.sync_api import Download, Locator, Page
 
 from loopsheet.report import build
 from loopsheet.report.engines import numpy as engine
@@ -53,6 +53,12 @@ _CELLS = """() => Array.from(document.querySelectorAll("main [data-cell][data-va
     Array.from(box.classList).filter((word) => /^(p[0-9]|nopoint|error)$/.test(word)).sort().join(" "),
     cell.classList.contains("changed"), cell.classList.contains("added"), cell.title];
 })"""
+
+
+def shown(cells: list[Shown]) -> list[tuple[str, str, str, str]]:
+    """What a reader sees of the cells: their characters, and how far they are moved."""
+    return [(cell.name, cell.index, cell.text, cell.layout) for cell in cells]
+
 
 # What stands beside the cells and follows from them.
 _AROUND = """() => {
@@ -135,6 +141,24 @@ class Live:
     def click(self, identifier: str) -> None:
         self.page.locator(f"#{identifier}").click()
 
+    def save(self, folder: Path) -> Path:
+        """Save the inputs as the page offers it; gives the folder of the files."""
+        downloads: list[Download] = []
+
+        def keep(download: Download) -> None:
+            downloads.append(download)
+
+        self.page.on("download", keep)
+        self.click("live-save")
+        links = self.page.locator("#live-downloads a[download]")
+        assert links.all_inner_texts() == ["measurements.csv", "report.toml"]
+        while len(downloads) < 2:
+            self.page.wait_for_timeout(20)
+        self.page.remove_listener("download", keep)
+        for download in downloads:
+            download.save_as(folder / download.suggested_filename)
+        return folder
+
 
 # --- what it should show ----------------------------------------------------------------------------------
 
@@ -160,12 +184,18 @@ def write(folder: Path, tests: Tests, published: bool = False) -> Path:
     lines = [",".join(["test", *TITLES.values()])]
     lines += [",".join([str(test), *(cells[name] for name in TITLES)]) for test, cells in tests.items()]
     (folder / "measurements.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    toml = (build.PAPER / "report.toml").read_text(encoding="utf-8")
+    (folder / "report.toml").write_bytes((build.PAPER / "report.toml").read_bytes())
+    return compared(folder, published)
+
+
+def compared(folder: Path, published: bool) -> Path:
+    """Give a folder the published values of the paper, or take the word of them out of it."""
     if published:
         (folder / "published.csv").write_bytes((build.PAPER / "published.csv").read_bytes())
     else:
+        toml = (folder / "report.toml").read_text(encoding="utf-8")
         toml = re.sub(r"^\[published\].*", "", toml, flags=re.MULTILINE | re.DOTALL)
-    (folder / "report.toml").write_text(toml, encoding="utf-8")
+        (folder / "report.toml").write_text(toml, encoding="utf-8")
     return folder
 
 

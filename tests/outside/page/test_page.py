@@ -4,7 +4,6 @@ import random
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import driving
 import pytest
@@ -16,7 +15,6 @@ from loopsheet.report.views import live as live_view
 Open = Callable[..., Live]
 
 DEEPER = {("x_p", 2): "29.8"}
-# As many digits as the others have: fewer would show in every number of a build.
 LIVELIER = {("e", 2): ".900"}
 
 
@@ -33,9 +31,7 @@ def test_edit_recalculates_every_cell_as_numpy_does(live: Live, open_page: Open,
     assert float(live.cell("alpha_mean").value) == pytest.approx(1.3049, abs=5e-5)
     # What it shows is what Python would have printed.
     fresh = open_page(driving.static(report, tmp_path / "edited.html"))
-    assert [(c.name, c.index, c.text, c.layout) for c in cells] == [
-        (c.name, c.index, c.text, c.layout) for c in fresh.cells()
-    ]
+    assert driving.shown(cells) == driving.shown(fresh.cells())
     assert live.around() == fresh.around()
     # Marked is what changed, nothing else.
     differing = {
@@ -242,8 +238,7 @@ def test_sixth_test(live: Live, open_page: Open, tmp_path: Path) -> None:
     assert driving.differences(cells, report.values) == []
     assert {(c.name, c.index) for c in cells if c.added} > {("v", "6"), ("alpha", "1-6"), ("x_m", "6")}
     fresh = open_page(driving.static(report, tmp_path / "six.html"))
-    # Measured digits as they were typed; the page decides with the report as issued how precise a column is.
-    assert [(c.name, c.index) for c in fresh.cells()] == [(c.name, c.index) for c in cells]
+    assert driving.shown(fresh.cells()) == driving.shown(cells)
     assert live.page.locator("#live-downloads").is_hidden()
 
 
@@ -296,20 +291,7 @@ def test_saved_files_give_the_numbers_of_the_page(live: Live, tmp_path: Path) ->
     live.type("x_p", 2, "29.8")
     live.type("beta", "", "1.4")
     live.page.locator('[data-use="4"]').click()
-    downloads: list[Any] = []
-
-    def keep(download: Any) -> None:
-        downloads.append(download)
-
-    live.page.on("download", keep)
-    live.click("live-save")
-    links = live.page.locator("#live-downloads a[download]")
-    assert links.all_inner_texts() == ["measurements.csv", "report.toml"]
-    while len(downloads) < 2:
-        live.page.wait_for_timeout(20)
-    folder = tmp_path / "saved"
-    for download in downloads:
-        download.save_as(folder / download.suggested_filename)
+    folder = live.save(tmp_path / "saved")
     text = (folder / "measurements.csv").read_text(encoding="utf-8")
     assert text.splitlines() == [
         "test,v [m/s],e [1],x_p [um]", "1,2.334,0.530,23.5", "2,2.940,0.512,29.8", "3,4.089,0.479,41.6",
@@ -317,8 +299,7 @@ def test_saved_files_give_the_numbers_of_the_page(live: Live, tmp_path: Path) ->
     ]  # fmt: skip
     toml = (folder / "report.toml").read_text(encoding="utf-8")
     assert toml == (build.PAPER / "report.toml").read_text(encoding="utf-8").replace('"1.5"', '"1.4"')
-    # The published values are about five tests.
-    (folder / "report.toml").write_text(toml[: toml.index("[published]")], encoding="utf-8")
+    driving.compared(folder, published=False)  # they are about five tests
     assert driving.differences(live.cells(), build.compute(folder, prove=False).values) == []
 
 

@@ -206,6 +206,42 @@ def test_formula_bar_has_something_for_every_cell(live: Live, selector: str) -> 
     assert broken == []
 
 
+_OUTSIDE = """() => {
+  const body = document.getElementById("live-dock").getBoundingClientRect(), found = [];
+  const texts = document.createTreeWalker(document.getElementById("formula-bar"), NodeFilter.SHOW_TEXT);
+  for (const range = document.createRange(); texts.nextNode(); ) {
+    range.selectNodeContents(texts.currentNode);
+    const isOutside = ({ left, right }) => left < body.left || right > body.right;
+    if (Array.from(range.getClientRects()).some(isOutside)) found.push(texts.currentNode.data);
+  }
+  return found;
+}"""
+
+
+@pytest.mark.parametrize("cell", ["alpha_mean", "C_log", "alpha-1-3", "x_m2-1-3", "C-1-2"])
+def test_formula_bar_can_be_read_on_a_telephone(open_page: Open, cell: str) -> None:
+    """Nothing of it is out of sight to the right, formulas and their numbers included."""
+    live = open_page(viewport={"width": 390, "height": 844})
+    if live.page.locator("#bar-toggle").get_attribute("aria-expanded") == "false":
+        live.click("bar-toggle")
+    live.type("e", 2, ".900")
+    live.page.locator(f"#cell-{cell}").click(position={"x": 3, "y": 3})
+    assert live.page.evaluate(_OUTSIDE) == []
+    if cell == "alpha_mean":
+        assert "over 9 pairs" in live.text("bar-source").replace("\u00a0", " ")
+
+
+def test_edit_leaves_everything_in_its_place(live: Live) -> None:
+    """Tables and figures outside of the window are not laid out again; they keep the room that they had."""
+    heights = """() => Array.from(document.querySelectorAll("main :is(.table, figure)"), (one) =>
+      [one.id, Math.round(one.getBoundingClientRect().height)])"""
+    before = live.page.evaluate(heights)
+    live.type("x_p", 2, "29.8")
+    after = dict(live.page.evaluate(heights))
+    moved = [name for name, height in before if abs(after[name] - height) > 3]
+    assert moved == []
+
+
 # --- judged by others ---------------------------------------------------------------------------------------
 
 

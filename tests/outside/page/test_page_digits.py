@@ -1,0 +1,138 @@
+"""As many digits as the inputs warrant, whatever is typed: the page against a build of what it saves."""
+
+import random
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import driving
+import pytest
+from driving import Live
+
+from loopsheet.report import build
+
+Open = Callable[..., Live]
+
+
+@dataclass(frozen=True)
+class Edits:
+    """What is typed into the page, in this order; indices of given numbers are tests, 0 is a parameter."""
+
+    typed: dict[tuple[str, int], str] = field(default_factory=dict)
+    added: tuple[tuple[str, str, str], ...] = ()
+    """Speed, restitution and imprint of new tests."""
+    left_out: tuple[int, ...] = ()
+    removed: tuple[int, ...] = ()
+
+    def make(self, live: Live) -> None:
+        for texts in self.added:
+            live.click("live-add")
+            for text in texts:
+                live.page.keyboard.type(text)
+                live.press("Tab")
+        for (name, test), text in self.typed.items():
+            live.type(name, test or "", text)
+        for test in self.left_out:
+            live.page.locator(f'[data-use="{test}"]').click()
+        for test in self.removed:
+            live.page.locator(f'[data-remove="{test}"]').click()
+
+    @property
+    def keeps_the_tests(self) -> bool:
+        """Whether the published values, which are about the tests of the paper, can be compared."""
+        return not (self.left_out or self.removed)
+
+
+def finer(digits: int) -> dict[tuple[str, int], str]:
+    """Every measured number with so many more digits."""
+    cells = {(name, test): text for test, row in driving.paper().items() for name, text in row.items()}
+    cells["ball_diameter", 0] = "12.70"
+    return {place: text + "0" * (digits - 1) + "4" for place, text in cells.items()}
+
+
+def at_random(seed: int) -> Edits:
+    """Numbers near those of the paper, printed with one to seven digits in one of the ways people print."""
+    dice = random.Random(seed)
+    typed = {}
+    for test, row in driving.paper().items():
+        for name in dice.sample(sorted(row), dice.randint(0, 2)):
+            value, digits = float(row[name]) * dice.uniform(0.97, 1.03), dice.randint(1, 7)
+            text = dice.choice([f"{value:.{digits}g}", f"{value:.{digits - 1}e}", f"{value:.{digits}f}"])
+            typed[name, test] = (
+                text.replace("0.", ".", 1) if text.startswith("0.") and dice.random() < 0.5 else text
+            )
+    added = tuple((f"{5.5:.{n}f}", f"{0.44:.{n + 1}f}", f"{56.6:.{n}f}") for n in range(dice.randint(0, 2)))
+    return Edits(typed, added[1:], tuple(dice.sample(range(1, 6), dice.randint(0, 2))))
+
+
+EDITS = {
+    "fewer": Edits({("e", 2): ".9"}),
+    "as many": Edits({("x_p", 2): "29.8"}),
+    "more in one cell": Edits({("x_p", 2): "29.8000"}),
+    "more": Edits(finer(3)),
+    "zeros that lead": Edits({("x_p", 2): "0029.8", ("e", 1): "0.053e1"}),
+    "nothing": Edits({("e", 3): "0"}),
+    "fewer in a parameter": Edits({("ball_diameter", 0): "13"}),
+    "an exact number": Edits({("beta", 0): "1"}),
+    "a sixth test": Edits(added=(("5.5", "0.44", "56.6"),)),
+    "a sixth test as precise": Edits(added=(("5.500", "0.440", "56.60"),)),
+    "a coarse test left out": Edits({("v", 3): "4"}, left_out=(3,)),
+    "a coarse test removed": Edits({("v", 3): "4"}, added=(("5.500", "0.440", "56.60"),), removed=(3,)),
+    "only the finest": Edits({**finer(2), ("v", 1): "2.3"}, left_out=(1,)),
+    **{f"random {seed}": at_random(seed) for seed in range(4)},
+}
+
+
+@pytest.mark.parametrize("edits", EDITS.values(), ids=EDITS)
+def test_page_shows_what_a_build_of_its_files_shows(
+    live: Live, open_page: Open, tmp_path: Path, edits: Edits
+) -> None:
+    issued = live.state()
+    edits.make(live)
+    folder = driving.compared(live.save(tmp_path / "saved"), edits.keeps_the_tests and not edits.added)
+    report = build.compute(folder, prove=False)
+    fresh = open_page(driving.static(report, tmp_path / "built.html"))
+    left_out = {str(test) for test in edits.left_out}
+    ours = [cell for cell in live.cells() if not (cell.status == "" and cell.index in left_out)]
+    assert driving.shown(ours) == driving.shown(fresh.cells())
+    if report.comparisons:
+        assert live.around() == fresh.around()
+    headline = "all => all.map((one) => one.textContent.replace(/\\s+/g, ' ').trim())"
+    assert live.page.eval_on_selector_all(".headline dd", headline) == fresh.page.eval_on_selector_all(
+        ".headline dd", headline
+    )
+    drawn_again(live, {cell.name: cell.text for cell in fresh.cells() if cell.index == ""})
+    live.click("live-reset")
+    assert live.state() == issued
+
+
+def drawn_again(live: Live, scalars: dict[str, str]) -> None:
+    """The numbers in the pictures and in the formula bar have the digits of the tables."""
+    said = live.page.locator("#figure-alpha_pairs svg text, #figure-loops svg text").all_text_contents()
+    means = [text for text in said if text.startswith("mean ") and "speed" not in text]
+    assert means in ([], [f"mean {scalars['alpha_mean']}"])
+    fitted = [text for text in said if text.startswith("compression fitted")]
+    assert fitted in ([], [f"compression fitted to them, α = {scalars['alpha_log']}"])
+    live.page.locator("#cell-alpha_log").click(position={"x": 3, "y": 3})
+    used = live.page.locator('#bar-dependents button[data-goto="C_log"]')
+    assert used.inner_text().startswith(f"C_log {scalars['C_log']}")
+
+
+def test_edits_do_change_the_digits(live: Live) -> None:
+    """What the comparison above would be worth little without."""
+    known = {"": 4, ".9": 2, "0.90": 3, "0.9000": 4}
+    for text, digits in known.items():
+        if text:
+            live.type("e", 2, text)
+        assert len(live.cell("alpha_mean").text.replace(".", "")) == digits, text
+    assert live.cell("alpha_mean").title == "as issued: 1.303"
+
+
+def test_input_that_is_refused_has_no_digits(live: Live) -> None:
+    before = live.cell("alpha", "1-2").text
+    live.type("e", 4, "9")  # not allowed
+    assert live.cell("alpha", "1-2").text == before
+    live.type("e", 4, "x")
+    assert live.cell("alpha", "1-2").text == before
+    live.type("e", 4, "1")
+    assert live.cell("alpha", "1-2").text == "1.3"
