@@ -1,0 +1,206 @@
+"""Campaigns, sound and absurd, drawn by hypothesis, and what NumPy, node and 50 digits make of one."""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
+from sympy import lambdify
+
+from loopsheet.report.analysis import bounds
+from loopsheet.report.analysis.engines import Judge
+from loopsheet.report.analysis.readers import Reading, of_values
+from loopsheet.report.engines import exact
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.engines.javascript import RUNTIME
+from loopsheet.report.engines.numpy import Program
+from loopsheet.report.layout import Layout, lay_out
+from loopsheet.report.values import CODES, Status
+from loopsheet.report.workbooks.soft_impact import WORKBOOK
+
+VARIANTS = (
+    {"ball_mass": 0.008},
+    {"ball_diameter": 0.0127, "ball_density": 7800.0, "target_mass": 3.0},
+)
+SHEETS = [WORKBOOK.sheet(frozenset(parameters)) for parameters in VARIANTS]
+
+# --- campaigns ---
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """Measurements and parameters for one variant of the sheet."""
+
+    variant: int
+    tests: list[int]
+    data: dict[str, list[float]]
+
+    @property
+    def labels(self) -> dict[str, list[int]]:
+        return {"tests": self.tests}
+
+
+@st.composite
+def campaigns(draw: st.DrawFn, size: int, variants: Sequence[int] = (0, 1)) -> Campaign:
+    """One campaign: from the model with some noise, or anything at all, then perhaps spoiled."""
+    digits = draw(st.sampled_from((2, 3, 17)))  # as few as people write, so that some are the same
+
+    def each(low: float, high: float) -> list[float]:
+        return draw(st.lists(st.floats(low, high), min_size=size, max_size=size))
+
+    alpha, beta = draw(st.floats(1, 1.6)), draw(st.sampled_from((1.5, 1.0, 1.25, 2.0, 2.5)))
+    v, e = sorted(each(0.5, 8)), sorted(each(0.05, 0.7), reverse=True)
+    match draw(st.sampled_from(("falls", "falls", "falls", "falls", "rises", "as it likes"))):
+        case "rises":
+            e.reverse()
+        case "as it likes":
+            e = each(0.001, 1)
+    noise = draw(st.sampled_from((0, 1e-3, 0.03)))
+    depth = [max(1 - (beta + 1) / (alpha + 1) * x**2, 0.02) for x in e]
+    x_p = [
+        3e-5 * speed ** (2 / (alpha + 1)) * part * (1 + noise * off)
+        for speed, part, off in zip(v, depth, each(-1, 1), strict=True)
+    ]
+    if draw(st.integers(0, 9)) == 9:
+        x_p = [10**x for x in each(-5, -4)]
+    v, e, x_p = ([float(f"{x:.{digits}g}") for x in column] for column in (v, e, x_p))
+    row, other = draw(st.permutations(range(size)))[:2]
+    exponent = [beta]
+    match draw(st.integers(0, 14)):
+        case 7:
+            v[row] = v[other]
+        case 8:
+            e[row] = e[other]
+        case 9:
+            v[row], e[row], x_p[row] = v[other], e[other], x_p[other]
+        case 10:
+            e[row] = draw(st.sampled_from((0.0, 0.95, 1.0)))
+        case 11:
+            e[row] = e[other] = draw(st.sampled_from((0.0, 1.0)))
+        case 12 | 13:
+            column = draw(st.sampled_from((v, e, x_p, exponent)))
+            column[row % len(column)] = math.nan
+        case 14:
+            for column in (v, e, x_p):
+                column.reverse()
+    variant = draw(st.sampled_from(variants))
+    parameters = {name: [value * draw(st.floats(0.5, 2))] for name, value in VARIANTS[variant].items()}
+    points = [float(draw(st.sampled_from((2, 3, 5) if size < 8 else (2, 3))))]
+    # The rows that were left out leave gaps in the numbers of the others.
+    tests = sorted(draw(st.permutations(range(1, 16)))[:size])
+    data = {"v": v, "e": e, "x_p": x_p, "beta": exponent, **parameters, "points_per_pair": points}
+    return Campaign(variant, tests, data)
+
+
+def drawn(strategy: st.SearchStrategy[Campaign], number: int) -> list[Campaign]:
+    """The same campaigns in every run."""
+    found: list[Campaign] = []
+
+    @settings(max_examples=number, derandomize=True, phases=[Phase.generate])
+    @given(strategy)
+    def draw(campaign: Campaign) -> None:
+        found.append(campaign)
+
+    draw()
+    return found
+
+
+# --- what the engines find ---
+
+
+class Node:
+    """One process of node that has the programs of several sheets and answers a line for every campaign."""
+
+    SCRIPT = """
+    require("readline").createInterface({ input: process.stdin }).on("line", (line) => {
+      const [which, labels, data] = JSON.parse(line, (key, value) => (value === null ? NaN : value));
+      try {
+        const { value, status, broken } = evaluateSheet(programs[which], labels, data);
+        const out = {};
+        for (const name in value) out[name] = [Array.from(value[name]), Array.from(status[name])];
+        console.log(JSON.stringify([out, broken, ""]));
+      } catch (error) {
+        console.log(JSON.stringify([{}, {}, String(error)]));
+      }
+    });
+    """
+
+    def __init__(self, path: str, folder: Path, programs: Sequence[str]) -> None:
+        script = folder / "random.js"
+        runtime = RUNTIME.read_text(encoding="utf-8")
+        script.write_text(f"{runtime}\nconst programs = [{', '.join(programs)}];\n{self.SCRIPT}", "utf-8")
+        self.process = subprocess.Popen(
+            [path, str(script)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, encoding="utf-8"
+        )
+
+    def __enter__(self) -> Node:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.process.communicate()
+
+    def read(self, campaign: Campaign, which: int) -> tuple[Reading, Broken]:
+        assert self.process.stdin is not None
+        assert self.process.stdout is not None
+        line = json.dumps([which, campaign.labels, campaign.data]).replace("NaN", "null")
+        self.process.stdin.write(f"{line}\n")
+        self.process.stdin.flush()
+        columns, broken, failure = json.loads(self.process.stdout.readline())
+        value = {name: found for name, (found, _) in columns.items()}
+        status = {name: [CODES[Status(code)] for code in codes] for name, (_, codes) in columns.items()}
+        return Reading("JavaScript", "node", value, status, failure=failure), {
+            (name, int(row)): which for name, rows in broken.items() for row, which in rows.items()
+        }
+
+
+Broken = Mapping[tuple[str, int], int]
+"""Which condition of its column a cell breaks."""
+
+
+def numpy_reads(campaign: Campaign, program: Program) -> tuple[Reading, Broken]:
+    values = engine.evaluate(SHEETS[campaign.variant], campaign.labels, campaign.data, program)
+    rows = {name: np.flatnonzero(which).tolist() for name, which in values.broken.items()}
+    broken = {(name, row): int(values.broken[name][row]) for name in rows for row in rows[name]}
+    return of_values(values), broken
+
+
+def laid_out(campaign: Campaign) -> dict[str, Layout]:
+    counts = {"points_per_pair": int(campaign.data["points_per_pair"][0])}
+    return lay_out(SHEETS[campaign.variant], campaign.labels, counts)
+
+
+def judge_of(campaign: Campaign) -> Judge:
+    return Judge.of(SHEETS[campaign.variant], laid_out(campaign), campaign.labels, campaign.data)
+
+
+@contextmanager
+def printed_once() -> Iterator[None]:
+    """The programs of a sheet are the same for all campaigns, and take longer to print than to run."""
+
+    def once(make: Callable[[Any], Any]) -> Callable[[Any], Any]:
+        known: dict[int, tuple[Any, Any]] = {}
+
+        def made(sheet: Any) -> Any:
+            if id(sheet) not in known:
+                known[id(sheet)] = sheet, make(sheet)
+            return known[id(sheet)][1]
+
+        return made
+
+    compiled = cache(lambdify)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Program, "of", once(Program.of))
+        patch.setattr(bounds, "conditions", once(bounds.conditions))
+        patch.setattr(exact, "lambdify", lambda a, b, **how: compiled(tuple(a), tuple(b), **how))
+        yield
