@@ -1,7 +1,8 @@
-"""Work beside the main work: drawing takes as long as proving, and neither needs the other."""
+"""Work beside the main work: drawing takes as long as judging, and neither needs the other."""
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import warnings
 from collections.abc import Callable
@@ -64,6 +65,7 @@ class Background(Generic[T]):
 
 
 def _run(work: Callable[[], T], sender: object) -> None:
+    gc.freeze()  # what was inherited is no garbage, and looking at it would copy it
     try:
         outcome: tuple[object, Exception | None] = (work(), None)
     except Exception as error:

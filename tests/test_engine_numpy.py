@@ -267,6 +267,24 @@ def test_the_blocks_in_which_roots_are_sought_do_not_show(monkeypatch: pytest.Mo
     assert long_campaign.roots["alpha"]
 
 
+def test_columns_that_come_later_are_those_of_the_whole_sheet() -> None:
+    """Errors, and rows that sums leave out, included; what is there is not computed again."""
+    data = {**PARAMETERS, **PAPER, "x_p": [30e-6, 29.7e-6, 41.6e-6, 45.97e-6, np.nan]}
+    order = SHEET.order
+    whole_sheet = engine.evaluate(Sheet(order), TESTS, data)
+    assert whole_sheet.counted
+    for cut in range(1, len(order), 6):
+        first = {c.name for c in order[:cut]}
+        some = engine.evaluate(Sheet(order[:cut]), TESTS, {n: v for n, v in data.items() if n in first})
+        every = engine.extend(some, order[cut:], {n: v for n, v in data.items() if n not in first})
+        for column in order:
+            np.testing.assert_array_equal(every.value[column.name], whole_sheet.value[column.name])
+            np.testing.assert_array_equal(every.status[column.name], whole_sheet.status[column.name])
+            assert list(every.cells(column.name)) == list(whole_sheet.cells(column.name))
+        assert all(every.value[name] is some.value[name] for name in first)
+        assert (every.roots, every.counted) == (whole_sheet.roots, whole_sheet.counted)
+
+
 # --------------------------------------------------------------------------------- wrong or odd data
 def test_a_column_must_have_the_rows_of_its_axis() -> None:
     with pytest.raises(ValueError, match=r"^v has 4 rows, not 5: the last dimension is the rows$"):

@@ -96,14 +96,24 @@ def test_an_unknown_is_no_precedent() -> None:
     assert names(sheet.precedents(sheet["r"])) == ["low", "high", "b"]
 
 
-def test_the_order_is_the_same_under_every_hash_seed() -> None:
-    code = (
-        "from loopsheet.report.workbooks.soft_impact import sheet\n"
-        "from loopsheet.report.engines.numpy import Program\n"
-        "found = sheet(frozenset({'ball_diameter', 'ball_density', 'target_mass'}))\n"
-        "print([(c.name, found.named(c)) for c in found.order])\n"
-        "print(Program.of(found).source)\n"
-    )
+PROGRAM = """\
+from loopsheet.report.workbooks.soft_impact import sheet
+from loopsheet.report.engines.numpy import Program
+found = sheet(frozenset({'ball_diameter', 'ball_density', 'target_mass'}))
+print([(c.name, found.named(c)) for c in found.order])
+print(Program.of(found).source)
+"""
+CELLS = """\
+from loopsheet.report import build
+from loopsheet.report.engines import excel_grid
+r = build.compute(build.PAPER, prove=False)
+units = {n: s.unit for n, s in r.shown.items()}
+print(excel_grid.grid(r.sheet, r.values, units, r.workbook.headline).blocks)
+"""
+
+
+@pytest.mark.parametrize(("code", "part"), [(PROGRAM, "def kernel"), (CELLS, "name='alpha_mean'")])
+def test_the_order_is_the_same_under_every_hash_seed(code: str, part: str) -> None:
     outputs = {
         subprocess.run(
             [sys.executable, "-c", code],
@@ -115,7 +125,7 @@ def test_the_order_is_the_same_under_every_hash_seed() -> None:
         for seed in ("0", "1", "4242")
     }
     assert len(outputs) == 1
-    assert "def kernel" in outputs.pop()
+    assert part in outputs.pop()
 
 
 # ----------------------------------------------------------------------------------------- cycles

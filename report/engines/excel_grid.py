@@ -18,7 +18,7 @@ from ..values import CODES, Values
 from .excel_formulas import Formulas, Places, carried
 from .excel_roots import Unrolled, unroll
 from .excel_values import auxiliary_values
-from .numpy import evaluate
+from .numpy import extend
 
 __all__ = ["MOST_ROWS", "TooManyRows", "check_rows", "grid"]
 
@@ -66,8 +66,8 @@ def grid(
         A formula has no spreadsheet formula.
     """
     check_rows(values)
-    whole, all_values = _with_drawn(sheet, values, drawn)
-    return _Assembly(sheet, whole, all_values, units, first, drawn).grid()
+    every = values if drawn is None else extend(values, drawn.columns, drawn.given)
+    return _Assembly(sheet, every.sheet, every, units, first, drawn).grid()
 
 
 def check_rows(values: Values) -> None:
@@ -81,18 +81,6 @@ def check_rows(values: Values) -> None:
     for name, layout in values.layouts.items():
         if layout.size > MOST_ROWS:
             raise TooManyRows(f"{name} has {layout.size} rows")
-
-
-def _with_drawn(sheet: Sheet, values: Values, drawn: Drawn | None) -> tuple[Sheet, Values]:
-    """The sheet with the drawn columns, computed."""
-    if drawn is None:
-        return sheet, values
-    whole = Sheet((*sheet.columns, *drawn.columns))
-    given = [column.name for column in sheet.columns if isinstance(column.rule, Given)]
-    labels = {
-        axis.name: values.layouts[axis.name].labels[:, 0].tolist() for axis in sheet.axes if not axis.parents
-    }
-    return whole, evaluate(whole, labels, {**drawn.given, **{name: values.value[name] for name in given}})
 
 
 @dataclass

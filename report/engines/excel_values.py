@@ -39,6 +39,7 @@ class _Evaluation:
         self.named = precedents(self.sheet, self.layouts, self.column)
         self.kept = rows_kept(self.named, self.layouts, values.status)
         self.known: dict[str, Any] = {}
+        self.functions: dict[tuple[Expr, tuple[Symbol, ...]], Any] = {}
 
     def run(self) -> dict[str, tuple[float | str, ...]]:
         codes = inherited(self.named, self.kept, self.values.status, self.rows)
@@ -85,7 +86,13 @@ class _Evaluation:
         own = {
             s: stand_in(self._plain(s, axis, over)) for s in sorted(body.free_symbols - set(numbers), key=str)
         }
-        return lambdify(list(numbers), body.xreplace(own), modules=[_FUNCTIONS, "numpy"])(*numbers.values())
+        return self._function(body.xreplace(own), tuple(numbers))(*numbers.values())
+
+    def _function(self, body: Expr, leaves: tuple[Symbol, ...]) -> Any:
+        """The expression as a function: the steps to a root all have the same, of other cells."""
+        if (body, leaves) not in self.functions:
+            self.functions[body, leaves] = lambdify(leaves, body, modules=[_FUNCTIONS, "numpy"])
+        return self.functions[body, leaves]
 
     def _cell(self, cell: Indexed, axis: Axis | None) -> Any:
         value, rows = self.values.value[name_of(cell)], rows_of(cell, axis, self.layouts)

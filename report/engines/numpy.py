@@ -7,7 +7,7 @@ made by :mod:`~loopsheet.report.engines.numpy_code` from the sheet's own express
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,7 +20,7 @@ from ..values import Status, Values, inherited, rows_kept
 from .numpy_code import Array, Function, Kernel, kernel
 from .numpy_root import RootProgram
 
-__all__ = ["Kernel", "Program", "evaluate", "kernel"]
+__all__ = ["Kernel", "Program", "evaluate", "extend", "kernel"]
 
 Codes = NDArray[np.uint8]
 Masks = Mapping[str, NDArray[np.bool_]]
@@ -39,8 +39,14 @@ class Program:
     conditions: Mapping[str, Kernel]
 
     @classmethod
-    def of(cls, sheet: Sheet) -> Program:
+    def of(cls, sheet: Sheet, known: Collection[str] = ()) -> Program:
         """Generate the program of a sheet.
+
+        Parameters
+        ----------
+        sheet : Sheet
+        known : collection of str
+            Columns that are computed already.
 
         Raises
         ------
@@ -49,6 +55,8 @@ class Program:
         """
         formulas, roots, conditions = {}, {}, {}
         for column in sheet.order:
+            if column.name in known:
+                continue
             if isinstance(column.rule, Formula):
                 formulas[column.name] = kernel([column.rule.expression], sheet.indices)
             elif isinstance(column.rule, Root):
@@ -85,18 +93,26 @@ class Program:
 class _Run:
     """One evaluation: fills values and statuses column by column, in the sheet's order."""
 
-    def __init__(self, program: Program, layouts: dict[str, Layout], data: Mapping[str, Array]) -> None:
+    def __init__(
+        self,
+        program: Program,
+        layouts: dict[str, Layout],
+        data: Mapping[str, Array],
+        known: Values | None = None,
+    ) -> None:
         self.program, self.layouts, self.data = program, layouts, data
         self.sheet = program.sheet
-        self.value: dict[str, Array] = {}
-        self.status: dict[str, Codes] = {}
-        self.roots: dict[str, dict[int, tuple[float, ...]]] = {}
-        self.counted: dict[str, dict[str, int]] = {}
-        self.broken: dict[str, Codes] = {}
+        self.value: dict[str, Array] = dict(known.value) if known else {}
+        self.status: dict[str, Codes] = dict(known.status) if known else {}
+        self.roots: dict[str, Mapping[int, tuple[float, ...]]] = dict(known.roots) if known else {}
+        self.counted: dict[str, Mapping[str, int]] = dict(known.counted) if known else {}
+        self.broken: dict[str, Codes] = dict(known.broken) if known else {}
 
     def values(self) -> Values:
         with np.errstate(all="ignore"):
             for column in self.sheet.order:
+                if column.name in self.value:
+                    continue
                 given = isinstance(column.rule, Given)
                 value, status = self._given(column) if given else self._computed(column)
                 status = np.where((status == Status.OK) & ~np.isfinite(value), Status.DOMAIN, status)
@@ -142,9 +158,9 @@ class _Run:
         return np.where(broken > 0, Status.DOMAIN, found).astype(np.uint8)
 
     def _count(self, column: Column, kept: Masks) -> None:
-        for axis, mask in kept.items():
-            if mask.ndim == 1 and not mask.all():
-                self.counted.setdefault(column.name, {})[axis] = int(mask.sum())
+        some = {axis: mask for axis, mask in kept.items() if mask.ndim == 1 and not mask.all()}
+        if some:
+            self.counted[column.name] = {axis: int(mask.sum()) for axis, mask in some.items()}
 
     # --- what a kernel is called with ----------------------------------------------------------------
 
@@ -209,13 +225,16 @@ class _Run:
         arguments = [self._argument(reference, column, kept) for reference in references]
         shape = np.broadcast_shapes(*(a.shape for a in arguments), inherited.shape)
         value, status = np.empty(shape), np.empty(shape, dtype=np.uint8)
+        several: dict[int, tuple[float, ...]] = {}
         for block, own in _blocks(shape):
             part = [a[block] if a.ndim == len(shape) and a.shape[0] > 1 else a for a in arguments]
             solved = program.solve(part, totals, own)
             value[block], status[block] = solved.value, solved.status
             for row, roots in solved.several.items():
                 if inherited[min(row + block.start, inherited.shape[-1] - 1)] == Status.OK:
-                    self.roots.setdefault(column.name, {})[row + block.start] = roots
+                    several[row + block.start] = roots
+        if several:
+            self.roots[column.name] = several
         return value, status
 
 
@@ -247,11 +266,44 @@ def evaluate(
     ValueError
         A column has not as many rows as its axis, or a count is not one whole number.
     """
-    arrays = {name: np.atleast_1d(np.asarray(values, dtype=np.float64)) for name, values in data.items()}
-    counts = {
-        axis.count: _count(axis, arrays[axis.count]) for axis in sheet.axes if isinstance(axis, RepeatAxis)
+    arrays = _arrays(data)
+    return (program or Program.of(sheet)).run(labels, _counts(sheet, arrays), arrays)
+
+
+def extend(values: Values, columns: Sequence[Column], data: Mapping[str, Any]) -> Values:
+    """Compute more columns of a sheet; those that are computed stay as they are.
+
+    Parameters
+    ----------
+    values : Values
+        All columns of the sheet.
+    columns : sequence of Column
+        Those that come after them.
+    data : mapping of column name to float array (..., rows) or float
+        The given ones among these, in SI.
+
+    Raises
+    ------
+    ValueError
+        As for :func:`evaluate`.
+    """
+    sheet = Sheet((*values.sheet.columns, *columns))
+    labels = {
+        axis.name: values.layouts[axis.name].labels[:, 0].tolist() for axis in sheet.axes if not axis.parents
     }
-    return (program or Program.of(sheet)).run(labels, counts, arrays)
+    arrays = _arrays(data)
+    layouts = lay_out(sheet, labels, _counts(sheet, {**values.value, **arrays}))
+    return _Run(Program.of(sheet, values.value), layouts, arrays, values).values()
+
+
+def _arrays(data: Mapping[str, Any]) -> dict[str, Array]:
+    return {name: np.atleast_1d(np.asarray(values, dtype=np.float64)) for name, values in data.items()}
+
+
+def _counts(sheet: Sheet, values: Mapping[str, Array]) -> dict[str, int]:
+    """How often each axis that repeats another does."""
+    axes = [axis for axis in sheet.axes if isinstance(axis, RepeatAxis)]
+    return {axis.count: _count(axis, values[axis.count]) for axis in axes}
 
 
 def _count(axis: RepeatAxis, values: Array) -> int:
