@@ -312,4 +312,5 @@ def references(
 
 def name_of(cell: Expr) -> str:
     """The column's name in a cell, plain or indexed."""
-    return str(cell.base.label) if isinstance(cell, Indexed) else str(cell)
+    symbol = cell.base.label if isinstance(cell, Indexed) else cell
+    return symbol.name if isinstance(symbol, Symbol) else str(symbol)

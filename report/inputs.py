@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .errors import Findings, Location, LoopsheetError, UnknownWorkbook, close, listing, suggest
 from .measurements import MODES, Measurements, read_measurements
+from .number_text import NumberError, read_printed
 from .parameters import read_parameters, wrong_type
 from .published import PublishedValue, check_published, read_published
 from .sources import Source, open_source, read_bytes
 from .tomlfile import TomlFile, read_toml
+from .unit_text import parse_unit
 
 if TYPE_CHECKING:
     from .quantity import Printed
@@ -53,6 +55,11 @@ class Inputs:
         The values to referee.
     files : dict of str to bytes
         The bytes of every file that was read, by its name relative to the folder.
+    free_at : dict of str to Location
+        The columns that the publication does not print, with the place that says so.
+    errata : dict of (str, int) to Printed
+        Measured cells that are known to be misprinted, by column and row, as they would have to be printed.
+        Only the referee asks what would come out of them.
     """
 
     folder: Path
@@ -65,6 +72,22 @@ class Inputs:
     header_units: dict[str, str]
     published: tuple[PublishedValue, ...]
     files: dict[str, bytes]
+    free_at: dict[str, Location] = field(default_factory=dict)
+    errata: dict[tuple[str, int], Printed] = field(default_factory=dict)
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """The columns that the publication does not print: they may have any value."""
+        return tuple(self.free_at)
+
+    @property
+    def amended(self) -> Inputs:
+        """The same with the known misprints put right."""
+        measured = {
+            name: tuple(self.errata.get((name, row), printed) for row, printed in enumerate(column))
+            for name, column in self.measured.items()
+        }
+        return replace(self, measured=measured, errata={})
 
     def printed(self, name: str) -> tuple[Printed, ...]:
         """The numbers of a given column as they were printed, one a row; none if the folder has none."""
@@ -102,6 +125,7 @@ class _Reader:
         self.files: dict[str, bytes] = {}
         self.toml: TomlFile
         self.workbook: Workbook | None = None
+        self.free: dict[str, Location] = {}
 
     def read(self) -> Inputs:
         toml = self.open_toml()
@@ -129,6 +153,8 @@ class _Reader:
             measurements.header_units,
             published,
             self.files,
+            self.free,
+            self.errata(measurements),
         )
 
     def open_toml(self) -> TomlFile | None:
@@ -212,6 +238,16 @@ class _Reader:
             return None
         return value.strip()
 
+    def names(self, *path: str) -> dict[str, Location]:
+        """Return a list of names, each with its place."""
+        data: Any = self.toml.data
+        for key in path:
+            data = data.get(key, [])
+        if not isinstance(data, list) or not all(isinstance(name, str) for name in data):
+            wrong_type(self.toml, self.findings, path, "a list of names in quotes", f'{path[-1]} = ["C_log"]')
+            return {}
+        return dict.fromkeys(data, self.toml.value(*path))
+
     def title(self) -> str | None:
         return self.text((), "title", "Soft steel, ball drop")
 
@@ -292,14 +328,52 @@ class _Reader:
                 modes[column] = mode
         return modes
 
+    def errata(self, measurements: Measurements) -> dict[tuple[str, int], Printed]:
+        """Read what measured cells would have to be printed as: ``"x_p[2]" = "29.8"``."""
+        path = ("published", "errata")
+        table = self.toml.data.get("published", {}).get("errata", {})
+        if not isinstance(table, dict):
+            example = '"x_p[2]" = "29.8"'
+            wrong_type(self.toml, self.findings, path, "a table of cells and their prints", example)
+            table = {}
+        found = {}
+        for address in table:
+            text = self.text(path, address, "29.8")
+            place = self.cell(address, measurements, self.toml.key(*path, address))
+            if text is None or place is None:
+                continue
+            printed = measurements.measured[place[0]][place[1]]
+            try:
+                found[place] = replace(
+                    read_printed(text, parse_unit(printed.unit), mode=printed.mode), given_u=printed.given_u
+                )
+            except NumberError as error:
+                self.findings.add(error.code, self.toml.value(*path, address), name=address, **error.fields)
+        self.findings.check()
+        return found
+
+    def cell(self, address: str, measurements: Measurements, at: Location) -> tuple[str, int] | None:
+        """Return column and row of a measured cell, ``x_p[2]``."""
+        name, _, index = address.removesuffix("]").partition("[")
+        columns, tests = measurements.measured, list(map(str, measurements.tests))
+        if name not in columns:
+            known, suggestion = listing(columns), suggest(name, columns)
+            self.findings.add("LS505", at, text=name, known=known, suggestion=suggestion)
+        elif index not in tests:
+            self.findings.add("LS506", at, name=name, text=index, known=listing(tests))
+        else:
+            return name, tests.index(index)
+        return None
+
     def published(self) -> tuple[PublishedValue, ...]:
         if "published" not in self.toml.data:
             return ()
-        table = self.keys(("published",), ("file",))
+        table = self.keys(("published",), ("file", "free", "errata"))
         is_table = isinstance(self.toml.data["published"], dict)
         name = self.text(("published",), "file", "published.csv", required=is_table)
         if name is None or not table:
             return ()
+        self.free = self.names("published", "free")
         at = self.toml.value("published", "file")
         source = self.source(name, LARGEST_PUBLISHED, "a first line with the names of the columns", at)
         return () if source is None else read_published(source, self.findings)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["PublishedValue", "check_published", "read_published"]
 
 _REQUIRED = ("source", "cell", "index", "value", "unit")
-_OPTIONAL = ("expect", "reason")
+_OPTIONAL = ("label", "expect", "reason")
 _INDEX = re.compile(r"[1-9][0-9]{0,8}(?:-[1-9][0-9]{0,8})?")
 _EXPECT = ("", "differs")
 
@@ -47,6 +47,8 @@ class PublishedValue:
         ``file:line:column`` of the value, relative to the folder.
     places : mapping of str to Location
         The place of each field, for findings that need the sheet.
+    label : str
+        What the publication calls its row, if that names an equation: ``eq. 6``.
     """
 
     source: str
@@ -57,6 +59,7 @@ class PublishedValue:
     reason: str = ""
     where: str = ""
     places: Mapping[str, Location] = field(default_factory=dict, compare=False, repr=False)
+    label: str = ""
 
 
 def read_published(source: Source, findings: Findings) -> tuple[PublishedValue, ...]:
@@ -122,6 +125,7 @@ def _value(table: Table, row: Row, fields: Mapping[str, Field], findings: Findin
         reason,
         printed.where,
         {name: table.at(field) for name, field in fields.items()},
+        " ".join(fields["label"].text.split()) if "label" in fields else "",
     )
 
 
@@ -158,6 +162,10 @@ def check_published(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tu
         For unknown cells and indices, and units of another dimension.
     """
     findings = Findings()
+    for name, place in inputs.free_at.items():
+        if name not in cells:
+            known, suggestion = listing(cells, most=24), suggest(name, cells)
+            findings.add("LS505", place, text=name, known=known, suggestion=suggestion)
     for value in inputs.published:
         if findings.full:
             break

@@ -107,6 +107,18 @@ class Printed:
         return self.scale * Fraction(1, 2) * Fraction(10) ** -self.decimals
 
     @property
+    def interval(self) -> tuple[Fraction, Fraction]:
+        """The least and the largest value in SI that print so, ends included.
+
+        Half a unit of the last digit to both sides if it was rounded; a whole unit away from zero if it
+        was truncated.
+        """
+        if self.mode == "truncated":
+            away = -2 * self.half_unit if self.text.startswith("-") else 2 * self.half_unit
+            return min(self.value, self.value + away), max(self.value, self.value + away)
+        return self.value - self.half_unit, self.value + self.half_unit
+
+    @property
     def u(self) -> float:
         """Standard uncertainty in SI: the given one, else rectangular over the values that print so.
 

@@ -14,6 +14,7 @@ from .agreement import Agreement
 from .inputs import Inputs, PublishedValue
 from .sheet import Sheet
 from .values import Cell, Values
+from .verdict import Referee, Verdict
 from .workbook import Workbook
 
 __all__ = ["Comparison", "Curve", "Report", "Shown"]
@@ -77,7 +78,11 @@ class Comparison:
     verdict : str
         ``same`` (prints the same), ``differs`` or ``not-checkable`` (the cell has no value).
     as_expected : bool
-        False is a finding: it differs unexpectedly, or no longer differs although that is expected.
+        False is a finding: it differs unexpectedly, or no longer differs although that is expected. What
+        the referee found reachable differs by no more than the printed digits of the inputs allow, and is
+        no finding.
+    refereed : Verdict or None
+        What the referee says of it; None if it was not asked.
     """
 
     published: PublishedValue
@@ -86,6 +91,12 @@ class Comparison:
     distance: float | None
     verdict: str
     as_expected: bool
+    refereed: Verdict | None = None
+
+    @property
+    def word(self) -> str:
+        """What the referee says in a word; without it, whether it prints the same."""
+        return self.verdict if self.refereed is None else self.refereed.verdict
 
 
 @dataclass(frozen=True)
@@ -113,6 +124,8 @@ class Report:
         For the figures.
     engines : tuple of Agreement
         What the judge of the engines found, NumPy first; empty if it was not asked.
+    referee : Referee
+        What the referee found; empty if it was not asked.
     versions : mapping of str to str
         What computed it: this program and its libraries.
     """
@@ -129,6 +142,7 @@ class Report:
     comparisons: tuple[Comparison, ...]
     curves: tuple[Curve, ...] = ()
     engines: tuple[Agreement, ...] = ()
+    referee: Referee = field(default_factory=Referee)
     versions: Mapping[str, str] = field(default_factory=dict)
 
     def proof(self, label: str) -> Proof:

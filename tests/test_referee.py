@@ -1,17 +1,29 @@
-"""Published values beside their recomputation."""
+"""Published values beside their recomputation, and what the referee says of the paper's."""
 
 from __future__ import annotations
 
+import shutil
 from decimal import Decimal
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from loopsheet.report.analysis.referee import print_as
-from loopsheet.report.build import PAPER, compute
+from loopsheet.report.build import PAPER, compute, prepare, refereed
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.errors import InputError
+from loopsheet.report.findings import checks
 from loopsheet.report.quantity import Printed
+from loopsheet.report.result import Report
+from loopsheet.report.verdict import REACHABLE, UNREACHABLE, WITHIN, Referee
+
+
+@pytest.fixture(scope="module")
+def paper() -> Report:
+    return refereed(compute(PAPER, prove=False))
 
 
 def printed(text: str, unit: str = "1", scale: Fraction = Fraction(1)) -> Printed:
@@ -50,4 +62,187 @@ def test_the_paper_value_by_value() -> None:
     first = comparisons[0]
     assert (first.published.printed.text, first.again, first.verdict) == ("1.234", "1.258", "differs")
     assert first.distance == pytest.approx(23.996978731236837, rel=1e-12)
-    assert all(c.again in c.published.reason for c in comparisons if c.verdict == "differs")
+
+
+# --- the referee on the paper -----------------------------------------------------------------------------
+
+
+def of_kind(found: Referee, kind: str) -> list[tuple[str, tuple[int, ...]]]:
+    return [(each.cell, each.index) for each in found.explanations if each.kind == kind]
+
+
+def test_two_pairs_are_out_of_reach_by_themselves(paper: Report) -> None:
+    """Both are certain, and what is reached comes close to what is certain."""
+    out = {c.published.index: c for c in paper.comparisons if c.word == UNREACHABLE}
+    assert set(out) == {(2, 4), (2, 5)}
+    assert all(c.word == REACHABLE for c in paper.comparisons if c.published.index not in out)
+    for comparison in out.values():
+        found, printed = comparison.refereed, comparison.published.printed
+        assert found is not None
+        assert found.high is not None
+        assert found.bound_high is not None
+        assert found.high <= found.bound_high < float(printed.interval[0])
+        assert found.bound_high - found.high < 0.25 * float(printed.half_unit)
+    highest = [out[pair].refereed.high for pair in ((2, 4), (2, 5))]  # type: ignore[union-attr]
+    assert highest == pytest.approx([1.3119, 1.3231], abs=5e-5)
+
+
+def test_every_witness_prints_as_given_and_yields_what_is_published(paper: Report) -> None:
+    """Put into the sheet again, it gives the published cell in its digits."""
+    prepared = prepare(PAPER)
+    tried = 0
+    for comparison in paper.comparisons:
+        found, published = comparison.refereed, comparison.published
+        assert found is not None
+        free = published.cell in paper.referee.free or published.source == "Table 3"
+        if found.verdict != REACHABLE or free:
+            continue
+        data = {name: list(x) if isinstance(x, list) else x for name, x in prepared.data.items()}
+        for each in found.witness:
+            if each.printed is None:
+                continue
+            assert each.printed.interval[0] <= Fraction(each.value) * each.printed.scale * (
+                1 + Fraction(1, 10**12)
+            )
+            if each.index:
+                data[each.cell][each.index[0] - 1] = each.value * float(each.printed.scale)
+            else:
+                data[each.cell] = each.value * float(each.printed.scale)
+        value = (
+            engine.evaluate(prepared.sheet, prepared.labels, data).cell(published.cell, published.index).value
+        )
+        assert value is not None
+        assert abs(Fraction(value) - published.printed.value) <= published.printed.half_unit * (
+            1 + Fraction(1, 10**6)
+        )
+        tried += 1
+    assert tried == 9
+
+
+def test_table_2_cannot_come_from_table_1(paper: Report) -> None:
+    tables = {table.source: table for table in paper.referee.tables}
+    assert tables["Table 2"].verdict == UNREACHABLE
+    assert tables["Table 2"].mismatch == pytest.approx(8.4, abs=0.05)
+    assert tables["Table 2"].at_least is not None
+    assert tables["Table 2"].at_least > 6
+    assert tables["text"].verdict == REACHABLE
+    joint = paper.referee.joint
+    assert joint is not None
+    assert joint.verdict == UNREACHABLE
+    assert joint.values == 27
+
+
+def test_what_would_explain_it_and_nothing_else(paper: Report) -> None:
+    found = paper.referee
+    assert sorted(of_kind(found, "misprint")) == [("e", (2,)), ("x_p", (2,))]
+    assert of_kind(found, "truncated") == [("x_p", ())]
+    assert len(found.explanations) == 3
+    would = {each.cell: each for each in found.explanations if each.kind == "misprint"}
+    assert would["x_p"].would_print == "29.8"
+    assert would["x_p"].also == ()
+    assert would["x_p"].mismatch == pytest.approx(0.76, abs=0.005)
+    assert would["e"].would_print == "0.514"
+    assert "0.515" in would["e"].also
+    assert all(each.mismatch <= 1 and each.changes == 1 for each in found.explanations)
+
+
+def test_rows_of_table_3_are_relabelled(paper: Report) -> None:
+    assert [(each.printed, each.would_print, each.cell) for each in paper.referee.labels] == [
+        ("(6)", "(7)", "Cprime_eq7"),
+        ("(8)", "(9)", "Cprime_eq9"),
+    ]
+
+
+def test_the_fit_is_the_log_log_one(paper: Report) -> None:
+    fits = {fit.published.cell: fit for fit in paper.referee.fits}
+    assert fits["alpha_log"].best == "alpha_log"
+    assert fits["alpha_log"].mismatch["alpha_log"] <= 1 < fits["alpha_log"].mismatch["alpha_mean"]
+    assert fits["alpha_log"].mismatch["alpha_lin"] > 20
+
+
+def test_with_the_known_misprint_put_right_everything_comes_out(paper: Report) -> None:
+    amended = paper.referee.amended
+    assert amended is not None
+    assert amended.verdict == REACHABLE
+    assert paper.referee.misprints == ()
+    assert all(c.as_expected for c in paper.comparisons)
+
+
+def changed(tmp_path: Path, file: str, before: str, after: str) -> Report:
+    """The paper with another print somewhere."""
+    folder = tmp_path / "campaign"
+    shutil.copytree(PAPER, folder)
+    text = (folder / file).read_text(encoding="utf-8")
+    assert before in text
+    (folder / file).write_text(text.replace(before, after), encoding="utf-8")
+    return refereed(compute(folder, prove=False))
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "cell"),
+    [
+        ("alpha,1-2,1.234", "alpha,1-2,1.239", ("alpha", (1, 2))),
+        ("x_m,3,55.34", "x_m,3,55.43", ("x_m", (3,))),
+        ("Cprime_eq9,4,3263", "Cprime_eq9,4,3236", ("Cprime_eq9", (4,))),
+    ],
+)
+def test_a_broken_published_value_is_named(tmp_path: Path, before: str, after: str, cell: object) -> None:
+    """Each was known to differ, and now differs otherwise."""
+    report = changed(tmp_path, "published.csv", before, after)
+    failed = [check for check in checks(report) if not check.passed]
+    assert [(c.cell.name, c.cell.label) for c in report.comparisons if not c.as_expected] == [cell]
+    assert sorted(check.kind for check in failed) == ["published", "table"]
+    assert "differs otherwise than is known" in failed[0].message
+    assert f"prints {after.rsplit(',', maxsplit=1)[-1]}" in failed[1].message
+
+
+def test_a_misprint_that_is_no_longer_needed_is_a_finding(tmp_path: Path) -> None:
+    report = changed(tmp_path, "measurements.csv", "29.7", "29.8")
+    failed = [check for check in checks(report) if not check.passed]
+    assert [check.name for check in failed if "no longer differs" not in check.message] == ["known misprints"]
+    assert report.referee.joint is not None
+    assert report.referee.joint.verdict == REACHABLE
+    assert report.referee.explanations == ()
+
+
+def test_a_stated_uncertainty_may_reach_further_than_the_digits(tmp_path: Path) -> None:
+    header = "test,v [m/s],e [1],x_p [um]\n1,2.334,0.530,23.5\n2,2.940,0.512,29.7\n"
+    wide = "test,v [m/s],e [1],x_p [um],u(x_p) [um]\n1,2.334,0.530,23.5,0.03\n2,2.940,0.512,29.7,0.3\n"
+    rows = "3,4.089,0.479,41.6\n4,4.504,0.467,45.97\n5,4.993,0.453,51.03"
+    report = changed(
+        tmp_path, "measurements.csv", header + rows, wide + rows.replace("\n", ",0.03\n") + ",0.03"
+    )
+    words = {c.published.index: c.word for c in report.comparisons if c.published.source == "Table 2"}
+    assert words[2, 4] == WITHIN
+    assert words[1, 2] == REACHABLE
+
+
+def test_a_truncated_column_is_no_misprint(tmp_path: Path) -> None:
+    report = changed(
+        tmp_path, "report.toml", "[published]\n", '[measurements.printed]\nx_p = "truncated"\n\n[published]\n'
+    )
+    assert report.referee.joint is not None
+    assert report.referee.joint.verdict == REACHABLE
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('"x_q[2]" = "29.8"', "the sheet has no cell 'x_q'"),
+        ('"x_p[7]" = "29.8"', "x_p has no index '7'"),
+        ('"x_p[2]" = "29,8"', "29.8"),
+        ('"x_p[2]" = 29.8', "quotes"),
+    ],
+)
+def test_a_wrong_erratum_is_refused_with_its_place(tmp_path: Path, line: str, said: str) -> None:
+    with pytest.raises(InputError) as error:
+        changed(tmp_path, "report.toml", '"x_p[2]" = "29.8"', line)
+    assert said in str(error.value)
+    assert "report.toml:" in str(error.value)
+
+
+@pytest.mark.parametrize("line", ['free = "C_log"', "free = [1]", 'free = ["C_lag"]'])
+def test_wrong_free_cells_are_refused_with_their_place(tmp_path: Path, line: str) -> None:
+    with pytest.raises(InputError) as error:
+        changed(tmp_path, "report.toml", 'free = ["ball_density", "alpha_log", "C_log"]', line)
+    assert "report.toml:" in str(error.value)

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from decimal import ROUND_HALF_EVEN, Decimal, localcontext
+from collections.abc import Sequence
+from dataclasses import replace
+from decimal import ROUND_DOWN, ROUND_HALF_EVEN, Decimal, localcontext
 from fractions import Fraction
 
-from ..published import PublishedValue
-from ..quantity import Printed
-from ..result import Comparison
-from ..values import Values
+from ...published import PublishedValue
+from ...quantity import Printed
+from ...result import Comparison
+from ...values import Values
+from ...verdict import EXACT, REACHABLE, WITHIN, Explanation, Referee, Verdict
 
-__all__ = ["compare", "print_as"]
+__all__ = ["compare", "print_as", "prints_same", "refereed"]
 
 
 def print_as(value: float, like: Printed) -> str:
-    """Print a value as another number was printed: in its unit, with its decimals.
+    """Print a value as another number was printed: in its unit, with its decimals, rounded or truncated.
 
     Parameters
     ----------
@@ -32,7 +35,13 @@ def print_as(value: float, like: Printed) -> str:
     with localcontext() as context:
         context.prec = 60
         exact = Decimal(in_unit.numerator) / Decimal(in_unit.denominator)
-        return f"{exact.quantize(Decimal(1).scaleb(-like.decimals), rounding=ROUND_HALF_EVEN):f}"
+        how = ROUND_DOWN if like.mode == "truncated" else ROUND_HALF_EVEN
+        return f"{exact.quantize(Decimal(1).scaleb(-like.decimals), rounding=how):f}"
+
+
+def prints_same(value: float, printed: Printed) -> bool:
+    """Whether a value in SI prints as it was printed."""
+    return Decimal(print_as(value, printed)) == Decimal(printed.text)
 
 
 def compare(published: tuple[PublishedValue, ...], values: Values) -> tuple[Comparison, ...]:
@@ -47,7 +56,7 @@ def _compare(published: PublishedValue, values: Values) -> Comparison:
     printed = published.printed
     again = print_as(cell.value, printed)
     distance = float((Fraction(cell.value) - printed.value) / (2 * printed.half_unit))
-    verdict = "same" if Decimal(again) == Decimal(printed.text) else "differs"
+    verdict = "same" if prints_same(cell.value, printed) else "differs"
     return Comparison(
         published,
         cell,
@@ -56,3 +65,20 @@ def _compare(published: PublishedValue, values: Values) -> Comparison:
         verdict,
         as_expected=(verdict == "differs") == (published.expect == "differs"),
     )
+
+
+def refereed(comparisons: tuple[Comparison, ...], found: Referee) -> tuple[Comparison, ...]:
+    """Comparisons with what the referee says of each."""
+    return tuple(
+        replace(comparison, refereed=verdict, as_expected=_as_expected(comparison, verdict, found.misprints))
+        for comparison, verdict in zip(comparisons, found.values, strict=True)
+    )
+
+
+def _as_expected(comparison: Comparison, verdict: Verdict, misprints: Sequence[Explanation]) -> bool:
+    """A known difference must differ, and only as is known; anything else must be possible."""
+    published = comparison.published
+    if published.expect == "differs":
+        own = (published.source, published.cell, published.index)
+        return comparison.verdict == "differs" and own not in {(m.source, m.cell, m.index) for m in misprints}
+    return verdict.verdict in (EXACT, REACHABLE, WITHIN)

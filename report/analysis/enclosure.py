@@ -1,0 +1,277 @@
+"""What the cells of a sheet, and their derivatives, can be while the given cells move within intervals.
+
+The sheet's program runs on intervals as it is. A root is enclosed by certain signs of its equation on both
+sides of it: the rule promises one change of sign between turning points, so that with certain signs at the
+ends and no turning point inside there is one root, whatever the values inside the intervals. Derivatives
+are the sheet's own, made by algebra (:mod:`~loopsheet.report.conditions`), and added up along all ways.
+
+A mean-value form then bounds the cells far better than the program alone:
+f(X) lies in f(m) + f'(X) (X - m).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from sympy import Indexed
+
+from ..conditions import Conditions, Node, Slope
+from ..engines.numpy import Kernel, Program
+from ..engines.numpy_root import RootProgram
+from ..layout import Layout, rows_of
+from ..sheet import Column, Formula, Given, Reference, Root, Sheet, name_of
+from .intervals import Intervals, whole
+
+__all__ = ["Enclosure"]
+
+HALVINGS = 60
+
+
+class Enclosure:
+    """The cells of a sheet for given cells that lie in intervals.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    program : Program
+        The sheet's.
+    layouts : mapping of axis name to Layout
+    data : mapping of column name to Intervals (..., rows)
+        The given columns in SI.
+
+    Attributes
+    ----------
+    value : dict of column name to Intervals (..., rows)
+        Where they have a value at all.
+    sure : dict of column name to boolean array (..., rows)
+        Whether they have a value for whatever given cells in the intervals.
+    """
+
+    def __init__(
+        self, sheet: Sheet, program: Program, layouts: Mapping[str, Layout], data: Mapping[str, Any]
+    ) -> None:
+        self.sheet, self.layouts = sheet, layouts
+        self.value: dict[str, Intervals] = {}
+        self.sure: dict[str, NDArray[np.bool_]] = {}
+        with np.errstate(all="ignore"):
+            for column in sheet.order:
+                size = self.size(column)
+                if isinstance(column.rule, Given):
+                    found = Intervals.of(np.asarray(data[column.name]) if not isinstance(
+                        data[column.name], Intervals) else data[column.name])  # fmt: skip
+                    sure = np.isfinite(found.low) & np.isfinite(found.high)
+                elif isinstance(column.rule, Root):
+                    found, sure = self._root(program.roots[column.name], column)
+                else:
+                    found, sure = self._formula(program.formulas[column.name], column)
+                for held in self._called(program.conditions.get(column.name), column):
+                    sure = sure & (held.low == 1)
+                for reference in sheet.named(column):
+                    theirs = self.sure[name_of(reference.cell)]
+                    rows = rows_of(reference.cell, reference.over or column.axis, layouts)
+                    theirs = theirs if rows is None else theirs.take(rows, axis=-1)
+                    sure = sure & (theirs.all(axis=-1, keepdims=True) if reference.over else theirs)
+                shape = np.broadcast_shapes(found.shape, sure.shape, (size,))
+                self.value[column.name] = found.broadcast(shape)
+                self.sure[column.name] = np.broadcast_to(sure, shape)
+
+    def size(self, column: Column) -> int:
+        """How many rows a column has."""
+        return 1 if column.axis is None else self.layouts[column.axis.name].size
+
+    # --- what a kernel is called with ----------------------------------------------------------------
+
+    def _called(self, kernel: Kernel | None, column: Column) -> list[Intervals]:
+        if kernel is None:
+            return []
+        return self.call(kernel, column, self.value)
+
+    def call(self, kernel: Kernel, column: Column, value: Mapping[str, Intervals]) -> list[Intervals]:
+        """What a printed function gives for all rows of a column."""
+        arguments = [self._argument(reference, column, value) for reference in kernel.references]
+        results = kernel.run(*arguments, *(self._total(axis) for axis in kernel.totals))
+        return [Intervals.of(result) for result in results]
+
+    def _argument(self, reference: Reference, column: Column, value: Mapping[str, Intervals]) -> Any:
+        cell, axis = reference.cell, reference.over or column.axis
+        if cell in self.sheet.sizes:
+            return Intervals.of(self.layouts[self.sheet.sizes[cell].name].size)
+        if axis is not None and cell in axis.ordinals:
+            return Intervals.of(self.layouts[axis.name].ordinals[cell])
+        rows = rows_of(cell, axis, self.layouts)
+        found = value[name_of(cell)]
+        return found if rows is None else found.take(rows)
+
+    def _total(self, axis: str) -> Any:
+        size = self.layouts[axis].size
+
+        def total(terms: Any) -> Intervals:
+            terms = Intervals.of(terms)
+            every: Intervals = terms.broadcast(np.broadcast_shapes(terms.shape, (size,)))
+            return every.total()
+
+        return total
+
+    # --- rules ----------------------------------------------------------------------------------------
+
+    def _formula(self, kernel: Kernel, column: Column) -> tuple[Intervals, NDArray[np.bool_]]:
+        (found,) = self._called(kernel, column)
+        if column.positive:
+            found = Intervals(np.maximum(found.low, 0.0), found.high)
+        sure = (
+            np.isfinite(found.low) & np.isfinite(found.high) & (~np.array(column.positive) | (found.low > 0))
+        )
+        return found, sure
+
+    def _root(self, program: RootProgram, column: Column) -> tuple[Intervals, NDArray[np.bool_]]:
+        fixed = self._called(program.fixed, column)
+        rule, totals = program.rule, [self._total(axis) for axis in program.totals]
+        rest = fixed[5 + len(rule.turning) :]
+        shape = np.broadcast_shapes(*(each.shape for each in fixed), (self.size(column),))
+        low, high, _, at_low, at_high, *turning = (
+            each.broadcast(shape) for each in fixed[: 5 + len(rule.turning)]
+        )
+
+        # Generated functions are typed for arrays; intervals are as good.
+        run_at: Any = program.at
+        run_value: Any = program.value
+
+        def at(point: NDArray[np.float64]) -> Intervals:
+            (value,) = run_at(Intervals(point, point), *rest, *totals)
+            return Intervals.of(value).broadcast(shape)
+
+        before = at_low.sign if rule.sign_low is not None else at(low.low).sign
+        after = at_high.sign if rule.sign_high is not None else at(high.high).sign
+        one = before * after < 0
+        for turn in turning:
+            one &= (turn.high <= low.low) | (turn.low >= high.high)
+        left, right = self._bracket(at, low.low.copy(), high.high.copy(), after)
+        (value,) = run_value(Intervals(left, right), *rest, *totals)
+        found = Intervals.of(value).broadcast(shape)
+        unknown = whole(shape)
+        return Intervals(np.where(one, found.low, unknown.low), np.where(one, found.high, unknown.high)), one
+
+    def _bracket(self, at: Any, low: Any, high: Any, after: Any) -> tuple[Any, Any]:
+        """The largest point that is certainly before the root, and the smallest certainly behind it."""
+        left, right = low, high
+        for _ in range(HALVINGS):
+            middle = left + (right - left) / 2
+            found = at(middle)
+            # Which side the middle of its enclosure is on decides where the search goes, and proves nothing.
+            behind = (found.low + found.high) * after > 0
+            left, right = np.where(behind, left, middle), np.where(behind, middle, right)
+        centre = (left + right) / 2
+        return (
+            self._certain(at, centre, low, -after),
+            self._certain(at, centre, high, after),
+        )
+
+    @staticmethod
+    def _certain(at: Any, centre: Any, end: Any, sign: Any) -> Any:
+        """The nearest point between the centre and an end where the equation certainly has a sign."""
+        # The distance is doubled until the sign is certain, then halved back.
+        near, far = np.zeros_like(centre), np.ones_like(centre)
+        share = np.full_like(centre, 2.0**-52)
+        found = np.zeros(centre.shape, dtype=bool)
+        for _ in range(52):
+            certain = at(centre + share * (end - centre)).sign == sign
+            far = np.where(certain & ~found, share, far)
+            near = np.where(certain | found, near, share)
+            found |= certain
+            share = np.minimum(2 * share, 1.0)
+        for _ in range(6):
+            middle = (near + far) / 2
+            certain = at(centre + middle * (end - centre)).sign == sign
+            near, far = np.where(certain, near, middle), np.where(certain, middle, far)
+        # Where it is never certain, the end itself bounds the root.
+        return np.where(found, centre + far * (end - centre), end)
+
+    # --- derivatives ----------------------------------------------------------------------------------
+
+    def derivatives(
+        self, made: Conditions, kernels: Mapping[str, Kernel], sources: Mapping[str, NDArray[np.intp]]
+    ) -> dict[str, Intervals]:
+        """Total derivatives of every column by given cells.
+
+        Parameters
+        ----------
+        made : Conditions
+            Of the sheet.
+        kernels : mapping of column name to Kernel
+            Of the slopes among its columns.
+        sources : mapping of column name to integer array (rows,)
+            For given columns, the number of each row among all that derivatives are taken by.
+
+        Returns
+        -------
+        mapping of column name to Intervals (rows, sources)
+        """
+        number = 1 + max((int(rows.max()) for rows in sources.values()), default=-1)
+        value = dict(self.value)
+        for name, (_, axis) in made.counts.items():
+            value[name] = Intervals.of(np.array([float(self.layouts[axis.name].size)]))
+        found: dict[str, Intervals] = {}
+        with np.errstate(all="ignore"):
+            for node in made.nodes:
+                found[node.name] = self._spread(node, made, kernels, sources, value, found, number)
+        return found
+
+    def _spread(
+        self,
+        node: Node,
+        made: Conditions,
+        kernels: Mapping[str, Kernel],
+        sources: Mapping[str, NDArray[np.intp]],
+        value: Mapping[str, Intervals],
+        found: Mapping[str, Intervals],
+        number: int,
+    ) -> Intervals:
+        size = 1 if node.axis is None else self.layouts[node.axis.name].size
+        own = np.zeros((size, number))
+        if node.name in sources:
+            own[np.arange(size), sources[node.name]] = 1.0
+        total = Intervals(own, own)
+        for slope in node.slopes:
+            column = made.sheet[slope.column]
+            if slope.column in kernels:
+                (values,) = self.call(kernels[slope.column], column, value)
+            else:
+                values = whole((1,))
+            by = slope.by if isinstance(slope.by, str) else name_of(slope.by)
+            theirs, rows = found[by], self._rows(slope, node)
+            theirs = theirs if rows is None else theirs[rows]
+            length = self.size(column)
+            product = values.broadcast((length,))[:, None] * theirs
+            if node.over is not None:
+                product = product.broadcast((length, number)).total(axis=0)
+            total = total + product
+        if node.over is None and node.name in self.sure and not self.sure[node.name].all():
+            gone, nothing = ~self.sure[node.name][:, None], whole(total.shape)
+            rests = (total.low != 0) | (total.high != 0)
+            total = Intervals(
+                np.where(gone & rests, nothing.low, total.low),
+                np.where(gone & rests, nothing.high, total.high),
+            )
+        return total
+
+    def _rows(self, slope: Slope, node: Node) -> NDArray[np.intp] | None:
+        if not isinstance(slope.by, Indexed):
+            return None
+        return rows_of(slope.by, node.over or node.axis, self.layouts)
+
+
+def slope_kernels(made: Conditions) -> dict[str, Kernel]:
+    """Functions of the slopes that can be computed from cells alone."""
+    from ..engines.numpy_code import kernel
+
+    found: dict[str, Kernel] = {}
+    given = {column.name for column in made.sheet.columns if isinstance(column.rule, Given)}
+    for name in {slope.column for node in made.nodes for slope in node.slopes}:
+        column = made.sheet[name]
+        named = {precedent.name for precedent in made.sheet.precedents(column)}
+        if isinstance(column.rule, Formula) and named <= given:
+            found[name] = kernel([column.rule.expression], made.sheet.indices)
+    return found

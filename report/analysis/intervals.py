@@ -1,0 +1,282 @@
+"""Interval arithmetic on arrays: every result encloses what the operation gives for any values inside.
+
+Ends are rounded outwards. Sums, products, quotients and square roots are rounded correctly by the processor
+(IEEE 754), so that the neighbouring double encloses them; of NumPy's exponentials and logarithms an error of
+4 units in the last place is allowed for. An operation takes the part of an interval that lies in its domain.
+
+NumPy's functions accept these arrays, so that a generated program runs on them as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
+from numpy.typing import NDArray
+
+__all__ = ["Intervals", "whole"]
+
+Array = NDArray[np.float64]
+
+WIDER = 2.0**-50
+"""Four units in the last place, at most: how far NumPy's elementary functions may be off, relatively."""
+
+
+class Intervals(NDArrayOperatorsMixin):
+    """An array of closed intervals; of truths, an interval in 0 (false) to 1 (true).
+
+    Parameters
+    ----------
+    low, high : float arrays of one shape
+        Ends; infinite where nothing is known.
+
+    Examples
+    --------
+    >>> x = Intervals([1.0], [2.0])
+    >>> width = x - x
+    >>> bool(width.low[0] <= -1 and width.high[0] >= 1)
+    True
+    """
+
+    __slots__ = ("high", "low")
+
+    def __init__(self, low: Any, high: Any) -> None:
+        self.low: Array = np.asarray(low, dtype=np.float64)
+        self.high: Array = np.asarray(high, dtype=np.float64)
+
+    @classmethod
+    def of(cls, value: Any) -> Intervals:
+        """A number as an interval: a whole one is exact, another was rounded when it was written."""
+        if isinstance(value, Intervals):
+            return value
+        array = np.asarray(value, dtype=np.float64)
+        if isinstance(value, (np.ndarray, np.floating)):
+            return cls(array, array)
+        exact = array == np.rint(array)
+        return cls(np.where(exact, array, _below(array)), np.where(exact, array, _above(array)))
+
+    @classmethod
+    def near(cls, low: Any, high: Any) -> Intervals:
+        """Ends that were rounded to doubles from what they are."""
+        return cls(_below(np.asarray(low)), _above(np.asarray(high)))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of both ends."""
+        return np.broadcast_shapes(self.low.shape, self.high.shape)
+
+    def __getitem__(self, key: Any) -> Intervals:
+        return Intervals(self.low[key], self.high[key])
+
+    def take(self, rows: NDArray[np.intp]) -> Intervals:
+        """Rows of the last dimension."""
+        return Intervals(self.low.take(rows, axis=-1), self.high.take(rows, axis=-1))
+
+    def broadcast(self, shape: tuple[int, ...]) -> Intervals:
+        """The same in a larger shape."""
+        return Intervals(np.broadcast_to(self.low, shape), np.broadcast_to(self.high, shape))
+
+    def within(self, other: Intervals) -> Intervals:
+        """What both contain; this one where they have nothing in common, which rounding alone can bring."""
+        low, high = np.maximum(self.low, other.low), np.minimum(self.high, other.high)
+        apart = ~(low <= high)
+        return Intervals(np.where(apart, self.low, low), np.where(apart, self.high, high))
+
+    def total(self, axis: int = -1, keepdims: bool = True) -> Intervals:
+        """The sum along a dimension."""
+        size = max(1, self.low.shape[axis] if self.low.ndim else 1)
+        slack = size * 2.0**-52
+        low, high = (np.sum(end, axis=axis, keepdims=keepdims) for end in (self.low, self.high))
+        sizes = [np.sum(np.abs(end), axis=axis, keepdims=keepdims) for end in (self.low, self.high)]
+        return _cleaned(_below(low - slack * sizes[0]), _above(high + slack * sizes[1]))
+
+    @property
+    def sign(self) -> Array:
+        """-1 or 1 where it is certain, else 0."""
+        return np.where(self.low > 0, 1.0, np.where(self.high < 0, -1.0, 0.0))
+
+    # --- NumPy's functions ----------------------------------------------------------------------------
+
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
+        run = _UFUNCS.get(ufunc.__name__)
+        if run is None or method != "__call__" or options:
+            return NotImplemented
+        with np.errstate(all="ignore"):
+            if ufunc.__name__ == "power":
+                return _power(Intervals.of(inputs[0]), inputs[1])
+            return run(*map(Intervals.of, inputs))
+
+    def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
+        if function is not np.where or len(args) != 3:
+            return NotImplemented
+        truth, yes, no = map(Intervals.of, args)
+        low = np.where(
+            truth.low == 1, yes.low, np.where(truth.high == 0, no.low, np.minimum(yes.low, no.low))
+        )
+        high = np.where(
+            truth.low == 1, yes.high, np.where(truth.high == 0, no.high, np.maximum(yes.high, no.high))
+        )
+        return _cleaned(low, high)
+
+
+def whole(shape: tuple[int, ...]) -> Intervals:
+    """Intervals of which nothing is known."""
+    return Intervals(np.full(shape, -np.inf), np.full(shape, np.inf))
+
+
+# --- ends ------------------------------------------------------------------------------------------------
+
+
+def _below(value: Any) -> Array:
+    found: Array = np.nextafter(value, -np.inf)
+    return found
+
+
+def _above(value: Any) -> Array:
+    found: Array = np.nextafter(value, np.inf)
+    return found
+
+
+def _cleaned(low: Any, high: Any) -> Intervals:
+    """No number means that nothing is known."""
+    unknown = np.isnan(low) | np.isnan(high)
+    return Intervals(np.where(unknown, -np.inf, low), np.where(unknown, np.inf, high))
+
+
+def _outwards(low: Any, high: Any) -> Intervals:
+    return _cleaned(_below(low), _above(high))
+
+
+def _loosely(low: Any, high: Any) -> Intervals:
+    """Ends that an elementary function gave."""
+    return _outwards(low - WIDER * np.abs(low), high + WIDER * np.abs(high))
+
+
+# --- operations ------------------------------------------------------------------------------------------
+
+
+def _multiply(a: Intervals, b: Intervals) -> Intervals:
+    # Nothing times anything is nothing, however large.
+    ends = [np.nan_to_num(x * y, nan=0.0, posinf=np.inf, neginf=-np.inf)
+            for x in (a.low, a.high) for y in (b.low, b.high)]  # fmt: skip
+    low, high = np.minimum.reduce(np.broadcast_arrays(*ends)), np.maximum.reduce(np.broadcast_arrays(*ends))
+    return _outwards(low, high)
+
+
+def _divide(a: Intervals, b: Intervals) -> Intervals:
+    through_zero = (b.low <= 0) & (b.high >= 0)
+    inverse = Intervals(
+        np.where(through_zero, -np.inf, _below(1 / b.high)), np.where(through_zero, np.inf, _above(1 / b.low))
+    )
+    # A denominator that only touches zero has quotients of one sign.
+    touches = through_zero & (b.low == 0) & (b.high > 0)
+    inverse = Intervals(np.where(touches, _below(1 / b.high), inverse.low), inverse.high)
+    touches = through_zero & (b.high == 0) & (b.low < 0)
+    inverse = Intervals(inverse.low, np.where(touches, _above(1 / b.low), inverse.high))
+    return _multiply(a, inverse)
+
+
+def _power(base: Intervals, exponent: Any) -> Intervals:
+    if not isinstance(exponent, Intervals) and np.ndim(exponent) == 0 and float(exponent).is_integer():
+        return _whole_power(base, int(exponent))
+    return _exp(_multiply(Intervals.of(exponent), _log(base)))
+
+
+def _whole_power(base: Intervals, exponent: int) -> Intervals:
+    if exponent < 0:
+        return _divide(Intervals.of(1), _whole_power(base, -exponent))
+    low, high = base.low**exponent, base.high**exponent
+    if exponent % 2 == 0:
+        inside = (base.low <= 0) & (base.high >= 0)
+        low, high = np.where(inside, 0.0, np.minimum(low, high)), np.maximum(low, high)
+        found = _loosely(low, high)
+        return Intervals(np.maximum(found.low, 0.0), found.high)
+    return _loosely(low, high)
+
+
+def _exp(a: Intervals) -> Intervals:
+    found = _loosely(np.exp(a.low), np.exp(a.high))
+    return Intervals(np.maximum(found.low, 0.0), found.high)
+
+
+def _log(a: Intervals) -> Intervals:
+    return _loosely(np.where(a.low > 0, np.log(a.low), -np.inf), np.where(a.high > 0, np.log(a.high), np.nan))
+
+
+def _sqrt(a: Intervals) -> Intervals:
+    found = _outwards(np.sqrt(np.maximum(a.low, 0.0)), np.sqrt(a.high))
+    return Intervals(np.maximum(found.low, 0.0), found.high)
+
+
+def _absolute(a: Intervals) -> Intervals:
+    inside = (a.low <= 0) & (a.high >= 0)
+    ends = np.abs(a.low), np.abs(a.high)
+    return Intervals(np.where(inside, 0.0, np.minimum(*ends)), np.maximum(*ends))
+
+
+def _rising(function: Callable[[Array], Array]) -> Callable[[Intervals], Intervals]:
+    return lambda a: _loosely(function(a.low), function(a.high))
+
+
+def _truth(certain: Any, possible: Any) -> Intervals:
+    return Intervals(np.where(certain, 1.0, 0.0), np.where(possible, 1.0, 0.0))
+
+
+def _equal(a: Intervals, b: Intervals) -> Intervals:
+    same = (a.low == a.high) & (b.low == b.high) & (a.low == b.low)
+    return _truth(same, (a.low <= b.high) & (b.low <= a.high))
+
+
+def _not(a: Intervals) -> Intervals:
+    return Intervals(1 - a.high, 1 - a.low)
+
+
+def _smaller(a: Intervals, b: Intervals) -> Intervals:
+    return Intervals(np.minimum(a.low, b.low), np.minimum(a.high, b.high))
+
+
+def _larger(a: Intervals, b: Intervals) -> Intervals:
+    return Intervals(np.maximum(a.low, b.low), np.maximum(a.high, b.high))
+
+
+def _less(a: Intervals, b: Intervals) -> Intervals:
+    return _truth(a.high < b.low, a.low < b.high)
+
+
+def _less_equal(a: Intervals, b: Intervals) -> Intervals:
+    return _truth(a.high <= b.low, a.low <= b.high)
+
+
+_UFUNCS: dict[str, Callable[..., Intervals]] = {
+    "add": lambda a, b: _outwards(a.low + b.low, a.high + b.high),
+    "subtract": lambda a, b: _outwards(a.low - b.high, a.high - b.low),
+    "multiply": _multiply,
+    "divide": _divide,
+    "power": _power,
+    "negative": lambda a: Intervals(-a.high, -a.low),
+    "positive": lambda a: a,
+    "absolute": _absolute,
+    "square": lambda a: _whole_power(a, 2),
+    "sign": lambda a: Intervals(np.sign(a.low), np.sign(a.high)),
+    "sqrt": _sqrt,
+    "exp": _exp,
+    "log": _log,
+    **{
+        function.__name__: _rising(function)
+        for function in (np.expm1, np.log1p, np.cbrt, np.arctan, np.sinh, np.tanh, np.arcsinh)
+    },
+    "minimum": _smaller,
+    "maximum": _larger,
+    "less": _less,
+    "greater": lambda a, b: _less(b, a),
+    "less_equal": _less_equal,
+    "greater_equal": lambda a, b: _less_equal(b, a),
+    "equal": _equal,
+    "not_equal": lambda a, b: _not(_equal(a, b)),
+    "logical_and": _smaller,
+    "logical_or": _larger,
+    "logical_not": _not,
+}
+"""What intervals can do; a program that asks for more is not run on them."""

@@ -1,0 +1,6 @@
+"""The referee: whether printed results are reachable from printed inputs."""
+
+from .comparison import compare, print_as, refereed
+from .judging import referee
+
+__all__ = ["compare", "print_as", "referee", "refereed"]

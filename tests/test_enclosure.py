@@ -1,0 +1,87 @@
+"""Enclosures hold every sample of their box, and are narrow enough to decide something."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from loopsheet.report import build
+from loopsheet.report.analysis.referee.certificate import Certificate
+from loopsheet.report.analysis.referee.minimax import best
+from loopsheet.report.analysis.referee.problem import Campaign, Problem
+from loopsheet.report.engines import numpy as engine
+
+
+@pytest.fixture(scope="module")
+def campaign() -> Campaign:
+    prepared = build.prepare(build.PAPER)
+    values = engine.evaluate(prepared.sheet, prepared.labels, prepared.data)
+    return Campaign(prepared.sheet, prepared.inputs, values, prepared.data, prepared.inputs.free)
+
+
+def table(campaign: Campaign, *sources: str, tied: tuple[str, ...] = ()) -> Problem:
+    return campaign.problem([p for p in campaign.inputs.published if p.source in sources], tied)
+
+
+def samples(problem: Problem, number: int) -> np.ndarray:
+    """Points of a box, its corners among them."""
+    rng = np.random.default_rng(3)
+    box = problem.box
+    share = rng.random((number, len(box.low)))
+    share[: number // 2] = np.rint(share[: number // 2])
+    return box.low + share * box.width
+
+
+@pytest.mark.parametrize(("sources", "tied"), [(("Table 2",), ()), (("text",), ("alpha_log",))])
+def test_bounds_hold_every_sample(
+    campaign: Campaign, sources: tuple[str, ...], tied: tuple[str, ...]
+) -> None:
+    problem = table(campaign, *sources, tied=tied)
+    bounds, cells = Certificate(problem).bounds, problem.evaluate(samples(problem, 400))
+    assert (cells >= bounds.low).all()
+    assert (cells <= bounds.high).all()
+
+
+def test_bounds_are_narrow(campaign: Campaign) -> None:
+    """Within a tenth of what samples reach, so that they decide."""
+    problem = table(campaign, "Table 2")
+    bounds, cells = Certificate(problem).bounds, problem.evaluate(samples(problem, 4000))
+    reached = cells.max(axis=0) - cells.min(axis=0)
+    assert (bounds.high - bounds.low <= 1.35 * reached).all()
+
+
+def test_derivatives_hold_those_of_every_sample(campaign: Campaign) -> None:
+    problem = table(campaign, "Table 2")
+    slopes = Certificate(problem)._slopes
+    for point in samples(problem, 40):
+        found = problem.slopes(point, problem.box)
+        slack = 1e-4 * np.abs(found) + 1e-6 * np.abs(found).max()
+        assert (found >= slopes.low - slack).all()
+        assert (found <= slopes.high + slack).all()
+
+
+def test_no_sample_beats_the_certified_mismatch(campaign: Campaign) -> None:
+    problem = table(campaign, "Table 2")
+    found = best(problem)
+    at_least = Certificate(problem).at_least(found.weights)
+    assert 1 < at_least <= found.mismatch
+    worst = np.abs(problem.mismatch(problem.evaluate(samples(problem, 4000)))).max(axis=1)
+    assert worst.min() >= found.mismatch > at_least
+
+
+def test_nothing_is_certified_of_a_table_that_can_be_reached(campaign: Campaign) -> None:
+    """With the depth of the second test changed, the table is possible; then no weights may say otherwise."""
+    inputs = campaign.inputs
+    depths = list(inputs.measured["x_p"])
+    depths[1] = replace(depths[1], text="29.8", value=Fraction("29.8e-6"))
+    inputs = replace(inputs, measured={**inputs.measured, "x_p": tuple(depths)})
+    data = {**campaign.data, "x_p": [float(p.value) for p in depths]}
+    values = engine.evaluate(campaign.sheet, campaign.labels, data)
+    problem = table(Campaign(campaign.sheet, inputs, values, data, campaign.free), "Table 2")
+    assert best(problem).mismatch <= 1
+    certificate, rng = Certificate(problem), np.random.default_rng(1)
+    for _ in range(200):
+        assert certificate.at_least(rng.standard_normal(10)) <= 1
