@@ -4,28 +4,30 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-import os
-import shutil
 import sys
-import tempfile
-from collections.abc import Callable, Collection, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .background import Background
-from .errors import InputError, Location, OutputError, UnknownWorkbook, UsageError, close, diagnose, listing
+from .errors import InputError, Location, UnknownWorkbook, UsageError, close, diagnose, listing
 from .inputs import Inputs, check_published, load
+from .provenance import sources
+from .staging import put, staged
 from .unit_text import UnitError as NotAUnit
 from .unit_text import parse_unit
 from .workbooks import SHIPPED
 
 if TYPE_CHECKING:
+    from ..derivations.equation import Erratum, Ledger
+    from ..derivations.proof import Proof, StepProof
     from .grid import Drawn, Grid
-    from .result import Report, Shown
+    from .result import Comparison, Report, Shown
     from .sheet import Column, Sheet
-    from .workbook import Workbook
+    from .verdict import Referee
+    from .workbook import FigureSpec, Workbook
 
 __all__ = [
     "FORMATS",
@@ -37,6 +39,7 @@ __all__ = [
     "given_data",
     "judged",
     "prepare",
+    "refereed",
     "versions",
 ]
 
@@ -48,6 +51,9 @@ DEFAULT_FORMATS = ("html", "latex", "xlsx", "json")
 
 Step = Callable[[str], None]
 """Told what is begun, for whoever watches."""
+
+_Found = tuple[dict[str, Any], list[dict[str, Any]]]
+"""A proof without its equation, and its steps without theirs."""
 
 
 def _silent(_: str) -> None:
@@ -156,7 +162,10 @@ def prepare(folder: Path) -> Prepared:
     InputError
         With every finding.
     """
-    inputs = load(folder, find_workbook)
+    return _prepared(load(folder, find_workbook))
+
+
+def _prepared(inputs: Inputs) -> Prepared:
     from . import units
     from .sheet import SheetError
 
@@ -182,14 +191,17 @@ def compute(folder: Path, step: Step = _silent, prove: bool = True) -> Report:
     prove : bool
         Whether to check the algebra too.
     """
-    report = _evaluated(folder, step)
-    return _proved(report, step) if prove else report
-
-
-def _evaluated(folder: Path, step: Step) -> Report:
-    """Everything but the proofs."""
     step("reading the folder")
     prepared = prepare(folder)
+    report = _evaluated(prepared, prepared.inputs.workbook.ledger(), step)
+    if not prove:
+        return report
+    proofs, errata = _checked(report.ledger, step)
+    return replace(report, proofs=proofs, errata=errata)
+
+
+def _evaluated(prepared: Prepared, ledger: Ledger, step: Step) -> Report:
+    """Everything but the proofs."""
     inputs, sheet = prepared.inputs, prepared.sheet
     from .analysis.referee import compare
     from .engines import numpy as engine
@@ -206,7 +218,7 @@ def _evaluated(folder: Path, step: Step) -> Report:
         sheet=sheet,
         values=values,
         shown={column.name: shown(column, sheet, inputs) for column in sheet.columns},
-        ledger=workbook.ledger(),
+        ledger=ledger,
         proofs=(),
         errata=(),
         comparisons=compare(inputs.published, values),
@@ -215,14 +227,35 @@ def _evaluated(folder: Path, step: Step) -> Report:
     )
 
 
-def _proved(report: Report, step: Step) -> Report:
-    """The report with its algebra checked."""
+def _checked(ledger: Ledger, step: Step = _silent) -> tuple[tuple[Proof, ...], tuple[Erratum, ...]]:
+    """What is known of the algebra: a proof of each equation, and the errata of the print."""
     from ..derivations.proof import prove
 
-    ledger = report.ledger
     proofs = prove(ledger, lambda equation: step(f"proving {equation.label}"))
-    errata = tuple(found for check in ledger.checks if (found := check(ledger)) is not None)
-    return replace(report, proofs=proofs, errata=errata)
+    return proofs, tuple(found for check in ledger.checks if (found := check(ledger)) is not None)
+
+
+def _checked_plainly(ledger: Ledger) -> tuple[list[_Found], tuple[Erratum, ...]]:
+    """The same without equations, for another process: an expression that is sent arrives evaluated."""
+    proofs, errata = _checked(ledger)
+    return [(_but(p, "equation", "steps"), [_but(s, "step") for s in p.steps]) for p in proofs], errata
+
+
+def _but(found: Proof | StepProof, *names: str) -> dict[str, Any]:
+    return {name: value for name, value in vars(found).items() if name not in names}
+
+
+def _with_equations(ledger: Ledger, found: Sequence[_Found]) -> tuple[Proof, ...]:
+    """The proofs again, of a ledger's own equations and steps."""
+    from ..derivations.equation import Derivation
+    from ..derivations.proof import Proof, StepProof
+
+    proofs = []
+    for entry, (own, rests) in zip(ledger.entries, found, strict=True):
+        equation, steps = (entry.claim, entry.steps) if isinstance(entry, Derivation) else (entry, ())
+        told = tuple(StepProof(step=step, **rest) for step, rest in zip(steps, rests, strict=True))
+        proofs.append(Proof(equation=equation, steps=told, **own))
+    return tuple(proofs)
 
 
 def judged(report: Report, every: bool = True, step: Step = _silent) -> Report:
@@ -252,6 +285,22 @@ def judged(report: Report, every: bool = True, step: Step = _silent) -> Report:
         book = None  # there is no such workbook, and nothing to judge
     agreements = engines.compare_all(report.values, prepared.labels, prepared.data, prepared.exact_data, book)
     return replace(report, engines=agreements)
+
+
+def refereed(report: Report, step: Step = _silent) -> Report:
+    """The report with every published value judged: whether the printed inputs can yield it.
+
+    Parameters
+    ----------
+    report : Report
+    step : callable
+        Told what is begun.
+    """
+    from .analysis import referee
+
+    data = Prepared(report.inputs, report.sheet).data
+    found = referee.referee(report.sheet, report.inputs, report.values, data, step)
+    return replace(report, referee=found, comparisons=referee.refereed(report.comparisons, found))
 
 
 def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
@@ -342,31 +391,55 @@ def build(
     list of Path
         The files that were written.
     """
-    with _staged(out) as stage:
-        report = _evaluated(folder, step)
+    with staged(out) as stage, ExitStack() as running:
+        step("reading the folder")
+        inputs = load(folder, find_workbook)
+        ledger = inputs.workbook.ledger()
+        # Everything that takes long has a process of its own, from when there is what it needs.
+        proving = running.enter_context(Background(lambda: _checked_plainly(ledger)))
+        report = _evaluated(_prepared(inputs), ledger, step)
         if "xlsx" in formats:
             _refuse_too_many_rows(report)
-        with (
-            Background(lambda: _pictures(report, formats)) as drawing,
-            Background(lambda: judged(report, every_engine).engines) as judging,
-        ):
-            report = _proved(report, step)
-            step("judging the engines at 50 digits")
-            report = replace(report, engines=judging.result())
-            with Background(lambda: _workbook(report)[1] if "xlsx" in formats else b"") as workbook:
-                _write(report, stage, formats, drawing, workbook, step)
+        judging = running.enter_context(Background(lambda: judged(report, every_engine).engines))
+        refereeing, drawing, workbook = None, None, None
+        if report.inputs.published:
+            refereeing = running.enter_context(Background(lambda: _refereed(report, formats)))
+        if report.workbook.figures and _WITH_FIGURES & set(formats):
+            drawing = running.enter_context(
+                Background(lambda: _pictures(report, report.workbook.figures, formats))
+            )
+        program = _program(report) if "html" in formats else ""
+        step("proving the equations")
+        found, errata = proving.result()
+        proved = replace(report, proofs=_with_equations(ledger, found), errata=errata)
+        if "xlsx" in formats:
+            workbook = running.enter_context(Background(lambda: _workbook(proved)[1]))
+        step("judging the engines at 50 digits")
+        finished = replace(proved, engines=judging.result())
+        pictures: dict[str, bytes] = {}
+        if drawing is not None:
+            step("drawing the figures")
+            pictures = drawing.result()
+        if refereeing is not None:
+            step("refereeing what was published")
+            referee, comparisons, its_pictures = refereeing.result()
+            finished = replace(finished, referee=referee, comparisons=comparisons)
+            pictures |= its_pictures
+        _write(finished, stage, formats, pictures, program, workbook, step)
         names = sorted(p.relative_to(stage) for p in stage.rglob("*") if p.is_file())
-    return report, [out / name for name in names]
+    return finished, [out / name for name in names]
 
 
-def _pictures(report: Report, formats: Collection[str]) -> dict[str, bytes]:
-    """The files of all figures, by name."""
-    if not {"html", "latex", "pdf"} & set(formats) or not report.workbook.figures:
-        return {}
+_WITH_FIGURES = {"html", "latex", "pdf"}
+"""The formats that show figures."""
+
+
+def _pictures(report: Report, which: Sequence[FigureSpec], formats: Collection[str]) -> dict[str, bytes]:
+    """The files of figures, by name."""
     from .views import figures
 
     drawn: dict[str, bytes] = {}
-    for figure in report.workbook.figures:
+    for figure in which:
         if "html" in formats:
             drawn[f"{figure.name}.svg"] = figures.svg(report, figure.draw).encode()
         if "latex" in formats or "pdf" in formats:
@@ -374,51 +447,71 @@ def _pictures(report: Report, formats: Collection[str]) -> dict[str, bytes]:
     return drawn
 
 
+def _refereed(
+    report: Report, formats: Collection[str]
+) -> tuple[Referee, tuple[Comparison, ...], dict[str, bytes]]:
+    """What the referee found, and its own picture."""
+    found = refereed(report)
+    pictures: dict[str, bytes] = {}
+    if _WITH_FIGURES & set(formats):
+        from .views import figures
+
+        own = [figure for figure in figures.of(found) if figure not in report.workbook.figures]
+        pictures = _pictures(found, own, formats)
+    return found.referee, found.comparisons, pictures
+
+
+def _program(report: Report) -> str:
+    """The sheet as the page's program, with the curves that the page draws."""
+    from .engines import javascript
+
+    drawn = _drawn(report)
+    if drawn is None:
+        return javascript.program(report.sheet)
+    return javascript.program(drawn.with_curves(report.sheet), drawn.given)
+
+
 def _write(
     report: Report,
     stage: Path,
     formats: Collection[str],
-    drawing: Background[dict[str, bytes]],
-    workbook: Background[bytes],
+    pictures: Mapping[str, bytes],
+    program: str,
+    workbook: Background[bytes] | None,
     step: Step,
 ) -> None:
     from .views import json
 
     if "json" in formats:
-        _put(stage / "values.json", json.values(report))
+        put(stage / "values.json", json.values(report))
     if "latex" in formats or "pdf" in formats:
         from .views import latex
 
         step("writing report.tex")
-        _put(stage / "report.tex", latex.render(report, [figure.name for figure in report.workbook.figures]))
-    step("drawing the figures")
-    pictures = drawing.result()
+        names = [name.removesuffix(".pdf") for name in pictures if name.endswith(".pdf")]
+        put(stage / "report.tex", latex.render(report, names))
     for name, content in pictures.items():
-        _put(stage / "figures" / name, content)
+        put(stage / "figures" / name, content)
     if "html" in formats:
-        from .engines import javascript
         from .views import html
 
         step("writing report.html")
-        drawn = _drawn(report)
-        sheet = report.sheet if drawn is None else drawn.with_curves(report.sheet)
-        program = javascript.program(sheet, drawn.given if drawn is not None else {})
         svg = {
             name.removesuffix(".svg"): content.decode()
             for name, content in pictures.items()
             if name.endswith(".svg")
         }
-        _put(stage / "report.html", html.render(report, svg, program))
-    if "xlsx" in formats:
+        put(stage / "report.html", html.render(report, svg, program))
+    if workbook is not None:
         step("writing report.xlsx")
-        _put(stage / "report.xlsx", workbook.result())
+        put(stage / "report.xlsx", workbook.result())
     if "pdf" in formats:
         step("running latexmk")
         latex.compile(stage)
     outputs = {
         p.relative_to(stage).as_posix(): p.read_bytes() for p in sorted(stage.rglob("*")) if p.is_file()
     }
-    _put(stage / "manifest.json", json.manifest(report.inputs.files, outputs, report.versions))
+    put(stage / "manifest.json", json.manifest(report, outputs, sources()))
 
 
 def _refuse_too_many_rows(report: Report) -> None:
@@ -452,112 +545,3 @@ def _workbook(report: Report) -> tuple[Grid, bytes]:
             diagnose("LS606", reason=error, known="functions that every spreadsheet has")
         ) from error
     return grid, xlsx.render(report, grid)
-
-
-def _put(path: Path, content: str | bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content.encode() if isinstance(content, str) else content)
-
-
-@contextmanager
-def _staged(out: Path) -> Iterator[Path]:
-    """A temporary folder beside the output, moved in whole when the block ends well."""
-    made: list[Path] = []
-    try:
-        if out.exists() and not out.is_dir():
-            raise OutputError(diagnose("LS602", text=str(out)))
-        made = [p for p in (out, *out.parents) if not p.exists()]
-        out.mkdir(parents=True, exist_ok=True)
-        stage = Path(tempfile.mkdtemp(prefix=".loopsheet-", dir=out))
-    except OSError as error:
-        _remove(made)
-        raise OutputError(diagnose("LS601", text=str(out), reason=error.strerror or str(error))) from error
-    try:
-        yield stage
-        _move_in(stage, out)
-    except BaseException:
-        shutil.rmtree(stage, ignore_errors=True)
-        _remove(made)
-        raise
-    shutil.rmtree(stage, ignore_errors=True)
-
-
-def _remove(made: list[Path]) -> None:
-    """Take back the empty folders that were made."""
-    for folder in made:
-        try:
-            folder.rmdir()
-        except OSError:
-            return
-
-
-def _move_in(stage: Path, out: Path) -> None:
-    """Put the staged files in place: all of them, or none if one cannot be.
-
-    The manifest comes last and never speaks of half an output. What an earlier build made and this one does
-    not is taken away, unless somebody changed it.
-    """
-    names = sorted(
-        (p.relative_to(stage) for p in stage.rglob("*") if p.is_file()),
-        key=lambda name: (name.name == "manifest.json", name),
-    )
-    for name in names:
-        _refuse_what_is_in_the_way(out, name)
-    before = stage / ".before"
-    done: list[tuple[Path, Path | None]] = []
-    try:
-        for name in (*_stale(out, names), *names):
-            target = out / name
-            kept = None
-            if target.exists():
-                kept = before / name
-                kept.parent.mkdir(parents=True, exist_ok=True)
-                os.replace(target, kept)
-            done.append((target, kept))
-            if name in names:
-                target.parent.mkdir(parents=True, exist_ok=True)
-                os.replace(stage / name, target)
-    except BaseException as error:
-        for target, kept in reversed(done):
-            target.unlink(missing_ok=True)
-            if kept is not None:
-                os.replace(kept, target)
-        if isinstance(error, OSError):
-            reason = error.strerror or str(error)
-            raise OutputError(diagnose("LS601", text=str(out), reason=reason)) from error
-        raise
-
-
-def _refuse_what_is_in_the_way(out: Path, name: Path) -> None:
-    """A folder where a file goes, or a file where a folder goes, is the user's: nothing is done then."""
-    if (out / name).is_dir():
-        raise OutputError(diagnose("LS601", text=name.as_posix(), reason="a folder has this name"))
-    for parent in name.parents[:-1]:
-        if (out / parent).exists() and not (out / parent).is_dir():
-            raise OutputError(diagnose("LS601", text=name.as_posix(), reason=f"{parent} is a file"))
-
-
-def _stale(out: Path, names: Collection[Path]) -> list[Path]:
-    """What the manifest of an earlier build lists, unchanged since, and this build does not make."""
-    import hashlib
-    import json
-
-    try:
-        listed = json.loads((out / "manifest.json").read_text(encoding="utf-8"))["outputs"]
-        known = {Path(name): str(digest) for name, digest in listed.items()}
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return []  # no earlier build, or a manifest that is not ours
-    found = []
-    for name, digest in sorted(known.items()):
-        path = out / name
-        if (
-            name in names
-            or name.is_absolute()
-            or ".." in name.parts
-            or path.is_symlink()
-            or not path.is_file()
-        ):
-            continue
-        if hashlib.sha256(path.read_bytes()).hexdigest() == digest:
-            found.append(name)
-    return found

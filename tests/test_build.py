@@ -79,6 +79,16 @@ def test_same_bytes_everywhere(tmp_path: Path) -> None:
     assert len(found[0]) > 8
 
 
+def test_proofs_from_a_process_of_their_own_are_of_the_ledgers_own_equations(tmp_path: Path) -> None:
+    report, _ = build.build(build.PAPER, tmp_path / "out", ("json",))
+    here = build.compute(build.PAPER)
+    assert (report.proofs, report.errata) == (here.proofs, here.errata)
+    assert any(proof.remark for proof in report.proofs)
+    for proof, entry in zip(report.proofs, report.ledger.entries, strict=True):
+        assert proof.equation is getattr(entry, "claim", entry)
+        assert [found.step for found in proof.steps] == list(getattr(entry, "steps", ()))
+
+
 def test_outputs_name_no_place_of_the_machine(tmp_path: Path) -> None:
     folder = copy_paper(tmp_path / "here")
     build.build(folder, tmp_path / "out")

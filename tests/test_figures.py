@@ -157,7 +157,9 @@ def test_no_letter_is_smaller_than_8_points(report_of: Callable[..., Report], na
 
 
 def test_a_drawing_that_is_not_there_is_told() -> None:
-    with pytest.raises(KeyError, match="'loop'; there are hysteresis, lankarani, loops, alpha_pairs"):
+    with pytest.raises(
+        KeyError, match="'loop'; there are hysteresis, lankarani, loops, alpha_pairs, referee"
+    ):
         figures.draw(None, "loop")  # type: ignore[arg-type]
 
 
@@ -275,6 +277,7 @@ def test_what_is_left_out_of_the_picture_is_told(report_of: Callable[..., Report
         ("no pair", "loops", "No loop"),
         ("falling", "loops", "No loop"),
         ("no pair", "alpha_pairs", "No exponent"),
+        ("paper", "referee", "No reachable interval"),
     ],
 )
 def test_nothing_to_draw_is_said(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from xml.etree import ElementTree
 
 __all__ = ["short_mathml", "short_script", "short_style"]
 
@@ -51,10 +52,10 @@ def _end_of_template(text: str, place: int) -> int:
 
 
 def short_script(text: str) -> str:
-    r"""JavaScript without comments and idle spaces; a line end stays where a statement ends.
+    r"""JavaScript without comments and idle spaces; a line end stays where it ends a statement.
 
     >>> short_script('const a = 1; // one\n  const b = `x  ${ a }`;\n')
-    'const a=1;\nconst b=`x  ${ a }`;\n'
+    'const a=1;const b=`x  ${ a }`;\n'
     """
     pieces: list[str] = []
     space = ""
@@ -66,7 +67,7 @@ def short_script(text: str) -> str:
             last, first = pieces[-1][-1], piece[0]
             words = (last.isalnum() or last in "_$") and (first.isalnum() or first in "_$")
             signs = last in "+-" and first in "+-"
-            ends = space == "\n" and last not in "{(,[&|?:=+-*<>" and first not in "})],.?:&|*"
+            ends = space == "\n" and last not in ";{(,[&|?:=+-*<>" and first not in "})],.?:&|*"
             if words or signs or ends:
                 pieces.append(space)
         space = ""
@@ -91,10 +92,9 @@ def short_style(text: str) -> str:
 
 _MATH = re.compile(r"<math\b[\s\S]*?</math>")
 _REFERENCE = re.compile(r"&#x0*([0-9A-F]+);")
-_LONE = re.compile(r"<mrow>(<(m[ino]|mtext)\b[^>]*>[^<]*</\2>)</mrow>")
-_DOUBLE = re.compile(r"<mrow><mrow>((?:(?!</?mrow)[\s\S])*)</mrow></mrow>")
 _FENCE = re.compile(r'<mo stretchy="true" fence="true" form="(?:prefix|postfix)">([()\[\]{}])</mo>')
-_WHOLE = re.compile(r"(<math\b[^>]*>)<mrow>((?:(?!</?mrow)[\s\S])*)</mrow></math>")
+_ROWS = frozenset({"math", "mtd", "msqrt", "mstyle", "mpadded", "mphantom", "merror", "menclose"})
+"""Elements that take any number of children as a row."""
 
 
 def short_mathml(page: str) -> str:
@@ -110,17 +110,20 @@ def short_mathml(page: str) -> str:
 
 def _shorter(formula: str) -> str:
     text = re.sub(r'^(<math[^>]*?) alttext="[^"]*"', r"\1", _REFERENCE.sub(_character, formula))
-    text = _FENCE.sub(r"<mo>\1</mo>", text)
-    while True:
+    root = ElementTree.fromstring(_FENCE.sub(r"<mo>\1</mo>", text))
+    _ungroup(root)
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def _ungroup(element: ElementTree.Element) -> None:
+    """Take out rows of one, and rows in what is a row itself."""
+    for place, child in enumerate(element):
+        _ungroup(child)
         # A group of one operator changes its spacing, so operators keep theirs.
-        less = _DOUBLE.sub(r"<mrow>\1</mrow>", _LONE.sub(_ungrouped, text))
-        if less == text:
-            return _WHOLE.sub(r"\1\2</math>", text)
-        text = less
-
-
-def _ungrouped(found: re.Match[str]) -> str:
-    return found.group() if found[2] == "mo" else found[1]
+        if child.tag == "mrow" and not child.attrib and len(child) == 1 and child[0].tag != "mo":
+            element[place] = child[0]
+    if element.tag in _ROWS and len(element) == 1 and element[0].tag == "mrow" and not element[0].attrib:
+        element[:] = list(element[0])
 
 
 def _character(found: re.Match[str]) -> str:

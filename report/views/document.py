@@ -15,10 +15,12 @@ from ..result import Report
 from ..sheet import Axis, Column, Given, RepeatAxis, Root
 from ..values import Cell
 from ..workbook import FigureSpec, TableSpec
+from . import figures
 from .escape import slug
 from .math import Printer, name_latex
 from .numbers import Figure, decimals, read, shown, table_format
-from .parts import FitUsed, Group, Head, Item, Pair, Row, Table
+from .parts import Group, Head, Item, Pair, Row, Table
+from .refereed import Refereed
 from .typeset import Block, block
 
 __all__ = ["Document"]
@@ -146,8 +148,13 @@ class Document:
     # --- figures
 
     def figure(self, name: str) -> FigureSpec:
-        """A figure of the workbook by its name."""
-        return next(figure for figure in self.report.workbook.figures if figure.name == name)
+        """A figure by its name."""
+        return next(figure for figure in self.figures if figure.name == name)
+
+    @cached_property
+    def figures(self) -> tuple[FigureSpec, ...]:
+        """The workbook's figures, and the referee's."""
+        return figures.of(self.report)
 
     # --- equations
 
@@ -240,34 +247,9 @@ class Document:
         return sum(not comparison.as_expected for comparison in self.report.comparisons)
 
     @cached_property
-    def fit_used(self) -> FitUsed | None:
-        """Which of two fits a source used, told by how far its fit is from its mean.
-
-        None if it cannot be asked.
-
-        The offset of the printed fit from the printed mean is known to one unit of their last digit, for
-        each of the two was rounded. A fit whose offset is further away was not the one.
-        """
-        names = self.report.workbook.fits
-        if not names:
-            return None
-        mean, fitted = self.published(names[0]), self.published(names[1])
-        if mean is None or fitted is None or not all(self.has(name) and self.item(name).ok for name in names):
-            return None
-        published = float(fitted.printed.value - mean.printed.value)
-        center, log, lin = (self.report.values.scalar(name) for name in names)
-        unit = float(2 * max(mean.printed.half_unit, fitted.printed.half_unit))
-        fits = [abs(offset - center - published) <= unit for offset in (log, lin)]
-        verdict = {(True, False): "log", (False, True): "lin"}.get((fits[0], fits[1]), "open")
-        places = max(mean.printed.decimals, fitted.printed.decimals)
-        return FitUsed(
-            mean,
-            fitted,
-            decimals(published, places),
-            decimals(log - center, places + 1),
-            decimals(lin - center, places + 1),
-            verdict,
-        )
+    def refereed(self) -> Refereed:
+        """What the referee found of them."""
+        return Refereed(self)
 
     # --- errors
 

@@ -83,11 +83,17 @@ def page(height: float) -> tuple[Figure, Axes]:
     # 72 dots an inch, as SVG and PDF have: then all three formats get the same places and measures.
     figure = Figure(figsize=(WIDTH, height * CM), dpi=72, layout="constrained")
     FigureCanvasAgg(figure)  # it measures texts; saving brings the canvas of its own format
-    return figure, figure.add_subplot()
+    axes = figure.add_subplot()
+    axes.patch.set_visible(False)  # the page is white already
+    return figure, axes
 
 
 def settle(figure: Figure) -> None:
     """Lay the picture out, once for all: saving would do it again, twice."""
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            for line in axis.get_gridlines():
+                line.set_clip_on(False)  # it ends at the frame anyway, and would say so in every line
     if figure.get_layout_engine() is not None:
         figure.draw_without_rendering()
         figure.set_layout_engine(None)

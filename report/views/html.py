@@ -56,9 +56,7 @@ class HtmlWords(Words):
 
     def refer(self, label: str) -> Markup:
         """A link to an equation."""
-        return Markup('<a class="eqref" href="#{}">{}</a>').format(
-            self.document.identifiers[label], html(label)
-        )
+        return Markup('<a href="#{}">{}</a>').format(self.document.identifiers[label], html(label))
 
     def equation(self, label: str) -> Markup:
         """A displayed equation."""
@@ -89,6 +87,9 @@ class HtmlWords(Words):
         return mathml_block(self.document.block(equation))
 
 
+_NOT_IN_URL = re.compile(r"""[\0-\x20"#%<>\[\\\]^`{|}\x7f]""")
+
+
 def picture(svg: str, alt: str) -> Markup:
     """An SVG as an image that is part of the page: nothing in it can run or load anything."""
     opening = re.search(r"<svg\b[^>]*>", svg)
@@ -99,7 +100,7 @@ def picture(svg: str, alt: str) -> Markup:
             size[name] = round(float(found[1]) * (4 / 3 if found[2] == "pt" else 1))
     attributes = Markup("").join(Markup(' {}="{}"').format(name, value) for name, value in size.items())
     # In apostrophes the text of an SVG needs next to no escapes: three quarters of what base64 takes.
-    data = quote(short_svg(svg).replace('"', "'"), safe="=:/?;,+-.()'!*@$~")
+    data = _NOT_IN_URL.sub(lambda found: quote(found.group()), short_svg(svg).replace('"', "'"))
     return Markup('<img src="data:image/svg+xml,{}" alt="{}"{}>').format(Markup(data), html(alt), attributes)
 
 
@@ -167,12 +168,12 @@ def render(report: Report, figures: Mapping[str, str], program: str | None = Non
     jinja = environment(finalize)
     pictures = {
         figure.name: picture(figures[figure.name], figure.alt or figure.caption)
-        for figure in report.workbook.figures
+        for figure in document.figures
         if figure.name in figures
     }
     context = {"report": report, "doc": document, "w": words, "figures": pictures, "macros": "html/macros.j2"}
     # The body comes first: the table of contents is made of the sections that it has.
-    body = Markup(jinja.get_template(f"prose/{report.workbook.prose}.j2").render(context))
+    body = Markup(_BETWEEN.sub("", jinja.get_template(f"prose/{report.workbook.prose}.j2").render(context)))
     if program is not None:
         parts = tuple(live.parts(report, document))
         context["live"] = {
@@ -183,6 +184,12 @@ def render(report: Report, figures: Mapping[str, str], program: str | None = Non
     page = jinja.get_template("html/page.j2")
     whole = page.render(context, body=body, style=Markup(style), csp=Markup(csp(style, script)))
     return _squeezed(short_mathml(whole))
+
+
+_BETWEEN = re.compile(
+    r"\n+(?=</?(?:article|aside|caption|d[dlt]|details|div|fig\w+|h\d|li|[ou]l|p|section|summary|t\w+)[ >])"
+)
+"""Line ends at elements that begin a line of their own: no space is seen there."""
 
 
 def _squeezed(text: str) -> str:

@@ -7,9 +7,11 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from ...derivations.text import text_of_equation
 from ..result import Report
 from ..sheet import Column, Given
 from ..values import Status
+from ..verdict import Verdict
 
 __all__ = ["manifest", "proof_statuses", "values"]
 
@@ -27,6 +29,7 @@ def values(report: Report) -> str:
             "proofs": proof_statuses(report),
             "errata": [{"about": e.about, "kind": e.kind, "sentence": e.sentence} for e in report.errata],
             "published": [_published(comparison) for comparison in report.comparisons],
+            **({"referee": report.referee.data} if report.referee.joint is not None else {}),
         }
     )
 
@@ -35,7 +38,7 @@ def _column(report: Report, column: Column) -> dict[str, Any]:
     values, statuses = report.values.value[column.name], report.values.status[column.name]
     numbers = [float(v) if s == Status.OK else None for v, s in zip(values, statuses, strict=True)]
     codes = [Status(int(s)).code for s in statuses]
-    entry: dict[str, Any] = {"axis": None, "unit": column.unit}
+    entry: dict[str, Any] = {"axis": None, "unit": column.unit, "rule": _rule(column)}
     if column.axis is None:
         entry |= {"value": numbers[0], "status": codes[0]}
     else:
@@ -47,6 +50,13 @@ def _column(report: Report, column: Column) -> dict[str, Any]:
     if column.name in report.values.counted:
         entry["rows"] = dict(report.values.counted[column.name])
     return entry
+
+
+def _rule(column: Column) -> str:
+    """What makes its values: its equation with its number, or ``given``."""
+    if column.equation is None:
+        return "given"
+    return f"{column.source} {text_of_equation(column.equation)}"
 
 
 def _given_uncertainty(report: Report, column: Column) -> Any:
@@ -92,19 +102,42 @@ def _published(comparison: Any) -> dict[str, Any]:
         "value": comparison.cell.value,
         "again": comparison.again,
         "distance": comparison.distance,
-        "verdict": comparison.verdict,
+        "verdict": comparison.word,
+        "interval": _interval(comparison.refereed),
         "expected": comparison.as_expected,
     }
 
 
-def manifest(inputs: Mapping[str, bytes], outputs: Mapping[str, bytes], versions: Mapping[str, str]) -> str:
-    """What went in, what came out and what computed it, by content; no clock and no place."""
+def _interval(verdict: Verdict | None) -> list[float | None] | None:
+    """What inputs that print as given were seen to yield, in SI."""
+    return None if verdict is None or verdict.low is None else [verdict.low, verdict.high]
+
+
+def manifest(report: Report, outputs: Mapping[str, bytes], sources: Mapping[str, str]) -> str:
+    """What went in, what came out and what computed it, by content; no clock and no place.
+
+    Parameters
+    ----------
+    report : Report
+    outputs : mapping of str to bytes
+        Every file that was written, by its name in the output folder.
+    sources : mapping of str to str
+        The sha256 of the parts of this program.
+    """
 
     def hashes(files: Mapping[str, bytes]) -> dict[str, str]:
         return {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
 
     return _text(
-        {"schema": SCHEMA, "inputs": hashes(inputs), "outputs": hashes(outputs), "versions": dict(versions)}
+        {
+            "schema": SCHEMA,
+            "title": report.title,
+            "inputs": hashes(report.inputs.files),
+            "outputs": hashes(outputs),
+            "sources": dict(sources),
+            "versions": dict(report.versions),
+            "engines": {agreement.engine: agreement.program for agreement in report.engines},
+        }
     )
 
 

@@ -142,7 +142,7 @@ def render(report: Report, figures: Collection[str]) -> str:
     """
     document = Document(report)
     words = LatexWords(document)
-    pictures = {figure.name: figure for figure in report.workbook.figures if figure.name in figures}
+    pictures = {figure.name: figure for figure in document.figures if figure.name in figures}
     jinja = environment(tex_finalize)
     context = {
         "report": report,

@@ -11,7 +11,7 @@ from ..workbook import TableSpec
 from .escape import slug
 from .numbers import Figure
 
-__all__ = ["FitUsed", "Group", "Head", "Item", "Pair", "Row", "Table", "address", "index_text"]
+__all__ = ["Group", "Head", "Item", "Pair", "Row", "Table", "address", "index_text"]
 
 LONG = 30
 """A table of more rows than this scrolls in the page and breaks over pages in print."""
@@ -199,15 +199,3 @@ class Group:
         """The one that is furthest off, in units of its last digit."""
         known = [pair for pair in self.pairs if pair.comparison.distance is not None]
         return max(known, key=lambda pair: abs(pair.comparison.distance or 0), default=None)
-
-
-@dataclass(frozen=True)
-class FitUsed:
-    """What tells which of two fits a source used: the fit less the mean, published and recomputed."""
-
-    mean: Pair
-    fitted: Pair
-    published: Figure
-    log: Figure
-    lin: Figure
-    verdict: str

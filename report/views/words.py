@@ -33,8 +33,8 @@ _PART = re.compile(
     r"(?P<number>(?<![\w.])-?\d+(?:\.\d+)?e[+-]?\d+(?!\w))"
     r"|(?P<label>\(L?\d+[a-z]?\))"
     r"|(?P<unit>(?<!\w)N/m\^\w+)"
-    r"|(?P<symbol>(?<![\w'’.])(?P<name>[A-Za-z]\w*(?:'+(?:_\w+)?)?(?:,[a-z](?!\w))?)(?:\[(?P<index>\w+)\])?"
-    r"(?:(?:\*\*|\^)(?P<power>\w+))?(?![\w’]|\.\w))"
+    r"|(?P<symbol>(?<![\w'’.])(?P<name>[A-Za-z]\w*(?:'+(?:_\w+)?)?(?:,[a-z](?!\w))?)"
+    r"(?:\[(?P<index>\w+(?:-\w+)?)\])?(?:(?:\*\*|\^)(?P<power>\w+))?(?![\w’]|\.\w))"
     r"|(?P<raised>(?<=\))\^(?P<to>\w+))"
     r"|(?P<relation><=|>=)|(?P<minus>(?<= )-(?= ))|(?P<times>(?<=[\w)\]'])\*(?=[\w(]))"
 )
@@ -47,11 +47,11 @@ _SIGNS = {"<=": "≤", ">=": "≥", "-": "−", "*": "\u202f"}
 @lru_cache(maxsize=1)
 def _written() -> dict[str, tuple[str, str]]:
     """Names as sentences of the derivations write them, ``x_m2``: the quantity and its index."""
-    found: dict[str, tuple[str, str]] = {}
+    # x_p is the imprint depth before it is the x of some p.
+    found = {text_of(quantity.symbol): (name, "") for name, quantity in TABLE.items()}
     for name, quantity in TABLE.items():
-        found[text_of(quantity.symbol)] = (name, "")
         for index in (1, 2, *map(Symbol, "ijkpq")):
-            found[text_of(quantity[index])] = (name, str(index))
+            found.setdefault(text_of(quantity[index]), (name, str(index)))
     return found
 
 
@@ -138,6 +138,8 @@ class Words(ABC):
         # A column may be called like a word of English.
         if name in _OTHERWISE or not (name in TABLE or name in self._names):
             return None
+        if "-" in index:  # a pair: its dash is no minus
+            return self.symbol(name) + self.escape(f"\u00a0{index.replace('-', '–')}")
         latex = self.document.latex(name, index)
         if found["power"]:
             base = f"({latex})" if "'" in latex else latex
