@@ -57,6 +57,7 @@ lock: .venv-lock/bin/uv
 	$(LOCK) pyproject.toml --group build -o requirements/runtime.txt
 	$(LOCK) pyproject.toml --group build --group test -c requirements/runtime.txt -o requirements/test.txt
 	$(LOCK) pyproject.toml --group build --group bench -c requirements/test.txt -o requirements/bench.txt
+	$(LOCK) --group crate -o requirements/crate.txt
 
 .venv-lock/bin/uv:
 	$(PYTHON) -m venv --clear .venv-lock

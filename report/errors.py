@@ -286,6 +286,36 @@ CATALOGUE: dict[str, Entry] = {
         "{known}",
         "--to html,latex,json makes the report without it",
     ),
+    "LS607": Entry(
+        "not a result",
+        "'{text}' is no result: {reason}",
+        "a folder that 'loopsheet build' wrote, or the values.json of one",
+        "'loopsheet build FOLDER --to json' writes a values.json",
+    ),
+    "LS608": Entry(
+        "not a manifest",
+        "'{text}' is no manifest: {reason}",
+        "the manifest.json that 'loopsheet build' writes beside its outputs",
+        "name the folder that 'loopsheet build' wrote; the default of its --out is 'out'",
+    ),
+    "LS609": Entry(
+        "not known what it was built from",
+        "which folder '{text}' was built from is not known: {reason}",
+        "a folder with a report.toml, after the output folder",
+        "loopsheet verify {text} FOLDER",
+    ),
+    "LS610": Entry(
+        "output not as it was built",
+        "'{text}' {reason}",
+        "the files that manifest.json lists, as they were built",
+        "build the report again; 'loopsheet verify' tells what else is different",
+    ),
+    "LS611": Entry("not a date", "not a date: '{text}'", "a day of the calendar, YYYY-MM-DD", "{suggestion}"),
+    "LS612": Entry(
+        "not a licence",
+        "not a licence: '{text}'",
+        "an identifier of SPDX such as CC-BY-4.0, or an address that begins with https://",
+    ),
 }
 
 

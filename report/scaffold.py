@@ -15,10 +15,13 @@ if TYPE_CHECKING:
 
     from .workbook import Parameter, Workbook
 
-__all__ = ["new"]
+__all__ = ["CI", "new"]
 
 
-def new(folder: Path, workbook: Workbook) -> list[Path]:
+WORKFLOW = ".github/workflows/loopsheet.yml"
+
+
+def new(folder: Path, workbook: Workbook, ci: str = "") -> list[Path]:
     """Write a report folder that can be built at once.
 
     Parameters
@@ -27,6 +30,8 @@ def new(folder: Path, workbook: Workbook) -> list[Path]:
         A folder that does not exist yet, or an empty one.
     workbook : Workbook
         The method; its example becomes the measurements, its parameters are listed with their meaning.
+    ci : str
+        Where the folder is to be checked after every change: a name of :data:`CI`, or nothing.
 
     Returns
     -------
@@ -39,6 +44,9 @@ def new(folder: Path, workbook: Workbook) -> list[Path]:
         If the folder is not empty or cannot be written; nothing is left half-written then.
     """
     files = {"report.toml": _report(workbook), "measurements.csv": _measurements(workbook)}
+    if ci:
+        name, workflow = CI[ci]
+        files[name] = workflow()
     try:
         if folder.is_symlink() or folder.exists():
             if not folder.is_dir():
@@ -61,6 +69,7 @@ def _create(folder: Path, files: dict[str, str]) -> None:
     try:
         draft.mkdir()
         for name, text in files.items():
+            (draft / name).parent.mkdir(parents=True, exist_ok=True)
             (draft / name).write_text(text, encoding="utf-8", newline="\n")
         draft.rename(folder)
     except BaseException:
@@ -80,9 +89,12 @@ def _make_parents(parent: Path) -> list[Path]:
 
 def _fill(folder: Path, files: dict[str, str]) -> None:
     """Write into an empty folder, which stays the same folder: somebody may be working in it."""
-    drafts = {folder / name: folder / f".{name}.{os.getpid()}.new" for name in files}
+    drafts = {folder / name: folder / f".{Path(name).name}.{os.getpid()}.new" for name in files}
     done: list[Path] = []
+    made: list[Path] = []
     try:
+        for path in drafts:
+            made += _make_parents(path.parent)
         for draft, text in zip(drafts.values(), files.values(), strict=True):
             draft.write_text(text, encoding="utf-8", newline="\n")
         for path, draft in drafts.items():
@@ -92,6 +104,9 @@ def _fill(folder: Path, files: dict[str, str]) -> None:
         for path in [*drafts.values(), *done]:
             with suppress(OSError):
                 path.unlink()
+        for parent in reversed(made):
+            with suppress(OSError):
+                parent.rmdir()
         raise
 
 
@@ -160,3 +175,47 @@ def _one_line(text: str) -> str:
 def _quote(text: str) -> str:
     escaped = text.replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'
+
+
+def _github() -> str:
+    from .. import __version__
+
+    return f"""\
+# After every change: is the report as expected? What is not is marked in the pull request, at its line.
+# GitHub reads this file at the root of a repository. If this folder is not the root, move .github there and
+# write the folder's name instead of the point after 'check' and 'build'.
+name: report
+
+on:
+  push:
+    branches: [main, master]
+  pull_request:
+  workflow_dispatch:
+
+permissions:
+  contents: read
+
+jobs:
+  report:
+    runs-on: ubuntu-latest
+    steps:
+      - uses: actions/checkout@v6
+      - uses: actions/setup-python@v6
+        with:
+          python-version: "3.12"
+      # The version that made this folder: the same numbers until you choose another.
+      - run: python -m pip install "loopsheet=={__version__}"
+      - run: loopsheet check . --format github
+      - if: ${{{{ !cancelled() }}}}
+        run: loopsheet build . --out out
+      - if: ${{{{ !cancelled() }}}}
+        uses: actions/upload-artifact@v6
+        with:
+          name: report
+          path: out
+          if-no-files-found: error
+"""
+
+
+CI = {"github": (WORKFLOW, _github)}
+"""By the name of a service, the file that it reads and what is written there."""

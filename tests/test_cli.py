@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
+from loopsheet.report import build
 from loopsheet.report.build import PAPER
 from loopsheet.report.cli import main
 from loopsheet.report.engines import javascript
+from loopsheet.report.verbs import VERBS
 
 
 def run(*arguments: str, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -45,13 +50,13 @@ def test_help_answers_without_loading_anything_heavy() -> None:
     code += "print(sorted(heavy & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
-    for verb in ("build", "check", "prove", "show", "why", "new"):
+    for verb in VERBS:
         assert f"  {verb} " in done.stdout
     assert "exit codes" in done.stdout
 
 
 def test_every_verb_has_help(capsys: pytest.CaptureFixture[str]) -> None:
-    for verb in ("build", "check", "prove", "show", "why", "new"):
+    for verb in VERBS:
         with pytest.raises(SystemExit) as stopped:
             main([verb, "--help"])
         assert stopped.value.code == 0
@@ -119,6 +124,10 @@ def test_show_tells_value_equation_and_precedents(capsys: pytest.CaptureFixture[
         (["build", "--to", "htlm"], "did you mean 'html'?"),
         (["build", "no-such-folder"], "no-such-folder"),
         (["new", "x", "--workbook", "soft_inpact"], "did you mean 'soft_impact'?"),
+        (["new", "x", "--ci", "githb"], "did you mean 'github'?"),
+        (["verify", "out"], "'manifest.json' is no manifest: there is no such file"),
+        (["diff", "a", "b"], "'a' is no result: there is no such file"),
+        (["crate", "out", "--date", "2026-03-31", "--license", "MIT"], "'manifest.json' is no manifest"),
     ],
 )
 def test_wrong_words_are_answered_with_what_was_meant(
@@ -188,21 +197,52 @@ def test_the_report_says_how_its_engines_agree(tmp_path: Path) -> None:
     assert "How the engines agree" in (tmp_path / "report.tex").read_text()
 
 
-def test_a_known_difference_that_vanishes_is_a_finding(campaign: Path) -> None:
+def test_a_known_difference_that_vanishes_is_a_finding(
+    campaign: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = campaign / "published.csv"
     path.write_text(path.read_text().replace("1-2,1.234,", "1-2,1.258,"))
-    done = run("check", str(campaign))
-    assert done.returncode == 1
-    assert "published.csv:2" in done.stdout
-    assert "no longer differs" in done.stdout
+    monkeypatch.setattr(build, "judged", lambda report, step: report)  # the engines are as they were
+    assert main(["check", str(campaign)]) == 1
+    out = capsys.readouterr().out
+    assert "published.csv:2" in out
+    assert "no longer differs" in out
 
 
-def test_an_unexpected_difference_is_a_finding(campaign: Path) -> None:
+def test_an_unexpected_difference_is_a_finding_in_every_format(
+    campaign: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = campaign / "published.csv"
-    path.write_text(path.read_text().replace("1-2,1.234,1,differs,", "1-2,1.234,1,,"))
-    done = run("check", str(campaign), "--format", "json")
-    assert done.returncode == 1
-    assert "prints 1.234, recomputed 1.258" in done.stdout
+    path.write_text(re.sub(r"(?m)^(Table 2,alpha,1-2,1\.234,1,.*?)differs,.*$", r"\1,", path.read_text()))
+    monkeypatch.chdir(campaign.parent)
+    monkeypatch.setattr(build, "judged", lambda report, step: report)  # the engines are as they were
+    found = {}
+    for form in ("text", "json", "junit", "github", "markdown"):
+        assert main(["check", "campaign", "--format", form]) == 1
+        found[form] = capsys.readouterr().out
+        assert "1.234, recomputed 1.258" in found[form]
+    data = json.loads(found["json"])
+    (finding,) = data["findings"]
+    assert finding.startswith(
+        "campaign/published.csv:2:19: Table 2 alpha[1-2] prints 1.234, recomputed 1.258"
+    )
+    assert data["proofs"]["(11)"] == "proved"
+    assert ElementTree.fromstring(found["junit"]).get("failures") == "1"
+    assert found["github"].startswith("::error file=campaign/published.csv,line=2,col=19,")
+
+
+def test_wrong_input_is_told_in_the_format_that_a_machine_reads(
+    campaign: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = campaign / "measurements.csv"
+    path.write_text(path.read_text().replace("0.512", "abc"))
+    monkeypatch.chdir(campaign)
+    assert main(["check", ".", "--format", "github"]) == 2
+    captured = capsys.readouterr()
+    assert captured.out.startswith(
+        "::error file=measurements.csv,line=3,col=9,endColumn=12,title=input LS401::"
+    )
+    assert "measurements.csv:3:9" in captured.err
 
 
 def test_bad_input_gives_one_located_message_and_leaves_out_as_it_was(campaign: Path, tmp_path: Path) -> None:
@@ -222,8 +262,6 @@ def test_bad_input_gives_one_located_message_and_leaves_out_as_it_was(campaign: 
 def test_our_own_bug_is_told_from_the_users_error(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from loopsheet.report import build
-
     def broken(*_: object, **__: object) -> None:
         raise RuntimeError("a wheel came off")
 

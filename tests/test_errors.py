@@ -4,6 +4,8 @@ That file reads as the specification of what users see. After a wanted change of
 with LOOPSHEET_UPDATE=1 and read the difference.
 """
 
+import hashlib
+import json
 import os
 import re
 from collections.abc import Callable
@@ -12,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from loopsheet.report import errors
+from loopsheet.report.crate import write as write_crate
 from loopsheet.report.errors import (
     CATALOGUE,
     Diagnostic,
@@ -29,6 +32,7 @@ from loopsheet.report.errors import (
 )
 from loopsheet.report.inputs import check_published, load
 from loopsheet.report.quantity import Bounds
+from loopsheet.report.results import read_manifest, read_result
 from loopsheet.report.scaffold import new
 from loopsheet.report.workbook import Measured, Parameter, Workbook
 
@@ -163,6 +167,23 @@ def new_in_a_used_folder() -> None:
     new(Path("used"), WORKBOOK)
 
 
+def result_without_cells() -> None:
+    Path("values.json").write_text('{"schema": 1, "title": "t", "workbook": "w"}')
+    read_result(Path())
+
+
+def crate(date: str, licence: str, digest: str = "") -> None:
+    Path("values.json").write_text("{}")
+    known = digest or hashlib.sha256(b"{}").hexdigest()
+    manifest = {"schema": 1, "inputs": {}, "outputs": {"values.json": known}, "versions": {}}
+    Path("manifest.json").write_text(json.dumps(manifest))
+    write_crate(Path(), date, licence)
+
+
+def crate_of_a_changed_output() -> None:
+    crate("2026-03-31", "MIT", "00")
+
+
 CASES: dict[str, Callable[[], None]] = {
     "LS101": load_there("nowhere"),
     "LS102": load_a_file,
@@ -239,6 +260,12 @@ CASES: dict[str, Callable[[], None]] = {
     "LS606": raises(
         UsageError, "LS606", reason="points has 995000 rows", known="at most 200000 rows in a worksheet"
     ),
+    "LS607": result_without_cells,
+    "LS608": lambda: read_manifest(Path("out")) and None,
+    "LS609": raises(UsageError, "LS609", text="out", reason="it is not inside a report folder"),
+    "LS610": crate_of_a_changed_output,
+    "LS611": lambda: crate("31.3.2026", "MIT"),
+    "LS612": lambda: crate("2026-03-31", "all mine"),
 }
 
 

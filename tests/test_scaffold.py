@@ -1,11 +1,14 @@
 """`new`: a folder that builds at once, or nothing at all."""
 
 import os
+import re
 import tomllib
 from pathlib import Path
 
 import pytest
 
+from loopsheet import __version__
+from loopsheet.report import cli
 from loopsheet.report.errors import OutputError
 from loopsheet.report.inputs import load
 from loopsheet.report.quantity import Bounds
@@ -100,6 +103,53 @@ def test_every_comment_that_is_a_key_may_be_switched_on(tmp_path: Path) -> None:
 def test_without_an_example_there_is_a_header(tmp_path: Path) -> None:
     bare = Workbook("w", "t", "s", lambda: None, WORKBOOK.measured, (), lambda given: None)
     assert new(tmp_path / "c", bare)[1].read_text() == "test,v [m/s],x_p [m]\n"
+
+
+@pytest.mark.parametrize("used", [True, False])
+def test_a_workflow_for_github(used: bool, tmp_path: Path) -> None:
+    """What it runs is what this program takes; all names are this program's and GitHub's own."""
+    folder = tmp_path / "campaign"
+    if used:
+        folder.mkdir()
+    path = new(folder, WORKBOOK, "github")[-1]
+    assert path == folder / ".github" / "workflows" / "loopsheet.yml"
+    text = path.read_text()
+    assert f'python -m pip install "loopsheet=={__version__}"' in text
+    assert re.findall(r"uses: (\S+)", text) == [
+        "actions/checkout@v6",
+        "actions/setup-python@v6",
+        "actions/upload-artifact@v6",
+    ]
+    commands = re.findall(r"run: loopsheet (.*)", text)
+    assert commands == ["check . --format github", "build . --out out"]
+    for command in commands:
+        assert cli._parser().parse_args(command.split()).folder == Path()
+    assert "contents: read" in text
+    assert "{{ !cancelled() }}" in text
+    assert "\t" not in text
+    assert not [name for name in tree(tmp_path) if name.endswith(".new")]
+
+
+def test_without_a_service_there_is_no_workflow(tmp_path: Path) -> None:
+    assert len(new(tmp_path / "c", WORKBOOK)) == 2
+
+
+def test_a_workflow_that_cannot_be_written_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "campaign"
+    folder.mkdir()
+    real = Path.replace
+
+    def fail(path: Path, target: Path) -> Path:
+        if "loopsheet.yml" in path.name:
+            raise OSError(5, "Input/output error")
+        return real(path, target)
+
+    monkeypatch.setattr(Path, "replace", fail)
+    with pytest.raises(OutputError):
+        new(folder, WORKBOOK, "github")
+    assert tree(tmp_path) == ["campaign"]
 
 
 @pytest.mark.parametrize("used", [True, False])

@@ -1,0 +1,213 @@
+"""What is checked of a report: one list of checks, which every output of findings reads.
+
+The command line, the formats for machines and the pytest plugin all take a tuple of :class:`Check`. To have
+another kind of check, add a function here that makes them and its line in :func:`checks`.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .diagnostics import Diagnostic, Location, visible
+from .verdict import UNREACHABLE
+
+if TYPE_CHECKING:
+    from ..derivations.proof import Proof
+    from .agreement import Agreement
+    from .inputs import Inputs, PublishedValue
+    from .result import Comparison, Report
+    from .verdict import Explanation, TableVerdict
+
+__all__ = [
+    "ENGINES",
+    "MISPRINTS",
+    "TOGETHER",
+    "Check",
+    "checks",
+    "names_of",
+    "of_comparison",
+    "of_diagnostics",
+    "of_engine",
+    "of_proof",
+    "of_referee",
+    "table_names",
+]
+
+ENGINES = ("numpy", "JavaScript", "xlsx")
+"""The engines that are judged, by the names they have in an Agreement; the first needs no program."""
+
+MOST_NAMED = 5
+"""Of the findings about an engine; one wrong formula spoils many cells."""
+
+_NOWHERE = Location()
+
+
+@dataclass(frozen=True)
+class Check:
+    """One thing that is as expected, or is not.
+
+    Parameters
+    ----------
+    kind : str
+        ``proof``, ``engine``, ``published``, ...: what is checked.
+    name : str
+        What it is about: ``(11)``, ``numpy``, ``alpha[1-2]``; no two of a kind have the same.
+    passed : bool
+        Whether it is as expected.
+    message : str
+        What was found, in a sentence that names it.
+    at : Location
+        Where the user wrote what was checked; the report.toml if it was nowhere written.
+    skipped : bool
+        It could not be checked, and nothing is wrong: a program is not installed.
+    """
+
+    kind: str
+    name: str
+    passed: bool
+    message: str
+    at: Location = _NOWHERE
+    skipped: bool = False
+
+    @property
+    def sentence(self) -> str:
+        """The message after its place, if that is a line of a file."""
+        return visible(self.message if self.at.line is None else f"{self.at}: {self.message}")
+
+
+def checks(report: Report) -> tuple[Check, ...]:
+    """Everything that was checked of a report, in the order in which it is told."""
+    return (
+        *(of_engine(agreement, report.inputs) for agreement in report.engines),
+        *(of_proof(proof, report.inputs) for proof in report.proofs),
+        *map(of_comparison, report.comparisons, names_of(c.published for c in report.comparisons)),
+        *of_referee(report),
+    )
+
+
+def of_proof(proof: Proof, inputs: Inputs) -> Check:
+    """Whether an equation stands."""
+    label, status = proof.equation.label, proof.status
+    said = f"{label} is {status.value}"
+    if not status.passes:
+        said += f": {next((s.sentence for s in proof.steps if not s.status.passes), proof.remark)}"
+    return Check("proof", label, status.passes, said, _report_toml(inputs))
+
+
+def of_engine(agreement: Agreement, inputs: Inputs) -> Check:
+    """Whether an engine agrees with 50 digits."""
+    at = _report_toml(inputs)
+    if agreement.missing:
+        said = f"{agreement.engine} was not compared: {agreement.missing} not found"
+        return Check("engine", agreement.engine, True, said, at, skipped=True)
+    more = len(agreement.findings) - MOST_NAMED
+    named = [*agreement.findings[:MOST_NAMED], *([f"and {more} more"] if more > 0 else [])]
+    said = "; ".join(named) or agreement.summary
+    return Check("engine", agreement.engine, not agreement.findings, said, at)
+
+
+def of_comparison(comparison: Comparison, name: str) -> Check:
+    """Whether a published value is what is expected of it.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    name : str
+        As from :func:`names_of`.
+    """
+    published, cell = comparison.published, comparison.cell
+    said = f"{published.source} {cell.address} prints {published.printed.text}"
+    if comparison.as_expected:
+        said += f", recomputed {comparison.again} ({_word(comparison)})"
+        said += f": {published.reason}" if published.reason else ""
+    elif cell.value is None:
+        said = f"{published.source} {cell.address} cannot be checked: {cell.reason}"
+    elif published.expect and comparison.verdict == "same":
+        said += f" and no longer differs; drop its '{published.expect}'"
+    elif published.expect:
+        said += f", recomputed {comparison.again}, and differs otherwise than is known"
+    else:
+        said += f", recomputed {comparison.again} ({_word(comparison)})"
+    return Check("published", name, comparison.as_expected, said, published.places.get("value", _NOWHERE))
+
+
+def _word(comparison: Comparison) -> str:
+    """The verdict on a value, and what was certain of one that cannot be reached."""
+    found = comparison.refereed
+    if found is None:
+        return comparison.verdict
+    printed, bounds = comparison.published.printed, (found.bound_low, found.bound_high)
+    if found.verdict != UNREACHABLE or None in bounds:
+        return found.verdict
+    low, high = (bound / float(printed.scale) for bound in bounds if bound is not None)
+    return f"{found.verdict}: within {low:.6g} to {high:.6g} for whatever input prints as given"
+
+
+TOGETHER = "all together"
+"""The name of the check whether all tables come out of one input."""
+MISPRINTS = "known misprints"
+"""The name of the check whether they do once the known misprints are put right."""
+
+
+def table_names(inputs: Inputs) -> list[str]:
+    """The names of the referee's checks of tables, without asking it."""
+    sources = list(dict.fromkeys(value.source for value in inputs.published))
+    if not sources:
+        return []
+    return [*sources, TOGETHER, *([MISPRINTS] if inputs.errata else [])]
+
+
+def of_referee(report: Report) -> tuple[Check, ...]:
+    """Whether the values of each table, and of all, come out of one input; none if it was not asked."""
+    found = report.referee
+    if found.joint is None:
+        return ()
+    at, known = _report_toml(report.inputs), {v.source for v in report.inputs.published if v.expect}
+    tables = [_of_table(table, table.source, table.source in known, at) for table in found.tables]
+    tables.append(_of_table(found.joint, TOGETHER, bool(known), at, found.explanations))
+    if found.amended is None:
+        return tuple(tables)
+    if found.joint.possible:
+        said = "all values come out as it is; drop the known misprints"
+        return (*tables, Check("table", MISPRINTS, False, said, at))
+    return (*tables, _of_table(found.amended, MISPRINTS, False, at, found.misprints))
+
+
+def _of_table(
+    table: TableVerdict, name: str, known: bool, at: Location, explanations: Sequence[Explanation] = ()
+) -> Check:
+    said = f"{name}: {table.sentence}"
+    for explanation in explanations:
+        said += f"; perhaps {explanation.sentence}"
+    return Check("table", name, known or table.possible, said, at)
+
+
+def of_diagnostics(diagnostics: Iterable[Diagnostic]) -> tuple[Check, ...]:
+    """What is wrong with the input, for the formats that tell findings to machines."""
+    return tuple(
+        Check("input", found.code, False, "; ".join(filter(None, (found.message, found.hint))), found.at)
+        for found in diagnostics
+    )
+
+
+def names_of(published: Iterable[PublishedValue]) -> list[str]:
+    """Name each published value by its cell, and by its source too where two sources print that cell."""
+    values = list(published)
+    cells = [_address(value.cell, value.index) for value in values]
+    times = Counter(cells)
+    return [
+        cell if times[cell] == 1 else f"{cell} ({value.source})"
+        for cell, value in zip(cells, values, strict=True)
+    ]
+
+
+def _address(cell: str, index: Sequence[int]) -> str:
+    return f"{cell}[{'-'.join(map(str, index))}]" if index else cell
+
+
+def _report_toml(inputs: Inputs) -> Location:
+    return Location(Path(inputs.folder, "report.toml").as_posix())

@@ -1,0 +1,53 @@
+"""What a report was computed by: the sources of this program, by their content."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+__all__ = ["PARTS", "sources"]
+
+ROOT = Path(__file__).resolve().parent.parent
+
+PARTS = {
+    "method": ("derivations", "report/workbooks"),
+    "program": ("__init__.py", "__main__.py", "report"),
+    "templates": ("templates",),
+}
+"""The folders and files of each part; what an earlier part has is not counted again."""
+
+
+def sources(root: Path = ROOT) -> dict[str, str]:
+    """The sha256 of each part: of the names and contents of its files, in the order of their names.
+
+    The same from a wheel and from a checkout: only files that a wheel holds are counted, by their names
+    below the package.
+
+    Parameters
+    ----------
+    root : Path
+        The folder of the package.
+    """
+    counted: set[Path] = set()
+    found = {}
+    for part, places in PARTS.items():
+        files = {file for place in places for file in _files(root / place)} - counted
+        counted |= files
+        total = hashlib.sha256()
+        for name, file in sorted((file.relative_to(root).as_posix(), file) for file in files):
+            content = hashlib.sha256(file.read_bytes()).hexdigest()
+            total.update(f"{content}  {name}\n".encode())
+        found[part] = total.hexdigest()
+    return found
+
+
+def _files(place: Path) -> set[Path]:
+    if place.is_file():
+        return {place}
+    found = place.rglob("*" if place.name == "templates" else "*.py")
+    return {file for file in found if file.is_file() and not _is_made(file.relative_to(place))}
+
+
+def _is_made(name: Path) -> bool:
+    """Whether it is hidden or a cache: nothing that a wheel holds."""
+    return any(part.startswith(".") or part == "__pycache__" for part in name.parts)

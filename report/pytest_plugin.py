@@ -1,0 +1,232 @@
+"""Report folders as tests: pytest collects a report.toml, one test a proof, engine and published value.
+
+pytest loads this module in every run on a machine that has loopsheet, so that nothing heavy is imported
+before there is a report.toml of ours. ``-p no:loopsheet`` leaves it out, ``-m "not loopsheet"`` its tests.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from .build import Prepared
+    from .findings import Check
+    from .result import Report
+
+__all__ = ["CheckItem", "KindCollector", "ReportFile", "pytest_collect_file", "pytest_configure"]
+
+_LARGEST = 250_000
+"""Bytes. A report.toml of ours is smaller; another tool's larger one is left alone."""
+_LIKE_OURS = re.compile(r"^\s*workbook\s*=", re.M)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Declare the marker that our tests carry."""
+    config.addinivalue_line("markers", "loopsheet: a check of a report folder, made from its report.toml")
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> ReportFile | None:
+    """Take a report.toml that names a workbook; another tool's file of that name is none of our business."""
+    if file_path.name != "report.toml" or not _is_ours(file_path):
+        return None
+    return ReportFile.from_parent(parent, path=file_path)
+
+
+def _is_ours(path: Path) -> bool:
+    """Whether a report.toml is meant for loopsheet, also if there is something wrong with it."""
+    try:
+        if path.stat().st_size > _LARGEST:
+            return False
+        text = path.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return False
+    try:
+        data = tomllib.loads(text)
+    except (ValueError, RecursionError):
+        return bool(_LIKE_OURS.search(text)) and ("[measurements" in text or "[parameters" in text)
+    return "workbook" in data and ("measurements" in data or "parameters" in data)
+
+
+class Campaign:
+    """A report folder, computed once and only as far as its tests ask.
+
+    Parameters
+    ----------
+    folder : Path
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._engines: dict[str, Check] = {}
+
+    @property
+    def folder(self) -> Path:
+        """The folder as a user would write it, from wherever the run is now."""
+        here = Path.cwd()
+        return self._folder.relative_to(here) if self._folder.is_relative_to(here) else self._folder
+
+    def plan(self) -> dict[str, list[str]]:
+        """The names of all checks, by kind, without computing anything.
+
+        Raises
+        ------
+        InputError
+            The folder is not as it must be.
+        """
+        from . import build
+        from .findings import ENGINES, names_of, table_names
+
+        prepared = build.prepare(self.folder)
+        _check_published(prepared)
+        inputs = prepared.inputs
+        return {
+            "engine": list(ENGINES),
+            "proof": [equation.label for equation in inputs.workbook.ledger().equations()],
+            "published": names_of(inputs.published),
+            "table": table_names(inputs),
+        }
+
+    def check(self, kind: str, name: str, every_engine: bool = True) -> Check:
+        """Do what is needed for one check, and whatever comes with it."""
+        if kind == "engine":
+            return self._engine(name, every_engine)
+        return self._proofs[name] if kind == "proof" else self._refereed[kind, name]
+
+    @cached_property
+    def _report(self) -> Report:
+        from . import build
+
+        return build.compute(self.folder, prove=False)
+
+    @cached_property
+    def _refereed(self) -> dict[tuple[str, str], Check]:
+        from . import build
+        from .findings import checks
+
+        return {(check.kind, check.name): check for check in checks(build.refereed(self._report))}
+
+    @cached_property
+    def _proofs(self) -> dict[str, Check]:
+        from ..derivations.proof import prove
+        from .findings import of_proof
+
+        found = prove(self._report.ledger)
+        return {proof.equation.label: of_proof(proof, self._report.inputs) for proof in found}
+
+    def _engine(self, name: str, every: bool) -> Check:
+        from . import build
+        from .findings import Check, of_engine
+
+        if name not in self._engines:
+            judged = build.judged(replace(self._report, engines=()), every).engines
+            self._engines |= {each.engine: of_engine(each, self._report.inputs) for each in judged}
+        nothing = Check(
+            "engine", name, True, f"{name} was not compared: it cannot hold this sheet", skipped=True
+        )
+        return self._engines.setdefault(name, nothing)
+
+
+def _check_published(prepared: Prepared) -> None:
+    """Refuse published values of cells that there are not, before there is a test for each of them."""
+    from .column import RepeatAxis
+    from .inputs import check_published
+    from .layout import lay_out
+
+    sheet, data = prepared.sheet, prepared.data
+    counts = {axis.count: data[axis.count] for axis in sheet.axes if isinstance(axis, RepeatAxis)}
+    labels = {name: layout.labels for name, layout in lay_out(sheet, prepared.labels, counts).items()}
+    rows = {name: {tuple(row) for row in found.tolist()} for name, found in labels.items()}
+    cells = {c.name: (c.unit, {()} if c.axis is None else rows[c.axis.name]) for c in sheet.columns}
+    check_published(prepared.inputs, cells)
+
+
+class ReportFile(pytest.File):
+    """A report.toml: one collector for each kind of check."""
+
+    def collect(self) -> Iterator[KindCollector]:
+        """Read the folder and name its checks; a mistake in it is told with its line."""
+        from .errors import LoopsheetError
+
+        campaign = Campaign(self.path.parent)
+        try:
+            plan = campaign.plan()
+        except LoopsheetError as error:
+            raise self.CollectError(str(error)) from None
+        for kind, names in plan.items():
+            if names:
+                yield KindCollector.from_parent(self, name=kind, campaign=campaign, names=names)
+
+
+class KindCollector(pytest.Collector):
+    """The checks of one kind.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    names : list of str
+    **more
+        As for :class:`pytest.Collector`.
+    """
+
+    def __init__(self, *, campaign: Campaign, names: list[str], **more: Any) -> None:
+        super().__init__(**more)
+        self.campaign, self.names = campaign, names
+
+    def collect(self) -> Iterator[CheckItem]:
+        """One test a name."""
+        for name in self.names:
+            yield CheckItem.from_parent(self, name=name, campaign=self.campaign)
+
+
+class CheckItem(pytest.Item):
+    """One check of a report folder.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    **more
+        As for :class:`pytest.Item`.
+    """
+
+    def __init__(self, *, campaign: Campaign, **more: Any) -> None:
+        super().__init__(**more)
+        self.campaign = campaign
+        self.kind: str = self.parent.name if self.parent is not None else ""
+        self.add_marker("loopsheet")
+
+    def runtest(self) -> None:
+        """Fail with the sentence of a finding; skip what cannot be checked here."""
+        from .errors import LoopsheetError
+
+        try:
+            check = self.campaign.check(self.kind, self.name, self._with_programs())
+        except LoopsheetError as error:
+            pytest.fail(str(error), pytrace=False)
+        if check.skipped:
+            pytest.skip(check.message)
+        if not check.passed:
+            pytest.fail(check.sentence, pytrace=False)
+
+    def _with_programs(self) -> bool:
+        """Whether an engine that is run by another program was selected too."""
+        from .findings import ENGINES
+
+        return any(
+            isinstance(item, CheckItem)
+            and item.campaign is self.campaign
+            and item.kind == "engine"
+            and item.name != ENGINES[0]
+            for item in self.session.items
+        )
+
+    def reportinfo(self) -> tuple[Path, None, str]:
+        """Tell where it was written."""
+        return self.path, None, f"{self.kind} {self.name}"

@@ -1,0 +1,19 @@
+"""The verbs of the command line, one module each: HELP, what it takes, and what it does.
+
+A verb is listed here and imports what it needs when it runs, so that ``--help`` answers at once.
+"""
+
+from . import build, check, crate, diff, new, prove, show, verify, why
+
+VERBS = {
+    "build": build,
+    "check": check,
+    "prove": prove,
+    "show": show,
+    "why": why,
+    "new": new,
+    "verify": verify,
+    "diff": diff,
+    "crate": crate,
+}
+"""In the order of ``--help``."""

@@ -1,0 +1,75 @@
+"""`build`: compute a report and write it."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .common import Progress, folder_argument, outcome
+
+if TYPE_CHECKING:
+    from ..result import Report
+
+HELP = "compute a report and write it"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what it takes."""
+    folder_argument(parser)
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, default=Path("out"), help="where it goes (default: out)"
+    )
+    parser.add_argument(
+        "--to",
+        metavar="FORMATS",
+        default="html,latex,xlsx,json",
+        help="html, latex, xlsx, json, pdf (default: html,latex,xlsx,json)",
+    )
+    parser.add_argument(
+        "--engines",
+        action="store_true",
+        help="judge JavaScript and the workbook too, and put that into the report",
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Build, and tell the result and what is not as expected."""
+    from .. import build
+    from ..findings import checks
+
+    formats = build.parse_formats(options.to)
+    with Progress(sys.stderr) as progress:
+        report, files = build.build(
+            options.folder or build.PAPER, options.out, formats, progress, options.engines
+        )
+    for name in report.workbook.headline:
+        print(_line(report, name))
+    for cell in report.values.errors():
+        print(cell.reason)
+    found = checks(report)
+    for check in found:
+        if not check.passed:
+            print(f"finding: {check.sentence}")
+    names = {path.name: path for path in files}
+    first = next(
+        names[n]
+        for n in ("report.html", "report.pdf", "report.tex", "report.xlsx", "values.json", "manifest.json")
+        if n in names
+    )
+    print(f"{len(files)} files in {options.out}; look at {first}")
+    return outcome(found)
+
+
+def _line(report: Report, name: str) -> str:
+    """A headline cell in a line, in the digits that its inputs warrant."""
+    cell = report.values.cell(name)
+    how = report.shown[name]
+    column = report.sheet[name]
+    if cell.value is None:
+        return cell.reason
+    rows = report.values.counted.get(name, {})
+    left = "".join(f"  (over {n} {axis} that have values)" for axis, n in rows.items())
+    unit = "" if how.unit == "1" else f" {how.unit}"
+    return f"{name:12} {cell.value / how.scale:#.{how.digits}g}{unit}  {column.meaning} {column.source}{left}"

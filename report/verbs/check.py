@@ -1,0 +1,96 @@
+"""`check`: the proofs, the engines against 50 digits, the published values."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from .common import Progress, folder_argument, format_argument, outcome, print_checks
+
+if TYPE_CHECKING:
+    from ..findings import Check
+    from ..result import Comparison, Report
+
+HELP = "check the proofs, the engines against each other, and the published values"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what it takes."""
+    folder_argument(parser)
+    format_argument(parser, "text", "json", "junit", "github", "markdown")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Check everything and print it in the format that is asked for."""
+    from .. import build
+    from ..findings import checks
+
+    with Progress(sys.stderr) as progress:
+        report = build.compute(options.folder or build.PAPER, progress)
+        report = build.judged(report, step=progress)
+        report = build.refereed(report, progress)
+    found = checks(report)
+    if options.format == "text":
+        _print(report, found)
+    else:
+        print_checks(found, options.format, report.title, _details(report))
+    return outcome(found)
+
+
+def _print(report: Report, found: Iterable[Check]) -> None:
+    passed = sum(p.status.passes for p in report.proofs)
+    print(f"proofs     {passed} of {len(report.proofs)} equations stand")
+    for erratum in report.errata:
+        print(f"  erratum  {erratum.sentence}")
+    for agreement in report.engines:
+        print(f"engine     {agreement.line}")
+    same = sum(_prints_the_same(c) for c in report.comparisons)
+    known = sum(bool(c.published.expect) and c.as_expected for c in report.comparisons)
+    print(f"published  {len(report.comparisons)} values: {same} print the same, {known} differ as is known")
+    for comparison in report.comparisons:
+        if not _prints_the_same(comparison):
+            where = f"{comparison.published.source} {comparison.cell.address}"
+            printed, reason = comparison.published.printed.text, comparison.published.reason
+            print(f"  {where:28} {printed:>8} -> {comparison.again:>8}  {comparison.word:13} {reason}")
+    if report.referee.joint is not None:
+        for table in (*report.referee.tables, report.referee.joint):
+            print(f"referee    {table.source}: {table.sentence}")
+        for explanation in (*report.referee.explanations, *report.referee.labels):
+            print(f"  perhaps  {explanation.sentence}")
+        for fit in report.referee.fits:
+            offs = ", ".join(f"{name} {off:.2f}" for name, off in fit.mismatch.items())
+            print(
+                f"  fit      {fit.published.printed.text} of {fit.published.source}, half units off: {offs}"
+            )
+        if report.referee.amended is not None:
+            print(f"  amended  {report.referee.amended.sentence}")
+    failed = [check for check in found if not check.passed]
+    for check in failed:
+        print(f"finding: {check.sentence}")
+    print(f"{len(failed)} findings" if failed else "everything as expected")
+
+
+def _prints_the_same(comparison: Comparison) -> bool:
+    return comparison.again == comparison.published.printed.text
+
+
+def _details(report: Report) -> dict[str, Any]:
+    """What JSON tells besides the checks: numbers instead of sentences."""
+    return {
+        "proofs": {p.equation.label: p.status.value for p in report.proofs},
+        "engines": [agreement.data for agreement in report.engines],
+        "published": [
+            {
+                "source": c.published.source,
+                "cell": c.cell.address,
+                "printed": c.published.printed.text,
+                "again": c.again,
+                "verdict": c.word,
+                "expected": c.as_expected,
+            }
+            for c in report.comparisons
+        ],
+        "referee": report.referee.data,
+    }

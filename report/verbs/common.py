@@ -1,0 +1,131 @@
+"""What several verbs share: exit codes, common arguments, progress, the address of a cell."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TextIO
+
+if TYPE_CHECKING:
+    from ..findings import Check
+    from ..result import Report
+    from ..sheet import Column
+
+__all__ = [
+    "BUG",
+    "FINDINGS",
+    "OK",
+    "USAGE",
+    "Progress",
+    "count",
+    "find",
+    "folder_argument",
+    "format_argument",
+    "outcome",
+    "print_checks",
+]
+
+OK, FINDINGS, USAGE, BUG = 0, 1, 2, 3
+
+
+def folder_argument(parser: argparse.ArgumentParser) -> None:
+    """Take a FOLDER; without it, the verb works on the shipped paper."""
+    parser.add_argument("folder", metavar="FOLDER", nargs="?", type=Path, help="a folder with a report.toml")
+
+
+def format_argument(parser: argparse.ArgumentParser, *formats: str) -> None:
+    """Take --format; the first is the default."""
+    parser.add_argument(
+        "--format", choices=formats, default=formats[0], help=f"how it is printed (default: {formats[0]})"
+    )
+
+
+def count(text: str) -> int:
+    """Read a whole number of at least 0, for argparse."""
+    if not text.isdecimal() or len(text) > 9:
+        raise argparse.ArgumentTypeError(f"not a whole number: '{text}'")
+    return int(text)
+
+
+def outcome(checks: Iterable[Check]) -> int:
+    """The exit code of what was checked."""
+    return OK if all(check.passed for check in checks) else FINDINGS
+
+
+def print_checks(checks: tuple[Check, ...], form: str, title: str, more: Mapping[str, Any]) -> None:
+    """Print checks for a machine, in one of :data:`~loopsheet.report.views.checks.FORMATS`.
+
+    Parameters
+    ----------
+    checks : tuple of Check
+    form : str
+    title : str
+        What was checked, for formats with a heading.
+    more : mapping of str to anything JSON can hold
+        What JSON tells besides.
+    """
+    from ..views.checks import FORMATS
+
+    print(FORMATS[form](checks, title, more), end="")
+
+
+class Progress:
+    """Says what is being done once it has taken longer than a second; on a terminal in one moving line.
+
+    Parameters
+    ----------
+    stream : TextIO
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self.stream, self.begun, self.shown = stream, time.monotonic(), ""
+
+    def __call__(self, text: str) -> None:
+        """Tell what is begun."""
+        if time.monotonic() - self.begun < 1:
+            return
+        if self.stream.isatty():
+            self.stream.write("\r" + text.ljust(len(self.shown)))
+            self.shown = text
+        elif (stage := text.split(maxsplit=1)[0]) != self.shown:
+            # Not a terminal: one line a stage, however many steps the stage has.
+            self.stream.write(f"{stage} ...\n")
+            self.shown = stage
+        self.stream.flush()
+
+    def __enter__(self) -> Progress:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Clear the moving line."""
+        if self.stream.isatty() and self.shown:
+            self.stream.write("\r" + " " * len(self.shown) + "\r")
+            self.stream.flush()
+
+
+def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
+    """The column of an address such as ``alpha[1-2]``, and the rows that it names: all without an index.
+
+    Raises
+    ------
+    UsageError
+        There is no such column or row.
+    """
+    from ..errors import UsageError, diagnose, listing, suggest
+
+    name, _, index = address.rstrip("]").partition("[")
+    if name not in report.sheet:
+        names = [column.name for column in report.sheet.columns]
+        known, hint = listing(names, most=60), suggest(name, names)
+        raise UsageError(diagnose("LS604", kind="cell", text=name, known=known, suggestion=hint))
+    column = report.sheet[name]
+    labels = report.values.labels(column)
+    if not index:
+        return column, labels
+    wanted = [label for label in labels if "-".join(map(str, label)) == index]
+    if not wanted:
+        known = listing(["-".join(map(str, label)) for label in labels])
+        raise UsageError(diagnose("LS604", kind=f"row of {name}", text=index, known=known, suggestion=""))
+    return column, wanted

@@ -1,0 +1,33 @@
+"""`crate`: make an output folder an RO-Crate."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from .common import OK
+
+HELP = "make an output folder an RO-Crate, to be archived"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what it takes."""
+    parser.add_argument("out", metavar="OUT", type=Path, help="what 'build' wrote")
+    parser.add_argument("--date", metavar="YYYY-MM-DD", required=True, help="the day of publication")
+    parser.add_argument(
+        "--license",
+        metavar="LICENSE",
+        required=True,
+        help="SPDX's identifier, such as CC-BY-4.0, or an address",
+    )
+    who = "; NAME or 'NAME <https://...>'"
+    parser.add_argument("--author", metavar="NAME", default="", help=f"whose it is{who}")
+    parser.add_argument("--organization", metavar="NAME", default="", help=f"who publishes it{who}")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write ro-crate-metadata.json and name it."""
+    from ..crate import write
+
+    print(write(options.out, options.date, options.license, options.author, options.organization))
+    return OK

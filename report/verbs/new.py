@@ -1,0 +1,42 @@
+"""`new`: a folder to start a campaign from."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from .common import OK
+
+HELP = "make a folder to start a campaign from"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what it takes."""
+    parser.add_argument("folder", metavar="FOLDER", type=Path)
+    parser.add_argument(
+        "--workbook", metavar="NAME", default="soft_impact", help="the method (default: soft_impact)"
+    )
+    parser.add_argument(
+        "--ci", metavar="SERVICE", default="", help="also write what makes it check every change: github"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the folder and name its files."""
+    from .. import build, scaffold
+    from ..errors import UnknownWorkbook, UsageError, diagnose, listing, suggest
+
+    try:
+        workbook = build.find_workbook(options.workbook, Path())
+    except UnknownWorkbook as error:
+        known, hint = listing(error.known), suggest(options.workbook, error.known)
+        raise UsageError(
+            diagnose("LS604", kind="workbook", text=options.workbook, known=known, suggestion=hint)
+        ) from error
+    if options.ci and options.ci not in scaffold.CI:
+        known, hint = listing(scaffold.CI), suggest(options.ci, scaffold.CI)
+        raise UsageError(diagnose("LS604", kind="service", text=options.ci, known=known, suggestion=hint))
+    for path in scaffold.new(options.folder, workbook, options.ci):
+        print(path)
+    print(f"edit them, then: loopsheet build {options.folder}")
+    return OK

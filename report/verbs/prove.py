@@ -1,0 +1,77 @@
+"""`prove`: the algebra alone."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .common import FINDINGS, OK, Progress
+
+if TYPE_CHECKING:
+    from ...derivations.proof import Proof
+
+HELP = "prove the algebra of a workbook, or show the proof of one equation"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what it takes."""
+    parser.add_argument("equation", metavar="EQUATION", nargs="?", help="its number, for example (11) or 12a")
+    parser.add_argument("--folder", metavar="FOLDER", type=Path, help="the folder whose workbook is meant")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Prove, and print one line an equation, or all steps of one."""
+    from ...derivations.proof import prove
+    from .. import build
+    from ..errors import UsageError, diagnose, suggest
+
+    folder = options.folder or build.PAPER
+    workbook = (
+        build.prepare(folder).inputs.workbook
+        if options.folder
+        else build.find_workbook("soft_impact", folder)
+    )
+    ledger = workbook.ledger()
+    labels = [equation.label for equation in ledger.equations()]
+    wanted: list[str] = labels
+    if options.equation:
+        number = options.equation.strip("()")
+        wanted = [e.label for e in ledger.equations() if f"({number})" in (e.label, e.number)]
+        if not wanted:
+            known, hint = ", ".join(labels), suggest(f"({number})", labels)
+            raise UsageError(
+                diagnose("LS604", kind="equation", text=options.equation, known=known, suggestion=hint)
+            )
+    with Progress(sys.stderr) as progress:
+        proofs = prove(ledger, lambda equation: progress(f"proving {equation.label}"))
+    shown = [proof for proof in proofs if proof.equation.label in wanted]
+    for proof in shown:
+        _print(proof, steps=bool(options.equation))
+    if not options.equation:
+        for erratum in (found for check in ledger.checks if (found := check(ledger)) is not None):
+            print(f"erratum: {erratum.sentence}")
+            if erratum.evidence:
+                print(f"         {erratum.evidence}")
+    failed = [proof for proof in shown if not proof.status.passes]
+    print(f"{len(shown) - len(failed)} of {len(shown)} stand")
+    return FINDINGS if failed else OK
+
+
+def _print(proof: Proof, steps: bool) -> None:
+    from ...derivations.text import text_of_equation
+
+    print(f"{proof.equation.label:6} {proof.status.value:12} {text_of_equation(proof.equation)}")
+    if steps:
+        print(f"       {proof.equation.because}")
+    for n, found in enumerate(proof.steps, start=1):
+        if steps:
+            print(f"  {n}.   {found.step.says}")
+            premises = "; ".join(premise.label for premise in found.step.premises)
+            print(f"       from  {premises or 'nothing: an identity'}")
+            print(f"       holds {text_of_equation(found.step.claim)}")
+        if steps or not found.status.passes:
+            print(f"       {found.status.value}: {found.sentence}")
+    if proof.remark:
+        print(f"       {proof.remark}")

@@ -1,0 +1,208 @@
+"""Builds a report again and says what is not as it was: what went in, what computed it, what came out."""
+
+from __future__ import annotations
+
+import hashlib
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from . import build
+from .agreement import LIMIT
+from .differences import EPS, Differences, compare
+from .errors import InputError, UsageError, diagnose
+from .findings import Check
+from .result import Report
+from .results import Index, Manifest, read_manifest, read_result
+
+__all__ = ["Verification", "verify"]
+
+_FORMATS = {
+    "html": "report.html",
+    "latex": "report.tex",
+    "xlsx": "report.xlsx",
+    "json": "values.json",
+    "pdf": "report.pdf",
+}
+"""Each format by the file that only it writes."""
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What was found when a report was built again.
+
+    Parameters
+    ----------
+    checks : tuple of Check
+        Of the kinds ``input``, ``source``, ``library``, ``output`` and ``number``.
+    differences : Differences or None
+        Number by number; None if the report that was there has no readable values.json.
+    verdict : str
+        The conclusion, in a sentence.
+    """
+
+    checks: tuple[Check, ...]
+    differences: Differences | None
+    verdict: str
+
+
+def verify(out: Path, folder: Path | None, step: Callable[[str], None] = lambda _: None) -> Verification:
+    """Build a report again in a temporary folder and compare it with what is there, which stays as it is.
+
+    Parameters
+    ----------
+    out : Path
+        What ``build`` wrote.
+    folder : Path, optional
+        The report folder. Without it, the folder that holds `out` if it is one, or the shipped paper if
+        `out` was built from that.
+    step : callable
+        Told what is begun.
+
+    Raises
+    ------
+    InputError
+        `out` has no manifest, or the report folder is not as it must be.
+    UsageError
+        It is not known from which folder `out` was built.
+    """
+    then = read_manifest(out)
+    folder = folder or _folder_of(out, then)
+    with tempfile.TemporaryDirectory(prefix="loopsheet-") as name:
+        again = Path(name)
+        formats = [format for format in build.FORMATS if _FORMATS[format] in then.outputs]
+        report, _ = build.build(folder, again, formats, step, every_engine=len(then.engines) > 1)
+        now = read_manifest(again)
+        differences = _numbers(out, again, report) if "values.json" in then.outputs else None
+        checks = (
+            *_same("input", then.inputs, now.inputs, "the input"),
+            *_same("source", then.sources, now.sources, "the"),
+            *_same("library", then.versions, now.versions, ""),
+            *_outputs(out, then, now),
+            *_moves(differences),
+        )
+    return Verification(checks, differences, _verdict(checks, then, differences))
+
+
+def _folder_of(out: Path, then: Manifest) -> Path:
+    parent = out.resolve().parent
+    if (parent / "report.toml").is_file():
+        here = Path.cwd()
+        return parent.relative_to(here) if parent.is_relative_to(here) else parent
+    if then.inputs == {file.name: _sha256(file) for file in build.PAPER.iterdir() if file.is_file()}:
+        return build.PAPER
+    reason = "it is not inside a report folder, and is not the shipped paper's"
+    raise UsageError(diagnose("LS609", text=out, reason=reason))
+
+
+def _sha256(file: Path) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def _same(kind: str, then: Mapping[str, str], now: Mapping[str, str], what: str) -> Iterator[Check]:
+    """A check for each name that there was or is."""
+    if not then and now:
+        yield Check(kind, "all", True, f"the manifest does not say with which {kind}s", skipped=True)
+        return
+    for name in sorted({*then, *now}):
+        was, is_now = then.get(name), now.get(name)
+        said = f"{what} {name}".strip()
+        if was == is_now:
+            yield Check(kind, name, True, f"{said} is the same")
+        elif was is None:
+            yield Check(kind, name, False, f"{said} is new")
+        elif is_now is None:
+            yield Check(kind, name, False, f"{said} is not there any more")
+        elif kind == "library":
+            yield Check(kind, name, False, f"{said} was {was} and is {is_now}")
+        else:
+            yield Check(kind, name, False, f"{said} was changed")
+
+
+def _outputs(out: Path, then: Manifest, now: Manifest) -> Iterator[Check]:
+    """Each file as it was built, as it is there, as it is built again."""
+    for name in sorted({*then.outputs, *now.outputs}):
+        was, again = then.outputs.get(name), now.outputs.get(name)
+        file = out / name
+        if was is None:
+            yield Check("output", name, False, f"{name} was not built then, and is now")
+        elif not _is_inside(out, file) or not file.is_file():
+            yield Check("output", name, False, f"{name} is missing")
+        elif _sha256(file) != was:
+            also = "" if again == was else "; built again it is another file than it was then, too"
+            yield Check("output", name, False, f"{name} was changed after it was built{also}")
+        elif again is None:
+            yield Check("output", name, False, f"{name} was built then, and is not now")
+        else:
+            said = "is the same, byte for byte" if again == was else "is another file when it is built again"
+            yield Check("output", name, again == was, f"{name} {said}")
+
+
+def _is_inside(out: Path, file: Path) -> bool:
+    """A manifest that was tampered with must not make us read other files."""
+    return file.resolve().is_relative_to(out.resolve())
+
+
+def _numbers(out: Path, again: Path, report: Report) -> Differences | None:
+    try:
+        before = read_result(out)
+    except InputError:
+        return None  # missing or changed by hand: told of the file
+    after = read_result(again)
+    if before.columns == after.columns:
+        return compare(before, after)  # nothing to allow for
+    return compare(before, after, _allowed(report))
+
+
+def _allowed(report: Report) -> dict[str, dict[Index, float]]:
+    """What rounding may do: each of two engines may be off by what the judge of the engines allows."""
+    from .analysis.bounds import bounds
+
+    found = bounds(report.sheet, report.values.layouts, report.values.value)
+    return {
+        column.name: {
+            label: 2 * LIMIT * EPS * float(bound) if bound < float("inf") else 0.0
+            for label, bound in zip(report.values.labels(column), found[column.name], strict=True)
+        }
+        for column in report.sheet.columns
+    }
+
+
+def _moves(found: Differences | None) -> Iterator[Check]:
+    from .views.differences import moved
+
+    if found is None:
+        return
+    for move in found.moved:
+        was, now, by = moved(move)
+        said = f"{move.address} was {was} and is {now}" + ("" if move.unit == "1" else f" {move.unit}")
+        yield Check("number", move.address, False, f"{said} ({by})" if by else said)
+    for change in found.method:
+        said = f"{change.name} was '{change.before or 'not there'}' and is '{change.after or 'not there'}'"
+        yield Check("method", change.name, False, said)
+    for word, names in (("new", found.added), ("not there any more", found.removed)):
+        for name in names:
+            yield Check("number", name, False, f"{name} is {word}")
+    for change in found.published:
+        said = f"{change.name} was '{change.before or 'not there'}' and is '{change.after or 'not there'}'"
+        yield Check("published", change.name, False, said)
+
+
+def _verdict(checks: tuple[Check, ...], then: Manifest, found: Differences | None) -> str:
+    """What changed, as far as it is known."""
+    failed = [check for check in checks if not check.passed]
+    if not failed:
+        return "the same report again"
+    by_kind = {kind: [c.name for c in failed if c.kind == kind] for kind in ("input", "source", "library")}
+    words = {"input": "the input", "source": "the sources of loopsheet", "library": "the libraries"}
+    changed = [f"{words[kind]} ({', '.join(names)})" for kind, names in by_kind.items() if names]
+    if changed:
+        return f"different: {' and '.join(changed)} changed"
+    if all(c.message.endswith(("after it was built", "is missing")) for c in failed if c.kind == "output"):
+        return "different: the outputs were changed after they were built, and nothing else was"
+    if not then.sources:
+        return "different: the manifest does not say with which sources it was built"
+    if found is not None and not found.any and found.noise:
+        return f"different: nothing changed but the machine, which rounds {found.noise} numbers otherwise"
+    return "different: input, sources and libraries are the same; other programs or the machine made it"

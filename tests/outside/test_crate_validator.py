@@ -1,0 +1,81 @@
+"""The RO-Crate that loopsheet writes, judged by roc-validator in an environment of its own."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+import venv
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from loopsheet.report import build
+from loopsheet.report.crate import NAME, write
+
+HERE = Path(__file__).parent
+LOCK = HERE.parent.parent / "requirements" / "crate.txt"
+
+Judge = Callable[[Path], dict[str, Any]]
+
+
+@pytest.fixture(scope="session")
+def judge() -> Judge:
+    """Install the pinned judge, once and outside of the checkout."""
+    home = Path.home() / ".cache" / "loopsheet" / "crate"
+    python, installed = home / "bin" / "python", home / "crate.txt"
+    lock = LOCK.read_text(encoding="utf-8") + sys.version
+    if not installed.exists() or installed.read_text(encoding="utf-8") != lock:
+        shutil.rmtree(home, ignore_errors=True)
+        venv.create(home, with_pip=True)
+        command = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+        command += ["--require-hashes", "-r", LOCK]
+        run = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+        assert run.returncode == 0, run.stderr
+        installed.write_text(lock, encoding="utf-8")
+
+    def ask(folder: Path) -> dict[str, Any]:
+        run = subprocess.run(
+            [python, HERE / "validate_crate.py", folder], capture_output=True, text=True, check=False
+        )
+        assert run.returncode == 0, run.stderr
+        found: dict[str, Any] = json.loads(run.stdout.splitlines()[-1])
+        return found
+
+    return ask
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("crate") / "out"
+    build.build(build.PAPER, folder, ("html", "json"))
+    return folder
+
+
+def test_with_all_that_may_be_said_nothing_is_missing(out: Path, judge: Judge) -> None:
+    write(
+        out,
+        "2026-03-31",
+        "CC-BY-4.0",
+        "Somebody <https://orcid.org/0000-0002-1825-0097>",
+        "A university <https://example.edu>",
+    )
+    found = judge(out)
+    assert found["issues"] == []
+    assert found["checks"] > 50
+
+
+def test_with_as_little_as_may_be_said_nothing_required_is_missing(out: Path, judge: Judge) -> None:
+    write(out, "2026-03-31", "https://example.org/licence")
+    assert {severity for severity, _ in judge(out)["issues"]} <= {"RECOMMENDED"}
+
+
+def test_the_judge_sees_what_is_wrong(out: Path, judge: Judge) -> None:
+    path = write(out, "2026-03-31", "CC-BY-4.0")
+    path.write_text(path.read_text(encoding="utf-8").replace('"datePublished"', '"dateWritten"'))
+    issues = judge(out)["issues"]
+    assert any(severity == "REQUIRED" for severity, _ in issues), issues
+    assert path.name == NAME

@@ -1,0 +1,145 @@
+"""What was checked, in every format: counted, located, and nothing that a user wrote does anything."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from loopsheet.report.agreement import Agreement
+from loopsheet.report.diagnostics import Diagnostic, Location
+from loopsheet.report.findings import Check, of_diagnostics, of_engine
+from loopsheet.report.inputs import Inputs
+from loopsheet.report.views.checks import FORMATS, as_github, as_json, as_junit, as_markdown, summary
+from loopsheet.report.views.markdown import cell, code
+
+EVIL = "a|b `c` <b> &amp; @you #1 % \n::error::x, y: z \x1b[2J \u202e ]]> \"'"
+CHECKS = (
+    Check("proof", "(1)", True, "(1) is proved", Location("f/report.toml")),
+    Check("engine", "node", True, "not compared", Location("f/report.toml"), skipped=True),
+    Check("published", "alpha[1-2]", False, "prints 1, recomputed 2", Location("f/p.csv", 2, 19, 5, "x")),
+    Check("published", EVIL, False, EVIL, Location(EVIL, 3)),
+)
+
+
+def test_summary_counts() -> None:
+    assert summary(CHECKS) == "4 checks: 1 as expected, 2 findings, 1 not checked"
+    assert summary(CHECKS[:1]) == "1 check: 1 as expected, 0 findings"
+    assert summary(()) == "0 checks: 0 as expected, 0 findings"
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_without_checks_every_format_is_whole(form: str) -> None:
+    assert FORMATS[form]((), "t", {}).endswith("\n")
+
+
+def test_json() -> None:
+    data = json.loads(as_json(CHECKS, "t", {"engines": [1]}))
+    assert data["passed"] is False
+    assert data["findings"][0] == "f/p.csv:2:19: prints 1, recomputed 2"
+    assert data["engines"] == [1]
+    assert data["checks"][0] == {
+        "kind": "proof",
+        "name": "(1)",
+        "passed": True,
+        "skipped": False,
+        "message": "(1) is proved",
+        "file": "f/report.toml",
+        "line": None,
+        "column": None,
+    }
+    assert data["checks"][3]["message"] == EVIL
+
+
+def test_junit() -> None:
+    root = ElementTree.fromstring(as_junit(CHECKS, EVIL, {}))
+    assert {k: root.get(k) for k in ("tests", "failures", "errors", "skipped")} == {
+        "tests": "4",
+        "failures": "2",
+        "errors": "0",
+        "skipped": "1",
+    }
+    assert [suite.get("tests") for suite in root] == ["1", "1", "2"]
+    cases = list(root.iter("testcase"))
+    assert [c.get("classname") for c in cases] == [f"loopsheet.{check.kind}" for check in CHECKS]
+    assert [[child.tag for child in case] for case in cases] == [[], ["skipped"], ["failure"], ["failure"]]
+    assert cases[2][0].text == "f/p.csv:2:19: prints 1, recomputed 2"
+    assert cases[2].get("line") == "2"
+
+
+def test_github() -> None:
+    lines = as_github(CHECKS, "t", {}).splitlines()
+    assert lines[0] == "::notice file=f/report.toml,title=engine node::not compared"
+    assert lines[1] == (
+        "::error file=f/p.csv,line=2,col=19,endColumn=24,title=published alpha[1-2]::prints 1, recomputed 2"
+    )
+    properties, _, message = lines[2].removeprefix("::error ").partition("::")
+    assert properties.count(",") == 2
+    assert properties.count(":") == 0
+    assert "%25" in message
+    assert "\x1b" not in message
+    assert lines[3:] == [summary(CHECKS)]
+
+
+def test_github_names_files_from_where_the_command_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    inside, outside = (tmp_path / "f" / "p.csv").as_posix(), "/elsewhere/p.csv"
+    found = [Check("published", "x", False, "m", Location(path, 1, 1)) for path in (inside, outside)]
+    lines = as_github(found, "t", {}).splitlines()
+    assert "file=f/p.csv," in lines[0]
+    assert "file=/elsewhere/p.csv," in lines[1]
+
+
+def test_markdown() -> None:
+    text = as_markdown(CHECKS, "t", {})
+    assert "| published | 0 | 2 | 0 |" in text
+    assert "| `published alpha[1-2]` | `f/p.csv:2:19` | prints 1, recomputed 2 |" in text
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    assert len(rows) == 2 + 3 + 2 + 2
+    assert all(row.replace("\\|", "").count("|") == 4 + (n < 5) for n, row in enumerate(rows))
+    assert "finding" not in as_markdown(CHECKS[:1], "t", {}).partition("\n| ")[2].partition("proof")[2]
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("plain", "plain"),
+        ("[x](javascript:1)", "\\[x\\](javascript:1)"),
+        ("<img>", "\\<img\\>"),
+        ("&lt;", "&amp;lt;"),
+        ("@you", "@<!-- -->you"),
+        ("a\nb|c", "a b\\|c"),
+        ("\\|", "\\\\\\|"),
+    ],
+)
+def test_text_in_markdown_says_what_it_says(text: str, shown: str) -> None:
+    assert cell(text) == shown
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"), [("x", "`x`"), ("", ""), ("`", "`` ` ``"), ("a``b|", "```a``b\\|```")]
+)
+def test_code_in_markdown(text: str, shown: str) -> None:
+    assert code(text) == shown
+
+
+def test_of_many_wrong_cells_some_are_named() -> None:
+    inputs = Inputs(Path("f"), "", None, {}, frozenset(), (), {}, {}, (), {})  # type: ignore[arg-type]
+    wrong = Agreement(9, 1.0, "x", tuple(f"x[{n}]: off" for n in range(9)), engine="node")
+    check = of_engine(wrong, inputs)
+    assert not check.passed
+    assert check.message == "x[0]: off; x[1]: off; x[2]: off; x[3]: off; x[4]: off; and 4 more"
+    assert check.sentence == check.message
+    missing = of_engine(Agreement(0, 0.0, "", (), engine="JavaScript", missing="node"), inputs)
+    assert (missing.passed, missing.skipped) == (True, True)
+    assert missing.message == "JavaScript was not compared: node not found"
+
+
+def test_wrong_input_as_checks() -> None:
+    (check,) = of_diagnostics([Diagnostic("LS401", "no number", Location("f", 1, 2), "digits", "try")])
+    assert (check.kind, check.name, check.passed) == ("input", "LS401", False)
+    assert check.sentence == "f:1:2: no number; try"

@@ -1,0 +1,171 @@
+"""Two results side by side."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report.cli import main
+from loopsheet.report.differences import Differences, Move, compare
+from loopsheet.report.results import Column, Result
+from loopsheet.report.views.differences import as_markdown, as_text, moved
+
+EPS = sys.float_info.epsilon
+V = Column("m/s", "tests", "given", {(1,): (2.0, "ok"), (2,): (3.0, "ok")})
+A = Column("1", "pairs", "(11) a = v", {(1, 2): (1.25, "ok")})
+M = Column("1", "", "(12) m = a", {(): (1.25, "ok")})
+RESULT = Result(
+    "before", "t", "w", {"v": V, "a": A, "m": M}, {"(11)": "proved"}, {"Table 2 a[1-2]": "1.2: same"}
+)
+
+
+def with_column(name: str, column: Column) -> Result:
+    return replace(RESULT, name="after", columns={**RESULT.columns, name: column})
+
+
+def test_a_result_is_itself() -> None:
+    found = compare(RESULT, RESULT)
+    assert (found.same, found.noise, found.any) == (4, 0, False)
+    assert as_text(found, 20) == ("numbers    4 in both: 4 the same, 0 within rounding, 0 moved\nthe same\n")
+
+
+@pytest.mark.parametrize(
+    ("after", "is_noise"),
+    [
+        (1.25 + 8 * 1.25 * EPS, True),
+        (1.25 + 9.6 * 1.25 * EPS, False),
+        (1.26, False),
+        (-1.25, False),
+        (0.0, False),
+    ],
+)
+def test_rounding_is_eight_eps_of_the_larger(after: float, is_noise: bool) -> None:
+    found = compare(RESULT, with_column("m", replace(M, cells={(): (after, "ok")})))
+    assert (found.noise, len(found.moved)) == ((1, 0) if is_noise else (0, 1))
+    assert found.any is not is_noise
+
+
+def test_what_a_condition_allows_is_rounding_too() -> None:
+    after = with_column("m", replace(M, cells={(): (1.25 + 1e-13, "ok")}))
+    assert compare(RESULT, after).any
+    assert not compare(RESULT, after, {"m": {(): 2e-13}}).any
+    assert compare(RESULT, after, {"m": {(): 5e-14}}).any
+
+
+def test_a_number_that_vanishes_has_moved() -> None:
+    (move,) = compare(RESULT, with_column("m", replace(M, cells={(): (None, "#NOROOT!")}))).moved
+    assert (move.before, move.after, move.status, move.relative) == (1.25, None, ("ok", "#NOROOT!"), None)
+    assert moved(move) == ("1.25", "#NOROOT!", "")
+
+
+def test_another_status_without_a_number_has_moved() -> None:
+    none = with_column("m", replace(M, cells={(): (None, "#NOROOT!")}))
+    other = with_column("m", replace(M, cells={(): (None, "#DOMAIN!")}))
+    assert compare(none, none).same == 4
+    assert len(compare(none, other).moved) == 1
+
+
+def test_what_the_user_gave_comes_first_then_scalars() -> None:
+    after = replace(
+        RESULT,
+        columns={
+            "a": replace(A, cells={(1, 2): (1.3, "ok")}),
+            "v": replace(V, cells={(1,): (2.0, "ok"), (2,): (3.5, "ok")}),
+            "m": replace(M, cells={(): (1.3, "ok")}),
+        },
+    )
+    found = compare(RESULT, after)
+    assert [move.address for move in found.moved] == ["v[2]", "m", "a[1-2]"]
+    assert [move.given for move in found.moved] == [True, False, False]
+    text = as_text(found, 2)
+    assert "  input    v[2]             3 -> 3.5 m/s   +16.7 %\n" in text
+    assert "  moved    m                1.25 -> 1.3   +4 %\n" in text
+    assert "and 1 more: a (1)" in text
+    assert text.endswith("different\n")
+
+
+@pytest.mark.parametrize(
+    ("column", "said"),
+    [
+        (replace(M, rule="(13) m = 2*a"), "(13) m = 2*a [1]"),
+        (replace(M, unit="m"), "(12) m = a [m]"),
+        (replace(M, rule="given"), "given [1]"),
+    ],
+)
+def test_another_equation_or_unit_is_another_method(column: Column, said: str) -> None:
+    (change,) = compare(RESULT, with_column("m", column)).method
+    assert (change.name, change.before, change.after) == ("m", "(12) m = a [1]", said)
+
+
+def test_another_proof_verdict_or_workbook_is_told() -> None:
+    after = replace(
+        RESULT, workbook="x", proofs={"(11)": "refuted", "(12)": "proved"}, published={"text m": "1: same"}
+    )
+    found = compare(RESULT, after)
+    assert [(c.name, c.before, c.after) for c in found.method] == [
+        ("workbook", "w", "x"),
+        ("(11)", "proved", "refuted"),
+        ("(12)", "", "proved"),
+    ]
+    assert [c.name for c in found.published] == ["Table 2 a[1-2]", "text m"]
+    assert "(12): (none)" in as_text(found, 20)
+
+
+def test_rows_and_columns_come_and_go() -> None:
+    after = replace(
+        RESULT,
+        columns={"v": replace(V, cells={(1,): (2.0, "ok"), (3,): (1.0, "ok")}), "a": A, "new": M},
+    )
+    found = compare(RESULT, after)
+    assert (found.added, found.removed) == (("v[3]", "new"), ("v[2]", "m"))
+    assert found.any
+    assert "added      v[3], new" in as_text(found, 20)
+
+
+def test_markdown_has_a_table_for_each_kind_and_no_live_text() -> None:
+    evil = "|`<b>@you"
+    found = Differences(
+        evil, evil, 1, 0,
+        (Move(evil, "1", False, 1.0, 2.0, ("ok", "ok")),) * 3,
+        (), (evil,), (), (),
+    )  # fmt: skip
+    text = as_markdown(found, 2)
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    assert all(row.replace("\\|", "").count("|") in (6, 2) for row in rows)
+    assert "and 1 more" in text
+    assert "<b>" not in text.replace("`` |`<b>@you ``", "").replace("\\|`<b>@you", "")
+
+
+def test_digits_tell_any_two_doubles_apart() -> None:
+    for value in (1.0, 1.2579969787312368, 1e-300, 123456789.123, 2.97e-05):
+        other = math.nextafter(value, math.inf)
+        was, now, _ = moved(Move("x", "1", False, value, other, ("ok", "ok")))
+        assert was != now
+        assert (float(was), float(now)) == (value, other)
+
+
+def test_the_verb(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    content = {
+        "schema": 1, "title": "t", "workbook": "w", "proofs": {}, "published": [],
+        "cells": {"m": {"axis": None, "unit": "m", "rule": "(1) m = 2", "value": 2.0, "status": "ok"}},
+    }  # fmt: skip
+    for name, value in (("a", 2.0), ("b", 2.5)):
+        (tmp_path / name).mkdir()
+        content["cells"]["m"]["value"] = value  # type: ignore[index]
+        (tmp_path / name / "values.json").write_text(json.dumps(content))
+    a, b = str(tmp_path / "a"), str(tmp_path / "b" / "values.json")
+    assert main(["diff", a, a]) == 0
+    assert capsys.readouterr().out.endswith("\nthe same\n")
+    assert main(["diff", a, b]) == 1
+    assert "m                2 -> 2.5 m   +25 %" in capsys.readouterr().out
+    assert main(["diff", a, b, "--format", "markdown", "--most", "0"]) == 1
+    assert "and 1 more: m (1)" in capsys.readouterr().out
+    assert main(["diff", a, str(tmp_path)]) == 2
+    assert "LS607" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main(["diff", a, b, "--most", "-1"])

@@ -1,0 +1,215 @@
+"""The pytest plugin as a user has it: real runs of pytest in folders of their own."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report.build import PAPER
+from loopsheet.report.findings import ENGINES, names_of
+from loopsheet.report.inputs import PublishedValue
+from loopsheet.report.pytest_plugin import _is_ours
+
+
+def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Pytest in a process of its own, in a folder, with no settings of ours."""
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    return subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-W", "error", *arguments],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.fixture
+def campaign(tmp_path: Path) -> Path:
+    """A folder of one's own, in a project of one's own."""
+    (tmp_path / "pytest.ini").write_text("[pytest]\n")
+    return shutil.copytree(PAPER, tmp_path / "steel")
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new), encoding="utf-8")
+
+
+def failed(output: str) -> list[str]:
+    """The ids of the tests that the summary names."""
+    return [line.split(" - ")[0].removeprefix("FAILED ") for line in output.splitlines() if "FAILED " in line]
+
+
+def test_every_check_is_a_test(campaign: Path) -> None:
+    done = run(campaign.parent, "--collect-only", "--strict-markers", "-m", "loopsheet")
+    assert done.returncode == 0, done.stdout + done.stderr
+    ids = [line for line in done.stdout.splitlines() if "::" in line]
+    assert ids[:3] == [f"steel/report.toml::engine::{name}" for name in ENGINES]
+    assert "steel/report.toml::proof::(11)" in ids
+    assert "steel/report.toml::published::alpha[1-2]" in ids
+    assert len(ids) == len(set(ids)) == 3 + 41 + 27
+
+
+def test_a_test_is_selected_by_its_id_and_passes(campaign: Path) -> None:
+    done = run(
+        campaign,
+        "report.toml::published::alpha[1-2]",
+        "report.toml::proof::(11)",
+        "report.toml::engine::numpy",
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "3 passed" in done.stdout
+
+
+def test_a_published_value_that_differs_fails_alone_and_says_which(campaign: Path) -> None:
+    published = campaign / "published.csv"
+    text = re.sub(r"(?m)^(Table 2,alpha,1-2,1\.234,1,.*?)differs,.*$", r"\1,", published.read_text())
+    published.write_text(text)
+    done = run(campaign.parent, "-k", "published")
+    assert done.returncode == 1
+    assert failed(done.stdout) == ["steel/report.toml::published::alpha[1-2]"]
+    said = "steel/published.csv:2:19: Table 2 alpha[1-2] prints 1.234, recomputed 1.258"
+    assert said in done.stdout
+    assert "26 passed" in done.stdout
+    assert "Traceback" not in done.stdout
+    assert "pytest_plugin.py" not in done.stdout
+
+
+WRONG_EQUATION = """
+from dataclasses import replace
+from loopsheet.derivations.equation import Derivation, Ledger, Step, Equation, Kind
+from loopsheet.report.workbooks.soft_impact import WORKBOOK as paper
+
+def ledger():
+    entries = []
+    for entry in paper.ledger().entries:
+        if isinstance(entry, Derivation) and entry.claim.label == "(7)":
+            last = entry.steps[-1]
+            members = (entry.claim.members[0], 2 * entry.claim.members[-1])
+            entry = Derivation((*entry.steps[:-1], replace(last, claim=replace(last.claim, members=members))))
+        entries.append(entry)
+    return Ledger(tuple(entries), ())
+
+WORKBOOK = replace(paper, ledger=ledger)
+"""
+
+
+def test_an_equation_that_does_not_hold_fails_and_says_which(campaign: Path) -> None:
+    edit(campaign / "report.toml", '"soft_impact"', '"workbook.py"')
+    (campaign / "workbook.py").write_text(WRONG_EQUATION)
+    done = run(campaign.parent, "-k", "proof")
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "steel/report.toml::proof::(7)" in failed(done.stdout)
+    assert "(7) is refuted: at " in done.stdout
+    assert "the sides are" in done.stdout
+    assert "steel/report.toml::proof::(6)" not in failed(done.stdout)
+
+
+WRONG_ENGINE = """
+from loopsheet.report.engines import javascript
+program = javascript.program
+javascript.program = lambda *a, **k: program(*a, **k).replace("*Math.pow($x", "/Math.pow($x", 1)
+"""
+
+
+def test_an_engine_that_computes_wrongly_fails_and_says_which(campaign: Path) -> None:
+    if shutil.which("node") is None:
+        pytest.skip("needs node on the PATH")
+    (campaign / "conftest.py").write_text(WRONG_ENGINE)
+    done = run(campaign.parent, "-k", "numpy or JavaScript")
+    assert done.returncode == 1
+    assert failed(done.stdout) == ["steel/report.toml::engine::JavaScript"]
+    assert "JavaScript is off by" in done.stdout
+    assert "1 passed" in done.stdout
+
+
+def test_a_program_that_is_missing_is_a_skip(campaign: Path) -> None:
+    (campaign / "conftest.py").write_text(
+        "import shutil\nwhich = shutil.which\nshutil.which = lambda name, *a, **k: which('no such ' + name)\n"
+    )
+    done = run(campaign.parent, "-rs", "-k", "JavaScript")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "1 skipped" in done.stdout
+    assert "JavaScript was not compared" in done.stdout
+
+
+MISTAKES = {
+    "number": ("measurements.csv", "0.512", "abc", "number/measurements.csv:3:9"),
+    "workbook": ("report.toml", '"soft_impact"', '"soft_impct"', "did you mean 'soft_impact'?"),
+    "toml": ("report.toml", "[measurements]", "[measurements", "toml/report.toml:11:"),
+    "cell": ("published.csv", "Table 2,alpha,1-2", "Table 2,alfa,1-2", "cell/published.csv:2:9"),
+    "index": ("published.csv", "Table 2,alpha,1-2", "Table 2,alpha,1-9", "alpha has no index '1-9'"),
+}
+
+
+def test_a_broken_folder_is_one_located_message(tmp_path: Path) -> None:
+    (tmp_path / "pytest.ini").write_text("[pytest]\n")
+    for name, (file, old, new, _) in MISTAKES.items():
+        edit(shutil.copytree(PAPER, tmp_path / name) / file, old, new)
+    done = run(tmp_path)
+    assert done.returncode == 2
+    for name, (_, _, _, said) in MISTAKES.items():
+        assert f"ERROR {name}/report.toml" in done.stdout
+        assert said in done.stdout
+    assert f"{len(MISTAKES)} errors" in done.stdout
+    assert "Traceback" not in done.stdout
+    assert "pytest_plugin.py" not in done.stdout
+
+
+def test_without_a_report_nothing_is_loaded(tmp_path: Path) -> None:
+    """Another tool's report.toml is none either."""
+    (tmp_path / "pytest.ini").write_text("[pytest]\n")
+    (tmp_path / "report.toml").write_text('[report]\nname = "coverage"\n')
+    (tmp_path / "test_it.py").write_text(
+        "import sys\n"
+        "def test_it(pytestconfig):\n"
+        "    assert pytestconfig.pluginmanager.has_plugin('loopsheet')\n"
+        "    heavy = ('numpy', 'sympy', 'pint', 'loopsheet.report.build', 'loopsheet.report.findings')\n"
+        "    assert [name for name in heavy if name in sys.modules] == []\n"
+    )
+    done = run(tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "1 passed" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("text", "ours"),
+    [
+        ('workbook = "soft_impact"\n[measurements]\nfile = "m.csv"\n', True),
+        ('workbook = "soft_impct"\n[parameters]\n', True),
+        ("workbook = 7\n[measurements]\n", True),
+        ('workbook = "soft_impact\n[measurements]\n', True),
+        ('workbook = "sales.xlsx"\n', False),
+        ("[measurements]\n", False),
+        ("", False),
+        ("not toml", False),
+        ("workbook = [\n", False),
+        ('workbook = "x"\n[measurements]\n' + "#" * 300_000, False),
+        ("a = " + "[" * 5000, False),
+        ("\x00\xff", False),
+    ],
+)
+def test_what_is_ours(text: str, ours: bool, tmp_path: Path) -> None:
+    (tmp_path / "report.toml").write_text(text)
+    assert _is_ours(tmp_path / "report.toml") is ours
+
+
+def test_what_cannot_be_read_is_not_ours(tmp_path: Path) -> None:
+    assert not _is_ours(tmp_path)
+    assert not _is_ours(tmp_path / "nothing")
+
+
+def test_a_cell_that_two_sources_print_is_told_apart() -> None:
+    values = [
+        PublishedValue(source, cell, index, None)  # type: ignore[arg-type]
+        for source, cell, index in [("A", "x", (1,)), ("B", "x", (1,)), ("A", "x", (2,)), ("B", "y", ())]
+    ]
+    assert names_of(values) == ["x[1] (A)", "x[1] (B)", "x[2]", "y"]

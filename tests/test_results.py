@@ -1,0 +1,132 @@
+"""Reading what a build wrote: whatever else the file holds is told in a sentence, never as a traceback."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from loopsheet.report.errors import InputError
+from loopsheet.report.results import read_manifest, read_result
+
+RESULT: dict[str, Any] = {
+    "schema": 1,
+    "workbook": "w",
+    "title": "t",
+    "cells": {
+        "v": {
+            "axis": "tests", "unit": "m/s", "rule": "given",
+            "index": [1, 2], "value": [1.5, 2], "status": ["ok", "ok"],
+        },
+        "a": {"axis": "pairs", "unit": "1", "index": [[1, 2]], "value": [None], "status": ["#NOROOT!"]},
+        "m": {"axis": None, "unit": "1", "rule": "(1) m = 2", "value": 2.5, "status": "ok"},
+    },
+    "proofs": {"(1)": "proved"},
+    "published": [
+        {"source": "Table 2", "cell": "a", "index": [1, 2], "printed": "1.2", "verdict": "same"},
+        {"source": "text", "cell": "m", "index": [], "printed": "2", "verdict": "differs"},
+    ],
+}  # fmt: skip
+MANIFEST: dict[str, Any] = {
+    "schema": 1,
+    "title": "t",
+    "inputs": {"report.toml": "00"},
+    "outputs": {"values.json": "11"},
+    "sources": {"method": "22"},
+    "versions": {"loopsheet": "1"},
+    "engines": {"numpy": "", "JavaScript": "node 20"},
+}
+
+
+def changed(content: dict[str, Any], change: Callable[[dict[str, Any]], Any]) -> str:
+    copy = json.loads(json.dumps(content))
+    change(copy)
+    return json.dumps(copy)
+
+
+def test_a_result(tmp_path: Path) -> None:
+    (tmp_path / "values.json").write_text(json.dumps(RESULT))
+    found = read_result(tmp_path)
+    assert found == read_result(tmp_path / "values.json")
+    assert (found.title, found.workbook, found.proofs) == ("t", "w", {"(1)": "proved"})
+    assert found.columns["v"].cells == {(1,): (1.5, "ok"), (2,): (2.0, "ok")}
+    assert found.columns["a"].cells == {(1, 2): (None, "#NOROOT!")}
+    assert found.columns["a"].rule == ""
+    assert found.columns["m"].cells == {(): (2.5, "ok")}
+    assert found.published == {"Table 2 a[1-2]": "1.2: same", "text m": "2: differs"}
+
+
+WRONG: dict[str, Callable[[dict[str, Any]], Any]] = {
+    "schema": lambda d: d.update(schema=2),
+    "no cells": lambda d: d.pop("cells"),
+    "cells": lambda d: d.update(cells=[]),
+    "column": lambda d: d["cells"].update(v=7),
+    "rows": lambda d: d["cells"]["v"]["value"].pop(),
+    "twice": lambda d: d["cells"]["v"].update(index=[1, 1]),
+    "index": lambda d: d["cells"]["v"].update(index=["x", {}]),
+    "empty index": lambda d: d["cells"]["v"].update(index=[[], []]),
+    "word": lambda d: d["cells"]["v"].update(value=["1", 2]),
+    "truth": lambda d: d["cells"]["v"].update(value=[True, 2]),
+    "huge": lambda d: d["cells"]["v"].update(value=[10**400, 2]),
+    "status": lambda d: d["cells"]["m"].update(status=None),
+    "unit": lambda d: d["cells"]["m"].update(unit=1),
+    "axis": lambda d: d["cells"]["v"].update(axis=[]),
+    "rule": lambda d: d["cells"]["v"].update(rule=[]),
+    "proofs": lambda d: d["proofs"].update(x=1),
+    "published": lambda d: d["published"].append(1),
+    "published index": lambda d: d["published"][0].pop("index"),
+    "title": lambda d: d.pop("title"),
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+def test_what_is_no_result_is_told(wrong: str, tmp_path: Path) -> None:
+    (tmp_path / "values.json").write_text(changed(RESULT, WRONG[wrong]))
+    with pytest.raises(InputError, match="LS607"):
+        read_result(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "[]", "{", "null", '{"schema": NaN}', "[" * 100_000, "\ud800".encode("utf-8", "surrogatepass")],
+)
+def test_what_is_no_json_is_told(text: str | bytes, tmp_path: Path) -> None:
+    for name in ("values.json", "manifest.json"):
+        (tmp_path / name).write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(InputError, match="LS607"):
+        read_result(tmp_path)
+    with pytest.raises(InputError, match="LS608"):
+        read_manifest(tmp_path)
+
+
+def test_what_is_not_there_is_told(tmp_path: Path) -> None:
+    for path in (tmp_path, tmp_path / "nowhere", tmp_path / ("x" * 300), Path("nul\0")):
+        with pytest.raises(InputError, match="LS607"):
+            read_result(path)
+        with pytest.raises(InputError, match="LS608"):
+            read_manifest(path)
+
+
+def test_a_manifest(tmp_path: Path) -> None:
+    (tmp_path / "manifest.json").write_text(json.dumps(MANIFEST))
+    found = read_manifest(tmp_path)
+    assert found.versions == {"loopsheet": "1", "JavaScript": "node 20"}
+    assert found.engines == ("numpy", "JavaScript")
+    assert found.sources == {"method": "22"}
+
+
+def test_a_manifest_from_before_sources_were_told(tmp_path: Path) -> None:
+    old = {name: value for name, value in MANIFEST.items() if name not in ("title", "sources", "engines")}
+    (tmp_path / "manifest.json").write_text(json.dumps(old))
+    found = read_manifest(tmp_path)
+    assert (found.title, found.sources, found.engines) == ("", {}, ("numpy",))
+
+
+@pytest.mark.parametrize("key", ["schema", "inputs", "outputs", "versions"])
+def test_what_is_no_manifest_is_told(key: str, tmp_path: Path) -> None:
+    (tmp_path / "manifest.json").write_text(changed(MANIFEST, lambda d: d.update({key: 7})))
+    with pytest.raises(InputError, match="LS608"):
+        read_manifest(tmp_path)

@@ -1,0 +1,199 @@
+"""The same report again: what changed is named, and why; what is there stays as it is."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from loopsheet.report import build, provenance, verification
+from loopsheet.report.cli import main
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.errors import InputError, UsageError
+from loopsheet.report.verification import Verification, verify
+
+
+def hashes(folder: Path) -> dict[str, str]:
+    return {
+        p.relative_to(folder).as_posix(): hashlib.sha256(p.read_bytes()).hexdigest()
+        for p in sorted(folder.rglob("*"))
+        if p.is_file()
+    }
+
+
+@pytest.fixture(scope="module")
+def issued(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A campaign with its report inside."""
+    folder = shutil.copytree(build.PAPER, tmp_path_factory.mktemp("verify") / "steel")
+    build.build(folder, folder / "out", ("json",))
+    return folder
+
+
+@pytest.fixture
+def campaign(issued: Path, tmp_path: Path) -> Path:
+    return shutil.copytree(issued, tmp_path / "steel")
+
+
+def failed(found: Verification) -> dict[str, list[str]]:
+    """What differs, by kind."""
+    names: dict[str, list[str]] = {}
+    for check in found.checks:
+        if not check.passed:
+            names.setdefault(check.kind, []).append(check.name)
+    return names
+
+
+def test_the_same_report_again_anywhere(campaign: Path, tmp_path: Path) -> None:
+    """Another process, with another hash seed, time zone, locale and folder."""
+    before = hashes(campaign)
+    elsewhere = {"PYTHONHASHSEED": "4711", "TZ": "Asia/Tokyo", "LC_ALL": "C", "HOME": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-m", "loopsheet", "verify", str(campaign / "out")],
+        cwd=tmp_path, env={**os.environ, **elsewhere}, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    lines = done.stdout.splitlines()
+    assert [line.split(maxsplit=1) for line in lines[:2]] == [
+        ["input", "3 the same"],
+        ["source", "3 the same"],
+    ]
+    assert lines[-1] == "the same report again"
+    assert hashes(campaign) == before
+
+
+def test_an_input_that_changed_and_what_it_moves(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = campaign / "measurements.csv"
+    table.write_text(table.read_text().replace("29.7", "29.8"))
+    before = hashes(campaign)
+    assert main(["verify", str(campaign / "out"), "--most", "3"]) == 1
+    out = capsys.readouterr().out
+    assert "input      the input measurements.csv was changed\n" in out
+    assert "number     x_p[2] was 2.97e-05 and is 2.98e-05 m (+0.337 %)\n" in out
+    assert "number     alpha_mean was 1.30264 and is 1.30487 (+0.171 %)\n" in out
+    assert " more\n" in out
+    assert out.endswith("different: the input (measurements.csv) changed\n")
+    assert hashes(campaign) == before
+
+
+def test_a_library_and_a_source_that_changed(campaign: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    versions, sums = build.versions(), provenance.sources()
+    monkeypatch.setattr(build, "versions", lambda: versions | {"numpy": "99.0"})
+    monkeypatch.setattr(build, "sources", lambda: sums | {"method": "0" * 64})
+    found = verify(campaign / "out", None)
+    names = failed(found)
+    assert (names["source"], names["library"]) == (["method"], ["numpy"])
+    assert "number" not in names
+    said = [check.message for check in found.checks if check.kind == "library" and not check.passed]
+    assert said == [f"numpy was {versions['numpy']} and is 99.0"]
+    assert found.verdict == "different: the sources of loopsheet (method) and the libraries (numpy) changed"
+
+
+def test_an_output_that_was_changed_by_hand(campaign: Path) -> None:
+    values = campaign / "out" / "values.json"
+    data = json.loads(values.read_text())
+    data["cells"]["alpha"]["value"][0] = 1.234
+    values.write_text(json.dumps(data))
+    found = verify(campaign / "out", campaign)
+    assert failed(found) == {"output": ["values.json"], "number": ["alpha[1-2]"]}
+    assert found.verdict == "different: the outputs were changed after they were built, and nothing else was"
+    assert [check.message for check in found.checks if not check.passed] == [
+        "values.json was changed after it was built",
+        "alpha[1-2] was 1.234 and is 1.258 (+1.94 %)",
+    ]
+
+
+def test_an_output_that_is_no_result_any_more(campaign: Path) -> None:
+    (campaign / "out" / "values.json").write_text("{")
+    found = verify(campaign / "out", campaign)
+    assert failed(found) == {"output": ["values.json"]}
+    assert found.differences is None
+
+
+def rounds(by: float) -> Callable[..., object]:
+    """NumPy's engine on a machine that rounds one root otherwise."""
+    real = engine.evaluate
+
+    def evaluate(sheet: object, *rest: object, **more: object) -> object:
+        values = real(sheet, *rest, **more)  # type: ignore[arg-type]
+        if "alpha" in values.value:
+            values.value["alpha"].flat[0] *= 1 + by
+        return values
+
+    return evaluate
+
+
+@pytest.mark.parametrize(("by", "noise"), [(100 * np.finfo(float).eps, True), (1e-9, False)])
+def test_what_the_judge_of_the_engines_allows_is_rounding(
+    by: float, noise: bool, campaign: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The condition of alpha[1-2] is 121: a hundred eps are rounding, a billionth is not."""
+    monkeypatch.setattr(engine, "evaluate", rounds(by))
+    found = verify(campaign / "out", campaign)
+    assert found.differences is not None
+    assert (found.differences.noise > 0, len(found.differences.moved)) == ((True, 0) if noise else (False, 1))
+    assert "values.json" in failed(found)["output"]
+    if noise:
+        assert found.verdict.startswith("different: nothing changed but the machine, which rounds 1 numbers")
+
+
+def test_the_folder_is_the_one_that_holds_the_report_or_the_paper(
+    issued: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = []
+
+    def stop(folder: Path, *_: object, **__: object) -> None:
+        asked.append(folder)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(build, "build", stop)
+    monkeypatch.chdir(issued)
+    elsewhere = shutil.copytree(issued / "out", tmp_path / "elsewhere")
+    for arguments in ((Path("out"), None), (elsewhere, None), (elsewhere, issued)):
+        with pytest.raises(KeyboardInterrupt):
+            verify(*arguments)
+    assert asked == [Path(), build.PAPER, issued]
+    manifest = json.loads((elsewhere / "manifest.json").read_text())
+    manifest["inputs"]["report.toml"] = "00"
+    (elsewhere / "manifest.json").write_text(json.dumps(manifest))
+    with pytest.raises(UsageError, match="LS609"):
+        verify(elsewhere, None)
+
+
+def test_what_is_no_output_of_ours_is_told(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="LS608"):
+        verify(tmp_path, None)
+
+
+def test_a_manifest_cannot_make_us_look_elsewhere(campaign: Path) -> None:
+    path = campaign / "out" / "manifest.json"
+    manifest = json.loads(path.read_text())
+    manifest["outputs"]["../report.toml"] = hashlib.sha256(
+        (campaign / "report.toml").read_bytes()
+    ).hexdigest()
+    path.write_text(json.dumps(manifest))
+    found = verify(campaign / "out", campaign)
+    assert failed(found) == {"output": ["../report.toml"]}
+
+
+def test_every_format_of_a_report_is_known_by_a_file() -> None:
+    assert set(verification._FORMATS) == set(build.FORMATS)
+
+
+@pytest.mark.parametrize("form", ["json", "junit", "github", "markdown"])
+def test_findings_in_every_format(
+    form: str, campaign: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = Verification(
+        (verification.Check("input", "a.csv", False, "the input a.csv was changed"),), None, "v"
+    )
+    monkeypatch.setattr(verification, "verify", lambda *_: found)
+    assert main(["verify", str(campaign / "out"), "--format", form]) == 1
+    assert "the input a.csv was changed" in capsys.readouterr().out
