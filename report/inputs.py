@@ -298,7 +298,8 @@ class _Reader:
         if "measurements" not in above:  # a misspelt header is one problem, not two
             missing = not any(close(word, ["measurements"]) for word in above)
         name = self.text(("measurements",), "file", "measurements.csv", required=missing)
-        modes = self.modes() if "printed" in table else {}
+        known = None if self.workbook is None else [column.name for column in self.workbook.measured]
+        modes = self.modes("measurements", known) if "printed" in table else {}
         if name is None:
             return None
         at = self.toml.value("measurements", "file")
@@ -311,10 +312,10 @@ class _Reader:
             source, self.workbook.measured if self.workbook else None, modes, self.findings
         )
 
-    def modes(self) -> dict[str, str]:
-        known = None if self.workbook is None else [column.name for column in self.workbook.measured]
-        path = ("measurements", "printed")
-        written = self.toml.data["measurements"]["printed"]
+    def modes(self, of: str, known: list[str] | None) -> dict[str, str]:
+        """How the columns of a file were shortened, where it was not by rounding."""
+        path = (of, "printed")
+        written = self.toml.data[of]["printed"]
         table = self.keys(path, written if known is None and isinstance(written, dict) else known or ())
         modes = {}
         for column in table:
@@ -368,7 +369,7 @@ class _Reader:
     def published(self) -> tuple[PublishedValue, ...]:
         if "published" not in self.toml.data:
             return ()
-        table = self.keys(("published",), ("file", "free", "errata"))
+        table = self.keys(("published",), ("file", "free", "printed", "errata"))
         is_table = isinstance(self.toml.data["published"], dict)
         name = self.text(("published",), "file", "published.csv", required=is_table)
         if name is None or not table:
@@ -376,4 +377,11 @@ class _Reader:
         self.free = self.names("published", "free")
         at = self.toml.value("published", "file")
         source = self.source(name, LARGEST_PUBLISHED, "a first line with the names of the columns", at)
-        return () if source is None else read_published(source, self.findings)
+        if source is None:
+            return ()
+        values = read_published(source, self.findings)
+        modes = self.modes("published", list({v.cell: v for v in values})) if "printed" in table else {}
+        return tuple(
+            replace(value, printed=replace(value.printed, mode=modes.get(value.cell, "rounded")))
+            for value in values
+        )

@@ -213,22 +213,22 @@ def test_an_unexpected_difference_is_a_finding_in_every_format(
     campaign: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = campaign / "published.csv"
-    path.write_text(re.sub(r"(?m)^(Table 2,alpha,1-2,1\.234,1,.*?)differs,.*$", r"\1,", path.read_text()))
+    path.write_text(re.sub(r"(?m)^(Table 2,alpha,2-4,1\.315,1,.*?)differs,.*$", r"\1,", path.read_text()))
     monkeypatch.chdir(campaign.parent)
     monkeypatch.setattr(build, "judged", lambda report, step: report)  # the engines are as they were
     found = {}
     for form in ("text", "json", "junit", "github", "markdown"):
         assert main(["check", "campaign", "--format", form]) == 1
         found[form] = capsys.readouterr().out
-        assert "1.234, recomputed 1.258" in found[form]
+        assert "1.315, recomputed 1.294" in found[form]
     data = json.loads(found["json"])
     (finding,) = data["findings"]
     assert finding.startswith(
-        "campaign/published.csv:2:19: Table 2 alpha[1-2] prints 1.234, recomputed 1.258"
+        "campaign/published.csv:7:19: Table 2 alpha[2-4] prints 1.315, recomputed 1.294 (unreachable"
     )
     assert data["proofs"]["(11)"] == "proved"
     assert ElementTree.fromstring(found["junit"]).get("failures") == "1"
-    assert found["github"].startswith("::error file=campaign/published.csv,line=2,col=19,")
+    assert found["github"].startswith("::error file=campaign/published.csv,line=7,col=19,")
 
 
 def test_wrong_input_is_told_in_the_format_that_a_machine_reads(

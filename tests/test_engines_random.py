@@ -20,7 +20,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import HealthCheck, Phase, assume, given, settings
 
 from loopsheet.report.analysis.engines import EPS, LIMIT, Judge
 from loopsheet.report.analysis.readers import Reading
@@ -46,7 +46,7 @@ from random_campaigns import (
     printed_once,
 )
 
-EACH = {2: 850, 3: 600, 4: 260, 5: 130, 6: 80, 7: 50, 8: 30, 9: 30, 10: 30, 11: 30, 12: 30}
+EACH = {2: 800, 3: 500, 4: 280, 5: 140, 6: 72, 7: 48, 8: 36, 9: 36, 10: 36, 11: 36, 12: 36}
 """Campaigns of so many tests: 50 digits of the 66 pairs of twelve tests take their time."""
 
 
@@ -161,14 +161,14 @@ def judged(
             max_examples=EACH[size],
             derandomize=True,
             deadline=None,
-            suppress_health_check=[HealthCheck.too_slow],
+            suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
             phases=[Phase.generate, Phase.shrink],
         )
         @given(campaigns(size))
         def agree(campaign: Campaign) -> None:
-            if repr(campaign) not in tally.seen:
-                compare(campaign, node, tally)
-                tally.seen.add(repr(campaign))
+            assume(repr(campaign) not in tally.seen)  # hypothesis likes to repeat itself
+            compare(campaign, node, tally)
+            tally.seen.add(repr(campaign))
 
         agree()
         return tally
@@ -219,7 +219,7 @@ def test_roundings_seldom_decide(judged: Callable[[int], Tally]) -> None:
 def test_the_campaigns_are_thousands_and_of_every_kind(judged: Callable[[int], Tally]) -> None:
     tallies = [judged(size) for size in EACH]
     assert sum(len(tally.seen) for tally in tallies) >= 2000
-    assert min(len(tally.seen) for tally in tallies) >= 24
+    assert min(len(tally.seen) for tally in tallies) >= 36
     codes = sum((tally.codes for tally in tallies), Counter())
     assert set(codes) == set(CODES.values())
     assert min(codes.values()) > 5000

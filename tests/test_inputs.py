@@ -124,6 +124,8 @@ def test_the_paper_s_published_values_fit_a_sheet() -> None:
         "Cprime_eq9": ("N", {(k,) for k in tests}),
         "alpha_log": ("1", {()}),
         "alpha_mean": ("1", {()}),
+        "ball_density": ("kg/m^3", {()}),
+        "C_log": ("N/m^alpha_log", {()}),
     }
     check_published(inputs, cells)
     assert len(inputs.published) == 27

@@ -246,3 +246,26 @@ def test_wrong_free_cells_are_refused_with_their_place(tmp_path: Path, line: str
     with pytest.raises(InputError) as error:
         changed(tmp_path, "report.toml", 'free = ["ball_density", "alpha_log", "C_log"]', line)
     assert "report.toml:" in str(error.value)
+
+
+def test_a_published_column_may_be_truncated(tmp_path: Path) -> None:
+    """What it stands for moves up by half a unit, and with it what is asked."""
+    report = changed(
+        tmp_path,
+        "report.toml",
+        "[published.errata]",
+        '[published.printed]\nalpha = "truncated"\n\n[published.errata]',
+    )
+    printed = {c.published.cell: c.published.printed for c in report.comparisons}
+    assert printed["alpha"].interval == (
+        printed["alpha"].value,
+        printed["alpha"].value + 2 * printed["alpha"].half_unit,
+    )
+    assert printed["x_m"].mode == "rounded"
+    with pytest.raises(InputError, match="LS208"):
+        changed(
+            tmp_path / "again",
+            "report.toml",
+            "[published.errata]",
+            '[published.printed]\nalpha = "cut"\n\n[published.errata]',
+        )

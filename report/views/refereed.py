@@ -414,6 +414,18 @@ class Refereed:
         )
 
     @property
+    def amended(self) -> tuple[str, ...]:
+        """What is said of the known misprints: what they are, then what comes out with them put right."""
+        if self.found.amended is None:
+            return ()
+        inputs, right = self.report.inputs, []
+        for (name, row), printed in inputs.errata.items():
+            was = inputs.measured[name][row].text
+            right.append(f"{name}[{inputs.tests[row]}] as {printed.text}, not {was}")
+        said = [f"With {' and '.join(right)}, {self.found.amended.sentence}"]
+        return (*said, *(each.sentence for each in self.found.misprints))
+
+    @property
     def free(self) -> tuple[str, ...]:
         """The columns that the publication does not print."""
         return tuple(name for name in self.found.free if self.document.has(name))
