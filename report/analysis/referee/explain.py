@@ -214,26 +214,38 @@ class _Search:
             low, high = -scale, scale
         else:
             low, high = sorted((own / RANGE, own * RANGE))
-        now = self.best(self.problem, box.moved([n], [low], [high], [own]), until=1.0)
+        start = self.best_start(n, low, high)
+        if start is None:
+            return None
+        wide = replace(box, start=start).moved([n], [low], [high], [start[n]])
+        now = best(self.problem, wide, until=1.0)
         if now.mismatch > 1:
-            start = self.best_start(n, low, high)
-            if start is not None:
-                wide = replace(box, start=start).moved([n], [low], [high], [start[n]])
-                now = best(self.problem, wide, until=1.0)
+            now = self.best(self.problem, box.moved([n], [low], [high], [own]), until=1.0)
         return now.point if now.mismatch <= 1 else None
 
     def best_start(self, n: int, low: float, high: float) -> Array | None:
-        """Among points with many values of one cell, the one that leaves least to what the others can do."""
+        """Among points with many values of one cell, the one that leaves least to what the others can do.
+
+        None if what is left is too much even between the points.
+        """
         box = self.problem.box
         values = np.geomspace(low, high, TRIED) if low > 0 else np.linspace(low, high, TRIED)
         points = np.repeat(box.start[None], TRIED, axis=0)
         points[:, n] = values
         points = self.problem.restarted(points)
-        slopes = np.abs(np.nan_to_num(self.problem.slopes(box.start, box)))
+        mismatch = self.problem.mismatch(self.problem.evaluate(points))
+        slopes = np.abs(np.nan_to_num(self.slopes))
         slopes[:, n] = 0
-        reach = (slopes @ np.where(np.isfinite(box.width), box.width, 0.0) / 2) / self.problem.half
-        off = np.max(np.abs(self.problem.mismatch(self.problem.evaluate(points))) - reach, axis=1)
-        return None if np.isnan(off).all() else points[np.nanargmin(off)]
+        reach = slopes @ (box.width / 2) / self.problem.half
+        with np.errstate(invalid="ignore"):
+            steps = np.nan_to_num(np.abs(np.diff(mismatch, axis=0)), nan=np.inf)
+            between = np.maximum(np.vstack([steps, steps[-1:]]), np.vstack([steps[:1], steps]))
+            off = np.max(np.abs(mismatch) - reach, axis=1)
+            left = np.max(np.abs(mismatch) - reach - between, axis=1)
+        if np.isnan(off).all() or np.nanmin(left) > HOPELESS:
+            return None
+        found: Array = points[np.nanargmin(off)]
+        return found
 
     def misprints_in_tables(self) -> Iterator[Explained]:
         """One published value without which the others come out."""
