@@ -27,7 +27,7 @@ __all__ = ["Box", "Campaign", "Problem", "Unknown"]
 
 Array = NDArray[np.float64]
 
-FREE = 1e6
+FREE = 1e15
 """What is not printed is looked for between its recomputed value over and times so much."""
 
 
