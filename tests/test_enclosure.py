@@ -4,15 +4,22 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
+from sympy import Expr, Sum, Symbol
 
+from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.report import build
+from loopsheet.report.analysis.enclosure import Enclosure
+from loopsheet.report.analysis.intervals import Intervals
 from loopsheet.report.analysis.referee.certificate import Certificate
 from loopsheet.report.analysis.referee.minimax import best
 from loopsheet.report.analysis.referee.problem import Campaign, Problem
 from loopsheet.report.engines import numpy as engine
+from loopsheet.report.engines.numpy import Program
+from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
 
 
 @pytest.fixture(scope="module")
@@ -85,3 +92,31 @@ def test_nothing_is_certified_of_a_table_that_can_be_reached(campaign: Campaign)
     certificate, rng = Certificate(problem), np.random.default_rng(1)
     for _ in range(200):
         assert certificate.at_least(rng.standard_normal(10)) <= 1
+
+
+def test_a_sum_over_rows_that_may_have_no_value_is_not_known() -> None:
+    """What breaks a condition is left out of a sum: its bounds must hold with and without it."""
+    k, n = Symbol("k", integer=True, positive=True), Symbol("n", integer=True, positive=True)
+    rows = Axis("rows", k, n)
+    x = Column("x", rows, Given())
+
+    def formula(name: str, value: Expr, axis: Axis | None = None, **more: Any) -> Column:
+        return Column(
+            name,
+            axis,
+            Formula(Equation("", (Symbol(name), value), "", Kind.DEFINITION)),
+            positive=False,
+            **more,
+        )
+
+    y = formula("y", 2 * x[k], rows, requires=((x[k] < 3, "x is less than 3"),))
+    total = formula("total", Sum(y[k], (k, 1, n)))
+    sheet = Sheet((x, y, total))
+    program, labels = Program.of(sheet), {"rows": [1, 2]}
+    layouts = engine.evaluate(sheet, labels, {"x": [1.0, 2.0]}, program).layouts
+    for low, high, known in (([1.0, 2.0], [1.5, 2.5], True), ([1.0, 2.0], [1.5, 3.5], False)):
+        found = Enclosure(sheet, program, layouts, {"x": Intervals(low, high)}).value["total"]
+        assert bool(np.isfinite(found.low[0])) is known
+        for data in (low, high):
+            value = engine.evaluate(sheet, labels, {"x": data}, program).scalar("total")
+            assert found.low[0] <= value <= found.high[0]

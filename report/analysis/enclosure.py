@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from sympy import Indexed
 
 from ..conditions import Conditions, Node, Slope
-from ..engines.numpy import Kernel, Program
+from ..engines.numpy import Kernel, Program, kernel
 from ..engines.numpy_root import RootProgram
 from ..layout import Layout, rows_of
 from ..sheet import Column, Formula, Given, Reference, Root, Sheet, name_of
@@ -51,7 +51,7 @@ class Enclosure:
     """
 
     def __init__(
-        self, sheet: Sheet, program: Program, layouts: Mapping[str, Layout], data: Mapping[str, Any]
+        self, sheet: Sheet, program: Program, layouts: Mapping[str, Layout], data: Mapping[str, Intervals]
     ) -> None:
         self.sheet, self.layouts = sheet, layouts
         self.value: dict[str, Intervals] = {}
@@ -60,8 +60,7 @@ class Enclosure:
             for column in sheet.order:
                 size = self.size(column)
                 if isinstance(column.rule, Given):
-                    found = Intervals.of(np.asarray(data[column.name]) if not isinstance(
-                        data[column.name], Intervals) else data[column.name])  # fmt: skip
+                    found = data[column.name]
                     sure = np.isfinite(found.low) & np.isfinite(found.high)
                 elif isinstance(column.rule, Root):
                     found, sure = self._root(program.roots[column.name], column)
@@ -103,6 +102,9 @@ class Enclosure:
             return Intervals.of(self.layouts[axis.name].ordinals[cell])
         rows = rows_of(cell, axis, self.layouts)
         found = value[name_of(cell)]
+        if reference.over is not None:
+            # A sum leaves out the rows without a value; of one that may have none, anything may be missing.
+            found = found.where(self.sure[name_of(cell)])
         return found if rows is None else found.take(rows)
 
     def _total(self, axis: str) -> Any:
@@ -151,8 +153,7 @@ class Enclosure:
         left, right = self._bracket(at, low.low.copy(), high.high.copy(), after)
         (value,) = run_value(Intervals(left, right), *rest, *totals)
         found = Intervals.of(value).broadcast(shape)
-        unknown = whole(shape)
-        return Intervals(np.where(one, found.low, unknown.low), np.where(one, found.high, unknown.high)), one
+        return found.where(one), one
 
     def _bracket(self, at: Any, low: Any, high: Any, after: Any) -> tuple[Any, Any]:
         """The largest point that is certainly before the root, and the smallest certainly behind it."""
@@ -229,7 +230,7 @@ class Enclosure:
         found: Mapping[str, Intervals],
         number: int,
     ) -> Intervals:
-        size = 1 if node.axis is None else self.layouts[node.axis.name].size
+        size = self.size(made.sheet[node.of]) if node.over is None else 1
         own = np.zeros((size, number))
         if node.name in sources:
             own[np.arange(size), sources[node.name]] = 1.0
@@ -249,12 +250,7 @@ class Enclosure:
                 product = product.broadcast((length, number)).total(axis=0)
             total = total + product
         if node.over is None and node.name in self.sure and not self.sure[node.name].all():
-            gone, nothing = ~self.sure[node.name][:, None], whole(total.shape)
-            rests = (total.low != 0) | (total.high != 0)
-            total = Intervals(
-                np.where(gone & rests, nothing.low, total.low),
-                np.where(gone & rests, nothing.high, total.high),
-            )
+            total = total.where(self.sure[node.name][:, None] | ((total.low == 0) & (total.high == 0)))
         return total
 
     def _rows(self, slope: Slope, node: Node) -> NDArray[np.intp] | None:
@@ -265,8 +261,6 @@ class Enclosure:
 
 def slope_kernels(made: Conditions) -> dict[str, Kernel]:
     """Functions of the slopes that can be computed from cells alone."""
-    from ..engines.numpy_code import kernel
-
     found: dict[str, Kernel] = {}
     given = {column.name for column in made.sheet.columns if isinstance(column.rule, Given)}
     for name in {slope.column for node in made.nodes for slope in node.slopes}:

@@ -78,6 +78,10 @@ class Intervals(NDArrayOperatorsMixin):
         """The same in a larger shape."""
         return Intervals(np.broadcast_to(self.low, shape), np.broadcast_to(self.high, shape))
 
+    def where(self, known: NDArray[np.bool_]) -> Intervals:
+        """The same where it is known, and anything elsewhere."""
+        return Intervals(np.where(known, self.low, -np.inf), np.where(known, self.high, np.inf))
+
     def within(self, other: Intervals) -> Intervals:
         """What both contain; this one where they have nothing in common, which rounding alone can bring."""
         low, high = np.maximum(self.low, other.low), np.minimum(self.high, other.high)
