@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 
 __all__ = ["read_parameters", "wrong_type"]
 
+# An exponent is never given back: 8.366e-3 g is no 8.366 of a unit "e-3 g".
 _SPACELESS = re.compile(
-    r"(?P<number>[+-]?[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?)(?P<unit>[^\W\d_].*|[°%].*)", re.DOTALL
+    r"(?P<number>[+-]?[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?+)(?P<unit>[^\W\d_].*|[°%].*)", re.DOTALL
 )
 _TYPES = {
     str: "text",

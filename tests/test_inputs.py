@@ -221,6 +221,15 @@ def test_toml_as_people_write_it(toml: str, read: Reader) -> None:
     assert inputs.parameters["ball_mass"].value == Fraction("0.008366")
 
 
+@pytest.mark.parametrize(
+    ("text", "value"), [("8.366e-3 kg", "0.008366"), ("83.66E2 mg", "0.008366"), ("8e+0 g", "0.008")]
+)
+def test_a_parameter_may_have_a_power_of_ten(text: str, value: str, read: Reader) -> None:
+    printed = read(TOML.replace("8.366 g", text)).parameters["ball_mass"]
+    assert printed.text == text.split()[0]
+    assert printed.value == Fraction(value)
+
+
 def test_without_a_title_the_workbook_s_holds(read: Reader) -> None:
     assert read(TOML.replace('title = "Drop tests"\n', "")).title == "Impact of a ball"
 
