@@ -226,7 +226,7 @@ def test_toml_as_people_write_it(toml: str, read: Reader) -> None:
 )
 def test_a_parameter_may_have_a_power_of_ten(text: str, value: str, read: Reader) -> None:
     printed = read(TOML.replace("8.366 g", text)).parameters["ball_mass"]
-    assert printed.text == text.split()[0]
+    assert printed.text == text.split(maxsplit=1)[0]
     assert printed.value == Fraction(value)
 
 

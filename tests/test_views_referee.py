@@ -29,6 +29,7 @@ from loopsheet.report.verdict import (
 )
 from loopsheet.report.views import figures, html, latex, reach
 from loopsheet.report.views.document import Document
+from loopsheet.report.views.numbers import decimals
 from loopsheet.report.views.refereed import CALLED, FIGURE, Refereed, certain, figure, mismatch
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
@@ -148,9 +149,14 @@ def test_every_value_has_its_verdict_and_its_interval_or_none(paper: Report) -> 
     assert len(rows) == len(verdicts)
     for row, comparison, verdict in zip(rows, paper.comparisons, verdicts, strict=True):
         assert verdict is not None
-        assert row[1:3] == [comparison.published.printed.text, comparison.again]
+        assert comparison.cell.value is not None
+        assert row[1] == comparison.published.printed.text
+        printed = comparison.published.printed
+        one_more = decimals(comparison.cell.value / float(printed.scale), printed.decimals + 1)
+        assert row[2] == one_more.text  # as the interval has, so that it lies between as it is shown
         assert row[-1] == CALLED[verdict.verdict]
         assert bool(row[4]) == bool(row[5]) == (verdict.low is not None)
+        assert not row[4] or float(row[4]) <= float(row[2]) <= float(row[5])
     free = sum(verdict is not None and verdict.low is None for verdict in verdicts)
     assert f"{free} of the {len(rows)} values rest on what is not printed" in text_of(
         sections_of(paper)["referee"]

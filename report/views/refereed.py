@@ -178,6 +178,11 @@ class Value:
         return decimals(in_unit, places)
 
     @property
+    def here(self) -> Figure | None:
+        """The recomputed value, in the decimals of what surrounds it: rounded alike, it lies between."""
+        return self._shown(self.pair.comparison.cell.value)
+
+    @property
     def low(self) -> Figure | None:
         """The least value that printed inputs were seen to yield; None where one of them is not printed."""
         return self._shown(self.verdict.low)

@@ -72,8 +72,7 @@ class Certificate:
     def _slopes(self) -> Intervals:
         """Derivatives (published, unknowns) over the box."""
         problem = self.problem
-        sizes = [self._over_box.size(column) for column in problem.sheet.columns]
-        if sum(sizes) * len(problem.unknowns) > MOST:
+        if problem.size * len(problem.unknowns) > MOST:
             raise _TooLarge
         known = problem.campaign.derivatives
         if id(problem.program) not in known:  # the campaign keeps its programs

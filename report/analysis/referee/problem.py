@@ -210,6 +210,12 @@ class Problem:
         return self.program.sheet
 
     @cached_property
+    def size(self) -> int:
+        """How many cells its sheet has."""
+        layouts = self.campaign.values.layouts
+        return sum(1 if c.axis is None else layouts[c.axis.name].size for c in self.sheet.columns)
+
+    @cached_property
     def box(self) -> Box:
         """Everything within its printed digits."""
         ends = [unknown.interval() for unknown in self.unknowns]

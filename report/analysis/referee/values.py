@@ -19,6 +19,8 @@ __all__ = ["COVERAGE", "verdicts"]
 COVERAGE = 2.0
 """How many standard uncertainties a value may be off (JCGM 100:2008, 6.3.3)."""
 HALVINGS = 50
+MOST = 1 << 24
+"""Cells that are computed at once in search of what is furthest."""
 CLOSE = 0.1
 """How near to the middle of its print a witness needs to come, in half units of the last digit."""
 
@@ -58,17 +60,41 @@ class _Alone:
     def verdicts(self) -> list[Verdict]:
         """In the order of the problem's values."""
         # Where the derivatives keep their signs, these two corners of the box hold the least and the
-        # largest value; they are values that were seen, whatever the signs do.
+        # largest value; where they do not, others may.
         box = self.problem.box
         rising = np.nan_to_num(self.slopes) > 0
-        ends = np.where(rising, box.low, box.high), np.where(rising, box.high, box.low)
-        seen = np.sort([np.diagonal(self.problem.evaluate(corner)) for corner in ends], axis=0)
-        meeting = self._on_the_way(*ends, *seen)
+        low, least = self._furthest(np.where(rising, box.low, box.high), -1)
+        high, largest = self._furthest(np.where(rising, box.high, box.low), 1)
+        meeting = self._on_the_way(low, high, least, largest)
         cells = np.diagonal(self.problem.evaluate(meeting))
         off = np.nan_to_num(np.abs(self.problem.mismatch(cells)), nan=np.inf)
-        return [
-            self._verdict(n, seen[0][n], seen[1][n], meeting[n], float(off[n])) for n in range(len(cells))
-        ]
+        seen = np.stack([least, largest, self.here, cells], axis=-1)
+        return [self._verdict(n, seen[n], meeting[n], float(off[n])) for n in range(len(cells))]
+
+    def _furthest(self, corners: Array, way: int) -> tuple[Array, Array]:
+        """For each value the corner of the box where it is furthest down (way -1) or up (1), and it itself.
+
+        From the given corners (published, unknowns), one unknown after another goes to its other end, the
+        one that leads furthest first, until none leads further.
+        """
+        problem, box = self.problem, self.problem.box
+        known = np.array([unknown.printed is not None for unknown in problem.unknowns], dtype=bool)
+        moving = np.flatnonzero(known & (box.width > 0))
+        found = np.diagonal(problem.evaluate(corners)).copy()
+        going = np.arange(len(found))
+        while going.size and moving.size and going.size * moving.size * problem.size <= MOST:
+            tried = np.repeat(corners[going, None], moving.size, axis=1)
+            turned = np.where(corners == box.low, box.high, box.low)[np.ix_(going, moving)]
+            tried[:, np.arange(moving.size), moving] = turned
+            cells = problem.evaluate(tried.reshape(-1, tried.shape[-1]))[:, going]
+            own = cells.reshape(*tried.shape[:2], going.size)[np.arange(going.size), :, np.arange(going.size)]
+            best = np.argmax(np.nan_to_num(way * own, nan=-np.inf), axis=1)
+            reached = own[np.arange(going.size), best]
+            further = ~(way * reached <= way * found[going]) & np.isfinite(reached)
+            going, best, reached = going[further], best[further], reached[further]
+            corners[going] = tried[further, best]
+            found[going] = reached
+        return corners, found
 
     def _on_the_way(self, start: Array, end: Array, least: Array, largest: Array) -> Array:
         """For each value, a point between its corners that yields what was printed, or what comes nearest."""
@@ -90,12 +116,8 @@ class _Alone:
         found: Array = start + share[:, None] * (end - start)
         return found
 
-    def _verdict(self, n: int, least: float, largest: float, point: Array, mismatch: float) -> Verdict:
+    def _verdict(self, n: int, seen: Array, point: Array, mismatch: float) -> Verdict:
         problem, published = self.problem, self.problem.published[n]
-        free = [
-            m for m, unknown in enumerate(problem.unknowns) if unknown.printed is None and self.slopes[n, m]
-        ]
-        low, high = (None, None) if free else (_number(least), _number(largest))
         bound_low = bound_high = None
         if prints_same(float(self.here[n]), published.printed):
             point, mismatch = problem.box.start, abs(float(problem.mismatch(self.here)[n]))
@@ -103,6 +125,7 @@ class _Alone:
         else:
             if not mismatch <= 1:
                 alone = best(problem.only([n]), until=0.5)
+                seen = np.append(seen, alone.cells)
                 if alone.mismatch < mismatch:
                     point, mismatch = alone.point, alone.mismatch
             word = REACHABLE
@@ -111,6 +134,10 @@ class _Alone:
                 bounds = self.certificate.bounds[n]
                 bound_low, bound_high = _number(bounds.low), _number(bounds.high)
                 word = self._else(n, bounds.low, bounds.high)
+        free = [
+            m for m, unknown in enumerate(problem.unknowns) if unknown.printed is None and self.slopes[n, m]
+        ]
+        low, high = (None, None) if free else (float(np.nanmin(seen)), float(np.nanmax(seen)))
         return Verdict(
             word, low, high, bound_low, bound_high,
             mismatch=mismatch if np.isfinite(mismatch) else None,

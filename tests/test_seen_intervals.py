@@ -1,0 +1,193 @@
+"""An interval that is shown with a value contains it, also where derivatives vanish or change their signs."""
+
+import random
+from collections.abc import Iterator
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sympy import Expr, Rational, Symbol, exp, log, sqrt
+
+from loopsheet.derivations.equation import Equation, Kind, Ledger
+from loopsheet.report.analysis.referee import compare, print_as, referee
+from loopsheet.report.analysis.referee import refereed as judged
+from loopsheet.report.build import compute, refereed
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.inputs import Inputs
+from loopsheet.report.published import PublishedValue
+from loopsheet.report.quantity import Printed
+from loopsheet.report.result import Comparison
+from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
+from loopsheet.report.verdict import EXACT, REACHABLE
+from loopsheet.report.views.document import Document
+from loopsheet.report.workbook import Workbook
+
+# --- random sheets ----------------------------------------------------------------------------------------
+
+k, n = (Symbol(name, integer=True, positive=True) for name in "kn")
+ROWS = Axis("rows", k, n)
+SHEETS = 40
+ONE = Fraction(1)
+
+
+def expression(rng: random.Random, leaves: list[Expr], depth: int) -> Expr:
+    """Something that bends, has poles and is undefined here and there."""
+    if not depth or rng.random() < 0.15:
+        return rng.choice(leaves)
+    one, other = (expression(rng, leaves, depth - 1) for _ in range(2))
+    match rng.randrange(9):
+        case 0 | 1:
+            return one + other
+        case 2 | 3:
+            return one - other
+        case 4 | 5:
+            return one * other
+        case 6:
+            return one / (other + Rational(5, 2))
+        case 7:
+            return rng.choice((sqrt, exp))(one)
+    return rng.choice((one**2, log(one + 2)))
+
+
+def printed(rng: random.Random) -> Printed:
+    """A small number, often zero: there derivatives of products vanish."""
+    text = f"{rng.choice((0, 0, rng.uniform(-2, 2), rng.uniform(0, 9))):.{rng.randrange(3)}f}"
+    return Printed(text, "1", Fraction(text), ONE)
+
+
+def sheet_of(rng: random.Random) -> Sheet:
+    given = [Column(name, ROWS, Given(), positive=False) for name in "ab"]
+    given += [Column(name, None, Given(), positive=False) for name in "cd"]
+    leaves = [given[0][k], given[1][k], given[2].symbol, given[3].symbol]
+    columns = list(given)
+    for name in "yz":
+        made = Equation(
+            "", (Symbol("made"), expression(rng, leaves, 4)), "for a test", Kind.DEFINITION, "made"
+        )
+        columns.append(Column(name, ROWS, Formula(made), positive=False))
+        leaves.append(columns[-1][k])
+    return Sheet(tuple(columns))
+
+
+def comparisons_of(rng: random.Random) -> tuple[Comparison, ...]:
+    """A random sheet of random numbers, each computed cell published rightly or somewhat wrongly."""
+    sheet, tests = sheet_of(rng), (1, 2, 3)
+    measured = {name: tuple(printed(rng) for _ in tests) for name in "ab"}
+    parameters = {name: printed(rng) for name in "cd"}
+    data: dict[str, Any] = {name: [float(p.value) for p in column] for name, column in measured.items()}
+    data |= {name: float(p.value) for name, p in parameters.items()}
+    values = engine.evaluate(sheet, {"rows": tests}, data)
+    published = []
+    for name in "yz":
+        for cell in values.cells(name):
+            if cell.value is not None and abs(cell.value) < 1e6:
+                like = Printed("0." + "0" * rng.randrange(1, 5), "1", Fraction(0), ONE)
+                text = print_as(cell.value + rng.choice((0, 0, 1, 30)) * float(like.half_unit), like)
+                published.append(
+                    PublishedValue("Table", name, cell.label, Printed(text, "1", Fraction(text), ONE))
+                )
+    workbook = Workbook("made", "", "", lambda: Ledger(()), (), (), lambda given: sheet)
+    inputs = Inputs(
+        Path(), "", workbook, parameters, frozenset("cd"), tests, measured, {}, tuple(published), {}
+    )
+    found = referee(sheet, inputs, values, data)
+    return judged(compare(inputs.published, values), found)
+
+
+def intervals(seeds: range) -> Iterator[tuple[int, Comparison]]:
+    for seed in seeds:
+        for comparison in comparisons_of(random.Random(seed)):
+            yield seed, comparison
+
+
+def test_what_inputs_were_seen_to_yield_contains_what_is_shown_with_it() -> None:
+    """The recomputed value, the value of a witness, and where it is certain, nothing that is impossible."""
+    known = certain = 0
+    for seed, comparison in intervals(range(SHEETS)):
+        found, value, where = comparison.refereed, comparison.cell.value, (seed, comparison.cell.address)
+        assert found is not None
+        assert value is not None
+        assert found.low is not None, where
+        assert found.high is not None, where
+        assert found.low <= value <= found.high, where
+        known += 1
+        if found.verdict in (EXACT, REACHABLE):
+            low, high = (float(end) for end in comparison.published.printed.interval)
+            slack = 1e-9 * (1 + abs(value))
+            assert found.low <= high + slack, where
+            assert found.high >= low - slack, where
+        if found.bound_low is not None and found.bound_high is not None:
+            slack = 1e-9 * (1 + abs(value))
+            assert found.bound_low <= found.low + slack, where
+            assert found.high <= found.bound_high + slack, where
+            certain += 1
+    assert known > 3 * SHEETS
+    assert certain > 20
+
+
+# --- one that is known --------------------------------------------------------------------------------------
+
+END_GAUGE = """\
+from sympy import Symbol
+from loopsheet.derivations.equation import Equation, Kind, Ledger
+from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
+from loopsheet.report.workbook import Measured, Parameter, Workbook
+
+k, n = (Symbol(s, integer=True, positive=True) for s in ("k", "n"))
+d = Column("d", Axis("readings", k, n), Given("measured"), "m", "difference", positive=False)
+units = {"l_S": "m", "dalpha": "K^-1", "alpha_S": "K^-1", "theta": "K", "cycle": "K", "dtheta": "K"}
+parameter = Given("parameter")
+given = {name: Column(name, None, parameter, unit, name, positive=False) for name, unit in units.items()}
+l_S, dalpha, alpha_S, theta, cycle, dtheta = (column.symbol for column in given.values())
+length = l_S + d[k] - l_S * (dalpha * (theta + cycle) + alpha_S * dtheta)
+eq = Equation("(H.1)", (Symbol("l"), length), "definition", Kind.DEFINITION, "length of the end gauge")
+l = Column("l", d.axis, Formula(eq), "m", "length of the end gauge", positive=False)
+WORKBOOK = Workbook(
+    name="end_gauge",
+    title="End gauge",
+    source="JCGM 100:2008, H.1",
+    ledger=lambda: Ledger((eq,)),
+    measured=(Measured("d", "m", "difference"),),
+    parameters=tuple(Parameter(name, unit, name) for name, unit in units.items()),
+    sheet=lambda names: Sheet((d, *given.values(), l)),
+)
+"""
+FILES = {
+    "workbook.py": END_GAUGE,
+    "report.toml": """\
+workbook = "workbook.py"
+[parameters]
+l_S = "50.000623 mm"
+dalpha = "0 K^-1"
+alpha_S = "11.5e-6 K^-1"
+theta = "-0.1 K"
+cycle = "0 K"
+dtheta = "0 K"
+[measurements]
+file = "d.csv"
+[published]
+file = "published.csv"
+""",
+    "d.csv": "test,d [nm]\n1,215\n2,204\n",
+    "published.csv": "source,cell,index,value,unit\nH.1,l,1,50.000838,mm\n",
+}
+
+
+def test_the_end_gauge_lies_between_its_least_and_its_largest_length(tmp_path: Path) -> None:
+    """JCGM 100:2008, H.1: most of its corrections are zero, so that derivatives say little of the corners.
+
+    The length is least and largest at corners of what prints as given, which can all be tried; theta and the
+    difference of the coefficients matter most, as a product of what is -0.65 to 0.45 K and -0.5 to 0.5 / K.
+    """
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    report = refereed(compute(tmp_path, prove=False))
+    (comparison,) = report.comparisons
+    found = comparison.refereed
+    assert found is not None
+    assert found.verdict == EXACT
+    assert (found.low, found.high) == pytest.approx((0.050 * (1 - 0.325), 0.050 * (1 + 0.325)), rel=1e-4)
+    (value,) = Document(report).refereed.values
+    shown = [value.low, value.here, value.high]
+    assert [figure.plain for figure in shown if figure] == ["33.7503459", "50.0008380", "66.2513304"]
