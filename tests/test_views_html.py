@@ -42,6 +42,16 @@ def tree(page: str) -> ET.Element:
     return parsed
 
 
+def test_end_tags_that_are_left_out_are_read_as_if_they_stood_there(
+    report: Report, page: str, tree: ET.Element, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(html, "short_markup", lambda whole: whole)
+    whole = html.render(report, {figure.name: SVG for figure in report.workbook.figures})
+    assert len(page) < len(whole) - 5000
+    parser = html5lib.HTMLParser(tree=html5lib.getTreeBuilder("etree"))
+    assert ET.tostring(parser.parse(whole)) == ET.tostring(tree)
+
+
 def _elements(tree: ET.Element, name: str) -> list[ET.Element]:
     return list(tree.iter(XHTML + name))
 

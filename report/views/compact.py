@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from xml.etree import ElementTree
 
-__all__ = ["short_mathml", "short_script", "short_style"]
+__all__ = ["short_markup", "short_mathml", "short_script", "short_style"]
 
 # --- JavaScript ------------------------------------------------------------------------------------------
 
@@ -86,6 +86,28 @@ def short_style(text: str) -> str:
     """
     plain = re.sub(r"\s+", " ", re.sub(r"/\*[\s\S]*?\*/", "", text)).strip()
     return re.sub(r";\s*}", "}", re.sub(r"\s*([{};,])\s*|(?<=[\w\])])(:) ", r"\1\2", plain))
+
+
+# --- HTML ------------------------------------------------------------------------------------------------
+
+_FLOW = "article|aside|details|div|dl|figure|footer|h[1-6]|header|nav|ol|p|section|table|ul"
+_IMPLIED = re.compile(
+    r"(?P<kept><(?P<name>script|style)\b[\s\S]*?</(?P=name)>)"
+    r"|</t[dh]>(?=<t[dh][ >]|</tr>)|</tr>(?=<tr[ >]|</t(?:body|head)>)"
+    r"|</thead>(?=<tbody[ >])|</tbody>(?=</table>)"
+    r"|</li>(?=<li[ >]|</[ou]l>)|</d[dt]>(?=<d[dt][ >]|</dl>)"
+    rf"|</p>(?=<(?:{_FLOW})[ >]|</(?:article|dd|details|div|figcaption|li|section)>)"
+)
+"""End tags that HTML lets one leave out: what follows says that the element is over."""
+
+
+def short_markup(page: str) -> str:
+    """A page without the end tags that every reader of HTML puts in again; scripts and styles stay.
+
+    >>> short_markup("<table><tbody><tr><td>1</td></tr></tbody></table><script>'</p></li>'</script>")
+    "<table><tbody><tr><td>1</table><script>'</p></li>'</script>"
+    """
+    return _IMPLIED.sub(lambda found: found["kept"] or "", page)
 
 
 # --- MathML ----------------------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from ...derivations.equation import Equation
 from ..result import Report
 from ..values import Cell
 from . import live
-from .compact import short_mathml, short_style
+from .compact import short_markup, short_mathml, short_style
 from .compact_svg import short_svg
 from .document import Document
 from .escape import Markup, html, html_finalize
@@ -183,7 +183,7 @@ def render(report: Report, figures: Mapping[str, str], program: str | None = Non
         }
     page = jinja.get_template("html/page.j2")
     whole = page.render(context, body=body, style=Markup(style), csp=Markup(csp(style, script)))
-    return _squeezed(short_mathml(whole))
+    return _squeezed(short_markup(short_mathml(whole)))
 
 
 _BETWEEN = re.compile(
