@@ -192,7 +192,7 @@ CATALOGUE: dict[str, Entry] = {
         "decimal comma",
         "{name} has a decimal comma: '{text}'",
         "a decimal point, and no marks between thousands",
-        "write '{example}'",
+        "write '{example}'{thousands}",
     ),
     "LS403": Entry("empty cell", "{name} is empty", "{allowed}"),
     "LS404": Entry(

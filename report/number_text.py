@@ -20,6 +20,7 @@ _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE](?P<exponent>[+-]
 _COMMA = re.compile(
     r"[+-]?[0-9. '\u00a0\u202f]*,[0-9]+(?:[eE][+-]?[0-9]+)?|[+-]?[0-9]+(?:,[0-9]{3})+\.[0-9]*"
 )
+_EITHER = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
 _NOT_FINITE = frozenset(
     {"nan", "inf", "infinity", "∞", "#n/a", "#div/0!", "#value!", "#num!", "#ref!", "n/a"}
 )
@@ -55,7 +56,7 @@ class NumberError(ValueError):
     def __init__(self, code: str, **fields: str) -> None:
         super().__init__(code)
         self.code = code
-        self.fields = {"suggestion": "", "example": "", "allowed": "a number", **fields}
+        self.fields = {"suggestion": "", "example": "", "thousands": "", "allowed": "a number", **fields}
 
 
 def read_number(text: str) -> Fraction:
@@ -96,7 +97,9 @@ def _why_not(text: str) -> NumberError:
     if _COMMA.fullmatch(text):
         point = max(text.rfind("."), text.rfind(","))
         plain = re.sub(r"[., '\u00a0\u202f]", "", text[:point]) + "." + text[point + 1 :]
-        return NumberError("LS402", text=text, example=plain)
+        # Nobody knows whether 1,234 is a little more than one or a thousand: it is never guessed.
+        thousands = f" or '{text.replace(',', '')}', whichever is meant" if _EITHER.fullmatch(text) else ""
+        return NumberError("LS402", text=text, example=plain, thousands=thousands)
     suggestion = ""
     if _NUMBER.fullmatch(text.replace("\u2212", "-").replace("\u2013", "-")):
         suggestion = "write the minus sign as an ordinary hyphen"

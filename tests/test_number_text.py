@@ -59,6 +59,8 @@ def test_a_decimal_comma_is_shown_as_it_should_be_written(text: str, plain: str)
     with pytest.raises(NumberError) as caught:
         read_number(text)
     assert caught.value.fields["example"] == plain
+    both = {"2,334": " or '2334', whichever is meant"}
+    assert caught.value.fields["thousands"] == both.get(text, "")
 
 
 @given(st.text(max_size=120))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -11,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loopsheet.report.analysis.referee import print_as
+from loopsheet.report.analysis.referee import print_as, prints_same
 from loopsheet.report.build import PAPER, compute, prepare, refereed
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.errors import InputError
@@ -41,10 +42,44 @@ def printed(text: str, unit: str = "1", scale: Fraction = Fraction(1)) -> Printe
         (1524.587, printed("15e2"), "1500"),
         (-0.0004, printed("0.12"), "-0.00"),
         (2.5, printed("7"), "2"),
+        (1e70, printed("1.50"), f"{int(1e70)}.00"),
+        (238.94213, printed("2.3894e+02"), "238.94"),
+        (1.2345, printed("+1.50"), "1.23"),
     ],
 )
 def test_printed_again_in_the_same_digits(value: float, like: Printed, again: str) -> None:
     assert print_as(value, like) == again
+
+
+@pytest.mark.parametrize(
+    ("value", "text", "same"),
+    [
+        (238.942129181, "2.3894212918e+02", True),
+        (238.942129181, "238.94212918", True),
+        (238.942129186, "2.3894212918e+02", False),
+        (1.504, "+1.50", True),
+        (1.504, "1.50", True),
+        (1.504, "1.500", False),  # zeros at the end are digits
+        (1.504, "15e-1", True),
+        (-1.504, "1.50", False),
+        (1524.587, "1.5e3", True),
+        (1524.587, "1500", False),
+        (-0.0004, "0.000", True),
+    ],
+)
+def test_it_prints_the_same_by_value_and_decimals_not_by_text(value: float, text: str, same: bool) -> None:
+    assert prints_same(value, printed(text)) is same
+
+
+def test_a_truncated_number_is_not_cut_below_itself() -> None:
+    """Most decimal numbers have no double: half of these are a little more than the nearest."""
+    for hundredths in range(1, 10000):
+        text = f"{hundredths / 100:.2f}"
+        like = replace(printed(text, "um", Fraction(1, 10**6)), mode="truncated")
+        assert prints_same(float(like.value), like)
+        assert prints_same(float(like.value + Fraction(199, 100) * like.half_unit), like)
+        assert not prints_same(float(like.value - Fraction(1, 100) * like.half_unit), like)
+        assert not prints_same(float(like.value + Fraction(201, 100) * like.half_unit), like)
 
 
 @given(st.floats(-1e6, 1e6), st.integers(0, 9))

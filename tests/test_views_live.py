@@ -9,6 +9,7 @@ import struct
 import subprocess
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from loopsheet.report import build
-from loopsheet.report.analysis.referee import print_as
+from loopsheet.report.analysis.referee import print_as, prints_same
 from loopsheet.report.engines import javascript
 from loopsheet.report.number_text import NumberError, read_printed
 from loopsheet.report.quantity import Bounds, Printed
@@ -161,7 +162,7 @@ def test_digits_follow_from_what_a_column_rests_on(known: dict[str, Any], report
 def test_published_values_keep_their_digits(known: dict[str, Any]) -> None:
     (tables, *_) = known["published"]
     assert tables["id"] == "published-Table-2"
-    assert tables["rows"][0] == ["alpha", "1-2", "1.234", ["1", "1"], True]
+    assert tables["rows"][0] == ["alpha", "1-2", "1.234", ["1", "1"], False, True]
 
 
 def test_foreign_text_cannot_end_the_element(tmp_path: Path) -> None:
@@ -272,7 +273,7 @@ const does = {
     const values = xs.map((x) => x === null ? NaN : doubled(x));
     return shownColumn(values, doubled(scale), digits).map((f) => f && plain(f));
   },
-  beside: (x, text, scale) => beside(doubled(x), text, { n: BigInt(scale[0]), d: BigInt(scale[1]) }),
+  beside: (x, text, [n, d], cut) => beside(doubled(x), text, { n: BigInt(n), d: BigInt(d) }, cut),
   read: (given, text) => {
     const found = readInput(given, text);
     return found.why ? null : hexed(found.value);
@@ -434,12 +435,13 @@ def test_published_values_are_compared_as_python_does(
     cases: list[list[Any]] = []
     wanted: list[dict[str, Any]] = []
     for comparison in report.comparisons:
-        like = comparison.published.printed
-        for _ in range(40):
-            value = float(like.value) * (1 + dice.gauss(0, 0.01))
+        for turn in range(40):
+            like = replace(comparison.published.printed, mode=("rounded", "truncated")[turn % 2])
+            value = float(like.value) * (1 + dice.gauss(0, 0.01) * (turn > 3)) * dice.choice((-1, 1))
             scale = [str(like.scale.numerator), str(like.scale.denominator)]
-            cases.append(["beside", bits(value), like.text, scale])
+            cases.append(["beside", bits(value), like.text, scale, like.mode == "truncated"])
             again = print_as(value, like)
             distance = float((Fraction(value) - like.value) / (2 * like.half_unit))
-            wanted.append({"again": again, "distance": distance, "same": again == like.text})
+            wanted.append({"again": again, "distance": distance, "same": prints_same(value, like)})
     assert in_js(cases) == wanted
+    assert sum(each["same"] for each in wanted) > 40

@@ -11,7 +11,7 @@ from .common import Progress, folder_argument, format_argument, outcome, print_c
 
 if TYPE_CHECKING:
     from ..findings import Check
-    from ..result import Comparison, Report
+    from ..result import Report
 
 HELP = "check the proofs, the engines against each other, and the published values"
 
@@ -46,11 +46,11 @@ def _print(report: Report, found: Iterable[Check]) -> None:
         print(f"  erratum  {erratum.sentence}")
     for agreement in report.engines:
         print(f"engine     {agreement.line}")
-    same = sum(_prints_the_same(c) for c in report.comparisons)
+    same = sum(c.verdict == "same" for c in report.comparisons)
     known = sum(bool(c.published.expect) and c.as_expected for c in report.comparisons)
     print(f"published  {len(report.comparisons)} values: {same} print the same, {known} differ as is known")
     for comparison in report.comparisons:
-        if not _prints_the_same(comparison):
+        if comparison.verdict != "same":
             where = f"{comparison.published.source} {comparison.cell.address}"
             printed, reason = comparison.published.printed.text, comparison.published.reason
             print(f"  {where:28} {printed:>8} -> {comparison.again:>8}  {comparison.word:13} {reason}")
@@ -70,10 +70,6 @@ def _print(report: Report, found: Iterable[Check]) -> None:
     for check in failed:
         print(f"finding: {check.sentence}")
     print(f"{len(failed)} findings" if failed else "everything as expected")
-
-
-def _prints_the_same(comparison: Comparison) -> bool:
-    return comparison.again == comparison.published.printed.text
 
 
 def _details(report: Report) -> dict[str, Any]:

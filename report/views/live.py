@@ -134,6 +134,7 @@ def data(report: Report, document: Document) -> str:
                         index_text(pair.comparison.published.index),
                         pair.printed.text,
                         _fraction(pair.printed.scale),
+                        pair.printed.mode == "truncated",
                         pair.comparison.published.expect == "differs",
                     ]
                     for pair in group.pairs

@@ -190,7 +190,10 @@ def _write_comparison(
     live = f'=IF(ISNUMBER({cells["difference"]}),{cells["difference"]}{unit},"")'
     distance = "" if comparison.distance is None else comparison.distance
     style.formula(sheet, row, 7, live, distance, style("number", _signed("0.0")))
-    same = f"ROUND({cells['recomputed']},{decimals})={cells['printed']}".replace(",-", ",0-")
+    shortened = f"ROUND({cells['recomputed']},{decimals})"
+    if printed.mode == "truncated":  # in the 15 digits that a double keeps: 29.7 is not cut to 29.6
+        shortened = f"TRUNC(ROUND({cells['recomputed']},{15 - printed.digits + decimals}),{decimals})"
+    same = f"{shortened}={cells['printed']}".replace(",-", ",0-")
     live = f'=IF(ISNUMBER({cells["recomputed"]}),IF({same},"same","differs"),"not-checkable")'
     style.formula(sheet, row, 8, live, comparison.verdict, style("unit"))
     style.text(sheet, row, 9, value.expect or "same")

@@ -48,9 +48,9 @@ function nearest(n, d) {
   return rest > d || (rest === d && q & 1n) ? q + 1n : q;
 }
 
-// n/d with so many decimals (fewer than none: rounded to tens), ties to even.
-function fixedExact({ n, d }, places) {
-  const scaled = places >= 0 ? nearest(magnitude(n) * tenTo(places), d) : nearest(magnitude(n), d * tenTo(-places));
+// n/d with so many decimals (fewer than none: rounded to tens), ties to even; or to whole numbers otherwise.
+function fixedExact({ n, d }, places, whole = nearest) {
+  const scaled = places >= 0 ? whole(magnitude(n) * tenTo(places), d) : whole(magnitude(n), d * tenTo(-places));
   let digits = places >= 0 ? scaled.toString() : (scaled * tenTo(-places)).toString();
   if (places > 0) {
     digits = digits.padStart(places + 1, "0");
@@ -191,11 +191,17 @@ function decimalsOf(text) {
 // Significant digits as printed: 4 for 2.940; zeros count unless they lead.
 const digitsOf = (text) => text.toLowerCase().split("e")[0].replace(/^[+-]/, "").replace(".", "").replace(/^0+/, "").length || 1;
 
+// n/d in the 15 digits that every double keeps, so that 29.7 is not cut to 29.6.
+function nearExact(x) {
+  const value = toDouble(x);
+  return Number.isFinite(value) ? readExact(value.toExponential(14)) : x;
+}
+
 // A double beside a printed number: printed as that is, how far off in units of its last digit, the same?
-function beside(value, text, scale) {
+function beside(value, text, scale, truncated) {
   const exact = ofDouble(value), places = decimalsOf(text), printed = readExact(text);
   const inUnit = { n: exact.n * scale.d, d: exact.d * scale.n };
-  const again = fixedExact(inUnit, places);
+  const again = truncated ? fixedExact(nearExact(inUnit), places, (n, d) => n / d) : fixedExact(inUnit, places);
   const off = { n: inUnit.n * printed.d - printed.n * inUnit.d, d: inUnit.d * printed.d };
   const distance = places >= 0 ? { n: off.n * tenTo(places), d: off.d } : { n: off.n, d: off.d * tenTo(-places) };
   const other = readExact(again);

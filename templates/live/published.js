@@ -1,12 +1,12 @@
 // Published values beside their recomputation, and the sentences that count them.
 
-function compared(look, [cell, index, text, scale, differs]) {
+function compared(look, [cell, index, text, scale, truncated, differs]) {
   const row = look.trace.row(cell, index);
   if (row < 0 || !look.trace.isOk(cell, row)) {
     return { again: row < 0 ? "–" : CODES[look.trace.sheet.status[cell][row]], verdict: "no value", expected: false };
   }
   const size = { n: BigInt(scale[0]), d: BigInt(scale[1]) };
-  const { again, distance, same } = beside(look.trace.sheet.value[cell][row], text, size);
+  const { again, distance, same } = beside(look.trace.sheet.value[cell][row], text, size, truncated);
   return { again, distance, verdict: same ? "same" : "differs", expected: same !== differs };
 }
 

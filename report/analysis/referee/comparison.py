@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
-from decimal import ROUND_DOWN, ROUND_HALF_EVEN, Decimal, localcontext
+from decimal import Context, Decimal
 from fractions import Fraction
 
 from ...published import PublishedValue
@@ -14,6 +15,9 @@ from ...values import Values
 from ...verdict import EXACT, REACHABLE, WITHIN, Explanation, Referee, Verdict
 
 __all__ = ["compare", "print_as", "prints_same", "refereed"]
+
+DIGITS = 15
+"""Of a decimal number, how many every double keeps."""
 
 
 def print_as(value: float, like: Printed) -> str:
@@ -31,17 +35,26 @@ def print_as(value: float, like: Printed) -> str:
     >>> print_as(4.15439e-05, Printed("41.61", "um", Fraction("4.161e-5"), Fraction(1, 10**6)))
     '41.54'
     """
-    in_unit = Fraction(value) / like.scale
-    with localcontext() as context:
-        context.prec = 60
-        exact = Decimal(in_unit.numerator) / Decimal(in_unit.denominator)
-        how = ROUND_DOWN if like.mode == "truncated" else ROUND_HALF_EVEN
-        return f"{exact.quantize(Decimal(1).scaleb(-like.decimals), rounding=how):f}"
+    in_unit, places = Fraction(value) / like.scale, like.decimals
+    if like.mode == "truncated":
+        # A double is a little less or more than the decimal number it stands for: 29.7 is not cut to 29.6.
+        near = Context(prec=DIGITS).divide(Decimal(in_unit.numerator), Decimal(in_unit.denominator))
+        digits = math.trunc(abs(Fraction(near)) * Fraction(10) ** places)
+    else:
+        digits = round(abs(in_unit) * Fraction(10) ** places)
+    text = str(digits * 10 ** max(0, -places)).zfill(places + 1)
+    point = len(text) - max(0, places)
+    return f"{'-' if value < 0 else ''}{text[:point]}{'.' if places > 0 else ''}{text[point:]}"
 
 
 def prints_same(value: float, printed: Printed) -> bool:
-    """Whether a value in SI prints as it was printed."""
-    return Decimal(print_as(value, printed)) == Decimal(printed.text)
+    """Whether a value in SI prints as it was printed: by value and decimals, whatever the notation.
+
+    >>> from fractions import Fraction
+    >>> prints_same(238.94213, Printed("2.3894e+02", "1", Fraction("238.94"), Fraction(1)))
+    True
+    """
+    return Fraction(print_as(value, printed)) == Fraction(printed.text)
 
 
 def compare(published: tuple[PublishedValue, ...], values: Values) -> tuple[Comparison, ...]:

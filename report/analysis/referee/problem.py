@@ -287,7 +287,8 @@ class Problem:
         columns = [values.value[name][..., row] for name, row in self.places]
         alive = [values.status[name][..., row] == Status.OK for name, row in self.places]
         found = [np.where(ok, each, np.nan) for each, ok in zip(columns, alive, strict=True)]
-        return np.stack([np.broadcast_to(each, points.shape[:1]) for each in found], axis=-1)
+        empty = np.empty((len(points), 0))  # the others of a single value
+        return np.column_stack([empty, *(np.broadcast_to(each, points.shape[:1]) for each in found)])
 
     def mismatch(self, cells: Array) -> Array:
         """How far cells are from what was published, in half units of the last digit."""
