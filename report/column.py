@@ -6,13 +6,15 @@ Nothing here knows a model, a number or an output.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from sympy import Basic, Expr, Indexed, IndexedBase, Rel, Sum, Symbol
+from sympy import And, Basic, Eq, Expr, Indexed, IndexedBase, Rational, Rel, Sum, Symbol, floor
+from sympy.logic.boolalg import Boolean
 
 from ..derivations.equation import Equation
+from .quantity import Bounds
 
 __all__ = [
     "Axis",
@@ -26,6 +28,7 @@ __all__ = [
     "Rule",
     "name_of",
     "references",
+    "within",
 ]
 
 
@@ -115,9 +118,41 @@ class RepeatAxis(Axis):
 
 @dataclass(frozen=True)
 class Given:
-    """The value comes from the user, as printed."""
+    """The value comes from the user, as printed.
+
+    Parameters
+    ----------
+    source : str
+        Where from.
+    bounds : Bounds
+        What it may be, in SI. Every engine asks for that: any other number is ``#INPUT!``.
+    """
 
     source: str = "given"
+    bounds: Bounds = field(default_factory=Bounds)
+
+
+def within(value: Expr, bounds: Bounds) -> Boolean:
+    """That a number is allowed, for every engine to print.
+
+    Parameters
+    ----------
+    value : Expr
+        A real symbol that assumes nothing, or all of it would be true already.
+    bounds : Bounds
+
+    Examples
+    --------
+    >>> within(Symbol("e", real=True), Bounds(low=0, high=1))
+    (e >= 0) & (e <= 1)
+    """
+    low, high = (None if end is None else Rational(repr(end)) for end in (bounds.low, bounds.high))
+    tests: list[Boolean] = [Eq(value, floor(value))] if bounds.integer else []
+    if low is not None:
+        tests.append(value > low if bounds.low_open else value >= low)
+    if high is not None:
+        tests.append(value < high if bounds.high_open else value <= high)
+    return And(*tests)
 
 
 @dataclass(frozen=True)

@@ -47,12 +47,12 @@ def lay_out(
     labels : mapping of axis name to sequence of int
         The rows' numbers of the axes that come with the data.
     counts : mapping of column name to int
-        Values of the scalars that say how often an axis repeats another.
+        Values of the scalars that say how often an axis repeats another; 0 where that is not known.
 
     Raises
     ------
     ValueError
-        A count is not a whole number of at least 1.
+        A count is not a whole number of at least 0.
     """
     layouts: dict[str, Layout] = {}
     for axis in sheet.axes:
@@ -77,8 +77,8 @@ def _pairs(axis: PairAxis, parent: Layout) -> Layout:
 
 
 def _repeats(axis: RepeatAxis, parent: Layout, count: int) -> Layout:
-    if count < 1 or count != int(count):
-        raise ValueError(f"{axis.count} must be a whole number of at least 1, not {count}")
+    if count < 0 or count != int(count):
+        raise ValueError(f"{axis.count} must be a whole number of at least 0, not {count}")
     which = np.repeat(np.arange(parent.size), int(count))
     step = np.tile(np.arange(1, int(count) + 1), parent.size)
     rows = {index: named[which] for index, named in parent.rows.items()}

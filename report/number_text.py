@@ -158,8 +158,7 @@ def read_value(
         findings.add(error.code, at, name=declared.name, **fields)
         return None
     if unit is not None and not declared.bounds.allow(printed.value):
-        suffix = "" if declared.unit == "1" else f" {declared.unit}"
-        allowed = f"{declared.bounds}{suffix} ({declared.meaning})"
+        allowed = f"{declared.bounds.said(declared.unit)} ({declared.meaning})"
         findings.add("LS406", at, name=declared.name, text=text, unit=unit.text, allowed=allowed)
         return None
     return printed

@@ -7,7 +7,7 @@ fraction in SI, so that no engine starts from another engine's rounding.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 __all__ = ["Bounds", "Printed"]
@@ -33,16 +33,35 @@ class Bounds:
     high_open: bool = False
     integer: bool = False
 
-    def allow(self, value: Fraction) -> bool:
-        """Tell whether a value lies inside."""
-        if self.integer and value.denominator != 1:
+    def allow(self, value: Fraction | float) -> bool:
+        """Tell whether a value lies inside; what is not finite never does."""
+        if not math.isfinite(value) or (self.integer and value != math.floor(value)):
             return False
         # The ends are meant as they are written: the double 0.1 is a little more than a printed 0.1.
-        low = None if self.low is None else Fraction(repr(self.low))
-        high = None if self.high is None else Fraction(repr(self.high))
+        low, high = (
+            end if end is None or isinstance(value, float) else Fraction(repr(end))
+            for end in (self.low, self.high)
+        )
         if low is not None and (value < low or (self.low_open and value == low)):
             return False
         return not (high is not None and (value > high or (self.high_open and value == high)))
+
+    def over(self, scale: Fraction) -> Bounds:
+        """The same in another unit, `scale` of which are one in SI."""
+
+        def end(value: float | None) -> float | None:
+            return None if value is None else float(Fraction(repr(value)) / scale)
+
+        return replace(self, low=end(self.low), high=end(self.high))
+
+    def clip(self, low: float, high: float) -> tuple[float, float]:
+        """What is left of an interval."""
+        low = low if self.low is None else max(low, self.low)
+        return low, (high if self.high is None else min(high, self.high))
+
+    def said(self, unit: str) -> str:
+        """What is allowed, with the unit of its numbers behind it."""
+        return str(self) if unit == "1" else f"{self} {unit}"
 
     def __str__(self) -> str:
         """Say what is allowed, as the end of the sentence "it must be ..."."""

@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .errors import OutputError, diagnose
+from .quantity import Bounds
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from .workbook import Parameter, Workbook
+    from .workbook import Measured, Parameter, Workbook
 
 __all__ = ["CI", "new"]
 
@@ -135,7 +136,7 @@ def _lines(workbook: Workbook) -> Iterator[str]:
         yield from _parameter(parameter, workbook.example_parameters.get(parameter.name))
     yield from ("", "[measurements]", 'file = "measurements.csv"')
     for column in workbook.measured:
-        yield f"# {column.name}: {_meaning(column.meaning, column.unit, str(column.bounds))}"
+        yield f"# {column.name}: {_meaning(column)}"
     if not workbook.measured:
         return
     last = workbook.measured[-1].name
@@ -153,7 +154,7 @@ def _lines(workbook: Workbook) -> Iterator[str]:
 
 def _parameter(parameter: Parameter, example: str | None) -> Iterator[str]:
     """Write one parameter: the example's as a line that counts, any other as a comment."""
-    note = _meaning(parameter.meaning, parameter.unit, str(parameter.bounds))
+    note = _meaning(parameter)
     if parameter.default is not None:
         note += f"; {parameter.default} if left out"
     suffix = "" if parameter.unit == "1" else f" {parameter.unit}"
@@ -162,10 +163,10 @@ def _parameter(parameter: Parameter, example: str | None) -> Iterator[str]:
     yield f"{mark}{parameter.name} = {_quote(value)}".ljust(38) + f"  # {_one_line(note)}"
 
 
-def _meaning(meaning: str, unit: str, bounds: str) -> str:
+def _meaning(declared: Measured | Parameter) -> str:
     """Say what it is and what is allowed."""
-    suffix = "" if unit == "1" else f" {unit}"
-    return _one_line(meaning if bounds == "any number" else f"{meaning}; {bounds}{suffix}")
+    allowed = "" if declared.bounds == Bounds() else f"; {declared.bounds.said(declared.unit)}"
+    return _one_line(declared.meaning + allowed)
 
 
 def _one_line(text: str) -> str:

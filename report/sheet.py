@@ -7,11 +7,12 @@ columns' names, so the graph of what depends on what is read from the algebra an
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from keyword import iskeyword
 
 from sympy import Basic, Expr, Indexed, Sum, Symbol
+from sympy.logic.boolalg import Boolean
 
 from .column import (
     Axis,
@@ -25,8 +26,10 @@ from .column import (
     Rule,
     name_of,
     references,
+    within,
 )
 from .errors import close
+from .quantity import Bounds
 
 __all__ = [
     "Axis",
@@ -126,6 +129,35 @@ class Sheet:
     def indices(self) -> dict[Symbol, Axis]:
         """The axis that a sum over a running number runs over."""
         return {axis.index: axis for axis in self.axes}
+
+    # --- what may be given ----------------------------------------------------------------------------
+
+    def bounded(self, declared: Mapping[str, Bounds]) -> Sheet:
+        """The sheet with what its given columns may be, in SI."""
+
+        def bound(column: Column) -> Column:
+            if not isinstance(column.rule, Given) or column.name not in declared:
+                return column
+            return replace(column, rule=replace(column.rule, bounds=declared[column.name]))
+
+        return Sheet(tuple(map(bound, self.columns)))
+
+    @cached_property
+    def bounds(self) -> dict[str, Bounds]:
+        """What each given column may be, in SI; one that says how many rows there are counts from 1."""
+        found = {c.name: c.rule.bounds for c in self.columns if isinstance(c.rule, Given)}
+        for axis in self.axes:
+            if isinstance(axis, RepeatAxis):
+                own = replace(found[axis.count], integer=True)
+                some = own.low is not None and own.low >= 1
+                found[axis.count] = own if some else replace(own, low=1, low_open=False)
+        return found
+
+    @cached_property
+    def guards(self) -> dict[str, tuple[Symbol, Boolean]]:
+        """For each given column that is bound, a datum and what it must satisfy, for engines to print."""
+        data = {name: Symbol(name, real=True) for name, own in self.bounds.items() if own != Bounds()}
+        return {name: (datum, within(datum, self.bounds[name])) for name, datum in data.items()}
 
     # --- the graph ------------------------------------------------------------------------------------
 

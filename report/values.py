@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .layout import Layout, Precedent, precedents
+from .quantity import Bounds
 from .sheet import Column, Formula, Root, Sheet
 
 __all__ = ["CODES", "Cell", "Status", "Values", "inherited", "rows_kept"]
@@ -264,7 +265,9 @@ class Values:
     def _why(self, column: Column, row: int, status: Status) -> str:
         rule = column.rule
         if status is Status.INPUT:
-            return "the datum is missing or invalid"
+            allowed = self.sheet.bounds[column.name]
+            told = "" if allowed == Bounds() else f"; it must be {allowed.said(column.unit)}"
+            return f"the datum is missing or invalid{told}"
         if isinstance(rule, Root) and status is Status.NOROOT:
             return f"{column.source} has no root here: {rule.none}"
         if isinstance(rule, Root) and status is Status.TWOROOTS:

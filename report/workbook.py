@@ -107,7 +107,8 @@ class Workbook:
         Takes the names that were given; returns None or a sentence that says which combination is
         missing or contradictory.
     sheet : callable
-        Takes the names of the given parameters; returns the :class:`Sheet`.
+        Takes the names of the given parameters; returns the :class:`Sheet`. What is given gets the bounds
+        there that `measured` and `parameters` declare.
     fits : tuple of str
         Names of three cells, if a source's choice of fit is to be told: the mean, the fit to logarithms (as
         published), the fit to the values themselves.
@@ -144,3 +145,14 @@ class Workbook:
     """The parameters that go with it, as printed, by name."""
     curves: Callable[[Sheet, Values], tuple[Curve, ...]] | None = None
     drawn: Callable[[Sheet], Drawn] | None = None
+
+    def __post_init__(self) -> None:
+        """Every engine gets what the reader of a folder gets: bounds are declared once."""
+        lay_out, bounds = self.sheet, {name: each.bounds for name, each in self.declared.items()}
+        object.__setattr__(self, "sheet", lambda given: lay_out(given).bounded(bounds))
+
+    @property
+    def declared(self) -> dict[str, Measured | Parameter]:
+        """What the user gives, by its cell name."""
+        each: tuple[Measured | Parameter, ...] = (*self.measured, *self.parameters)
+        return {one.name: one for one in each}

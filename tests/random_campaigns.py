@@ -153,7 +153,8 @@ class Node:
     def read(self, campaign: Campaign, which: int) -> tuple[Reading, Broken]:
         assert self.process.stdin is not None
         assert self.process.stdout is not None
-        line = json.dumps([which, campaign.labels, campaign.data]).replace("NaN", "null")
+        line = json.dumps([which, campaign.labels, campaign.data])
+        line = line.replace("NaN", "null").replace("Infinity", "1e999")
         self.process.stdin.write(f"{line}\n")
         self.process.stdin.flush()
         columns, broken, failure = json.loads(self.process.stdout.readline())

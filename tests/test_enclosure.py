@@ -19,6 +19,7 @@ from loopsheet.report.analysis.referee.minimax import best
 from loopsheet.report.analysis.referee.problem import Campaign, Problem
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
+from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
 
 
@@ -92,6 +93,40 @@ def test_nothing_is_certified_of_a_table_that_can_be_reached(campaign: Campaign)
     certificate, rng = Certificate(problem), np.random.default_rng(1)
     for _ in range(200):
         assert certificate.at_least(rng.standard_normal(10)) <= 1
+
+
+def test_an_input_is_looked_for_among_those_that_are_allowed(campaign: Campaign) -> None:
+    """A print of 1.00 stands for no restitution above 1, however it was rounded."""
+    e = list(campaign.inputs.measured["e"])
+    e[0] = replace(e[0], text="1.00", value=Fraction(1))
+    inputs = replace(campaign.inputs, measured={**campaign.inputs.measured, "e": tuple(e)})
+    problem = table(replace(campaign, inputs=inputs), "Table 2")
+    (place,) = (n for n, u in enumerate(problem.unknowns) if (u.column, u.row) == ("e", 0))
+    assert (problem.box.low[place], problem.box.high[place]) == (0.995, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("bounds", "low", "high", "sure"),
+    [
+        (Bounds(), 2.0, 3.0, True),
+        (Bounds(2, 3), 2.0, 3.0, True),
+        (Bounds(2, 3), 2.0, 3.5, False),
+        (Bounds(2, 3, low_open=True), 2.0, 3.0, False),
+        (Bounds(integer=True), 2.0, 3.0, False),
+        (Bounds(integer=True), 2.0, 2.0, True),
+    ],
+)
+def test_what_may_not_be_allowed_may_have_no_value(
+    bounds: Bounds, low: float, high: float, sure: bool
+) -> None:
+    x = Column("x", None, Given("given", bounds), positive=False)
+    twice = Formula(Equation("", (Symbol("y"), 2 * x.symbol), "", Kind.DEFINITION))
+    sheet = Sheet((x, Column("y", None, twice, positive=False)))
+    program = Program.of(sheet)
+    found = Enclosure(sheet, program, {}, {"x": Intervals([low], [high])})
+    assert (bool(found.sure["x"][0]), bool(found.sure["y"][0])) == (sure, sure)
+    values = [engine.evaluate(sheet, {}, {"x": x}, program).status["y"][0] for x in np.linspace(low, high, 9)]
+    assert sure == (not any(values))
 
 
 def test_a_sum_over_rows_that_may_have_no_value_is_not_known() -> None:

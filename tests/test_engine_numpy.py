@@ -293,11 +293,20 @@ def test_a_column_must_have_the_rows_of_its_axis() -> None:
         run({"beta": [1.0, 2.0]})
 
 
-@pytest.mark.parametrize("number", [2.5, np.nan, np.inf])
-def test_a_count_must_be_one_whole_number(number: float) -> None:
-    with pytest.raises(ValueError, match=r"^points_per_pair must be one whole number of at least 1, not "):
-        run({"points_per_pair": number})
-    with pytest.raises(ValueError, match=r"not 2\.0, 3\.0$"):
+@pytest.mark.parametrize("number", [2.5, 1, 0, -3, 10001, np.nan, np.inf])
+def test_a_count_that_is_not_allowed_makes_no_rows(number: float) -> None:
+    values = run({"points_per_pair": number})
+    assert values.status["points_per_pair"].tolist() == [Status.INPUT]
+    assert values.value["x"].size == 0
+    assert values.cell("alpha_mean").status is Status.OK
+    assert values.cell("alpha_log").reason == (
+        "#INPUT! alpha_log needs points_per_pair: the datum is missing or invalid; "
+        "it must be a whole number between 2 and 10000"
+    )
+
+
+def test_a_batch_has_one_count() -> None:
+    with pytest.raises(ValueError, match=r"^points_per_pair must be one number .* not 2\.0, 3\.0$"):
         run({"points_per_pair": [[2], [3]]})
 
 

@@ -60,7 +60,8 @@ class Moved(exact._Exact):
     """
 
     def __init__(self, campaign: Campaign, judge: Judge, seed: int) -> None:
-        given = {name: [exact._number(x) for x in column] for name, column in campaign.data.items()}
+        bounds = judge.sheet.bounds
+        given = {n: [exact._datum(x, bounds[n]) for x in column] for n, column in campaign.data.items()}
         super().__init__(judge.sheet, laid_out(campaign), given)
         self.rng = random.Random(seed)
 

@@ -85,6 +85,25 @@ def test_bounds(bounds: Bounds, inside: list[str], outside: list[str], sentence:
     assert str(bounds) == sentence
 
 
+def test_a_double_is_held_to_doubles_and_is_finite() -> None:
+    assert Bounds(0, 0.1).allow(0.1)
+    assert not Bounds(0, 0.1, high_open=True).allow(0.1)
+    assert not any(Bounds().allow(x) for x in (math.nan, math.inf, -math.inf))
+    assert [Bounds(integer=True).allow(x) for x in (1e300, 2.5)] == [True, False]
+
+
+def test_bounds_in_another_unit() -> None:
+    assert Bounds(0, 0.5, low_open=True).over(Fraction(1, 1000)) == Bounds(0, 500, low_open=True)
+    assert Bounds(0, 0.5).said("m") == "between 0 and 0.5 m"
+    assert Bounds(low=2).said("1") == "at least 2"
+
+
+def test_what_is_left_of_an_interval() -> None:
+    assert Bounds(0, 1).clip(-0.05, 0.05) == (0, 0.05)
+    assert Bounds(0, 1).clip(0.995, 1.005) == (0.995, 1)
+    assert Bounds().clip(-1.0, 1.0) == (-1, 1)
+
+
 def test_an_end_means_the_decimal_that_is_written_not_its_double() -> None:
     assert Bounds(0.1, 0.3).allow(Fraction("0.1"))
     assert Bounds(0.1, 0.3).allow(Fraction("0.3"))

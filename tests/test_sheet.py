@@ -7,7 +7,8 @@ import sys
 import pytest
 from sympy import Expr, IndexedBase, Rel, Sum, Symbol
 
-from loopsheet.derivations.equation import Equation
+from loopsheet.derivations.equation import Equation, Ledger
+from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import (
     Axis,
     Column,
@@ -21,6 +22,7 @@ from loopsheet.report.sheet import (
     Sheet,
     SheetError,
 )
+from loopsheet.report.workbook import Measured, Parameter, Workbook
 
 
 def whole(name: str) -> Symbol:
@@ -268,3 +270,33 @@ def test_columns_are_found_by_name() -> None:
     assert (a.source, mean.source, a.equation) == ("given", "(T)", None)
     assert a.cell == a[k]
     assert mean.cell == mean.symbol
+
+
+# ------------------------------------------------------------------------------------------ what may be given
+def test_what_is_given_is_bound_as_the_workbook_declares() -> None:
+    allowed = Bounds(low=0, low_open=True)
+    workbook = Workbook(
+        "made", "made", "nobody", lambda: Ledger(()), (Measured("a", "1", "a datum", allowed),),
+        (Parameter("b", "1", "a scalar", Bounds(high=2)),), lambda given: SHEET,
+    )  # fmt: skip
+    sheet = workbook.sheet(frozenset())
+    assert sheet.bounds == {"a": allowed, "b": Bounds(high=2), "count": Bounds(low=1, integer=True)}
+    assert sheet.order[0].rule == Given("given", allowed)
+    assert {name: str(relation) for name, (_, relation) in sheet.guards.items()} == {
+        "a": "a > 0",
+        "b": "b <= 2",
+        "count": "(count >= 1) & Eq(count, floor(count))",
+    }
+
+
+@pytest.mark.parametrize(
+    ("declared", "found"),
+    [
+        (Bounds(), Bounds(1, integer=True)),
+        (Bounds(0, 9, low_open=True), Bounds(1, 9, integer=True)),
+        (Bounds(1, low_open=True), Bounds(1, low_open=True, integer=True)),
+        (Bounds(2, 50), Bounds(2, 50, integer=True)),
+    ],
+)
+def test_a_count_is_a_whole_number_of_at_least_one(declared: Bounds, found: Bounds) -> None:
+    assert SHEET.bounded({"count": declared}).bounds["count"] == found

@@ -61,7 +61,7 @@ class Enclosure:
                 size = self.size(column)
                 if isinstance(column.rule, Given):
                     found = data[column.name]
-                    sure = np.isfinite(found.low) & np.isfinite(found.high)
+                    sure = self._allowed(program, column, found)
                 elif isinstance(column.rule, Root):
                     found, sure = self._root(program.roots[column.name], column)
                 else:
@@ -80,6 +80,16 @@ class Enclosure:
     def size(self, column: Column) -> int:
         """How many rows a column has."""
         return 1 if column.axis is None else self.layouts[column.axis.name].size
+
+    def _allowed(self, program: Program, column: Column, found: Intervals) -> NDArray[np.bool_]:
+        """Whether a given column may be whatever lies in the intervals."""
+        sure = np.isfinite(found.low) & np.isfinite(found.high)
+        if column.name in program.guards:
+            low, high = (program.guards[column.name](end)[0] for end in (found.low, found.high))
+            sure &= np.logical_and(low, high)
+        if self.sheet.bounds[column.name].integer:
+            sure &= found.low == found.high  # between two whole numbers are others
+        return sure
 
     # --- what a kernel is called with ----------------------------------------------------------------
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from sympy import Basic, Expr, Indexed, Sum, Symbol, lambdify
 
 from ..layout import Layout, lay_out, precedents, rows_of
+from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, RepeatAxis, Root, Sheet, name_of
 from ..values import Status, inherited, rows_kept
 
@@ -53,9 +54,14 @@ class _Failed(Exception):
         self.status = status
 
 
-def _number(value: Any) -> Any:
-    """A datum as mpf: fractions and strings exactly, doubles as the doubles they are."""
-    if value is None:
+def _rows(values: Any) -> Any:
+    return values if isinstance(values, (list, tuple, np.ndarray)) else [values]
+
+
+def _datum(value: Any, bounds: Bounds) -> Any:
+    """A datum as mpf: fractions and texts exactly, a double as the double it is; NaN if it is not allowed."""
+    value = Fraction(value) if isinstance(value, str) else value
+    if value is None or not bounds.allow(value if isinstance(value, Fraction) else float(value)):
         return mpmath.nan
     if isinstance(value, Fraction):
         return mpmath.mpf(value.numerator) / value.denominator
@@ -73,11 +79,9 @@ def evaluate(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[st
         Fractions are taken exactly; None or NaN is a missing datum.
     """
     with mpmath.workdps(DIGITS + _GUARD):
-        given = {
-            name: [_number(x) for x in (v if isinstance(v, (list, tuple, np.ndarray)) else [v])]
-            for name, v in data.items()
-        }
-        counts = {a.count: int(given[a.count][0]) for a in sheet.axes if isinstance(a, RepeatAxis)}
+        given = {name: [_datum(x, sheet.bounds[name]) for x in _rows(data[name])] for name in sheet.bounds}
+        repeated = {a.count: given[a.count][0] for a in sheet.axes if isinstance(a, RepeatAxis)}
+        counts = {name: 0 if mpmath.isnan(number) else int(number) for name, number in repeated.items()}
         return _Exact(sheet, lay_out(sheet, labels, counts), given).run()
 
 
@@ -133,7 +137,7 @@ class _Exact:
 
     def _given(self, column: Column, row: int) -> Any:
         value = self.given[column.name][row]
-        if not mpmath.isfinite(value):
+        if mpmath.isnan(value):
             raise _Failed(Status.INPUT)
         return value
 

@@ -269,6 +269,10 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
         if isinstance(column.rule, Root):
             entry["steps"] = column.rule.steps
         text = json.dumps(entry)[:-1]
+        if column.name in sheet.guards:
+            datum, allowed = sheet.guards[column.name]
+            x = Symbol("x", real=True)
+            text += f', "allows": (x) => {Printer().doprint(allowed.xreplace({datum: x}))}'
         kernels = _kernels(sheet, column)
         if kernels:
             text += f', "kernels": {kernels}'

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..layout import Layout, lay_out, precedents, rows_of
 from ..sheet import Column, Formula, Given, Reference, RepeatAxis, Root, Sheet, name_of
 from ..values import Status, Values, inherited, rows_kept
-from .numpy_code import Array, Function, Kernel, kernel
+from .numpy_code import Array, Function, Kernel, kernel, write
 from .numpy_root import RootProgram
 
 __all__ = ["Kernel", "Program", "evaluate", "extend", "kernel"]
@@ -31,12 +31,16 @@ BLOCK = 1 << 13
 
 @dataclass(frozen=True)
 class Program:
-    """The kernels of a sheet: of each column's formula, or of its root's parts, and of its conditions."""
+    """The kernels of a sheet: of each column's formula, or of its root's parts, and of its conditions.
+
+    For a given column, that of what its values must satisfy.
+    """
 
     sheet: Sheet
     formulas: Mapping[str, Kernel]
     roots: Mapping[str, RootProgram]
     conditions: Mapping[str, Kernel]
+    guards: Mapping[str, Function]
 
     @classmethod
     def of(cls, sheet: Sheet, known: Collection[str] = ()) -> Program:
@@ -53,17 +57,20 @@ class Program:
         SheetError
             A formula has a part that NumPy cannot compute.
         """
-        formulas, roots, conditions = {}, {}, {}
+        formulas, roots, conditions, guards = {}, {}, {}, {}
         for column in sheet.order:
             if column.name in known:
                 continue
+            if column.name in sheet.guards:
+                datum, allowed = sheet.guards[column.name]
+                _, guards[column.name] = write([datum], (), [allowed])
             if isinstance(column.rule, Formula):
                 formulas[column.name] = kernel([column.rule.expression], sheet.indices)
             elif isinstance(column.rule, Root):
                 roots[column.name] = RootProgram.of(column.rule, sheet.indices)
             if column.requires:
                 conditions[column.name] = kernel([c for c, _ in column.requires], sheet.indices)
-        return cls(sheet, formulas, roots, conditions)
+        return cls(sheet, formulas, roots, conditions, guards)
 
     @property
     def source(self) -> str:
@@ -129,7 +136,10 @@ class _Run:
             raise ValueError(
                 f"{column.name} has {value.shape[-1]} rows, not {size}: the last dimension is the rows"
             )
-        return value, np.where(np.isfinite(value), Status.OK, Status.INPUT).astype(np.uint8)
+        allowed = np.isfinite(value)
+        if column.name in self.program.guards:
+            allowed = allowed & self.program.guards[column.name](value)[0]
+        return value, np.where(allowed, Status.OK, Status.INPUT).astype(np.uint8)
 
     def _computed(self, column: Column) -> tuple[Array, Codes]:
         named = precedents(self.sheet, self.layouts, column)
@@ -264,7 +274,7 @@ def evaluate(
     Raises
     ------
     ValueError
-        A column has not as many rows as its axis, or a count is not one whole number.
+        A column has not as many rows as its axis, or a batch has several numbers of rows.
     """
     arrays = _arrays(data)
     return (program or Program.of(sheet)).run(labels, _counts(sheet, arrays), arrays)
@@ -301,16 +311,14 @@ def _arrays(data: Mapping[str, Any]) -> dict[str, Array]:
 
 
 def _counts(sheet: Sheet, values: Mapping[str, Array]) -> dict[str, int]:
-    """How often each axis that repeats another does."""
-    axes = [axis for axis in sheet.axes if isinstance(axis, RepeatAxis)]
-    return {axis.count: _count(axis, values[axis.count]) for axis in axes}
-
-
-def _count(axis: RepeatAxis, values: Array) -> int:
-    """How often an axis repeats another: one number for a whole batch."""
-    numbers = np.unique(values)
-    if numbers.size != 1 or not float(numbers[0]).is_integer():
-        raise ValueError(
-            f"{axis.count} must be one whole number of at least 1, not {', '.join(map(str, numbers))}"
-        )
-    return int(numbers[0])
+    """How often each axis that repeats another does: one number for a whole batch, 0 if it is not allowed."""
+    counts = {}
+    for axis in sheet.axes:
+        if isinstance(axis, RepeatAxis):
+            numbers = np.unique(values[axis.count]).tolist()
+            if len(numbers) != 1:
+                raise ValueError(
+                    f"{axis.count} must be one number for the whole batch, not {', '.join(map(str, numbers))}"
+                )
+            counts[axis.count] = int(numbers[0]) if sheet.bounds[axis.count].allow(numbers[0]) else 0
+    return counts

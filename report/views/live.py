@@ -15,11 +15,10 @@ from typing import Any
 
 from sympy import Indexed, Sum, Symbol
 
-from ..quantity import Bounds, Printed
+from ..quantity import Printed
 from ..result import Report
 from ..sheet import Column, Formula, Given, Root, name_of
 from ..unit_text import parse_unit
-from ..workbook import Measured, Parameter
 from .compact import short_script
 from .document import Document
 from .drawing import unit_text
@@ -202,11 +201,8 @@ def _status(document: Document, label: str) -> str:
 
 def _given(report: Report, column: Column) -> dict[str, Any]:
     """What an input may be, and how large its printed unit is."""
-    inputs: tuple[Measured | Parameter, ...] = (*report.workbook.measured, *report.workbook.parameters)
-    declared = next((one for one in inputs if one.name == column.name), None)
-    printed = _printed(report, column.name)
-    bounds = declared.bounds if declared is not None else Bounds()
-    unit = "" if column.unit == "1" else f" {column.unit}"
+    meaning = report.workbook.declared.get(column.name, column).meaning
+    printed, bounds = _printed(report, column.name), report.sheet.bounds[column.name]
     return {
         "scale": _fraction(printed.scale if printed else parse_unit(column.unit).scale),
         "bounds": {
@@ -214,7 +210,7 @@ def _given(report: Report, column: Column) -> dict[str, Any]:
             for name in ("low", "high", "low_open", "high_open", "integer")
             if (bound := getattr(bounds, name)) is not None and bound is not False
         },
-        "allowed": f"{bounds}{unit} ({declared.meaning if declared is not None else column.meaning})",
+        "allowed": f"{bounds.said(column.unit)} ({meaning})",
     }
 
 

@@ -95,7 +95,7 @@ def _pair_symbols() -> dict[Expr, Expr]:
     }  # fmt: skip
 
 
-def sheet(given: frozenset[str]) -> Sheet:
+def _sheet(given: frozenset[str]) -> Sheet:
     """The sheet for the parameters that were given.
 
     Parameters
@@ -278,7 +278,7 @@ WORKBOOK = Workbook(
     measured=MEASURED,
     parameters=PARAMETERS,
     check_parameters=_masses_given,
-    sheet=sheet,
+    sheet=_sheet,
     fits=("alpha_mean", "alpha_log", "alpha_lin"),
     headline=("alpha_mean", "alpha_log", "C_log", "alpha_lin", "C_lin"),
     prose="soft_impact",
@@ -375,3 +375,6 @@ WORKBOOK = Workbook(
     curves=_curves,
     drawn=_drawn,
 )
+
+sheet = WORKBOOK.sheet
+"""The sheet for the names of the parameters that were given; what is given has its bounds."""

@@ -22,7 +22,7 @@ function layOut(axis, layouts, labels, data) {
     }
     label = (row) => [...parent.labels[first[row]], ...parent.labels[second[row]]];
   } else if (axis.kind === "repeat") {
-    const count = data[axis.count][0] | 0; // a count that was refused is NaN: no rows
+    const count = data[axis.count][0] || 0; // a count that was refused is NaN: no rows
     const step = (ordinals[axis.step] = new Float64Array((size = parent.size * count)));
     for (let row = 0; row < size; row++) step[row] = (row % count) + 1;
     for (const index of Object.keys(parent.rows)) {
@@ -108,9 +108,12 @@ function bisect(root, row, left, right, rising) {
 }
 
 // All columns of a sheet. `labels` numbers the rows of the given index sets, `inputs` has the given columns in
-// SI as arrays (of one number for a scalar); NaN is a missing datum.
+// SI as arrays (of one number for a scalar); NaN is a missing datum, and so is what its column does not allow.
 function evaluateSheet(program, labels, inputs) {
   const data = { ...program.constants, ...inputs };
+  for (const { name, allows } of program.columns) {
+    if (allows) data[name] = data[name].map((x) => (Number.isFinite(x) && allows(x) ? x : NaN));
+  }
   const sheet = { layouts: {}, value: {}, status: {}, roots: {}, counted: {}, broken: {} };
   const { layouts, value, status } = sheet, faulty = {};
   for (const axis of program.axes) layouts[axis.name] = layOut(axis, layouts, labels, data);

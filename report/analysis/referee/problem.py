@@ -8,7 +8,7 @@ a point of that box whose every published cell lies within the interval of its p
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ...engines.numpy import Program, evaluate
 from ...inputs import Inputs
 from ...published import PublishedValue
-from ...quantity import Printed
+from ...quantity import Bounds, Printed
 from ...sheet import Given, Sheet
 from ...values import Status, Values
 from ...verdict import Witness
@@ -45,6 +45,8 @@ class Unknown:
         None for what is not printed.
     start : float
         Its value in SI as printed, or as recomputed.
+    allowed : Bounds
+        What it may be, whatever is printed.
     """
 
     column: str
@@ -52,15 +54,16 @@ class Unknown:
     index: tuple[int, ...]
     printed: Printed | None
     start: float
+    allowed: Bounds = field(default_factory=Bounds)
 
     def interval(self, mode: str = "") -> tuple[float, float]:
         """Where it may lie, in SI; under another manner of printing than was declared."""
         if self.printed is None:
             ends = (self.start / FREE, self.start * FREE)
-            return min(ends), max(ends)
+            return self.allowed.clip(min(ends), max(ends))
         printed = replace(self.printed, mode=mode) if mode else self.printed
         low, high = printed.interval
-        return float(low), float(high)
+        return self.allowed.clip(float(low), float(high))
 
     def witness(self, value: float) -> Witness:
         """A value of it, in the unit that it is printed in."""
@@ -183,7 +186,8 @@ class Campaign:
             ):
                 text = None if column.name in cut else printed[row]
                 start = value if np.isfinite(value) else 1.0
-                yield Unknown(column.name, row, index, text, start if text is None else float(text.value))
+                start = start if text is None else float(text.value)
+                yield Unknown(column.name, row, index, text, start, sheet.bounds[column.name])
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,97 @@
+"""What the reader of a folder refuses, every engine refuses too, with the same code in the same cells."""
+
+import math
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report.engines import exact, javascript
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.errors import Findings, Location
+from loopsheet.report.number_text import read_value
+from loopsheet.report.unit_text import parse_unit
+from loopsheet.report.values import CODES, Status
+from loopsheet.report.workbooks.soft_impact import WORKBOOK
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from random_campaigns import SHEETS, Campaign, Node, numpy_reads, printed_once
+
+SHEET, GIVEN = SHEETS[1], ("v", "e", "x_p", "beta", "points_per_pair", "ball_diameter", "target_mass")
+PAPER = Campaign(
+    1,
+    [1, 2],
+    {
+        "v": [2.334, 2.940], "e": [0.530, 0.512], "x_p": [23.5e-6, 29.7e-6],
+        "beta": [1.5], "points_per_pair": [2.0],
+        "ball_diameter": [0.0127], "ball_density": [7800.0], "target_mass": [3.0],
+    },
+)  # fmt: skip
+NUMBERS = (
+    -1e300,
+    -1.0,
+    -1e-9,
+    -0.0,
+    0.0,
+    1e-300,
+    0.5,
+    1.0,
+    1 + 2**-52,
+    1.2,
+    2.0,
+    2.5,
+    10000.0,
+    10001.0,
+    1e300,
+)
+NOT_FINITE = (math.nan, math.inf, -math.inf)
+
+
+def edited(name: str, row: int, value: float) -> Campaign:
+    column = [value if place == row else datum for place, datum in enumerate(PAPER.data[name])]
+    return replace(PAPER, data=PAPER.data | {name: column})
+
+
+@pytest.fixture(scope="module")
+def node(require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> Iterator[Node]:
+    programs = [javascript.program(sheet) for sheet in SHEETS]
+    with printed_once(), Node(require("node"), tmp_path_factory.mktemp("node"), programs) as running:
+        yield running
+
+
+def reader_allows(name: str, value: float) -> bool:
+    """Whether a folder with this number is read."""
+    declared, findings = WORKBOOK.declared[name], Findings()
+    read = read_value(repr(value), parse_unit(declared.unit), declared, Location("made"), findings)
+    return read is not None
+
+
+@pytest.mark.parametrize("name", GIVEN)
+def test_engines_refuse_what_the_reader_refuses(node: Node, name: str) -> None:
+    """And say so in the same cells, whatever becomes of the others."""
+    row, refused = len(PAPER.data[name]) - 1, 0
+    for value in (*NUMBERS, *NOT_FINITE):
+        campaign = edited(name, row, value)
+        ours, _ = numpy_reads(campaign, engine.Program.of(SHEET))
+        theirs, _ = node.read(campaign, 1)
+        judged = exact.evaluate(SHEET, campaign.labels, campaign.data)
+        allowed = reader_allows(name, value)
+        refused += not allowed
+        assert (ours.status[name][row] == "ok") == allowed, value
+        for column in SHEET.by_name:
+            exactly = [CODES[code] == "#INPUT!" for code in judged.status[column]]
+            for reading in (ours, theirs):
+                assert [code == "#INPUT!" for code in reading.status[column]] == exactly, (column, value)
+    assert 3 < refused < len(NUMBERS) + len(NOT_FINITE)
+
+
+def test_what_is_refused_says_what_is_allowed() -> None:
+    data = edited("e", 1, 1.2).data
+    values = engine.evaluate(SHEET, PAPER.labels, data)
+    assert values.cell("alpha", (1, 2)).reason == (
+        "#INPUT! alpha[1-2] needs e[2]: the datum is missing or invalid; it must be between 0 and 1"
+    )
+    assert values.cell("e", (1,)).status is Status.OK
