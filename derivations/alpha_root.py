@@ -11,7 +11,7 @@ from sympy import Expr, Integer, exp, log, sqrt
 from sympy.core.parameters import evaluate
 
 from .equation import Derivation, Equation, Kind, Step, evaluated
-from .symbols import TABLE, plain
+from .symbols import VOCABULARY
 
 __all__ = [
     "ENTRIES",
@@ -29,8 +29,8 @@ __all__ = [
     "u_turn",
 ]
 
-V, E, XP = (TABLE[name] for name in ("v", "e", "x_p"))
-alpha, beta, u, u_turn, Lambda = plain("alpha beta u u_turn Lambda")
+V, E, XP = (VOCABULARY[name] for name in ("v", "e", "x_p"))
+alpha, beta, u, u_turn, Lambda = VOCABULARY.plain("alpha beta u u_turn Lambda")
 
 with evaluate(False):
     reciprocal = Equation("", (u, 1 / (alpha + 1)), "definition", Kind.DEFINITION, "reciprocal of alpha + 1")

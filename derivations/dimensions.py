@@ -39,7 +39,7 @@ from sympy import (
 from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import BooleanFunction
 
-from . import symbols
+from .vocabulary import Vocabulary
 
 __all__ = [
     "PURE",
@@ -154,18 +154,25 @@ def text_of(dimension: Dimension) -> str:
 
 
 class Dimensions:
-    """Finds dimensions of expressions in the symbols of the derivations' table.
+    """Finds dimensions of expressions in the symbols of a vocabulary.
 
     A subclass that knows other cells says so in `of_cell`, and how it complains in `fail`.
+
+    Parameters
+    ----------
+    vocabulary : Vocabulary
     """
 
+    def __init__(self, vocabulary: Vocabulary) -> None:
+        self.vocabulary = vocabulary
+
     def of_cell(self, cell: Expr) -> Dimension:
-        """The dimension of a symbol; what is not of the table is a pure number."""
-        quantity = symbols.find(cell)
+        """The dimension of a symbol; what is not of the vocabulary is a pure number."""
+        quantity = self.vocabulary.find(cell)
         if quantity is None:
             return PURE
         names = re.findall(r"\^([A-Za-z_]\w*)", quantity.unit)
-        others = {name: symbols.TABLE[name] for name in names}
+        others = {name: self.vocabulary[name] for name in names if name in self.vocabulary}
         if isinstance(cell, Indexed):
             return dimension_of_unit(quantity.unit, {name: q[cell.indices[0]] for name, q in others.items()})
         return dimension_of_unit(quantity.unit, {name: q.symbol for name, q in others.items()})

@@ -16,6 +16,8 @@ from typing import Any
 
 from sympy import Add, Basic, Expr, Integral, Mul, Pow, Rel, Sum, Symbol
 
+from .vocabulary import NO_WORDS, Vocabulary
+
 __all__ = ["Derivation", "Equation", "Erratum", "Kind", "Ledger", "Step", "evaluated"]
 
 
@@ -213,6 +215,8 @@ class Ledger:
 
     entries: tuple[Equation | Derivation, ...]
     checks: tuple[Callable[[Ledger], Erratum | None], ...] = ()
+    vocabulary: Vocabulary = NO_WORDS
+    """What its symbols mean, how they are printed and where they are sampled."""
 
     def equations(self) -> Iterator[Equation]:
         """All numbered equations, in order."""

@@ -13,12 +13,12 @@ from typing import Any
 import mpmath
 from sympy import And, Expr, Indexed, Integer, Piecewise, Symbol, expand
 
-from . import symbols
 from .dimensions import Dimensions, dimension_of_unit, power, product
 from .equation import Equation, Erratum, Kind, Ledger
 from .evaluation import UNDEFINED, Program, is_real
 from .sampling import AGREES, DIGITS, Space, said, short
-from .text import text
+from .text import Writer
+from .vocabulary import Quantity, Vocabulary
 
 __all__ = [
     "Check",
@@ -53,12 +53,14 @@ def _listed(names: Iterable[str]) -> str:
     return f"{', '.join(most)} and {last}" if most else last
 
 
-def _values(expressions: list[Any], seed: str) -> Iterator[tuple[dict[str, str], list[Any]]]:
+def _values(
+    expressions: list[Any], seed: str, vocabulary: Vocabulary
+) -> Iterator[tuple[dict[str, str], list[Any]]]:
     """Yield seeded points of the symbols' spans, with the expressions' values there."""
     cells = {cell for expression in expressions for cell in expression.atoms(Indexed)}
     flat = {cell: Symbol(str(cell), **cell.base.label.assumptions0) for cell in cells}
     plain = [expression.xreplace(flat) for expression in expressions]
-    space = Space(plain, {symbol: cell for cell, symbol in flat.items()})
+    space = Space(plain, {symbol: cell for cell, symbol in flat.items()}, vocabulary)
     with mpmath.workdps(DIGITS):
         program = Program(space.symbols)
         group = program.add(plain)
@@ -79,9 +81,12 @@ def check_overlap(equation: Equation) -> Check:
     """
 
     def check(ledger: Ledger) -> Erratum | None:
+        text = Writer(ledger.vocabulary).text
         law = next(side for side in equation.members if isinstance(side, Piecewise))
         (first, when_first), (second, when_second) = law.args[:2]
-        for point, (a, b, both) in _values([first, second, And(when_first, when_second)], equation.label):
+        for point, (a, b, both) in _values(
+            [first, second, And(when_first, when_second)], equation.label, ledger.vocabulary
+        ):
             if both and abs(a - b) > AGREES * max(abs(a), abs(b)):
                 return Erratum(
                     equation.label,
@@ -103,6 +108,7 @@ def check_range(equation: Equation, scale: int, symbol: Symbol, known: tuple[str
     """
 
     def check(ledger: Ledger) -> Erratum | None:
+        text = Writer(ledger.vocabulary).text
         low_side, high_side = equation.members[0].args
         low, high = scale * low_side.lhs, scale * high_side.rhs
         name, known_low, known_high = known
@@ -127,9 +133,10 @@ def check_count(group: tuple[Equation, ...], unknowns: tuple[Expr, ...], claimed
 
     Kind ``count``.
     """
-    k = symbols.k
+    (k,) = set().union(*(count.free_symbols for count in claimed))
 
     def check(ledger: Ledger) -> Erratum | None:
+        text = Writer(ledger.vocabulary).text
         equations = len(group) * k
         present = [u for u in unknowns if any(side.has(u) for equation in group for side in equation.sides)]
         counted = sum(k if u.has(k) else 1 for u in present)
@@ -154,12 +161,15 @@ def check_spurious(equation: Equation, solve_for: Expr, approach: Equation, cond
     """
 
     def check(ledger: Ledger) -> Erratum | None:
+        text = Writer(ledger.vocabulary).text
         if any(expand(stated.gts - stated.lts - condition) == 0 for stated in equation.conditions):
             return None
         residual = equation.sides[0] - equation.sides[1]
         root = -residual.xreplace({solve_for: Integer(0)}) / residual.diff(solve_for)
         depth_there = approach.value.xreplace({solve_for: root})
-        for point, (value, depth, margin) in _values([root, depth_there, condition], equation.label):
+        for point, (value, depth, margin) in _values(
+            [root, depth_there, condition], equation.label, ledger.vocabulary
+        ):
             if value > 0 and depth < 0 and margin < 0:
                 return Erratum(
                     equation.label,
@@ -182,6 +192,7 @@ def check_determined(number: str, unknowns: tuple[Expr, ...]) -> Check:
     """
 
     def check(ledger: Ledger) -> Erratum | None:
+        text = Writer(ledger.vocabulary).text
         lines = [equation for equation in ledger.equations() if equation.number == number]
         left = [(line.printed or line.members)[0] for line in lines]
         missing = [u for u in unknowns if u not in left]
@@ -213,6 +224,7 @@ def check_citation(citation: Citation) -> Check:
     """
 
     def check(ledger: Ledger) -> Erratum | None:
+        text = Writer(ledger.vocabulary).text
         lines = [equation for equation in ledger.equations() if equation.number == citation.number]
         if any(side.has(citation.quantity) for line in lines for side in line.sides):
             return None
@@ -241,6 +253,7 @@ def check_whose(law: Equation, symbol: Symbol, where: str, said: str) -> Check:
     phases = ("compression", "restitution")
 
     def check(ledger: Ledger) -> Erratum | None:
+        text = Writer(ledger.vocabulary).text
         branches = next(side for side in law.members if isinstance(side, Piecewise)).args
         laws = dict(zip(phases, (body for body, _ in branches), strict=False))
         holders = [phase for phase, body in laws.items() if body.has(symbol)]
@@ -264,9 +277,12 @@ def check_units(law: Equation, printed: Mapping[Symbol, str | None]) -> Check:
     """
 
     def check(ledger: Ledger) -> Erratum | None:
+        text = Writer(ledger.vocabulary).text
         branches = next(side for side in law.members if isinstance(side, Piecewise)).args
-        dimensions = Dimensions()
-        force = dimension_of_unit(symbols.TABLE["F"].unit)
+        of_force, of_approach = (
+            _quantity(s, ledger.vocabulary) for s in (law.members[0], *law.members[0].args)
+        )
+        dimensions, force = Dimensions(ledger.vocabulary), dimension_of_unit(of_force.unit)
         found = {}
         for symbol in printed:
             (body,) = (body for body, _ in branches if body.has(symbol))
@@ -278,7 +294,7 @@ def check_units(law: Equation, printed: Mapping[Symbol, str | None]) -> Check:
         ]
         if not wrong:
             return None
-        units = {s: _unit(s, found[s]) for s in wrong}
+        units = {s: _unit(s, found[s], ledger.vocabulary) for s in wrong}
         prints = [f"{text(s)} in {printed[s] or 'no unit'}" for s in wrong]
         return Erratum(
             law.label,
@@ -286,18 +302,24 @@ def check_units(law: Equation, printed: Mapping[Symbol, str | None]) -> Check:
             f"By {law.label} {_listed(f'{text(s)} has the unit {unit}' for s, unit in units.items())}"
             + (", so that they are not of one kind" if len(set(units.values())) > 1 else "")
             + f". The source prints {_listed(prints)}.",
-            f"F is in {symbols.TABLE['F'].unit} and x is in {symbols.TABLE['x'].unit}",
+            " and ".join(f"{text(q.symbol)} is in {q.unit}" for q in (of_force, of_approach)),
         )
 
     return check
 
 
-def _unit(symbol: Symbol, found: Any) -> str:
-    """The table's name for a dimension that was found; the table must agree with the law."""
-    quantity = symbols.find(symbol)
-    if quantity is None or Dimensions().of_cell(symbol) != found:
-        raise ValueError(f"the table of symbols gives {symbol} another unit than its law does")
-    return quantity.unit
+def _unit(symbol: Symbol, found: Any, vocabulary: Vocabulary) -> str:
+    """The vocabulary's name for a dimension that was found; it must agree with the law."""
+    if Dimensions(vocabulary).of_cell(symbol) != found:
+        raise ValueError(f"the vocabulary gives {symbol} another unit than its law does")
+    return _quantity(symbol, vocabulary).unit
+
+
+def _quantity(symbol: Expr, vocabulary: Vocabulary) -> Quantity:
+    quantity = vocabulary.find(symbol)
+    if quantity is None:
+        raise ValueError(f"the vocabulary does not say what {symbol} is")
+    return quantity
 
 
 def check_missing(where: str, formulas: tuple[Equation, ...], printed: tuple[Symbol, ...]) -> Check:
@@ -307,6 +329,7 @@ def check_missing(where: str, formulas: tuple[Equation, ...], printed: tuple[Sym
     """
 
     def check(ledger: Ledger) -> Erratum | None:
+        text = Writer(ledger.vocabulary).text
         known = set(printed)
         needs: dict[Symbol, list[str]] = {}
         for formula in formulas:

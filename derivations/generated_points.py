@@ -6,7 +6,7 @@ from sympy import Max, Sum, Symbol
 from sympy.core.parameters import evaluate
 
 from .equation import Equation, Kind
-from .symbols import TABLE, p, plain, s
+from .symbols import VOCABULARY, p, s
 
 __all__ = [
     "ENTRIES",
@@ -22,8 +22,8 @@ __all__ = [
     "x_top",
 ]
 
-XM, ALPHA, CC, XTOP = (TABLE[name] for name in ("x_m", "alpha", "C", "x_top"))
-x, x_top, N, x_ref, F_ref = plain("x x_top N x_ref F_ref")
+XM, ALPHA, CC, XTOP = (VOCABULARY[name] for name in ("x_m", "alpha", "C", "x_top"))
+x, x_top, N, x_ref, F_ref = VOCABULARY.plain("x x_top N x_ref F_ref")
 n_pairs = Symbol("n_pairs", integer=True, positive=True)
 
 with evaluate(False):

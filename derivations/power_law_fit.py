@@ -11,7 +11,7 @@ from sympy import Expr, Integer, Sum, Symbol, diff, exp, log
 from sympy.core.parameters import evaluate
 
 from .equation import Derivation, Equation, Kind, Step
-from .symbols import TABLE, q
+from .symbols import VOCABULARY, q
 
 __all__ = [
     "ENTRIES",
@@ -27,10 +27,8 @@ __all__ = [
     "size",
 ]
 
-X, Y, x, F = (TABLE[name] for name in ("X", "Y", "x", "F"))
-a, b, Xmean, Ymean, C, alpha, x_ref, F_ref = (
-    TABLE[name].symbol for name in ("a", "b", "Xmean", "Ymean", "C", "alpha", "x_ref", "F_ref")
-)
+X, Y, x, F = (VOCABULARY[name] for name in ("X", "Y", "x", "F"))
+a, b, Xmean, Ymean, C, alpha, x_ref, F_ref = VOCABULARY.plain("a b Xmean Ymean C alpha x_ref F_ref")
 size = Symbol("n_points", integer=True, positive=True)
 """How many points there are; the sums run over all of them."""
 _all = (q, 1, size)

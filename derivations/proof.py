@@ -17,6 +17,7 @@ from .evaluation import NotEvaluable
 from .sampling import DIGITS, POINTS, examine, said
 from .system import Refused, prepare
 from .text import text
+from .vocabulary import NO_WORDS, Vocabulary
 
 __all__ = ["DIGITS", "POINTS", "Proof", "Status", "StepProof", "check_step", "prove", "prove_equation"]
 
@@ -80,14 +81,22 @@ class Proof:
 
 
 @lru_cache(maxsize=256)
-def check_step(step: Step) -> StepProof:
+def check_step(step: Step, vocabulary: Vocabulary = NO_WORDS) -> StepProof:
     """Decide one step.
 
+    Parameters
+    ----------
+    step : Step
+    vocabulary : Vocabulary
+        Of its ledger: where its symbols are sampled, and what they are called.
+
+    Notes
+    -----
     The same claim always gets the same points: the seed is its label. The numbers come first, since a
     counterexample is found sooner than a residual that does not vanish.
     """
     try:
-        system = prepare(step)
+        system = prepare(step, vocabulary)
         outcome = examine(system, step.claim.label)
         if outcome.counterexample is not None:
             found = StepProof(step, Status.REFUTED, outcome.points, outcome.worst, False)
@@ -101,7 +110,7 @@ def check_step(step: Step) -> StepProof:
     return StepProof(step, Status.PROVED, outcome.points, outcome.worst, True)
 
 
-def _check_print(step: Step) -> tuple[Status, str]:
+def _check_print(step: Step, vocabulary: Vocabulary) -> tuple[Status, str]:
     """Compare the print of a claim with its meaning, which was proved; the remark says how it differs."""
     claim = step.claim
     assert claim.printed is not None
@@ -110,10 +119,10 @@ def _check_print(step: Step) -> tuple[Status, str]:
     )
     if claim.defines is not None and not any(side.has(claim.defines) for side in as_printed.sides):
         return Status.CORRECTED, (
-            f"as printed, {claim.label} does not contain {text(claim.defines)}, which it should determine: "
-            f"it repeats {text(as_printed.sides[0])}"
+            f"as printed, {claim.label} does not contain {text(claim.defines, vocabulary)}, which it should "
+            f"determine: it repeats {text(as_printed.sides[0], vocabulary)}"
         )
-    found = check_step(replace(step, claim=as_printed))
+    found = check_step(replace(step, claim=as_printed), vocabulary)
     match found.status:
         case Status.PROVED:
             return Status.PROVED, ""
@@ -132,7 +141,11 @@ def _is_loose(premise: Equation, reached: set[Equation]) -> bool:
     return origin not in reached or not premise.follows_from_origin
 
 
-def prove_equation(entry: Equation | Derivation, known: frozenset[Equation] = frozenset()) -> Proof:
+def prove_equation(
+    entry: Equation | Derivation,
+    known: frozenset[Equation] = frozenset(),
+    vocabulary: Vocabulary = NO_WORDS,
+) -> Proof:
     """Decide one entry of a ledger, given the equations that stand before it.
 
     Parameters
@@ -140,6 +153,8 @@ def prove_equation(entry: Equation | Derivation, known: frozenset[Equation] = fr
     entry : Equation or Derivation
     known : frozenset of Equation
         What a step may rest on: the entries before this one that passed.
+    vocabulary : Vocabulary
+        Of the ledger.
     """
     if isinstance(entry, Equation):
         if entry.kind is Kind.CLAIM:
@@ -148,7 +163,7 @@ def prove_equation(entry: Equation | Derivation, known: frozenset[Equation] = fr
     steps: list[StepProof] = []
     reached = set(known)
     for step in entry.steps:
-        found = check_step(step)
+        found = check_step(step, vocabulary)
         loose = [premise.label for premise in step.premises if _is_loose(premise, reached)]
         if loose and found.status.passes:
             found = replace(
@@ -163,7 +178,7 @@ def prove_equation(entry: Equation | Derivation, known: frozenset[Equation] = fr
             return Proof(entry.claim, verdict, tuple(steps))
     status, remark = Status.PROVED, ""
     if entry.claim.printed is not None:
-        status, remark = _check_print(entry.steps[-1])
+        status, remark = _check_print(entry.steps[-1], vocabulary)
     return Proof(entry.claim, status, tuple(steps), remark)
 
 
@@ -181,7 +196,7 @@ def prove(ledger: Ledger, begin: Callable[[Equation], None] | None = None) -> tu
     for entry in ledger.entries:
         if begin is not None:
             begin(entry.claim if isinstance(entry, Derivation) else entry)
-        proof = prove_equation(entry, frozenset(known))
+        proof = prove_equation(entry, frozenset(known), ledger.vocabulary)
         proofs.append(proof)
         if proof.status.passes:
             known.add(proof.equation)

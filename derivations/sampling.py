@@ -11,10 +11,10 @@ from typing import Any
 import mpmath
 from sympy import Abs, Add, Expr, Indexed, Integral, Mul, Pow, Sum, Symbol
 
-from . import symbols
 from .evaluation import UNDEFINED, Program, is_real
 from .system import Refused, System
 from .text import text
+from .vocabulary import Vocabulary
 
 __all__ = ["DIGITS", "POINTS", "Outcome", "Space", "examine", "short"]
 
@@ -49,12 +49,16 @@ class Space:
         What is to be evaluated.
     names : mapping
         The cell or the quantity that a symbol stands for, where it is not its own name.
+    vocabulary : Vocabulary
+        What the symbols are called, and in which interval each is drawn.
     fixed : collection of Expr
         Symbols that are not drawn.
     """
 
-    def __init__(self, expressions: Any, names: Mapping[Any, Any], fixed: Any = ()) -> None:
-        self.names = names
+    def __init__(
+        self, expressions: Any, names: Mapping[Any, Any], vocabulary: Vocabulary, fixed: Any = ()
+    ) -> None:
+        self.names, self.vocabulary = names, vocabulary
         sums = [total for e in expressions for total in e.atoms(Sum)]
         columns = {cell.base.label for e in expressions for cell in e.atoms(Indexed)}
         sizes = {
@@ -72,7 +76,7 @@ class Space:
 
     def name(self, symbol: Any) -> str:
         """How a reader knows the symbol."""
-        return text(self.names.get(symbol, symbol))
+        return text(self.names.get(symbol, symbol), self.vocabulary)
 
     def points(self, seed: str, count: int) -> Iterator[list[Any]]:
         """Draw points; the same seed always gives the same ones."""
@@ -94,9 +98,9 @@ class Space:
     def _span(self, symbol: Any) -> tuple[Any, Any, bool]:
         """Where the interval of a symbol begins, how wide it is, and whether only whole numbers count.
 
-        It is the table's, where the table's symbol is no freer than this one.
+        It is the vocabulary's, where its symbol is no freer than this one.
         """
-        quantity = symbols.find(self.names.get(symbol, symbol))
+        quantity = self.vocabulary.find(self.names.get(symbol, symbol))
         if quantity is not None and (quantity.positive or not symbol.is_positive):
             low, high = quantity.span
         elif symbol.is_integer:
@@ -126,7 +130,7 @@ class _Trial:
 
     def __init__(self, system: System) -> None:
         self.unknowns = [unknown for unknown, _ in system.chain]
-        self.space = Space(system.expressions, system.names, self.unknowns)
+        self.space = Space(system.expressions, system.names, system.vocabulary, self.unknowns)
         self.labels = [label for label, _, _ in system.premises]
         self.program = program = Program(self.space.symbols)
         self.found = [program.define(unknown, solved.value) for unknown, solved in system.chain]

@@ -14,7 +14,7 @@ from . import alpha_root, errata, generated_points, power_law_fit
 from .alpha_root import Lambda, log_speeds, logarithm, reciprocal, root_form, starting_value, turning, u
 from .equation import Derivation, Equation, Kind, Ledger, Step
 from .generated_points import F_scale, N, abscissa, mean, n_pairs, top, x_scale, x_top
-from .symbols import TABLE, F_of, k, plain
+from .symbols import VOCABULARY, F_of, k
 
 # fmt: off
 __all__ = [  # noqa: RUF022 - symbols, the equations in their order, what other modules add, the ledger
@@ -30,10 +30,12 @@ __all__ = [  # noqa: RUF022 - symbols, the equations in their order, what other 
 ]
 # fmt: on
 
-V, E, XP, XM, CP = (TABLE[name] for name in ("v", "e", "x_p", "x_m", "Cprime"))
-v, e, x_p, x_m, Cprime = plain("v e x_p x_m Cprime")
-C, alpha, beta, m_red, m_1, m_2, mu, x, d, rho, z, n = plain("C alpha beta m_red m_1 m_2 mu x d rho z n")
-v_n1, v_n2 = plain("v_n1 v_n2")
+V, E, XP, XM, CP = (VOCABULARY[name] for name in ("v", "e", "x_p", "x_m", "Cprime"))
+v, e, x_p, x_m, Cprime = VOCABULARY.plain("v e x_p x_m Cprime")
+C, alpha, beta, m_red, m_1, m_2, mu, x, d, rho, z, n = VOCABULARY.plain(
+    "C alpha beta m_red m_1 m_2 mu x d rho z n"
+)
+v_n1, v_n2 = VOCABULARY.plain("v_n1 v_n2")
 F = F_of(x)
 half = Rational(1, 2)
 
@@ -397,4 +399,5 @@ LEDGER = Ledger(
         errata.check_missing("Table 3", (x_m_of_test, Cprime_of_test), printed=(alpha, beta, v, e, x_p)),
         errata.check_whose(eq3, alpha, "conclusions", said="restitution"),
     ),
+    vocabulary=VOCABULARY,
 )

@@ -1,67 +1,14 @@
-"""The one table of symbols: what each means, its unit, how it is printed, where it is sampled.
-
-A quantity is written in two ways: plain (``x_m.symbol``) and for test number k (``x_m[k]``). Both carry
-the same assumptions, so the algebra of a claim for all k is the algebra of the claim for one.
-"""
+"""The vocabulary of the soft-impact paper, and the running numbers of its equations."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
+from sympy import Function, Symbol
 
-from sympy import Expr, Function, Indexed, IndexedBase, Symbol
+from .vocabulary import Quantity, Vocabulary
 
-__all__ = ["TABLE", "F_of", "Quantity", "find", "k", "p", "plain", "q", "s"]
+__all__ = ["VOCABULARY", "F_of", "k", "p", "q", "s"]
 
-
-@dataclass(frozen=True)
-class Quantity:
-    """A physical quantity of the derivations.
-
-    Parameters
-    ----------
-    name : str
-        The name in the field and of its cell, ``x_m``.
-    meaning : str
-        What it is, in words.
-    unit : str
-        SI unit as text; an exponent may be a symbol's name (``N/m^alpha``).
-    latex : str
-        How the source prints it; ``%s`` is where a subscript goes (nothing, or the test's number).
-    span : tuple of float
-        The interval in which proofs sample it, in SI.
-    """
-
-    name: str
-    meaning: str
-    unit: str
-    latex: str
-    span: tuple[float, float] = (0.5, 2.0)
-    positive: bool = True
-    """Whether it is positive on the domain of every model here (a logarithm is not)."""
-    text: str = ""
-    """How a terminal shows it; ``%s`` is where a subscript goes. Left out: the name, then the subscript."""
-
-    @cached_property
-    def symbol(self) -> Symbol:
-        """The plain symbol, with its assumptions."""
-        return Symbol(self.name, positive=True) if self.positive else Symbol(self.name, real=True)
-
-    @cached_property
-    def base(self) -> IndexedBase:
-        """The indexed symbol, with the same assumptions."""
-        return IndexedBase(self.symbol)
-
-    def __getitem__(self, index: Expr | int) -> Indexed:
-        """The quantity of one test (or pair, or point)."""
-        return self.base[index]
-
-
-def _table(*quantities: Quantity) -> dict[str, Quantity]:
-    return {quantity.name: quantity for quantity in quantities}
-
-
-TABLE = _table(
+VOCABULARY = Vocabulary(
     Quantity(
         "v",
         "impact speed, the normal relative velocity before impact",
@@ -134,11 +81,6 @@ TABLE = _table(
 )
 
 
-def plain(names: str) -> tuple[Symbol, ...]:
-    """The plain symbols of some quantities of the table, by their names with spaces between."""
-    return tuple(TABLE[name].symbol for name in names.split())
-
-
 k = Symbol("k", integer=True, positive=True)
 p = Symbol("p", integer=True, positive=True)
 q = Symbol("q", integer=True, positive=True)
@@ -147,9 +89,3 @@ s = Symbol("s", integer=True, positive=True)
 
 F_of = Function("F")
 """The force as an unknown function of the approach, before a law is put in."""
-
-
-def find(symbol: Expr) -> Quantity | None:
-    """The table's entry of a plain or an indexed symbol; None if it is not of the table."""
-    name = str(symbol.base.label) if isinstance(symbol, Indexed) else str(symbol)
-    return TABLE.get(name)

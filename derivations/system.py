@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -12,9 +12,13 @@ from sympy.core.function import AppliedUndef
 
 from .algebra import Solved, definite, settle, solve_for, vanishes
 from .equation import Equation, Step
-from .text import text
+from .text import Writer
+from .vocabulary import Vocabulary
 
 __all__ = ["Refused", "System", "prepare"]
+
+Told = Callable[[Any], str]
+"""How an expression is written in the words of the ledger."""
 
 
 class Refused(Exception):
@@ -41,6 +45,8 @@ class System:
         Factor and both sides of the premise that is not solved: factor times premise is the claim.
     names : dict
         What each plain symbol stands for: a cell, or the base of a column under a sum.
+    vocabulary : Vocabulary
+        What the symbols mean.
     """
 
     claim: tuple[Expr, ...]
@@ -50,6 +56,7 @@ class System:
     conditions: tuple[Rel, ...]
     multiplied: tuple[Expr, Expr, Expr] | None
     names: dict[Any, Any]
+    vocabulary: Vocabulary
 
     @property
     def expressions(self) -> tuple[Any, ...]:
@@ -67,16 +74,23 @@ class System:
         return all(vanishes(a - b) for a, b in pairwise(sides))
 
 
-def prepare(step: Step) -> System:
+def prepare(step: Step, vocabulary: Vocabulary) -> System:
     """Solve the premises of a step in turn.
+
+    Parameters
+    ----------
+    step : Step
+    vocabulary : Vocabulary
+        Of the ledger that it belongs to.
 
     Raises
     ------
     Refused
         Where the step is not of the form that can be decided, or a premise could not be solved.
     """
-    _check_form(step)
-    functions = _functions(step)
+    told = Writer(vocabulary).text
+    _check_form(step, told)
+    functions = _functions(step, told)
     pairs = [
         (premise, unknown)
         for premise, unknown in zip(step.premises, step.eliminate, strict=False)
@@ -87,7 +101,7 @@ def prepare(step: Step) -> System:
     given = [side.xreplace(functions) for equation in equations for side in equation.sides]
     given += [condition for equation in (*equations, *step.premises) for condition in equation.conditions]
     given += [unknown for unknown in step.eliminate if unknown not in functions]
-    names, flat = _plain_names([*given, *([step.multiplier] if step.multiplier else [])])
+    names, flat = _plain_names([*given, *([step.multiplier] if step.multiplier else [])], told)
 
     def plain(expression: Any) -> Any:
         return expression.xreplace(functions).xreplace(flat)
@@ -102,7 +116,7 @@ def prepare(step: Step) -> System:
         left, right = (settle(side, solution) for side in ends(premise))
         solved = solve_for(unknown, left, right)
         if solved is None:
-            raise Refused(f"{premise.label} was not seen to have one solution for {text(cell)}")
+            raise Refused(f"{premise.label} was not seen to have one solution for {told(cell)}")
         solution = {known: value.xreplace({unknown: solved.value}) for known, value in solution.items()}
         solution[unknown] = solved.value
         chain.insert(0, (unknown, solved))
@@ -111,14 +125,14 @@ def prepare(step: Step) -> System:
         for condition in premise.conditions:
             if plain(condition) not in conditions and not _is_implied(plain(condition), solution):
                 raise Refused(
-                    f"{premise.label} holds only where {text(condition)}, "
+                    f"{premise.label} holds only where {told(condition)}, "
                     f"which {step.claim.label} does not say"
                 )
     multiplied = None
     if step.multiplier is not None:
         multiplied = (plain(step.multiplier), *ends(unsolved[0]))
         if not definite(multiplied[0]):
-            raise Refused(f"the factor {text(step.multiplier)} was not seen to be of one sign")
+            raise Refused(f"the factor {told(step.multiplier)} was not seen to be of one sign")
     return System(
         claim=tuple(plain(side) for side in step.claim.sides),
         premises=tuple((premise.label, *ends(premise)) for premise, _ in pairs),
@@ -127,10 +141,11 @@ def prepare(step: Step) -> System:
         conditions=conditions,
         multiplied=multiplied,
         names=names,
+        vocabulary=vocabulary,
     )
 
 
-def _check_form(step: Step) -> None:
+def _check_form(step: Step, told: Told) -> None:
     """Refuse what is no chain of equations, or does not say what each premise is for."""
     for equation in (step.claim, *step.premises):
         if len(equation.sides) < 2 or not all(isinstance(side, Expr) for side in equation.sides):
@@ -139,7 +154,7 @@ def _check_form(step: Step) -> None:
             raise Refused(f"{equation.label} holds a rounded number")
     premises, unknowns = len(step.premises), len(step.eliminate)
     if unknowns > premises:
-        raise Refused(f"no premise is left to be solved for {text(step.eliminate[premises])}")
+        raise Refused(f"no premise is left to be solved for {told(step.eliminate[premises])}")
     if step.multiplier is None and unknowns < premises:
         loose = step.premises[unknowns]
         raise Refused(f"{loose.label} is a premise, but no step says what it is solved for")
@@ -147,27 +162,27 @@ def _check_form(step: Step) -> None:
         raise Refused("a factor turns one premise into an equation of two sides")
 
 
-def _functions(step: Step) -> dict[Expr, Expr]:
+def _functions(step: Step, told: Told) -> dict[Expr, Expr]:
     """Laws for unknown functions: F(x) = ... holds for every x, so it may be put under an integral."""
     laws: dict[Expr, Expr] = {}
     for premise, unknown in zip(step.premises, step.eliminate, strict=False):
         if isinstance(unknown, AppliedUndef):
             if premise.sides[0] != unknown or premise.sides[-1].has(unknown.func) or unknown in laws:
-                raise Refused(f"{premise.label} does not give {text(unknown)} in closed form")
+                raise Refused(f"{premise.label} does not give {told(unknown)} in closed form")
             laws[unknown] = premise.sides[-1]
     return laws
 
 
-def _plain_names(expressions: list[Any]) -> tuple[dict[Any, Any], dict[Indexed, Expr]]:
+def _plain_names(expressions: list[Any], told: Told) -> tuple[dict[Any, Any], dict[Indexed, Expr]]:
     """Plain symbols for cells: algebra on them is faster, and no cell shares its name with a column."""
     limits = [limit for e in expressions for loop in e.atoms(Sum, Integral) for limit in loop.limits]
     bound = {limit[0] for limit in limits}
     free = {symbol for expression in expressions for symbol in expression.free_symbols}
     for variable in sorted(bound & free, key=str):
-        raise Refused(f"{text(variable)} runs in one expression and is fixed in another")
+        raise Refused(f"{told(variable)} runs in one expression and is fixed in another")
     for variable, *places in limits:
         if variable.is_positive and not all(_may_start(place, variable) for place in places):
-            raise Refused(f"{text(variable)} is positive, but its limits are not")
+            raise Refused(f"{told(variable)} is positive, but its limits are not")
     names: dict[Any, Any] = {}
     flat: dict[Indexed, Expr] = {}
     for cell in {cell for expression in expressions for cell in expression.atoms(Indexed)}:

@@ -13,6 +13,7 @@ from sympy import Basic, Expr, Indexed, sstr
 
 from ..derivations import dimensions
 from ..derivations.dimensions import PURE, Dimension, DimensionError, Dimensions, text_of
+from ..derivations.vocabulary import NO_WORDS
 from .sheet import Column, Formula, Given, Root, Sheet, SheetError, name_of
 
 __all__ = ["Dimension", "UnitError", "check", "dimension_of_unit"]
@@ -52,6 +53,7 @@ class _Checker(Dimensions):
     """Finds the dimension of an expression; remembers which column it works for, for its messages."""
 
     def __init__(self, sheet: Sheet, column: Column) -> None:
+        super().__init__(NO_WORDS)  # the columns say what their cells are
         self.sheet, self.column = sheet, column
 
     def fail(self, expression: Basic, problem: str) -> UnitError:

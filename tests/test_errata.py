@@ -23,9 +23,9 @@ from loopsheet.derivations.errata import (
     check_whose,
 )
 from loopsheet.derivations.soft_impact import CP, LEDGER, XM, XP, C, Cprime, E, alpha, beta
-from loopsheet.derivations.symbols import TABLE, F_of, k
+from loopsheet.derivations.symbols import VOCABULARY, F_of, k
 
-x, x_m, x_p, n = (TABLE[name].symbol for name in ("x", "x_m", "x_p", "n"))
+x, x_m, x_p, n = (VOCABULARY[name].symbol for name in ("x", "x_m", "x_p", "n"))
 MARGIN = alpha + 1 - (beta + 1) * E[2] ** 2
 
 

@@ -23,12 +23,14 @@ from sympy import (
 from sympy.core.parameters import evaluate
 
 from loopsheet.derivations import soft_impact
-from loopsheet.derivations.symbols import TABLE, F_of, k, q
-from loopsheet.report.views.math import Printer, name_latex, with_index
+from loopsheet.derivations.symbols import VOCABULARY, F_of, k, q
+from loopsheet.report.views.math import Printer, latex_names, name_latex, with_index
 from loopsheet.report.views.typeset import TEXT_WIDTH, block, mathml, mathml_block, width
 
 a, b, c, x, y = symbols("a b c x y", positive=True)
-V, XM, CP, E = (TABLE[name] for name in ("v", "x_m", "Cprime", "e"))
+NAMES = latex_names(VOCABULARY)
+PRINTER = Printer(NAMES)
+V, XM, CP, E = (VOCABULARY[name] for name in ("v", "x_m", "Cprime", "e"))
 n = Symbol("n_points")
 
 with evaluate(False):
@@ -67,8 +69,8 @@ with evaluate(False):
         (XM[k], "x_{m_{k}}"),
         (XM[2] ** a, "x_{m_{2}}^{a}"),
         (CP[1], "C'_{1}"),
-        (TABLE["alpha"][1], r"\alpha_{1}"),
-        (TABLE["m_red"].symbol, r"m_{\mathrm{red}}"),
+        (VOCABULARY["alpha"][1], r"\alpha_{1}"),
+        (VOCABULARY["m_red"].symbol, r"m_{\mathrm{red}}"),
         (F_of(x), "F"),
         # functions
         (log(b / a), r"\ln\left(\frac{b}{a}\right)"),
@@ -95,7 +97,7 @@ with evaluate(False):
 
 @pytest.mark.parametrize(("expression", "latex"), CASES, ids=[latex for _, latex in CASES])
 def test_printed(expression: Expr, latex: str) -> None:
-    assert Printer().doprint(expression) == latex
+    assert PRINTER.doprint(expression) == latex
 
 
 def test_what_sympy_has_ordered_begins_with_a_positive_term_and_is_one_fraction() -> None:
@@ -125,7 +127,7 @@ def test_a_workbook_names_its_own_columns() -> None:
     ],
 )
 def test_names(name: str, index: str, latex: str) -> None:
-    assert name_latex(name, index=index) == latex
+    assert name_latex(name, NAMES, index) == latex
 
 
 def test_an_index_has_its_place_or_follows() -> None:
@@ -135,7 +137,7 @@ def test_an_index_has_its_place_or_follows() -> None:
 
 
 def test_equation_11_as_the_paper_prints_it() -> None:
-    assert block(Printer(), soft_impact.eq11.members).latex == (
+    assert block(PRINTER, soft_impact.eq11.members).latex == (
         r"\frac{\alpha + 1}{\beta + 1} + \frac{x_{p_{1}}}{x_{p_{2}}} "
         r"\left(e_{2}^{2} - \frac{\alpha + 1}{\beta + 1}\right) "
         r"\left(\frac{v'_{2}}{v'_{1}}\right)^{2/(\alpha + 1)} - e_{1}^{2} = 0"
@@ -143,14 +145,14 @@ def test_equation_11_as_the_paper_prints_it() -> None:
 
 
 def test_equation_12c_keeps_its_two_fractions() -> None:
-    assert block(Printer(), soft_impact.eq12c.members).latex == (
+    assert block(PRINTER, soft_impact.eq12c.members).latex == (
         r"C = \frac{m_{\mathrm{red}} v_{2}^{\prime 2}}{2} \frac{\alpha + 1}{x_{m_{2}}^{\alpha + 1}}"
     )
 
 
 def test_every_equation_of_the_ledger_has_latex_and_mathml() -> None:
     for equation in soft_impact.LEDGER.equations():
-        made = block(Printer(), equation.members)
+        made = block(PRINTER, equation.members)
         assert made.latex.count("{") == made.latex.count("}")
         page = mathml_block(made)
         assert page.startswith('<math display="block"')

@@ -11,10 +11,10 @@ from loopsheet.derivations import power_law_fit as fit
 from loopsheet.derivations.equation import Derivation, Equation, evaluated
 from loopsheet.derivations.evaluation import Program
 from loopsheet.derivations.proof import Status, check_step
-from loopsheet.derivations.symbols import TABLE
+from loopsheet.derivations.symbols import VOCABULARY
 
-x, F = (TABLE[name].symbol for name in ("x", "F"))
-x_ref, F_ref, alpha, C = (TABLE[name].symbol for name in ("x_ref", "F_ref", "alpha", "C"))
+x, F = (VOCABULARY[name].symbol for name in ("x", "F"))
+x_ref, F_ref, alpha, C = (VOCABULARY[name].symbol for name in ("x_ref", "F_ref", "alpha", "C"))
 
 
 def points(seed: int, scatter: float) -> tuple[list[float], list[float]]:
@@ -27,7 +27,8 @@ def compute(equation: Equation, **values: object) -> mpmath.mpf:
     """The value of a formula; columns are lists that begin with row 1."""
     expression = evaluated(equation.members[-1] if equation.members[-1] != 0 else equation.members[0])
     given = [*values]
-    symbols = {"n_points": fit.size, **{name: TABLE[name].symbol for name in given if name in TABLE}}
+    known = (name for name in given if name in VOCABULARY)
+    symbols = {"n_points": fit.size, **{name: VOCABULARY[name].symbol for name in known}}
     program = Program([symbols[name] for name in given])
     group = program.add([expression])
     program.start(

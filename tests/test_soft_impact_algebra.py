@@ -419,7 +419,8 @@ from loopsheet.derivations.proof import prove
 from loopsheet.derivations.soft_impact import LEDGER
 from loopsheet.derivations.text import text_of_equation
 for proof in prove(LEDGER):
-    print(proof.equation.label, proof.status.value, text_of_equation(proof.equation), proof.remark)
+    print(proof.equation.label, proof.status.value, proof.remark)
+    print(text_of_equation(proof.equation, LEDGER.vocabulary))
     for found in proof.steps:
         print(found.sentence, found.worst)
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The table of symbols, the dimensions of its units, and how a terminal shows what is written in it."""
+"""The vocabulary of the paper, the dimensions of its units, and how a terminal shows what is written."""
 
 import pytest
 from sympy import (
@@ -27,54 +27,54 @@ from loopsheet.derivations import power_law_fit
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.dimensions import DimensionError, Dimensions, dimension_of_unit, text_of
 from loopsheet.derivations.soft_impact import LEDGER
-from loopsheet.derivations.symbols import TABLE, find, k, plain
+from loopsheet.derivations.symbols import VOCABULARY, k
 from loopsheet.derivations.text import text, text_of_equation
 
-# --- the table --------------------------------------------------------------------------------------------
+# --- the vocabulary ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", TABLE)
+@pytest.mark.parametrize("name", VOCABULARY)
 def test_plain_and_indexed_symbols_agree(name: str) -> None:
-    quantity = TABLE[name]
+    quantity = VOCABULARY[name]
     assert quantity.name == name
     assert str(quantity.symbol) == name
     assert quantity[k].base.label == quantity.symbol
     assert bool(quantity[k].is_positive) is bool(quantity.symbol.is_positive) is quantity.positive
     assert quantity.symbol.is_real
-    assert find(quantity.symbol) is find(quantity[1]) is quantity
+    assert VOCABULARY.find(quantity.symbol) is VOCABULARY.find(quantity[1]) is quantity
 
 
-@pytest.mark.parametrize("name", TABLE)
+@pytest.mark.parametrize("name", VOCABULARY)
 def test_every_quantity_is_complete(name: str) -> None:
-    quantity = TABLE[name]
+    quantity = VOCABULARY[name]
     assert quantity.meaning
     assert quantity.latex.count("%s") == 1
     assert quantity.text.count("%s") == (1 if quantity.text else 0)
     low, high = quantity.span
     assert low < high
     assert low > 0 or not quantity.positive
-    Dimensions().of_cell(quantity.symbol)  # its unit can be read
+    Dimensions(VOCABULARY).of_cell(quantity.symbol)  # its unit can be read
 
 
-def test_what_is_not_of_the_table() -> None:
-    assert find(Symbol("nothing")) is None
-    assert plain("alpha x_m") == (model.alpha, model.x_m)
+def test_what_the_vocabulary_does_not_say() -> None:
+    assert VOCABULARY.find(Symbol("nothing")) is None
+    assert VOCABULARY.plain("alpha x_m") == (model.alpha, model.x_m)
 
 
-def test_every_symbol_of_the_ledger_is_of_the_table() -> None:
+def test_the_vocabulary_says_every_symbol_of_the_ledger() -> None:
     counts = {"n_points", "n_pairs", "alpha_mean", "k", "p", "q", "s"}
     for equation in LEDGER.equations():
         for side in equation.sides:
             for symbol in side.free_symbols:
                 name = symbol.base.label if isinstance(symbol, Indexed) else symbol
-                assert find(symbol) is not None or str(name) in counts, equation.label
+                assert VOCABULARY.find(symbol) is not None or str(name) in counts, equation.label
 
 
 # --- dimensions -------------------------------------------------------------------------------------------
 
 
 def test_every_equation_of_the_ledger_is_of_one_dimension() -> None:
-    dimensions = Dimensions()
+    dimensions = Dimensions(VOCABULARY)
     for equation in LEDGER.equations():
         if equation.label == "(2)":  # Lankarani's C is in N/m^(3/2)
             with pytest.raises(DimensionError, match="cannot choose between"):
@@ -87,11 +87,11 @@ def test_every_equation_of_the_ledger_is_of_one_dimension() -> None:
 
 
 def test_a_wrong_exponent_is_of_another_dimension() -> None:
-    dimensions = Dimensions()
-    C, alpha, x_m = plain("C alpha x_m")
+    dimensions = Dimensions(VOCABULARY)
+    C, alpha, x_m = VOCABULARY.plain("C alpha x_m")
     assert dimensions.of(C * x_m**alpha) == dimension_of_unit("N")
     assert dimensions.of(C * x_m ** (alpha + 1)) == dimension_of_unit("J")
-    assert dimensions.of(Integral(C * x_m**alpha, (x_m, 0, TABLE["x"].symbol))) == dimension_of_unit("J")
+    assert dimensions.of(Integral(C * x_m**alpha, (x_m, 0, VOCABULARY["x"].symbol))) == dimension_of_unit("J")
     assert dimensions.of(C) == {**dimension_of_unit("N"), "m": 1 - alpha}
 
 
@@ -111,7 +111,7 @@ def test_a_wrong_exponent_is_of_another_dimension() -> None:
 )
 def test_what_has_no_dimension(expression: Expr, problem: str) -> None:
     with pytest.raises(DimensionError, match=problem.replace("^", r"\^")):
-        Dimensions().of(expression)
+        Dimensions(VOCABULARY).of(expression)
 
 
 @pytest.mark.parametrize(
@@ -167,7 +167,7 @@ with evaluate(False):
 
 @pytest.mark.parametrize(("expression", "written"), WRITTEN, ids=[written for _, written in WRITTEN])
 def test_text(expression: Expr, written: str) -> None:
-    assert text(expression) == written
+    assert text(expression, VOCABULARY) == written
 
 
 @pytest.mark.parametrize(
@@ -188,13 +188,13 @@ def test_text_can_be_calculated_with(expression: Expr, written: str) -> None:
         (model.XM[2], "x_m2"),
         (model.XM[k], "x_m,k"),
         (model.E[k], "e_k"),
-        (TABLE["x_top"][k], "x_top,k"),
-        (TABLE["v_n1"].symbol, "v'.n"),
+        (VOCABULARY["x_top"][k], "x_top,k"),
+        (VOCABULARY["v_n1"].symbol, "v'.n"),
         (model.m_red, "m_red"),
     ],
 )
 def test_names(cell: Expr, written: str) -> None:
-    assert text(cell) == written
+    assert text(cell, VOCABULARY) == written
 
 
 @pytest.mark.parametrize(
@@ -215,12 +215,12 @@ def test_names(cell: Expr, written: str) -> None:
     ],
 )
 def test_equations_read_as_they_are_printed(label: str, written: str) -> None:
-    assert text_of_equation(LEDGER[label]) == written
+    assert text_of_equation(LEDGER[label], VOCABULARY) == written
 
 
 def test_nothing_of_the_library_shows() -> None:
     for equation in LEDGER.equations():
-        written = text_of_equation(equation)
+        written = text_of_equation(equation, VOCABULARY)
         assert not any(word in written for word in ("**", "[", "Cprime", "Piecewise", "Integral", "Sum(")), (
             written
         )
@@ -230,4 +230,4 @@ def test_products_and_sums_are_read_flat() -> None:
     nested = Mul(
         w, Mul(a, Add(b, Add(c, -w, evaluate=False), evaluate=False), evaluate=False), evaluate=False
     )
-    assert text(nested) == "w*w_1*(w_2 + w_3 - w)"
+    assert text(nested, VOCABULARY) == "w*w_1*(w_2 + w_3 - w)"

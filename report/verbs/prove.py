@@ -11,6 +11,7 @@ from .common import FINDINGS, OK, Progress
 
 if TYPE_CHECKING:
     from ...derivations.proof import Proof
+    from ...derivations.vocabulary import Vocabulary
 
 HELP = "prove the algebra of a workbook, or show the proof of one equation"
 
@@ -48,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
         proofs = prove(ledger, lambda equation: progress(f"proving {equation.label}"))
     shown = [proof for proof in proofs if proof.equation.label in wanted]
     for proof in shown:
-        _print(proof, steps=bool(options.equation))
+        _print(proof, ledger.vocabulary, steps=bool(options.equation))
     if not options.equation:
         for erratum in (found for check in ledger.checks if (found := check(ledger)) is not None):
             print(f"erratum: {erratum.sentence}")
@@ -59,10 +60,10 @@ def run(options: argparse.Namespace) -> int:
     return FINDINGS if failed else OK
 
 
-def _print(proof: Proof, steps: bool) -> None:
+def _print(proof: Proof, vocabulary: Vocabulary, steps: bool) -> None:
     from ...derivations.text import text_of_equation
 
-    print(f"{proof.equation.label:6} {proof.status.value:12} {text_of_equation(proof.equation)}")
+    print(f"{proof.equation.label:6} {proof.status.value:12} {text_of_equation(proof.equation, vocabulary)}")
     if steps:
         print(f"       {proof.equation.because}")
     for n, found in enumerate(proof.steps, start=1):
@@ -70,7 +71,7 @@ def _print(proof: Proof, steps: bool) -> None:
             print(f"  {n}.   {found.step.says}")
             premises = "; ".join(premise.label for premise in found.step.premises)
             print(f"       from  {premises or 'nothing: an identity'}")
-            print(f"       holds {text_of_equation(found.step.claim)}")
+            print(f"       holds {text_of_equation(found.step.claim, vocabulary)}")
         if steps or not found.status.passes:
             print(f"       {found.status.value}: {found.sentence}")
     if proof.remark:

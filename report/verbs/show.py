@@ -25,7 +25,7 @@ def run(options: argparse.Namespace) -> int:
     name = column.name
     print(f"{name}  {column.meaning}  [{report.shown[name].unit}]  {column.source}")
     if column.equation is not None:
-        print(f"  {text_of_equation(column.equation)}")
+        print(f"  {text_of_equation(column.equation, report.ledger.vocabulary)}")
         precedents = ", ".join(precedent.name for precedent in report.sheet.precedents(column))
         print(f"  computed from {precedents or 'nothing'}")
     wanted_labels = set(labels)

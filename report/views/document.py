@@ -17,7 +17,7 @@ from ..values import Cell
 from ..workbook import FigureSpec, TableSpec
 from . import figures
 from .escape import slug
-from .math import Printer, name_latex
+from .math import Printer, latex_names, name_latex
 from .numbers import Figure, decimals, read, shown, table_format
 from .parts import Group, Head, Item, Pair, Row, Table
 from .refereed import Refereed
@@ -31,8 +31,7 @@ class Document:
 
     def __init__(self, report: Report) -> None:
         self.report = report
-        columns = report.sheet.columns
-        self.names = {column.name: column.latex or name_latex(column.name) + "%s" for column in columns}
+        self.names = latex_names(report.ledger.vocabulary, report.sheet.columns)
         self.printer = Printer(self.names)
 
     # --- names and numbers

@@ -38,7 +38,7 @@ def _column(report: Report, column: Column) -> dict[str, Any]:
     values, statuses = report.values.value[column.name], report.values.status[column.name]
     numbers = [float(v) if s == Status.OK else None for v, s in zip(values, statuses, strict=True)]
     codes = [Status(int(s)).code for s in statuses]
-    entry: dict[str, Any] = {"axis": None, "unit": column.unit, "rule": _rule(column)}
+    entry: dict[str, Any] = {"axis": None, "unit": column.unit, "rule": _rule(report, column)}
     if column.axis is None:
         entry |= {"value": numbers[0], "status": codes[0]}
     else:
@@ -52,11 +52,11 @@ def _column(report: Report, column: Column) -> dict[str, Any]:
     return entry
 
 
-def _rule(column: Column) -> str:
+def _rule(report: Report, column: Column) -> str:
     """What makes its values: its equation with its number, or ``given``."""
     if column.equation is None:
         return "given"
-    return f"{column.source} {text_of_equation(column.equation)}"
+    return f"{column.source} {text_of_equation(column.equation, report.ledger.vocabulary)}"
 
 
 def _given_uncertainty(report: Report, column: Column) -> Any:

@@ -17,10 +17,10 @@ from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 from sympy.printing.latex import LatexPrinter, translate
 
-from ...derivations.symbols import TABLE
-from ..sheet import name_of
+from ...derivations.vocabulary import Vocabulary
+from ..sheet import Column, name_of
 
-__all__ = ["Printer", "name_latex", "with_index"]
+__all__ = ["Printer", "latex_names", "name_latex", "with_index"]
 
 _RELATIONS = {"<=": r"\le", ">=": r"\ge", "<": "<", ">": ">", "==": "=", "!=": r"\ne"}
 _MIRROR = {">=": "<=", ">": "<"}
@@ -28,6 +28,22 @@ _TALL = re.compile(r"\\(?:frac|sum|int|sqrt|left|begin)")
 
 
 # --- names -----------------------------------------------------------------------------------------------
+
+
+def latex_names(vocabulary: Vocabulary, columns: Iterable[Column] = ()) -> dict[str, str]:
+    """LaTeX of all names of a report: as its columns print them, else as its vocabulary does.
+
+    Parameters
+    ----------
+    vocabulary : Vocabulary
+        Of the ledger.
+    columns : iterable of Column
+        Of the sheet.
+    """
+    names = {name: quantity.latex for name, quantity in vocabulary.items()}
+    for column in columns:
+        names[column.name] = column.latex or names.get(column.name) or _spelt(column.name)
+    return names
 
 
 def name_latex(name: str, names: Mapping[str, str] | None = None, index: str = "") -> str:
@@ -38,23 +54,22 @@ def name_latex(name: str, names: Mapping[str, str] | None = None, index: str = "
     name : str
         The cell name, ``x_m``.
     names : mapping of str to str
-        LaTeX of names that the table of symbols does not have; ``%s`` is where an index goes.
+        LaTeX of those that are printed otherwise than they are called; ``%s`` is where an index goes.
     index : str
         LaTeX of the index; empty for none.
 
     Examples
     --------
-    >>> name_latex("x_m", index="k"), name_latex("n_pairs"), name_latex("v", index="2")
+    >>> name_latex("x_m", index="k"), name_latex("n_pairs"), name_latex("v", {"v": "v'%s"}, "2")
     ('x_{m_{k}}', 'n_{\\mathrm{pairs}}', "v'_{2}")
     """
-    if names and name in names:
-        template = names[name]
-    elif name in TABLE:
-        template = TABLE[name].latex
-    else:
-        head, _, tail = name.partition("_")
-        template = _word(head) + (f"_{{{_word(tail)}%s}}" if tail else "%s")
-    return with_index(template, index)
+    return with_index(names[name] if names and name in names else _spelt(name), index)
+
+
+def _spelt(name: str) -> str:
+    """LaTeX of a name that nothing is said of: what follows the first ``_`` is a subscript."""
+    head, _, tail = name.partition("_")
+    return _word(head) + (f"_{{{_word(tail)}%s}}" if tail else "%s")
 
 
 def _word(text: str) -> str:
@@ -89,7 +104,7 @@ class Printer(LatexPrinter):  # type: ignore[misc] # sympy has no types
     Parameters
     ----------
     names : mapping of str to str
-        LaTeX of quantities that the table of symbols does not have.
+        As for :func:`name_latex`.
     """
 
     def __init__(self, names: Mapping[str, str] | None = None) -> None:

@@ -16,7 +16,7 @@ from ..verdict import EXACT, REACHABLE, UNREACHABLE
 from . import drawing
 from .drawing import INK, LOADING, PALE, UNLOADING
 from .escape import visible
-from .math import name_latex
+from .math import latex_names, name_latex
 from .parts import index_text
 from .refereed import CALLED
 
@@ -75,7 +75,7 @@ class Row:
 
 def rows(report: Report) -> tuple[Row, ...]:
     """The published values that have an interval of what is reachable, by where it is published."""
-    names = {column.name: column.latex for column in report.sheet.columns if column.latex}
+    names = latex_names(report.ledger.vocabulary, report.sheet.columns)
     found = [_row(one, names) for one in _known(report)]
     if len(found) > MOST_ROWS:
         worst = sorted(found, key=lambda row: (row.solid, -abs(row.here or 0.0)))[:MOST_ROWS]

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from sympy import Expr, Sum, Symbol
 
-from ...derivations.text import text, text_of_equation
+from ...derivations.text import Writer, text_of_equation
 from ..result import Report
 from ..sheet import Column, Formula, Given, Root, name_of
 from ..trace import Group, dependents_of, precedents_of
@@ -119,7 +119,7 @@ def _sources(report: Report, column: Column) -> Iterator[str]:
 def _equation(report: Report, column: Column, row: int, cell: Cell) -> Iterator[str]:
     equation = column.equation
     assert equation is not None
-    yield _line("", text_of_equation(equation.origin))
+    yield _line("", text_of_equation(equation.origin, report.ledger.vocabulary))
     summed = report.sheet.summed_axes(column)
     if any(member.has(Sum) for member in equation.members):
         counted = report.values.counted.get(column.name, {})
@@ -127,6 +127,7 @@ def _equation(report: Report, column: Column, row: int, cell: Cell) -> Iterator[
         yield _line("", f"over {', '.join(sizes)}")
     elif cell.value is not None:
         # A formula's own side is the cell itself; a root's equation shows the cell inside of it.
+        text = Writer(report.ledger.vocabulary).text
         numbers = [text(member) for member in equation.at(_numbers(report, column, row)).members]
         if isinstance(column.rule, Formula):
             numbers = [cell.address, numbers[-1], _number(cell.value)]

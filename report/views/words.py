@@ -18,8 +18,7 @@ from sympy import Expr, Indexed, Integer, Symbol
 
 from ...derivations.equation import Derivation, Equation, Step
 from ...derivations.proof import Proof, Status
-from ...derivations.symbols import TABLE
-from ...derivations.text import text as text_of
+from ...derivations.text import Writer
 from .document import Document
 from .escape import Markup, slug
 from .numbers import Figure, read
@@ -44,17 +43,6 @@ _OTHERWISE = frozenset("aN")
 _SIGNS = {"<=": "≤", ">=": "≥", "-": "−", "*": "\u202f"}
 
 
-@lru_cache(maxsize=1)
-def _written() -> dict[str, tuple[str, str]]:
-    """Names as sentences of the derivations write them, ``x_m2``: the quantity and its index."""
-    # x_p is the imprint depth before it is the x of some p.
-    found = {text_of(quantity.symbol): (name, "") for name, quantity in TABLE.items()}
-    for name, quantity in TABLE.items():
-        for index in (1, 2, *map(Symbol, "ijkpq")):
-            found.setdefault(text_of(quantity[index]), (name, str(index)))
-    return found
-
-
 class Words(ABC):
     """What templates call to print something in one format.
 
@@ -65,6 +53,7 @@ class Words(ABC):
 
     def __init__(self, document: Document) -> None:
         self.document = document
+        self.vocabulary = document.report.ledger.vocabulary
         self.sections: list[tuple[str, str]] = []
         self._used: set[str] = set()
 
@@ -131,12 +120,12 @@ class Words(ABC):
         return self.escape(_SIGNS[found.group()])
 
     def _symbol(self, found: re.Match[str]) -> Markup | None:
-        name, index = _written().get(found["name"], (found["name"], ""))
+        name, index = self._written.get(found["name"], (found["name"], ""))
         index = index or found["index"] or ""
         if name in _LONE and not index:
             return self.math(name)
         # A column may be called like a word of English.
-        if name in _OTHERWISE or not (name in TABLE or name in self._names):
+        if name in _OTHERWISE or not (name in self.vocabulary or name in self._names):
             return None
         if "-" in index:  # a pair: its dash is no minus
             return self.symbol(name) + self.escape(f"\u00a0{index.replace('-', '–')}")
@@ -149,6 +138,17 @@ class Words(ABC):
     def _power(self, text: str) -> str:
         """LaTeX of an exponent: digits or a name."""
         return text if text.isdigit() else self.document.latex(text)
+
+    @cached_property
+    def _written(self) -> dict[str, tuple[str, str]]:
+        """Names as sentences of the derivations write them, ``x_m2``: the quantity and its index."""
+        text, quantities = Writer(self.vocabulary).text, self.vocabulary.items()
+        # x_p is the imprint depth before it is the x of some p.
+        found = {text(quantity.symbol): (name, "") for name, quantity in quantities}
+        for name, quantity in quantities:
+            for index in (1, 2, *map(Symbol, "ijkpq")):
+                found.setdefault(text(quantity[index]), (name, str(index)))
+        return found
 
     @cached_property
     def _names(self) -> frozenset[str]:
@@ -182,7 +182,7 @@ class Words(ABC):
         """A sentence with a capital letter in front and without its full stop."""
         text = text.rstrip(".")
         word = re.match(r"[a-z]{2,}\b|a(?= )", text)
-        return self.rich(text[0].upper() + text[1:] if word and word.group() not in TABLE else text)
+        return self.rich(text[0].upper() + text[1:] if word and word.group() not in self.vocabulary else text)
 
     def slug(self, text: str) -> Markup:
         """An identifier made of foreign text: letters, digits, ``_``, ``.`` and ``-``."""

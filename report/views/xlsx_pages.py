@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from ...derivations.text import text, text_of_equation
+from ...derivations.text import Writer, text_of_equation
 from ..grid import SCALARS, Block, Grid, factors, letters
 from ..result import Comparison, Report
 from ..sheet import RepeatAxis
@@ -222,9 +222,9 @@ def write_equations(sheet: Any, style: Style, report: Report) -> None:
         style.text(sheet, 3, at, head, "head")
     statuses = proof_statuses(report)
     for row, equation in enumerate(report.ledger.equations(), start=4):
-        claim = text_of_equation(equation)
+        claim = text_of_equation(equation, report.ledger.vocabulary)
         if equation.conditions:
-            claim += "\nwhere " + ", ".join(map(text, equation.conditions))
+            claim += "\nwhere " + ", ".join(map(Writer(report.ledger.vocabulary).text, equation.conditions))
         cells = (
             equation.label,
             equation.title,

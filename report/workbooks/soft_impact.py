@@ -11,7 +11,7 @@ from ...derivations import power_law_fit as fit
 from ...derivations import soft_impact as model
 from ...derivations.equation import Equation
 from ...derivations.soft_impact import CP, XM, XP, E, V
-from ...derivations.symbols import TABLE, p, q, s
+from ...derivations.symbols import VOCABULARY, p, q, s
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
 from ..workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook
@@ -66,7 +66,7 @@ def _masses_given(given: frozenset[str]) -> str | None:
 
 def _column(name: str, axis: Axis | None, rule: Formula | Root | Given, like: str, **more: Any) -> Column:
     """A column that takes unit, meaning and LaTeX of a quantity of the derivations."""
-    quantity = TABLE[like]
+    quantity = VOCABULARY[like]
     more = {"unit": quantity.unit, "meaning": quantity.meaning, "latex": quantity.latex, **more}
     return Column(name, axis, rule, **more)
 
@@ -179,7 +179,7 @@ def _log_fit(x: Column, F: Column) -> tuple[Column, ...]:
     mean_x, mean_F, line = (
         Column(name, None, Given(), positive=False) for name in ("mean_ln_x", "mean_ln_F", "ln_F_at_ref")
     )
-    alpha_log = TABLE["alpha"].symbol.func("alpha_log", positive=True)
+    alpha_log = VOCABULARY["alpha"].symbol.func("alpha_log", positive=True)
     where = {
         fit.X[q]: ln_x[q], fit.Y[q]: ln_F[q], fit.Xmean: mean_x.symbol, fit.Ymean: mean_F.symbol,
         fit.a: line.symbol, fit.b: alpha_log,

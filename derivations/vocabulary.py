@@ -1,0 +1,113 @@
+"""The words of a ledger: what each symbol means, its unit, how it is printed, where proofs sample it.
+
+A vocabulary comes with the ledger that is written in it, and nothing else says what a symbol is: the ``v``
+of one paper is a speed with a prime, that of another a voltage.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from sympy import Expr, Indexed, IndexedBase, Symbol
+from sympy.core.function import AppliedUndef
+
+__all__ = ["NO_WORDS", "Quantity", "Vocabulary"]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A physical quantity, written plain (``x_m.symbol``) or for test number k (``x_m[k]``).
+
+    Both carry the same assumptions, so the algebra of a claim for all k is the algebra of the claim for one.
+
+    Parameters
+    ----------
+    name : str
+        The name in the field and of its cell, ``x_m``.
+    meaning : str
+        What it is, in words.
+    unit : str
+        SI unit as text; an exponent may be a symbol's name (``N/m^alpha``).
+    latex : str
+        How the source prints it; ``%s`` is where a subscript goes (nothing, or the test's number).
+    span : tuple of float
+        The interval in which proofs sample it, in SI.
+    positive : bool
+        Whether it is positive on the domain of every model here (a logarithm is not).
+    text : str
+        How a terminal shows it; ``%s`` is where a subscript goes. Left out: the name, then the subscript.
+    """
+
+    name: str
+    meaning: str
+    unit: str
+    latex: str
+    span: tuple[float, float] = (0.5, 2.0)
+    positive: bool = True
+    text: str = ""
+
+    @cached_property
+    def symbol(self) -> Symbol:
+        """The plain symbol, with its assumptions."""
+        return Symbol(self.name, positive=True) if self.positive else Symbol(self.name, real=True)
+
+    @cached_property
+    def base(self) -> IndexedBase:
+        """The indexed symbol, with the same assumptions."""
+        return IndexedBase(self.symbol)
+
+    def __getitem__(self, index: Expr | int) -> Indexed:
+        """The quantity of one test (or pair, or point)."""
+        return self.base[index]
+
+
+class Vocabulary(Mapping[str, Quantity]):
+    """Quantities by their names, in the order in which they were given.
+
+    Parameters
+    ----------
+    *quantities : Quantity
+
+    Raises
+    ------
+    ValueError
+        Two of them have one name.
+    """
+
+    def __init__(self, *quantities: Quantity) -> None:
+        self._quantities = {quantity.name: quantity for quantity in quantities}
+        if len(self._quantities) != len(quantities):
+            names = [quantity.name for quantity in quantities]
+            twice = sorted({name for name in names if names.count(name) > 1})
+            raise ValueError(f"a vocabulary says twice what {', '.join(twice)} means")
+
+    def __getitem__(self, name: str) -> Quantity:
+        return self._quantities[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._quantities)
+
+    def __len__(self) -> int:
+        return len(self._quantities)
+
+    def __hash__(self) -> int:
+        return id(self)
+
+    def __eq__(self, other: object) -> bool:
+        return self is other
+
+    def plain(self, names: str) -> tuple[Symbol, ...]:
+        """The plain symbols of some quantities, by their names with spaces between."""
+        return tuple(self[name].symbol for name in names.split())
+
+    def find(self, symbol: Expr) -> Quantity | None:
+        """What a symbol, plain, indexed or a function of something, stands for; None if nothing says."""
+        if isinstance(symbol, AppliedUndef):
+            return self.get(symbol.func.__name__)
+        return self.get(str(symbol.base.label) if isinstance(symbol, Indexed) else str(symbol))
+
+
+NO_WORDS = Vocabulary()
+"""The vocabulary of a ledger that says nothing of its symbols: they are called what they are called."""
