@@ -1,8 +1,9 @@
 """How equation (11) is solved: a form without spurious roots, and where it can change its direction.
 
-Equation (11) as printed also vanishes where an approach would be negative. Written in u = 1/(alpha + 1) it
-is smooth on the interval where both approaches are positive, its sign is that of a logarithm, and the
-logarithm turns at most once there: its roots can be told apart without a search.
+Equation (11) as printed also vanishes where an approach would be negative, and at alpha <= 0, where
+C x^alpha is no loading curve. Written in u = 1/(alpha + 1) its domain is 0 < u < 1 and (beta + 1) e^2 u < 1
+for either test: alpha is positive, and both approaches are. There it is smooth, its sign is that of a
+logarithm, and the logarithm turns at most once: its roots can be told apart without a search.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from .symbols import VOCABULARY
 __all__ = [
     "ENTRIES",
     "Lambda",
+    "end",
     "log_form",
     "log_speeds",
     "logarithm",
@@ -44,6 +46,14 @@ with evaluate(False):
         ),
         "(11) times (beta + 1) u, which is positive: smooth on the whole domain",
         title="(11) in u = 1/(alpha + 1)",
+    )
+
+    end = Equation(
+        "(L24)",
+        (1 - u, alpha * u),
+        "u is positive, so alpha is positive where u < 1 and nowhere else: roots of (L5) beyond are none of "
+        "a loading curve",
+        title="end of the domain of (11)",
     )
 
     logarithm = (
@@ -121,6 +131,7 @@ slope_law = Equation(
 )
 
 ENTRIES = (
+    Derivation.of(end, (reciprocal,), (alpha,), "Solve the definition of u for alpha and put it in."),
     Derivation.of(log_form, (), (), "Expand the right-hand side."),
     log_speeds,
     turning,

@@ -188,10 +188,14 @@ def run(data: Mapping[str, Any]) -> Values:
 
 
 def noisy(shape: tuple[int, ...], seed: int, noise: float = 0.05) -> dict[str, Any]:
-    """Campaigns with noise, so large that pairs without a root and with two are among them, and lost data."""
+    """Campaigns with noise, so large that pairs without a root and with two are among them, lost data, and
+    tests that were written down twice."""
     rng = np.random.default_rng(seed)
     data = {name: values * rng.normal(1, noise, (*shape, 5)) for name, values in PAPER.items()}
     data["e"] = np.clip(data["e"], 0, 1)
+    twice = rng.random(shape) < 0.1
+    for values in data.values():
+        values[twice, 1] = values[twice, 0]
     data["x_p"][rng.random((*shape, 5)) < 0.02] = np.nan
     data["beta"] = rng.uniform(1, 2.5, (*shape, 1))
     return data

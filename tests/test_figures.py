@@ -56,8 +56,8 @@ def rows_of(campaign: str) -> list[tuple[float, float, float]]:
             return [(2.334, 0.53, 30.0), *table_1[1:4], (4.993, 0.453, 45.0)]
         case "no pair":
             return [(2.0, 0.5, 30.0), (3.0, 0.5, 20.0)]
-        case "falling":
-            return [*table_1[:4], (2.4965, 0.453, 51.03)]
+        case "falling":  # the last test is so slow for its imprint that the best power is a falling one
+            return [(1.84, 0.706, 12.6), (5.12, 0.334, 53.3), (0.82, 0.277, 74.4)]
         case "equal":  # nearly one speed: the axis must not fall back on an offset
             return [(3.0001, 0.5, 30.0001), (3.0002, 0.5, 30.0015), (3.0003, 0.5, 30.003)]
     tests = int(campaign)

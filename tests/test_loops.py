@@ -160,9 +160,7 @@ def test_a_test_whose_imprint_is_deeper_than_its_approach_has_no_way_back() -> N
 
 def test_points_without_a_fit_have_no_loops() -> None:
     # The last test is so slow for its imprint that the best power of all points is a falling one.
-    v, e, x_p = (list(column) for column in TABLE_1.values())
-    v[4] *= 0.5
-    values = values_of(v, e, x_p)
+    values = values_of([1.84, 5.12, 0.82], [0.706, 0.334, 0.277], [12.6e-6, 53.3e-6, 74.4e-6])
     assert list(values.status["alpha_log"]) == [Status.DOMAIN]
     found = curves(SHEET, values)
     assert not of(found, "loops", "compression")

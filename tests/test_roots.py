@@ -118,13 +118,16 @@ def eq11(alpha: Any, beta: Any, v1: Any, v2: Any, e1: Any, e2: Any, xp1: Any, xp
 GRID = np.concatenate([np.geomspace(1e-200, 1e-4, 1000, endpoint=False), np.geomspace(1e-4, 1e7, 5000)])
 
 
-def scan(beta: float, v: Array, e: Array, x_p: Array) -> list[tuple[float, float]]:
-    """Where the logarithm of (11) changes sign for alpha + 1 > (beta + 1) e^2, on a fine grid.
+def scan(beta: float, v: Array, e: Array, x_p: Array, positive: bool = True) -> list[tuple[float, float]]:
+    """Where the logarithm of (11) changes sign for alpha > 0 and alpha + 1 > (beta + 1) e^2, on a fine grid.
 
-    The grid is of the distance from the end, so that neither factor cancels.
+    The grid is of the distance from the end, so that neither factor cancels. Without `positive` it holds the
+    exponents of no loading curve too.
     """
-    low, apart = (beta + 1) * e.max() ** 2, (beta + 1) * abs(e[1] - e[0]) * (e[0] + e[1])
-    factors = (GRID, GRID + apart) if e[0] >= e[1] else (GRID + apart, GRID)
+    livelier, apart = (beta + 1) * e.max() ** 2, (beta + 1) * abs(e[1] - e[0]) * (e[0] + e[1])
+    low = max(livelier, 1.0) if positive else livelier
+    near = GRID + (low - livelier)
+    factors = (near, near + apart) if e[0] >= e[1] else (near + apart, near)
     height = (
         np.log(x_p[0] / x_p[1])
         - np.log(factors[0])
@@ -179,6 +182,25 @@ def test_every_exponent_agrees_with_an_independent_judge(least: float, most: flo
     assert seen[True, Status.OK] > 50
     assert seen[True, Status.TWOROOTS] > 200
     assert beyond < 0.01 * len(beta)
+
+
+def test_a_root_at_an_exponent_of_no_loading_curve_is_no_second_exponent() -> None:
+    beta, v, e, x_p = pairs(4000, 0.2, 1.6, seed=12)
+    values = solve(beta, v, e, x_p)
+    status, alpha = values.status["alpha"][:, 0], values.value["alpha"][:, 0]
+    one, both = 0, 0
+    for row in np.flatnonzero((e[:, 1] - e[:, 0]) * (v[:, 1] - v[:, 0]) > 0):
+        data = beta[row], v[row], e[row], x_p[row]
+        every, positive = scan(*data, positive=False), scan(*data)
+        if len(every) == 2 and len(positive) == 1:
+            one += 1
+            assert status[row] == Status.OK
+            assert positive[0][0] < alpha[row] < positive[0][1]
+        elif len(positive) == 2:
+            both += 1
+            assert status[row] == Status.TWOROOTS
+    assert one > 49
+    assert both > 49
 
 
 def settled(program: RootProgram, values: tuple[Array, Array, Array, Array], steps: int) -> tuple[int, int]:
@@ -332,7 +354,8 @@ def test_equal_e_has_a_closed_form(e: float) -> None:
         ((2, 3), (0.5, 0.4), (2e-5, 3e-5), Status.OK),
         ((2, 3), (0.5, 0.4), (3e-5, 2e-5), Status.NOROOT),  # a faster impact, a shallower imprint
         ((2, 3), (0.5, 0.4), (2e-5, 2e-5), Status.NOROOT),  # equal imprints: only an infinite exponent
-        ((2, 3), (0.5, 0.55), (2e-5, 2e-5), Status.OK),  # equal imprints, but the faster test is livelier
+        ((2, 3), (0.8, 0.85), (2e-5, 2e-5), Status.OK),  # equal imprints, but the faster test is livelier
+        ((2, 3), (0.5, 0.55), (2e-5, 2e-5), Status.NOROOT),  # only an exponent below 0
         ((2, 2), (0.5, 0.4), (2e-5, 3e-5), Status.OK),  # equal speeds: linear in 1/(alpha + 1)
         ((2, 2), (0.5, 0.4), (3e-5, 2e-5), Status.NOROOT),
         ((2, 2), (0.5, 0.5), (2e-5, 3e-5), Status.NOROOT),  # only the imprint differs
@@ -340,7 +363,8 @@ def test_equal_e_has_a_closed_form(e: float) -> None:
         ((2, 2), (0.5, 0.4), (2e-5, 2e-5), Status.NOROOT),  # only e differs
         ((2, 3), (0.0, 0.0), (2e-5, 3e-5), Status.OK),  # neither ball comes back
         ((2, 3), (0.4, 0.0), (2e-5, 3e-5), Status.OK),
-        ((2, 3), (0.0, 0.4), (3e-5, 2.9e-5), Status.OK),
+        ((2, 3), (0.0, 0.7), (3e-5, 2.9e-5), Status.OK),
+        ((2, 3), (0.0, 0.4), (3e-5, 2.9e-5), Status.NOROOT),
         ((2, 3), (0.0, 1.0), (3e-5, 2e-5), Status.OK),
         ((2, 3), (1.0, 1.0), (2e-5, 2.4e-5), Status.OK),  # a ball that loses nothing, alpha above beta
         ((2, 3), (1.0, 1.0), (2e-5, 2.9e-5), Status.NOROOT),

@@ -38,7 +38,7 @@ def test_what_stands(proofs: dict[str, Proof]) -> None:
         Status.DEFINITION: "(1) (8) (L7) (L8) (L10) (L11) (L12) (L22) (L23) (L13) (L14) (L15) (L16)",
         Status.ASSUMPTION: "(2) (3) (4) (5)",
         Status.PROVED: "(6) (7) (9) (10a) (10b) (10c) (11) (12a) (12b) (12c) (12d) (L1) (L2) (L3) (L4) (L5) "
-        "(L6) (L9) (L17) (L18) (L19) (L20) (L21)",
+        "(L24) (L6) (L9) (L17) (L18) (L19) (L20) (L21)",
         Status.CORRECTED: "(12e)",
         Status.REFUTED: "",
         Status.UNDECIDED: "",
@@ -327,10 +327,15 @@ def two_roots(first: float, second: float) -> Pair:
     return (1.0, speed, e1, e2, 1.0, ratio(first, e2), s - 1)
 
 
+def end_of(pair: Pair) -> mpmath.mpf:
+    """The u at which an approach ceases to be positive, or alpha does."""
+    _, _, e1, e2, _, _, b = map(mpmath.mpf, pair)
+    return 1 / max((b + 1) * max(e1, e2) ** 2, 1)
+
+
 def scanned(pair: Pair) -> int:
-    """Count the roots of (11) as printed, where both approaches are positive, on a dense grid of u."""
-    _, _, e1, e2, _, _, b = pair
-    top = 1 / ((b + 1) * max(e1, e2) ** 2)
+    """Count the roots of (11) as printed, where approaches and alpha are positive, on a dense grid of u."""
+    top = end_of(pair)
     printed = at(model.eq11.members[0], pair, alpha)
     grid = [top * mpmath.mpf(n) / 700 for n in range(1, 700)]
     # Near both ends the grid is finer: roots crowd there.
@@ -342,15 +347,18 @@ def scanned(pair: Pair) -> int:
 
 def predicted(pair: Pair) -> int:
     """Count them by the theorem: the sign at both ends and, if it lies between, at the turning point (L8)."""
-    _, _, e1, e2, x1, x2, b = map(mpmath.mpf, pair)
-    top = 1 / ((b + 1) * max(e1, e2) ** 2)
+    _, _, e1, e2, x1, x2, _ = map(mpmath.mpf, pair)
+    top = end_of(pair)
     form = at(model.root_form.members[0], pair, model.u)
     with_log = {alpha_root.Lambda: alpha_root.log_speeds.value}
     turning = at(model.turning.value.xreplace(with_log), pair, model.u)(mpmath.mpf(0))
     signs = [mpmath.sign(x2 - x1)]
     if isinstance(turning, mpmath.mpf) and 0 < turning < top:
         signs.append(mpmath.sign(form(turning)))
-    signs.append(mpmath.sign(e2 - e1) if e1 != e2 else mpmath.sign(form(top * (1 - mpmath.mpf(10) ** -30))))
+    if e1 != e2 and top < 1:
+        signs.append(mpmath.sign(e2 - e1))
+    else:
+        signs.append(mpmath.sign(form(top * (1 - mpmath.mpf(10) ** -30))))
     return sum(a != b for a, b in pairwise(signs))
 
 

@@ -87,7 +87,8 @@ class HtmlWords(Words):
         return mathml_block(self.document.block(equation))
 
 
-_NOT_IN_URL = re.compile(r"""[\0-\x20"#%<>\[\\\]^`{|}\x7f]""")
+_NOT_IN_URL = re.compile(r"""[\0-\x1f"#%&<>\x7f]""")
+"""What a browser would not take for a letter of the data, in an attribute between quotation marks."""
 
 
 def picture(svg: str, alt: str) -> Markup:

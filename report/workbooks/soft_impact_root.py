@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sympy import Expr, Max, Ne, Or, Piecewise, Poly, Pow, Rational, Rel, numer, together
+from sympy import Expr, Integer, Max, Ne, Or, Piecewise, Poly, Pow, Rational, Rel, numer, together
 
 from ...derivations import alpha_root
 from ...derivations import soft_impact as model
@@ -13,9 +13,6 @@ from ...derivations.soft_impact import XP, E, V
 from ..sheet import Root
 
 __all__ = ["alpha_rule", "two_tests"]
-
-LEAST = Rational(1, 10**12)
-"""The least alpha + 1 that is looked for: it only keeps the interval finite where neither ball comes back."""
 
 Cells = Mapping[Expr, Expr]
 """What the two tests of the derivations are called in a sheet."""
@@ -31,14 +28,11 @@ def alpha_rule(where: Cells) -> Root:
     """
     u = alpha_root.u
     form = alpha_root.root_form
-    # Both approaches are positive for alpha + 1 > (beta + 1) e^2 of either test.
+    # Both approaches are positive for alpha + 1 > (beta + 1) e^2 of either test, and alpha is for u < 1.
     livelier = (model.beta + 1) * Max(E[1] ** 2, E[2] ** 2)
-    high = 1 / Max(livelier, LEAST)
-    logarithm = evaluated(alpha_root.logarithm)
-    at_least, equal_e = (
-        logarithm.xreplace({u: 1 / LEAST}),
-        logarithm.xreplace({E[2]: E[1]}).xreplace({u: high}),
-    )
+    high = 1 / Max(livelier, 1)
+    at_one = form.residuals[0].xreplace({u: Integer(1)})
+    equal_e = evaluated(alpha_root.logarithm).xreplace({E[2]: E[1]}).xreplace({u: 1 / livelier})
     # The definition of u is linear in alpha; sympy's own solve() would load its system of units for this.
     slope, rest = Poly(numer(together(alpha_root.reciprocal.residuals[0])), model.alpha).all_coeffs()
 
@@ -52,16 +46,14 @@ def alpha_rule(where: Cells) -> Root:
         value=-rest / slope,
         low=Rational(0),
         high=cells(high),
-        # Where u -> 0 the form tends to 1 - x_p1/x_p2. At the other end the factor of the livelier test
-        # vanishes and the other decides; where both vanish, or none, the logarithm of (L6) does.
+        # Where u -> 0 the form tends to 1 - x_p1/x_p2. At the other end, if that is not u = 1, the factor of
+        # the livelier test vanishes and the other decides; where both vanish, the logarithm of (L6) does.
         sign_low=cells(XP[2] - XP[1]),
-        sign_high=cells(
-            Piecewise((at_least, livelier < LEAST), (E[2] - E[1], Ne(E[1], E[2])), (equal_e, True))
-        ),
+        sign_high=cells(Piecewise((at_one, livelier < 1), (E[2] - E[1], Ne(E[1], E[2])), (equal_e, True))),
         turning=(cells(_turning()),),
         start=cells(_start()),
         steps=4,
-        none="no exponent gives both tests a positive approach on one loading curve; "
+        none="no exponent above 0 gives both tests a positive approach on one loading curve; "
         "the imprint does not deepen with the speed, or deepens too steeply for what is given back",
         two="e rises with the speed, and the two tests alone cannot tell which exponent is meant",
     )
