@@ -7,20 +7,20 @@ another kind of check, add a function here that makes them and its line in :func
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from . import verdict_words as words
 from .diagnostics import Diagnostic, Location, visible
-from .verdict import UNREACHABLE
 
 if TYPE_CHECKING:
     from ..derivations.proof import Proof
     from .agreement import Agreement
     from .inputs import Inputs, PublishedValue
     from .result import Comparison, Report
-    from .verdict import Explanation, TableVerdict
+    from .verdict import TableVerdict
 
 __all__ = [
     "ENGINES",
@@ -138,13 +138,7 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
 def _word(comparison: Comparison) -> str:
     """The verdict on a value, and what was certain of one that cannot be reached."""
     found = comparison.refereed
-    if found is None:
-        return comparison.verdict
-    printed, bounds = comparison.published.printed, (found.bound_low, found.bound_high)
-    if found.verdict != UNREACHABLE or None in bounds:
-        return found.verdict
-    low, high = (bound / float(printed.scale) for bound in bounds if bound is not None)
-    return f"{found.verdict}: within {low:.6g} to {high:.6g} for whatever input prints as given"
+    return comparison.verdict if found is None else words.called(comparison.published, found)
 
 
 TOGETHER = "all together"
@@ -168,22 +162,19 @@ def of_referee(report: Report) -> tuple[Check, ...]:
         return ()
     at, known = _report_toml(report.inputs), {v.source for v in report.inputs.published if v.expect}
     tables = [_of_table(table, table.source, table.source in known, at) for table in found.tables]
-    tables.append(_of_table(found.joint, TOGETHER, bool(known), at, found.explanations))
+    said = "; ".join((words.together(found.joint), *words.perhaps(found.explanations, found.joint)))
+    tables.append(Check("table", TOGETHER, bool(known) or found.joint.possible, said, at))
     if found.amended is None:
         return tuple(tables)
     if found.joint.possible:
-        said = "all values come out as it is; drop the known misprints"
-        return (*tables, Check("table", MISPRINTS, False, said, at))
-    return (*tables, _of_table(found.amended, MISPRINTS, False, at, found.misprints))
+        nothing = "all values come out as it is; drop the known misprints"
+        return (*tables, Check("table", MISPRINTS, False, nothing, at))
+    said = "; ".join((words.amended(found), *words.perhaps(found.misprints, found.amended)))
+    return (*tables, Check("table", MISPRINTS, found.amended.possible, said, at))
 
 
-def _of_table(
-    table: TableVerdict, name: str, known: bool, at: Location, explanations: Sequence[Explanation] = ()
-) -> Check:
-    said = f"{name}: {table.sentence}"
-    for explanation in explanations:
-        said += f"; perhaps {explanation.sentence}"
-    return Check("table", name, known or table.possible, said, at)
+def _of_table(table: TableVerdict, name: str, known: bool, at: Location) -> Check:
+    return Check("table", name, known or table.possible, words.together(table), at)
 
 
 def of_diagnostics(diagnostics: Iterable[Diagnostic]) -> tuple[Check, ...]:
@@ -197,16 +188,12 @@ def of_diagnostics(diagnostics: Iterable[Diagnostic]) -> tuple[Check, ...]:
 def names_of(published: Iterable[PublishedValue]) -> list[str]:
     """Name each published value by its cell, and by its source too where two sources print that cell."""
     values = list(published)
-    cells = [_address(value.cell, value.index) for value in values]
+    cells = [words.address(value.cell, value.index) for value in values]
     times = Counter(cells)
     return [
         cell if times[cell] == 1 else f"{cell} ({value.source})"
         for cell, value in zip(cells, values, strict=True)
     ]
-
-
-def _address(cell: str, index: Sequence[int]) -> str:
-    return f"{cell}[{'-'.join(map(str, index))}]" if index else cell
 
 
 def _report_toml(inputs: Inputs) -> Location:

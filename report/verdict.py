@@ -2,30 +2,34 @@
 
 A printed number stands for all values that print so. A *mismatch* is how far a value is from the middle of
 the values that print as published, in half units of the last printed digit: at most 1 prints the same.
+How all this is said: :mod:`loopsheet.report.verdict_words`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from .published import PublishedValue
 from .quantity import Printed
 
 __all__ = [
+    "ALL",
     "EXACT",
+    "INPUT",
     "NOT_CHECKABLE",
     "NOT_FOUND",
     "REACHABLE",
     "UNREACHABLE",
     "WITHIN",
+    "Change",
     "Explanation",
     "Fit",
     "Referee",
+    "Relabelled",
     "TableVerdict",
     "Verdict",
     "Witness",
-    "short",
 ]
 
 EXACT = "exact"
@@ -42,9 +46,10 @@ NOT_CHECKABLE = "not-checkable"
 """The cell has no value to compare with."""
 
 
-def short(mismatch: float | None) -> float | None:
-    """A mismatch for print: it was searched for, and its further digits depend on the machine."""
-    return None if mismatch is None else float(f"{mismatch:.6g}")
+ALL = "all"
+"""The source of all tables together."""
+INPUT = "input"
+"""The source of what is given; every other is a table."""
 
 
 @dataclass(frozen=True)
@@ -65,11 +70,6 @@ class Witness:
     index: tuple[int, ...]
     value: float
     printed: Printed | None
-
-    @property
-    def data(self) -> dict[str, Any]:
-        """For JSON."""
-        return {"cell": self.cell, "index": list(self.index), "value": float(f"{self.value:.9g}")}
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class TableVerdict:
     Parameters
     ----------
     source : str
-        ``Table 2``; ``all`` for all tables together.
+        ``Table 2``; :data:`ALL` for all tables together.
     values : int
         How many were asked for together.
     verdict : str
@@ -127,6 +127,8 @@ class TableVerdict:
         The best input that was found.
     because : str
         The table that makes it impossible, where a part of the tables already does.
+    out : int
+        How many of the values are out of reach by themselves.
     """
 
     source: str
@@ -137,68 +139,39 @@ class TableVerdict:
     worst: PublishedValue | None = None
     witness: tuple[Witness, ...] = ()
     because: str = ""
+    out: int = 0
 
     @property
     def possible(self) -> bool:
         """Whether one input yields them all, or nothing can be said of it."""
         return self.verdict in (EXACT, REACHABLE, NOT_CHECKABLE)
 
-    @property
-    def sentence(self) -> str:
-        """The verdict in words."""
-        if self.verdict == NOT_CHECKABLE:
-            return "some cells have no value to compare with"
-        number = f"the {self.values} values" if self.values > 1 else "the value"
-        if self.possible:
-            how = "as printed" if self.verdict == EXACT else "that prints as given"
-            return f"{number} come out of an input {how}, the worst within {self.mismatch:.2f} half units"
-        best = f"for the best input the worst is off by {self.mismatch:.2f} half units of its last digit"
-        if self.verdict == NOT_FOUND:
-            return f"no input was found that prints as given and yields {number}; {best}"
-        least = f", and for whatever input by {self.at_least:.2f} at least" if self.at_least else ""
-        return f"no input that prints as given yields {number}; {best}{least}"
-
-    @property
-    def data(self) -> dict[str, Any]:
-        """For JSON."""
-        return {
-            "source": self.source,
-            "verdict": self.verdict,
-            "values": self.values,
-            "mismatch": short(self.mismatch),
-            "at_least": short(self.at_least),
-            "because": self.because or None,
-            "witness": [each.data for each in self.witness],
-        }
-
 
 @dataclass(frozen=True)
-class Explanation:
-    """A small change of what is printed with which everything published comes out.
+class Change:
+    """Something printed that may have been meant otherwise.
 
     Parameters
     ----------
     kind : str
-        ``misprint`` (one cell), ``truncated`` (a column was cut, not rounded), ``label`` (a number or a row
-        stands under another's name) or ``order`` (a list stands in another order).
+        ``misprint`` (one cell), ``truncated`` (a column was cut, not rounded), ``label`` (two numbers stand
+        in each other's place, or a row holds another column) or ``order`` (a list stands in another order).
     cell : str
         The column.
     index : tuple of int
         The row; empty for a scalar or a whole column.
     source : str
-        The table, for what is published; ``input`` for what is given.
+        The table, for what is published; :data:`INPUT` for what is given.
     printed : str
         As it stands.
     would_print : str
         As it would have to stand.
     also : tuple of str
-        Other ways that it could stand, least first.
-    mismatch : float
-        The worst of all values then.
-    changes : int
+        Other ways that it could stand.
+    other : tuple of int
+        The other row, of two that have changed places.
+    count : int
         How many printed numbers change; a manner of printing that holds for a column counts as one.
-    sentence : str
-        What is claimed.
     """
 
     kind: str
@@ -207,26 +180,72 @@ class Explanation:
     source: str
     printed: str
     would_print: str
-    mismatch: float
-    changes: int
-    sentence: str
     also: tuple[str, ...] = ()
+    other: tuple[int, ...] = ()
+    count: int = 1
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A small change of what is printed with which everything published comes out.
+
+    Parameters
+    ----------
+    changes : tuple of Change
+    mismatch : float
+        The worst of all values then.
+    values : int
+        How many published values then come out of one input.
+    of : int
+        How many are published: those that are themselves misprinted do not come out.
+    """
+
+    changes: tuple[Change, ...]
+    mismatch: float
+    values: int
+    of: int
 
     @property
-    def data(self) -> dict[str, Any]:
-        """For JSON."""
-        return {
-            "kind": self.kind,
-            "source": self.source,
-            "cell": self.cell,
-            "index": list(self.index),
-            "printed": self.printed,
-            "would_print": self.would_print,
-            "also": list(self.also),
-            "mismatch": short(self.mismatch),
-            "changes": self.changes,
-            "sentence": self.sentence,
-        }
+    def first(self) -> Change:
+        """The change; of several, the first."""
+        return self.changes[0]
+
+    @property
+    def count(self) -> int:
+        """How many printed numbers change."""
+        return sum(change.count for change in self.changes)
+
+
+@dataclass(frozen=True)
+class Relabelled:
+    """A row of a table that is named after an equation which it cannot come from.
+
+    Parameters
+    ----------
+    source : str
+        The table.
+    cell : str
+        The column that it comes out as.
+    printed, right : str
+        The number of the equation as printed, and that of the column's own.
+    gives : tuple of (str, str)
+        What the printed equation gives instead: columns with their units; empty if nothing of the kind.
+    wanted : (str, str)
+        What the row holds and in which unit.
+    mismatch : float
+        The worst of all values, the row being that column's.
+    rivals : mapping of str to float
+        The same for other columns that it might be.
+    """
+
+    source: str
+    cell: str
+    printed: str
+    right: str
+    gives: tuple[tuple[str, str], ...]
+    wanted: tuple[str, str]
+    mismatch: float
+    rivals: Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -241,19 +260,12 @@ class Fit:
     """
 
     published: PublishedValue
-    mismatch: dict[str, float]
+    mismatch: Mapping[str, float]
 
     @property
     def best(self) -> str:
         """The column that goes with it best."""
         return next(iter(self.mismatch))
-
-    @property
-    def data(self) -> dict[str, Any]:
-        """For JSON."""
-        value = self.published
-        mismatch = {name: short(off) for name, off in self.mismatch.items()}
-        return {"source": value.source, "cell": value.cell, "is": self.best, "mismatch": mismatch}
 
 
 @dataclass(frozen=True)
@@ -270,11 +282,13 @@ class Referee:
         All of them together; None where nothing is published.
     explanations : tuple of Explanation
         Those that change least come first; none where nothing needs one.
-    labels : tuple of Explanation
-        Printed names of rows that cannot be right.
+    labels : tuple of Relabelled
+        Rows whose printed names cannot be right.
     fits : tuple of Fit
     free : tuple of str
         The cells that the publication does not print.
+    errata : tuple of Change
+        The misprints of the input that are known.
     amended : TableVerdict or None
         All tables together if the known misprints of the input are put right; None if none are known.
     misprints : tuple of Explanation
@@ -285,21 +299,14 @@ class Referee:
     tables: tuple[TableVerdict, ...] = ()
     joint: TableVerdict | None = None
     explanations: tuple[Explanation, ...] = ()
-    labels: tuple[Explanation, ...] = ()
+    labels: tuple[Relabelled, ...] = ()
     fits: tuple[Fit, ...] = ()
     free: tuple[str, ...] = ()
+    errata: tuple[Change, ...] = ()
     amended: TableVerdict | None = None
     misprints: tuple[Explanation, ...] = ()
 
     @property
-    def data(self) -> dict[str, Any]:
-        """For JSON."""
-        return {
-            "tables": [table.data for table in self.tables],
-            "joint": self.joint.data if self.joint is not None else None,
-            "explanations": [each.data for each in (*self.explanations, *self.labels)],
-            "fits": [fit.data for fit in self.fits],
-            "free": list(self.free),
-            "amended": self.amended.data if self.amended is not None else None,
-            "misprints": [each.data for each in self.misprints],
-        }
+    def asked_why(self) -> bool:
+        """Whether explanations were looked for."""
+        return self.joint is not None and not self.joint.possible

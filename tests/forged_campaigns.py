@@ -58,7 +58,8 @@ class Forgery:
         return any(
             (each.kind, each.cell, each.source) == (self.kind, self.cell, self.source)
             and (each.index in self.rows or not self.rows)
-            for each in found.explanations
+            for explanation in found.explanations
+            for each in explanation.changes
         )
 
 
@@ -233,7 +234,7 @@ def accused(seed: int) -> str:
     found = honest(random.Random(seed)).refereed()
     assert found.joint is not None
     words = {each.verdict for each in (*found.values, *found.tables, found.joint)}
-    said = [each.sentence for each in (*found.explanations, *found.labels)]
+    said = [*map(words.explained, found.explanations), *map(words.relabelled, found.labels)]
     return " ".join([*sorted(words - {EXACT, REACHABLE}), *said])
 
 

@@ -62,6 +62,8 @@ RESULT = VALUES | {
     "report.published",
     "report.result",
     "report.verdict",
+    "report.verdict_data",
+    "report.verdict_words",
 }
 ALGEBRA = {"sympy", "mpmath"}
 

@@ -103,7 +103,7 @@ def test_the_paper_value_by_value() -> None:
 
 
 def of_kind(found: Referee, kind: str) -> list[tuple[str, tuple[int, ...]]]:
-    return [(each.cell, each.index) for each in found.explanations if each.kind == kind]
+    return [(each.first.cell, each.first.index) for each in found.explanations if each.first.kind == kind]
 
 
 def test_two_pairs_are_out_of_reach_by_themselves(paper: Report) -> None:
@@ -172,17 +172,18 @@ def test_what_would_explain_it_and_nothing_else(paper: Report) -> None:
     assert sorted(of_kind(found, "misprint")) == [("e", (2,)), ("x_p", (2,))]
     assert of_kind(found, "truncated") == [("x_p", ())]
     assert len(found.explanations) == 3
-    would = {each.cell: each for each in found.explanations if each.kind == "misprint"}
-    assert would["x_p"].would_print == "29.8"
-    assert would["x_p"].also == ()
+    would = {each.first.cell: each for each in found.explanations if each.first.kind == "misprint"}
+    assert would["x_p"].first.would_print == "29.8"
+    assert would["x_p"].first.also == ()
     assert would["x_p"].mismatch == pytest.approx(0.76, abs=0.005)
-    assert would["e"].would_print == "0.514"
-    assert "0.515" in would["e"].also
-    assert all(each.mismatch <= 1 and each.changes == 1 for each in found.explanations)
+    assert would["e"].first.would_print == "0.514"
+    assert "0.515" in would["e"].first.also
+    assert all(each.mismatch <= 1 and each.count == 1 for each in found.explanations)
+    assert all(each.values == each.of == 27 for each in found.explanations)
 
 
 def test_rows_of_table_3_are_relabelled(paper: Report) -> None:
-    assert [(each.printed, each.would_print, each.cell) for each in paper.referee.labels] == [
+    assert [(each.printed, each.right, each.cell) for each in paper.referee.labels] == [
         ("(6)", "(7)", "Cprime_eq7"),
         ("(8)", "(9)", "Cprime_eq9"),
     ]
@@ -228,7 +229,7 @@ def test_a_broken_published_value_is_named(tmp_path: Path, before: str, after: s
     assert [(c.cell.name, c.cell.label) for c in report.comparisons if not c.as_expected] == [cell]
     assert sorted(check.kind for check in failed) == ["published", "table"]
     assert "differs otherwise than is known" in failed[0].message
-    assert f"prints {after.rsplit(',', maxsplit=1)[-1]}" in failed[1].message
+    assert f"is printed {after.rsplit(',', maxsplit=1)[-1]} for " in failed[1].message
 
 
 def test_a_misprint_that_is_no_longer_needed_is_a_finding(tmp_path: Path) -> None:

@@ -17,20 +17,23 @@ from matplotlib.text import Text
 from loopsheet.report import build
 from loopsheet.report.result import Report
 from loopsheet.report.verdict import (
+    INPUT,
     NOT_CHECKABLE,
     NOT_FOUND,
     REACHABLE,
     UNREACHABLE,
     WITHIN,
+    Change,
     Explanation,
     Referee,
     TableVerdict,
     Verdict,
 )
+from loopsheet.report.verdict_words import CALLED, at_least, bounds, mismatch
 from loopsheet.report.views import figures, html, latex, reach
 from loopsheet.report.views.document import Document
 from loopsheet.report.views.numbers import decimals
-from loopsheet.report.views.refereed import CALLED, FIGURE, Refereed, certain, figure, mismatch
+from loopsheet.report.views.refereed import FIGURE, Refereed, figure
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ ((( report )))"
@@ -88,12 +91,11 @@ def test_table_2_and_all_tables_cannot_come_out_of_one_input(paper: Report) -> N
     assert joint is not None
     assert joint.at_least is not None
     assert joint.mismatch is not None
-    worst, least = mismatch(joint.mismatch).text, certain(joint.at_least).text
+    worst, least = mismatch(joint.mismatch), at_least(joint.at_least)
     assert float(least) <= joint.at_least
     found = sections_of(paper)
-    assert f"a mismatch of {worst}; by interval arithmetic none leaves less than {least}" in text_of(
-        found["referee"]
-    )
+    said = f"{worst} half units of the last digit; by interval arithmetic none leaves less than {least}"
+    assert f"a mismatch of {said}" in text_of(found["referee"])
     rows = {row[0]: row for row in rows_of(found["refereed-tables"])}
     assert rows["Table 2"][1:6] == ["10", "unreachable", worst, least, "α 2–4"]
     assert rows["all together"][1:5] == ["27", "unreachable", worst, least]
@@ -107,18 +109,16 @@ def test_three_explanations_and_no_other(paper: Report) -> None:
     items = [text_of(item) for item in section.iter(XHTML + "li")][:-2]  # the last two are about the fits
     assert len(items) == len(paper.referee.explanations) == 3
     assert items[0].startswith("xp was truncated, not rounded")
-    assert items[1].startswith("xp2 is printed 29.7; with 29.8 ")
-    assert items[2].startswith("e2 is printed 0.512; with 0.514 ")
+    assert items[1].startswith("xp2 is printed 29.7 for 29.8: then all 27 ")
+    assert items[2].startswith("e2 is printed 0.512 for 0.514 (or 0.513, 0.515): then all 27 ")
     assert "equally good: the digits alone cannot decide between them. Nobody is accused" in text_of(section)
 
 
 def test_the_fit_is_the_log_log_one(paper: Report) -> None:
-    fit, mean = paper.referee.fits
-    chapter = chapter_of(paper)
-    assert chapter.fit_of("alpha_log") is fit
-    assert [one.name for one in chapter.candidates(fit) if one.fits] == ["alpha_log"]
-    assert chapter.told(fit) == "Only the exponent of the log-log fit goes with what is published"
-    assert chapter.told(mean).endswith("the mean exponent from the exponent of the log-log fit")
+    fit, mean = chapter_of(paper).fits
+    assert chapter_of(paper).fit_of("alpha_log") == fit
+    assert fit.endswith("Only the exponent of the log-log fit goes with what is published")
+    assert mean.endswith("the mean exponent from the exponent of the log-log fit")
     assert "Only the exponent of the log-log fit goes with what is published." in text_of(
         sections_of(paper)["fit"]
     )
@@ -136,10 +136,11 @@ def test_the_ledger_has_errata_of_equations_and_of_data(paper: Report) -> None:
     assert named == ["Named after (6), but comes out of (7).", "Named after (8), but comes out of (9)."]
     assert all(row[0].startswith("Table 3, C(") for row in rows if row[1] == "label")
     unreachable = next(row for row in rows if row[1] == "unreachable")
-    bound = chapter_of(paper).out[0].certain
-    assert bound is not None
+    out = chapter_of(paper).out[0]
+    ends = bounds(out.verdict, out.pair.printed)
+    assert ends is not None
     assert unreachable[0] == "Table 2, α 2–4"
-    assert f"at most {bound[1].text}" in unreachable[3]
+    assert f"at most {ends[1]}" in unreachable[3]
     assert [row[0] for row in rows[-3:]] == ["xp", "xp 2", "e 2"]
 
 
@@ -173,7 +174,7 @@ def test_both_formats_say_the_same(paper: Report) -> None:
     article = latex.render(paper, [spec.name for spec in figures.of(paper)])
     joint = chapter_of(paper).joint
     assert joint is not None
-    assert joint.sentence in article
+    assert joint.sentence[1:] in article
     for words in (
         r"\section{The referee}",
         r"\includegraphics[max width=0.85\linewidth]{figures/referee.pdf}",
@@ -299,7 +300,9 @@ def test_an_uncertain_verdict_says_so(paper: Report) -> None:
     assert (
         "No input that prints as given was found from which all 27 published values together come out" in said
     )
-    assert "leaves a mismatch of 1.004. That there is none is not certain." in said
+    assert (
+        "leaves a mismatch of 1.004 half units of the last digit. That there is none is not certain." in said
+    )
 
 
 def test_a_table_that_settles_it_is_named(paper: Report) -> None:
@@ -330,7 +333,7 @@ def test_nothing_can_be_asked_for_where_no_cell_has_a_value(paper: Report) -> No
 def test_every_kind_of_explanation_has_its_line(
     paper: Report, kind: str, index: tuple[int, ...], says: str
 ) -> None:
-    one = Explanation(kind, "e", index, "input", "2", "3", 0.5, 1, "a sentence", ("4",))
+    one = Explanation((Change(kind, "e", index, INPUT, "2", "3", ("4",), (2,)),), 0.5, 27, 27)
     report = replace(paper, referee=replace(paper.referee, explanations=(one,)))
     found = sections_of(report)
     assert rows_of(found["errata-ledger"])[-1][2] == says
@@ -354,12 +357,7 @@ def with_sources(report: Report, names: dict[str, str]) -> Report:
             referee,
             tables=tuple(map(table, referee.tables)),
             joint=joint and table(joint),
-            labels=tuple(
-                replace(
-                    renamed(one), sentence=one.sentence.replace(one.source, names.get(one.source, one.source))
-                )
-                for one in referee.labels
-            ),
+            labels=tuple(renamed(one) for one in referee.labels),
             fits=tuple(replace(fit, published=renamed(fit.published)) for fit in referee.fits),
         ),
     )
@@ -385,14 +383,14 @@ def test_hostile_sources_are_text_in_the_article(paper: Report) -> None:
 
 @pytest.mark.parametrize("value", [0.0, 0.3, 0.96, 0.99996, 1.0, 1.00004, 1.04, 6.46, 8.41])
 def test_a_mismatch_is_seen_on_the_right_side_of_one(value: float) -> None:
-    seen = float(mismatch(value).plain)
+    seen = float(mismatch(value))
     assert (seen > 1) == (value > 1)
     assert (seen < 1) == (value < 1)
 
 
 @pytest.mark.parametrize("value", [1.0001, 1.05, 6.4637, 12.0])
 def test_no_more_is_claimed_than_is_certain(value: float) -> None:
-    assert 1 < float(certain(value).plain) <= value
+    assert 1 < float(at_least(value)) <= value
 
 
 # --- the picture -----------------------------------------------------------------------------------------

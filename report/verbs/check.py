@@ -40,6 +40,8 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _print(report: Report, found: Iterable[Check]) -> None:
+    from ..verdict_words import lines
+
     passed = sum(p.status.passes for p in report.proofs)
     print(f"proofs     {passed} of {len(report.proofs)} equations stand")
     for erratum in report.errata:
@@ -54,18 +56,8 @@ def _print(report: Report, found: Iterable[Check]) -> None:
             where = f"{comparison.published.source} {comparison.cell.address}"
             printed, reason = comparison.published.printed.text, comparison.published.reason
             print(f"  {where:28} {printed:>8} -> {comparison.again:>8}  {comparison.word:13} {reason}")
-    if report.referee.joint is not None:
-        for table in (*report.referee.tables, report.referee.joint):
-            print(f"referee    {table.source}: {table.sentence}")
-        for explanation in (*report.referee.explanations, *report.referee.labels):
-            print(f"  perhaps  {explanation.sentence}")
-        for fit in report.referee.fits:
-            offs = ", ".join(f"{name} {off:.2f}" for name, off in fit.mismatch.items())
-            print(
-                f"  fit      {fit.published.printed.text} of {fit.published.source}, half units off: {offs}"
-            )
-        if report.referee.amended is not None:
-            print(f"  amended  {report.referee.amended.sentence}")
+    for line in lines(report.referee, lambda name: report.sheet[name].meaning):
+        print(line)
     failed = [check for check in found if not check.passed]
     for check in failed:
         print(f"finding: {check.sentence}")
@@ -74,6 +66,8 @@ def _print(report: Report, found: Iterable[Check]) -> None:
 
 def _details(report: Report) -> dict[str, Any]:
     """What JSON tells besides the checks: numbers instead of sentences."""
+    from ..verdict_data import data
+
     return {
         "proofs": {p.equation.label: p.status.value for p in report.proofs},
         "engines": [agreement.data for agreement in report.engines],
@@ -88,5 +82,5 @@ def _details(report: Report) -> dict[str, Any]:
             }
             for c in report.comparisons
         ],
-        "referee": report.referee.data,
+        "referee": data(report.referee),
     }

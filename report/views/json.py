@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...derivations.text import text_of_equation
+from .. import verdict_data
 from ..result import Report
 from ..sheet import Column, Given
 from ..values import Status
@@ -29,7 +30,7 @@ def values(report: Report) -> str:
             "proofs": proof_statuses(report),
             "errata": [{"about": e.about, "kind": e.kind, "sentence": e.sentence} for e in report.errata],
             "published": [_published(comparison) for comparison in report.comparisons],
-            **({"referee": report.referee.data} if report.referee.joint is not None else {}),
+            **({"referee": verdict_data.data(report.referee)} if report.referee.joint is not None else {}),
         }
     )
 
@@ -104,6 +105,7 @@ def _published(comparison: Any) -> dict[str, Any]:
         "distance": comparison.distance,
         "verdict": comparison.word,
         "interval": _interval(comparison.refereed),
+        "bounds": verdict_data.bounds(comparison.refereed),
         "expected": comparison.as_expected,
     }
 

@@ -13,12 +13,12 @@ import numpy as np
 
 from ..result import Comparison, Report
 from ..verdict import EXACT, REACHABLE, UNREACHABLE
+from ..verdict_words import CALLED
 from . import drawing
 from .drawing import INK, LOADING, PALE, UNLOADING
 from .escape import visible
 from .math import latex_names, name_latex
 from .parts import index_text
-from .refereed import CALLED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -93,5 +93,7 @@ def _as_expected(comparison: Comparison, verdict: Verdict, misprints: Sequence[E
     published = comparison.published
     if published.expect == "differs":
         own = (published.source, published.cell, published.index)
-        return comparison.verdict == "differs" and own not in {(m.source, m.cell, m.index) for m in misprints}
+        return comparison.verdict == "differs" and own not in {
+            (change.source, change.cell, change.index) for found in misprints for change in found.changes
+        }
     return verdict.verdict in (EXACT, REACHABLE, WITHIN)

@@ -10,13 +10,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ...quantity import Printed
-from ...verdict import Explanation
+from ...verdict import INPUT, Change, Explanation
 from .comparison import print_as
 from .minimax import Best, best
 from .problem import Array, Box, Problem
@@ -69,9 +68,9 @@ def explanations(problem: Problem, found: Best) -> tuple[Explained, ...]:
     search = _Search(problem, found)
     one = [*search.truncated(), *search.misprints(), *search.misprints_in_tables(), *search.exchanges()]
     all_of_them = one or [*search.columns(), *search.orders()]
-    least = min((each.explanation.changes for each in all_of_them), default=0)
-    equal = [each for each in all_of_them if each.explanation.changes == least]
-    return tuple(sorted(equal, key=lambda each: _digits_moved(each.explanation)))
+    least = min((each.explanation.count for each in all_of_them), default=0)
+    equal = [each for each in all_of_them if each.explanation.count == least]
+    return tuple(sorted(equal, key=lambda each: _digits_moved(each.explanation.first)))
 
 
 class _Search:
@@ -95,14 +94,10 @@ class _Search:
         known = self.slopes if np.isfinite(self.slopes).all() else None
         return best(problem, box, until, unless, known)
 
-    def said(self, now: Best, rest: bool = False) -> str:
-        """What follows from a change."""
-        number = len(self.problem.published) - rest
-        which = "the other" if rest else "all"
-        return (
-            f"{which} {number} published values come out of one input, "
-            f"the worst within {now.mismatch:.2f} half units of its last digit"
-        )
+    def explained(self, change: Change, problem: Problem, box: Box, now: Best) -> Explained:
+        """What a change of the print makes of the published values."""
+        found = Explanation((change,), now.mismatch, len(problem.published), len(self.problem.published))
+        return Explained(found, problem, box, now)
 
     # --- how a column was shortened -------------------------------------------------------------------
 
@@ -120,11 +115,8 @@ class _Search:
             moved = box.moved(members, lows, highs, middles)
             now = self.best(problem, moved)
             if now.mismatch <= 1:
-                sentence = f"{name} was {would}, not {was}: then {self.said(now)}"
-                yield Explained(
-                    Explanation("truncated", name, (), "input", was, would, now.mismatch, 1, sentence),
-                    problem, moved, now,
-                )  # fmt: skip
+                change = Change("truncated", name, (), INPUT, was, would)
+                yield self.explained(change, problem, moved, now)
         for (source, cell), members in self.groups.items():
             if not set(members) & self.pressing:
                 continue
@@ -134,11 +126,8 @@ class _Search:
             })  # fmt: skip
             now = self.best(changed, changed.box)
             if now.mismatch <= 1:
-                sentence = f"{cell} of {source} was {_other(was)}, not {was}: then {self.said(now)}"
-                yield Explained(
-                    Explanation("truncated", cell, (), source, was, _other(was), now.mismatch, 1, sentence),
-                    changed, changed.box, now,
-                )  # fmt: skip
+                change = Change("truncated", cell, (), source, was, _other(was))
+                yield self.explained(change, changed, changed.box, now)
 
     def printed_otherwise(self, changes: dict[int, Printed]) -> Problem:
         """The problem with other prints of some published values."""
@@ -175,23 +164,10 @@ class _Search:
                 continue
             possible.sort(key=lambda each: Fraction(each[0]))
             would, box, now = possible[len(possible) // 2]
-            yield Explained(self.misprint(n, printed, would, possible, now), self.problem, box, now)
-
-    def misprint(
-        self, n: int, printed: Printed, would: str, possible: Sequence[tuple[str, Box, Best]], now: Best
-    ) -> Explanation:
-        """Say that a given cell is misprinted."""
-        unknown = self.problem.unknowns[n]
-        also = tuple(text for text, _, _ in possible if text != would)
-        others = f" (or {', '.join(also)})" if also else ""
-        sentence = (
-            f"{_address(unknown.column, unknown.index)} is printed {printed.text}; "
-            f"with {would}{others} {self.said(now)}"
-        )
-        return Explanation(
-            "misprint", unknown.column, unknown.index, "input", printed.text, would, now.mismatch, 1,
-            sentence, also,
-        )  # fmt: skip
+            also = tuple(text for text, _, _ in possible if text != would)
+            unknown = self.problem.unknowns[n]
+            change = Change("misprint", unknown.column, unknown.index, INPUT, printed.text, would, also)
+            yield self.explained(change, self.problem, box, now)
 
     def reprinted(
         self, n: int, printed: Printed, value: Fraction, near: Array
@@ -257,17 +233,8 @@ class _Search:
             value = self.problem.published[n]
             cell = float(self.problem.evaluate(now.point[None])[0, n])
             would = print_as(cell, value.printed) if np.isfinite(cell) else "no value"
-            sentence = (
-                f"{value.source} prints {value.printed.text} for {_address(value.cell, value.index)}; "
-                f"with {would} {self.said(now, rest=True)}"
-            )
-            yield Explained(
-                Explanation(
-                    "misprint", value.cell, value.index, value.source, value.printed.text, would,
-                    now.mismatch, 1, sentence,
-                ),
-                others, others.box, now,
-            )  # fmt: skip
+            change = Change("misprint", value.cell, value.index, value.source, value.printed.text, would)
+            yield self.explained(change, others, others.box, now)
 
     # --- rows and columns under the wrong name --------------------------------------------------------
 
@@ -286,10 +253,9 @@ class _Search:
                 changed = self.printed_otherwise({n: other.printed, m: one.printed})
                 now = self.hopeful(changed)
                 if now is not None and now.mismatch <= 1:
-                    yield self.exchange(
-                        changed, changed.box, now, one.source, one.cell, one.index, other.index,
-                        one.printed.text, other.printed.text,
-                    )  # fmt: skip
+                    texts = one.printed.text, other.printed.text
+                    change = Change("label", one.cell, one.index, one.source, *texts, other=other.index)
+                    yield self.explained(change, changed, changed.box, now)
 
     def exchanged_inputs(self) -> Iterator[Explained]:
         for name, members in self.problem.rows.items():
@@ -306,10 +272,9 @@ class _Search:
                     continue
                 now = best(self.problem, box, unless=HOPELESS)
                 if now.mismatch <= 1:
-                    yield self.exchange(
-                        self.problem, box, now, "input", name, one.index, other.index,
-                        one.printed.text, other.printed.text,
-                    )  # fmt: skip
+                    texts = one.printed.text, other.printed.text
+                    change = Change("label", name, one.index, INPUT, *texts, other=other.index)
+                    yield self.explained(change, self.problem, box, now)
 
     @cached_property
     def reach(self) -> Array:
@@ -333,19 +298,6 @@ class _Search:
             return None
         return self.best(changed, changed.box, unless=HOPELESS)
 
-    def exchange(
-        self, problem: Problem, box: Box, now: Best, source: str, cell: str, one: Any, other: Any,
-        text: str, its: str,
-    ) -> Explained:  # fmt: skip
-        """Say that two numbers stand in each other's place."""
-        where = "" if source == "input" else f" of {source}"
-        sentence = (
-            f"{_address(cell, one)} and {_address(cell, other)}{where} stand in each other's place "
-            f"({text} and {its}): then {self.said(now)}"
-        )
-        found = Explanation("label", cell, tuple(one), source, text, its, now.mismatch, 1, sentence)
-        return Explained(found, problem, box, now)
-
     def columns(self) -> Iterator[Explained]:
         """A row of a table that holds another column than the one it is named after."""
         sheet = self.problem.campaign.sheet
@@ -362,11 +314,8 @@ class _Search:
                 ])  # fmt: skip
                 now = best(changed)
                 if now.mismatch <= 1:
-                    sentence = f"{cell} of {source} is {column.name}: then {self.said(now)}"
-                    yield Explained(
-                        Explanation("label", cell, (), source, cell, column.name, now.mismatch, 1, sentence),
-                        changed, changed.box, now,
-                    )  # fmt: skip
+                    change = Change("label", cell, (), source, cell, column.name)
+                    yield self.explained(change, changed, changed.box, now)
 
     def orders(self) -> Iterator[Explained]:
         """A list of a table that stands in another order than its rows."""
@@ -391,16 +340,11 @@ class _Search:
             now = best(changed, replace(changed.box, start=point))
             if now.mismatch > 1:
                 continue
-            texts = [self.problem.published[n].printed.text for n in members]
-            would = [self.problem.published[n].printed.text for n in order]
-            sentence = f"{cell} of {source} stands in another order: with {', '.join(would)} {self.said(now)}"
-            yield Explained(
-                Explanation(
-                    "order", cell, (), source, ", ".join(texts), ", ".join(would), now.mismatch,
-                    _exchanges(members, order), sentence,
-                ),
-                changed, changed.box, now,
-            )  # fmt: skip
+            texts, would = (
+                ", ".join(self.problem.published[n].printed.text for n in rows) for rows in (members, order)
+            )
+            change = Change("order", cell, (), source, texts, would, count=_exchanges(members, order))
+            yield self.explained(change, changed, changed.box, now)
 
     def assigned(self, members: Sequence[int], cells: Array) -> list[int]:
         """Which print goes best with which row."""
@@ -410,15 +354,15 @@ class _Search:
         return [members[n] for n in columns.tolist()]
 
 
-def _digits_moved(explanation: Explanation) -> float:
+def _digits_moved(change: Change) -> float:
     """By how many units of the last digit a print moves; by none, where it only was made in another way."""
-    if explanation.kind == "truncated":
+    if change.kind == "truncated":
         return 0.0
     try:
-        printed, would = Fraction(explanation.printed), Fraction(explanation.would_print)
+        printed, would = Fraction(change.printed), Fraction(change.would_print)
     except ValueError:
         return np.inf
-    decimals = len(explanation.printed.partition(".")[2])
+    decimals = len(change.printed.partition(".")[2])
     return float(abs(printed - would) * 10**decimals)
 
 
@@ -443,7 +387,3 @@ def _exchanges(before: Sequence[int], after: Sequence[int]) -> int:
             seen.add(here)
             here = follows[here]
     return len(before) - cycles
-
-
-def _address(name: str, index: Sequence[int]) -> str:
-    return f"{name}[{'-'.join(map(str, index))}]" if index else name

@@ -13,14 +13,18 @@ from ...published import PublishedValue
 from ...sheet import Sheet
 from ...values import Values
 from ...verdict import (
+    ALL,
     EXACT,
+    INPUT,
     NOT_CHECKABLE,
     NOT_FOUND,
     REACHABLE,
     UNREACHABLE,
+    Change,
     Explanation,
     Fit,
     Referee,
+    Relabelled,
     TableVerdict,
     Verdict,
 )
@@ -77,7 +81,7 @@ def referee(
         else:
             tables.append(TableVerdict(source, 0, NOT_CHECKABLE))
     step("refereeing all tables together")
-    joint, found = _together("all", whole, list(range(len(checkable))), certificate, alone, published, tables)
+    joint, found = _together(ALL, whole, list(range(len(checkable))), certificate, alone, published, tables)
     if joint.mismatch is None:
         return Referee(alone, tuple(tables), joint, free=inputs.free)
     explained: tuple[Explained, ...] = ()
@@ -91,7 +95,7 @@ def referee(
     first = explained[0] if explained else None
     workbook = inputs.workbook
     fit: tuple[Fit, ...] = ()
-    named: tuple[Explanation, ...] = ()
+    named: tuple[Relabelled, ...] = ()
     if first is not None or found.mismatch <= 1:
         step("refereeing names of rows and fits")
         named = labels(campaign, whole, workbook.ledger(), first)
@@ -99,8 +103,16 @@ def referee(
     amended, misprints = _amended(campaign, step) if inputs.errata else (None, ())
     return Referee(
         alone, tuple(tables), joint, tuple(each.explanation for each in explained), named, fit, inputs.free,
-        amended, misprints,
+        _known(inputs), amended, misprints,
     )  # fmt: skip
+
+
+def _known(inputs: Inputs) -> tuple[Change, ...]:
+    """The misprints of the input that the report states."""
+    return tuple(
+        Change("misprint", name, (inputs.tests[row],), INPUT, inputs.measured[name][row].text, printed.text)
+        for (name, row), printed in inputs.errata.items()
+    )
 
 
 def _amended(campaign: Campaign, step: Callable[[str], None]) -> tuple[TableVerdict, tuple[Explanation, ...]]:
@@ -109,7 +121,7 @@ def _amended(campaign: Campaign, step: Callable[[str], None]) -> tuple[TableVerd
     inputs = campaign.inputs.amended
     problem = replace(campaign, inputs=inputs).problem(inputs.published)
     which = list(range(len(problem.published)))
-    verdict, found = _together("all", problem, which, Certificate(problem), (), ())
+    verdict, found = _together(ALL, problem, which, Certificate(problem), (), ())
     misprints = explanations(problem, found) if found.mismatch > 1 else ()
     return verdict, tuple(each.explanation for each in misprints)
 
@@ -136,6 +148,10 @@ def _together(
     pressing = np.abs(found.weights) if found.weights.any() else np.abs(problem.mismatch(found.cells))
     worst = problem.published[int(np.argmax(pressing))]
     at_least, because = 0.0, ""
+    out = [
+        value for value, verdict in zip(published, alone, strict=True)
+        if verdict.verdict == UNREACHABLE and source in (ALL, value.source)
+    ]  # fmt: skip
     if exact:
         word = EXACT
     elif found.mismatch <= 1:
@@ -147,13 +163,9 @@ def _together(
         for part in parts:
             if (part.at_least or 0) > at_least:
                 at_least, because = part.at_least or 0, part.source
-        by_itself = [
-            value for value, verdict in zip(published, alone, strict=True)
-            if verdict.verdict == UNREACHABLE and source in ("all", value.source)
-        ]  # fmt: skip
-        word = UNREACHABLE if at_least > 1 or by_itself else NOT_FOUND
+        word = UNREACHABLE if at_least > 1 or out else NOT_FOUND
     verdict = TableVerdict(
         source, len(which), word, found.mismatch, at_least if at_least > 1 else None, worst,
-        problem.witness(found.point), because,
+        problem.witness(found.point), because, len(out),
     )  # fmt: skip
     return verdict, found

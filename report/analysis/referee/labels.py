@@ -8,7 +8,8 @@ from dataclasses import replace
 
 from ....derivations.equation import Derivation, Ledger
 from ...sheet import Column
-from ...verdict import Explanation, Fit, short
+from ...verdict import Fit, Relabelled
+from ...verdict_words import mismatch as in_words
 from .explain import Explained
 from .minimax import best
 from .problem import Box, Campaign, Problem
@@ -43,7 +44,7 @@ def numbers_of(column: Column, ledger: Ledger) -> set[str]:
 
 def labels(
     campaign: Campaign, problem: Problem, ledger: Ledger, first: Explained | None
-) -> tuple[Explanation, ...]:
+) -> tuple[Relabelled, ...]:
     """Find rows that are printed under the number of an equation they cannot come from.
 
     Parameters
@@ -60,7 +61,7 @@ def labels(
 
 def _labels(
     campaign: Campaign, problem: Problem, ledger: Ledger, first: Explained | None
-) -> Iterator[Explanation]:
+) -> Iterator[Relabelled]:
     groups: dict[tuple[str, str, str], list[int]] = {}
     for n, value in enumerate(problem.published):
         found = _NUMBER.search(value.label)
@@ -83,21 +84,10 @@ def _labels(
         if mismatch[would] > 1 or (would in {f.name for f in fitting}):
             continue
         right = next(iter(sorted(numbers_of(campaign.sheet[would], ledger))))
-        because = (
-            f"{number} gives {' and '.join(f'{other.name} in {other.unit}' for other in named)}, "
-            f"no {column.meaning.split(',')[0]} in {column.unit}"
-            if named and not fitting
-            else f"no column of {number} is of this kind"
-        )
-        others = ", ".join(
-            f"as {name} they are off by {off:.3g}" for name, off in mismatch.items() if name != would
-        )
-        sentence = (
-            f"{source} names {would} after {number}, but it comes out of {right}: {because}; "
-            f"the worst is within {mismatch[would]:.2f} half units of its last digit"
-            + (f", {others}" if others else "")
-        )
-        yield Explanation("label", would, (), source, number, right, mismatch[would], 1, sentence)
+        gives = tuple((other.name, other.unit) for other in named if not fitting)
+        wanted = column.meaning.split(",")[0], column.unit
+        others = {name: off for name, off in mismatch.items() if name != would}
+        yield Relabelled(source, would, number, right, gives, wanted, mismatch[would], others)
 
 
 def _alike(one: Column, other: Column) -> bool:
@@ -162,7 +152,7 @@ def fits(
         for name in rivals:
             own = campaign.problem([*asked, replace(value, cell=name)], campaign.free)
             mismatch[name] = best(own, _like(own, first), until=PLENTY).mismatch
-        # Which of two that are equal comes first shall not depend on their last digits.
-        ranked = sorted(mismatch.items(), key=lambda item: (short(item[1]), names.index(item[0])))
+        # Which of two that are shown alike comes first shall not depend on their last digits.
+        ranked = sorted(mismatch.items(), key=lambda item: (float(in_words(item[1])), names.index(item[0])))
         found.append(Fit(value, dict(ranked)))
     return tuple(found)

@@ -1,0 +1,110 @@
+"""What the referee found, for JSON.
+
+What was searched for is cut short, for its further digits depend on the machine; what is certain is rounded
+outwards.
+"""
+
+from __future__ import annotations
+
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context
+from typing import Any
+
+from . import verdict_words as words
+from .verdict import Change, Explanation, Fit, Referee, Relabelled, TableVerdict, Verdict, Witness
+
+__all__ = ["bounds", "certain", "data", "short"]
+
+DIGITS = 6
+"""Significant digits."""
+
+
+def short(value: float | None) -> float | None:
+    """What was searched for: rounded to the nearest."""
+    return None if value is None else float(f"{value:.{DIGITS}g}")
+
+
+def certain(value: float | None, upwards: bool = False) -> float | None:
+    """What is certain, rounded down; an upper bound, rounded up.
+
+    >>> certain(6.4637125), certain(1.311909, upwards=True), certain(-1.311909)
+    (6.46371, 1.31191, -1.31191)
+    """
+    if value is None:
+        return None
+    rounding = ROUND_CEILING if upwards else ROUND_FLOOR
+    return float(Context(prec=DIGITS, rounding=rounding).create_decimal_from_float(value))
+
+
+def bounds(found: Verdict | None) -> list[float | None] | None:
+    """What no input that prints as given can leave, in SI; None where it was not asked for."""
+    if found is None or (found.bound_low is None and found.bound_high is None):
+        return None
+    return [certain(found.bound_low), certain(found.bound_high, upwards=True)]
+
+
+def data(found: Referee) -> dict[str, Any]:
+    """All that the referee found, but for the values by themselves."""
+    return {
+        "tables": [_table(table) for table in found.tables],
+        "joint": found.joint and _table(found.joint),
+        "explanations": [*map(_explanation, found.explanations), *map(_relabelled, found.labels)],
+        "fits": [_fit(fit) for fit in found.fits],
+        "free": list(found.free),
+        "amended": found.amended and _table(found.amended),
+        "misprints": [_explanation(each) for each in found.misprints],
+    }
+
+
+def _witness(found: Witness) -> dict[str, Any]:
+    return {"cell": found.cell, "index": list(found.index), "value": float(f"{found.value:.9g}")}
+
+
+def _table(found: TableVerdict) -> dict[str, Any]:
+    return {
+        "source": found.source,
+        "verdict": found.verdict,
+        "values": found.values,
+        "mismatch": short(found.mismatch),
+        "at_least": certain(found.at_least),
+        "because": found.because or None,
+        "witness": [_witness(each) for each in found.witness],
+    }
+
+
+def _change(found: Change) -> dict[str, Any]:
+    return {
+        "kind": found.kind,
+        "source": found.source,
+        "cell": found.cell,
+        "index": list(found.index),
+        "printed": found.printed,
+        "would_print": found.would_print,
+        "also": list(found.also),
+    }
+
+
+def _explanation(found: Explanation) -> dict[str, Any]:
+    return {
+        **_change(found.first),
+        "besides": [_change(change) for change in found.changes[1:]],
+        "mismatch": short(found.mismatch),
+        "changes": found.count,
+        "sentence": words.explained(found),
+    }
+
+
+def _relabelled(found: Relabelled) -> dict[str, Any]:
+    change = Change("label", found.cell, (), found.source, found.printed, found.right)
+    return {
+        **_change(change),
+        "besides": [],
+        "mismatch": short(found.mismatch),
+        "changes": change.count,
+        "sentence": words.relabelled(found),
+    }
+
+
+def _fit(found: Fit) -> dict[str, Any]:
+    value = found.published
+    mismatch = {name: short(off) for name, off in found.mismatch.items()}
+    return {"source": value.source, "cell": value.cell, "is": found.best, "mismatch": mismatch}
