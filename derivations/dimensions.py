@@ -39,6 +39,7 @@ from sympy import (
 from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import BooleanFunction
 
+from .reductions import Median
 from .vocabulary import Vocabulary
 
 __all__ = [
@@ -209,7 +210,7 @@ class Dimensions:
             case sign():
                 self.of(expression.args[0])
                 return PURE
-            case Sum():
+            case Sum() | Median():
                 return self.of(expression.function)
             case Integral():
                 total = self.of(expression.function)

@@ -14,8 +14,9 @@ from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
-from sympy import Add, Basic, Expr, Integral, Mul, Pow, Rel, Sum, Symbol
+from sympy import Add, Basic, Expr, Integral, Mul, Pow, Rel, Symbol
 
+from .reductions import REDUCTIONS
 from .vocabulary import NO_WORDS, Vocabulary
 
 __all__ = ["Derivation", "Equation", "Erratum", "Kind", "Ledger", "Step", "evaluated"]
@@ -32,12 +33,12 @@ class Kind(Enum):
 def evaluated(expression: Any) -> Any:
     """The expression that is computed: the author's, rebuilt with sympy's own evaluation.
 
-    Integrals and sums stay unevaluated; only the order of terms and trivial factors are normalised.
+    Integrals, sums and medians stay unevaluated; only the order of terms and trivial factors are normalised.
     """
     if not isinstance(expression, Basic) or not expression.args or isinstance(expression, Symbol):
         return expression
     arguments = [evaluated(argument) for argument in expression.args]
-    if isinstance(expression, (Integral, Sum)):
+    if isinstance(expression, (Integral, *REDUCTIONS)):
         return expression.func(arguments[0], *expression.limits)
     return expression.func(*arguments)
 

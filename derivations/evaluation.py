@@ -7,8 +7,9 @@ index of a sum or the variable of an integral is taken out of its loop. No text 
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache, reduce
+from statistics import median
 from typing import Any
 
 import mpmath
@@ -43,6 +44,8 @@ from sympy import (
 )
 from sympy import cos as cosine
 from sympy.logic.boolalg import BooleanAtom
+
+from .reductions import REDUCTIONS, Median
 
 __all__ = ["UNDEFINED", "NotEvaluable", "Program", "is_real"]
 
@@ -176,7 +179,7 @@ class Program:
             return self._fresh(expression, 0, expression._to_mpmath(mpmath.mp.prec))
         if isinstance(expression, BooleanAtom):
             return self._fresh(expression, 0, bool(expression))
-        if isinstance(expression, (Sum, Integral)):
+        if isinstance(expression, (Integral, *REDUCTIONS)):
             return self._loop(expression)
         function, arguments = self._operation(expression)
         slots = tuple(self._slot(argument) for argument in arguments)
@@ -213,7 +216,7 @@ class Program:
         raise NotEvaluable(f"{name} has no value")
 
     def _loop(self, expression: Any) -> int:
-        """A sum or an integral: its body gets a list of operations of its own, run at each place."""
+        """A sum, a median or an integral: its body has a list of operations of its own, run at each place."""
         if len(expression.limits) != 1 or len(expression.limits[0]) != 3:
             raise NotEvaluable(f"{expression} has no limits, or several")
         variable, low, high = expression.limits[0]
@@ -225,7 +228,7 @@ class Program:
         body = self._slot(expression.function)
         tape = self._tapes.pop()
         self._known.pop()
-        at = self._integral if isinstance(expression, Integral) else self._sum
+        at = {Integral: self._integral, Sum: self._sum, Median: self._median}[type(expression)]
         arguments = (*ends, *((body,) if self._levels[body] < level else ()))
         outer = max(
             [self._levels[slot] for slot in ends]
@@ -259,13 +262,17 @@ class Program:
         for slot, function, arguments in tape:
             slots[slot] = function(*[slots[argument] for argument in arguments])
 
-    def _sum(self, tape: Any, running: int, body: int, low: Any, high: Any) -> Any:
-        total = mpmath.mpf(0)
+    def _terms(self, tape: Any, running: int, body: int, low: Any, high: Any) -> Iterator[Any]:
         for number in range(int(low), int(high) + 1):
             self._slots[running] = mpmath.mpf(number)
             self._run(tape)
-            total += self._slots[body]
-        return total
+            yield self._slots[body]
+
+    def _sum(self, *loop: Any) -> Any:
+        return sum(self._terms(*loop), start=mpmath.mpf(0))
+
+    def _median(self, *loop: Any) -> Any:
+        return median(self._terms(*loop))
 
     def _integral(self, tape: Any, running: int, body: int, low: Any, high: Any) -> Any:
         places, weights = _nodes(mpmath.mp.dps)

@@ -1,4 +1,4 @@
-"""The points that the paper generates on each pair's loading curve, and means over the pairs."""
+"""The points that the paper generates on each pair's loading curve; mean and median over the pairs."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from sympy import Max, Sum, Symbol
 from sympy.core.parameters import evaluate
 
 from .equation import Equation, Kind
+from .reductions import Median
 from .symbols import VOCABULARY, p, s
 
 __all__ = [
@@ -15,6 +16,7 @@ __all__ = [
     "N",
     "abscissa",
     "mean",
+    "middle",
     "n_pairs",
     "top",
     "x_ref",
@@ -53,6 +55,14 @@ with evaluate(False):
         "mean exponent",
     )
 
+    middle = Equation(
+        "(L24)",
+        (Symbol("alpha_median", positive=True), Median(ALPHA[p], (p, 1, n_pairs))),
+        "half of the pairs lie on either side, so that one pair far off does not move it",
+        Kind.DEFINITION,
+        "median exponent",
+    )
+
     x_scale = Equation(
         "(L22)",
         (x_ref, Sum(XTOP[p], (p, 1, n_pairs)) / n_pairs),
@@ -71,5 +81,5 @@ with evaluate(False):
         defines=F_ref,
     )
 
-ENTRIES = (top, abscissa, mean, x_scale, F_scale)
+ENTRIES = (top, abscissa, mean, middle, x_scale, F_scale)
 """Everything above, in the order of a ledger."""

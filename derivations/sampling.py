@@ -12,6 +12,7 @@ import mpmath
 from sympy import Abs, Add, Expr, Indexed, Integral, Mul, Pow, Sum, Symbol
 
 from .evaluation import UNDEFINED, Program, is_real
+from .reductions import REDUCTIONS, Median
 from .system import Refused, System
 from .text import text
 from .vocabulary import Vocabulary
@@ -59,7 +60,7 @@ class Space:
         self, expressions: Any, names: Mapping[Any, Any], vocabulary: Vocabulary, fixed: Any = ()
     ) -> None:
         self.names, self.vocabulary = names, vocabulary
-        sums = [total for e in expressions for total in e.atoms(Sum)]
+        sums = [total for e in expressions for total in e.atoms(*REDUCTIONS)]
         columns = {cell.base.label for e in expressions for cell in e.atoms(Indexed)}
         sizes = {
             s for total in sums for limit in total.limits for place in limit[1:] for s in place.free_symbols
@@ -215,8 +216,8 @@ def _magnitude(expression: Any) -> Any:
             return expression.func(*map(_magnitude, expression.args), evaluate=False)
         case Integral():
             return Abs(Integral(_magnitude(expression.function), *expression.limits), evaluate=False)
-        case Sum():
-            return Sum(_magnitude(expression.function), *expression.limits)
+        case Sum() | Median():
+            return expression.func(_magnitude(expression.function), *expression.limits)
         case Pow() if expression.exp.is_Integer and expression.exp.is_positive:
             return Pow(_magnitude(expression.base), expression.exp, evaluate=False)
         case Symbol() | Indexed() if expression.is_positive:

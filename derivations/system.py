@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from sympy import Expr, Float, Indexed, IndexedBase, Integral, Rel, Sum, Symbol, true
+from sympy import Expr, Float, Indexed, IndexedBase, Integral, Rel, Symbol, true
 from sympy.core.function import AppliedUndef
 
 from .algebra import Solved, definite, settle, solve_for, vanishes
 from .equation import Equation, Step
+from .reductions import REDUCTIONS
 from .text import Writer
 from .vocabulary import Vocabulary
 
@@ -175,7 +176,7 @@ def _functions(step: Step, told: Told) -> dict[Expr, Expr]:
 
 def _plain_names(expressions: list[Any], told: Told) -> tuple[dict[Any, Any], dict[Indexed, Expr]]:
     """Plain symbols for cells: algebra on them is faster, and no cell shares its name with a column."""
-    limits = [limit for e in expressions for loop in e.atoms(Sum, Integral) for limit in loop.limits]
+    limits = [limit for e in expressions for loop in e.atoms(Integral, *REDUCTIONS) for limit in loop.limits]
     bound = {limit[0] for limit in limits}
     free = {symbol for expression in expressions for symbol in expression.free_symbols}
     for variable in sorted(bound & free, key=str):

@@ -30,6 +30,7 @@ from sympy import (
 from sympy.core.function import Application
 
 from .equation import Equation
+from .reductions import Median
 from .vocabulary import Vocabulary
 
 __all__ = ["Writer", "text", "text_of_equation"]
@@ -103,8 +104,8 @@ class Writer:
                 return "; ".join(
                     f"{self.text(law)} for {self.text(where)}" for law, where in expression.args
                 ), _SUM
-            case Integral() | Sum():
-                name = "int" if isinstance(expression, Integral) else "sum"
+            case Integral() | Sum() | Median():
+                name = {Integral: "int", Sum: "sum", Median: "median"}[type(expression)]
                 ends = (
                     f"{self.text(variable)} = {self.text(low)}..{self.text(high)}"
                     for variable, low, high in expression.limits

@@ -10,10 +10,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from sympy import And, Basic, Eq, Expr, Indexed, IndexedBase, Rational, Rel, Sum, Symbol, floor
+from sympy import And, Basic, Eq, Expr, Indexed, IndexedBase, Rational, Rel, Symbol, floor
 from sympy.logic.boolalg import Boolean
 
 from ..derivations.equation import Equation
+from ..derivations.reductions import REDUCTIONS
 from .quantity import Bounds
 
 __all__ = [
@@ -314,8 +315,8 @@ class Reference:
     cell : Expr
         ``x_p[i]``, ``beta``, ``n_pairs``.
     over : Axis or None
-        The axis of the innermost sum it stands in, whose rows it then runs over; None for one of the row
-        itself. ``alpha[p]`` may stand for both in one formula.
+        The axis of the innermost sum or median it stands in, whose rows it then runs over; None for one of
+        the row itself. ``alpha[p]`` may stand for both in one formula.
     """
 
     cell: Expr
@@ -335,7 +336,7 @@ def references(
     over : Axis or None
         The axis of the sum that the expression stands in.
     """
-    if isinstance(expression, Sum):
+    if isinstance(expression, REDUCTIONS):
         index = expression.limits[0][0]
         yield from references(expression.function, sums, sums[index])
     elif isinstance(expression, (Indexed, Symbol)):

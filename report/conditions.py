@@ -54,6 +54,7 @@ from sympy import (
 from sympy.core.function import ArgumentIndexError
 
 from ..derivations.equation import Equation, Kind
+from ..derivations.reductions import REDUCTIONS, Median
 from .sheet import Axis, Column, Formula, Given, Root, Sheet
 
 __all__ = ["Conditions", "Node", "Slope", "conditions"]
@@ -79,21 +80,23 @@ class Slope:
 
 @dataclass(frozen=True)
 class Node:
-    """A column, or a sum in the rule of one.
+    """A column, or a sum or median in the rule of one.
 
     Parameters
     ----------
     name : str
         The column's name; for a sum, that of the column which holds its rounding.
     axis : Axis or None
-        None for a scalar and for every sum.
+        None for a scalar and for every sum and median.
     over : Axis or None
-        The axis that a sum runs over.
+        The axis that a sum or a median runs over.
     of : str
         The column in whose rule it stands.
     rounding : str
         The column that holds its rounding in SI, in units of eps.
     slopes : tuple of Slope
+    middle : bool
+        Whether it is a median: of its slopes only those of the rows in the middle count.
     """
 
     name: str
@@ -102,6 +105,7 @@ class Node:
     of: str
     rounding: str
     slopes: tuple[Slope, ...]
+    middle: bool = False
 
 
 @dataclass(frozen=True)
@@ -169,11 +173,11 @@ class _Made(Formula):
 
 @dataclass(frozen=True)
 class _Total:
-    """A sum of a rule: its axis, its terms in plain symbols, and as it is written."""
+    """A sum or median of a rule: its axis, its terms in plain symbols, and as it is written."""
 
     axis: Axis
     terms: Expr
-    written: Sum
+    written: Sum | Median
 
 
 class _Algebra:
@@ -207,7 +211,10 @@ class _Algebra:
         names: dict[Symbol, str] = {}
         for symbol, total in list(self.totals.items()):
             terms = total.terms
+            # A median's terms are cells; the mean of the two in the middle is rounded.
             rounding = self.summed(_size(terms) + self.rounding(terms), total.axis)
+            if isinstance(total.written, Median):
+                rounding = _size(symbol)
             slopes = {by: diff(terms, by) for by in self.named_in(terms)}
             sum_node = self.node(f"_sum_{len(names)}", total, rounding, slopes, names)
             names[symbol] = sum_node.name
@@ -244,7 +251,8 @@ class _Algebra:
             for n, (by, slope) in enumerate(slopes.items())
             if slope != 0
         )
-        return Node(held if total else own.name, axis, over, own.name, held, found)
+        middle = total is not None and isinstance(total.written, Median)
+        return Node(held if total else own.name, axis, over, own.name, held, found, middle)
 
     def hold(self, name: str, axis: Axis | None, expression: Expr) -> str:
         """A new column; its name."""
@@ -265,7 +273,7 @@ class _Algebra:
 
     def plain(self, expression: Any, over: Axis | None = None) -> Any:
         """The expression with a symbol for every cell and every sum; choices written as such."""
-        if isinstance(expression, Sum):
+        if isinstance(expression, REDUCTIONS):
             axis = self.sheet.indices[expression.limits[0][0]]
             return self.named(_Total(axis, self.plain(expression.function, axis), expression))
         if isinstance(expression, Indexed) or (isinstance(expression, Symbol) and self.is_cell(expression)):

@@ -11,9 +11,10 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from keyword import iskeyword
 
-from sympy import Basic, Expr, Indexed, Sum, Symbol
+from sympy import Basic, Expr, Indexed, Symbol
 from sympy.logic.boolalg import Boolean
 
+from ..derivations.reductions import REDUCTIONS, Median
 from .column import (
     Axis,
     Column,
@@ -190,8 +191,10 @@ class Sheet:
         return tuple(c for c in self.order if c.name in seen)
 
     def summed_axes(self, column: Column) -> tuple[Axis, ...]:
-        """The axes that its rule sums over."""
-        over = {total.limits[0][0] for expression in column.expressions for total in expression.atoms(Sum)}
+        """The axes that its rule sums over, or takes a median over."""
+        over = {
+            total.limits[0][0] for expression in column.expressions for total in expression.atoms(*REDUCTIONS)
+        }
         return tuple(axis for axis in self.axes if axis.index in over)
 
     def _read(self, column: Column) -> Iterator[Reference]:
@@ -291,7 +294,7 @@ def _check_symbols(sheet: Sheet, column: Column) -> None:
 
 
 def _check_scope(sheet: Sheet, column: Column, expression: Basic, axis: Axis | None) -> None:
-    if isinstance(expression, Sum):
+    if isinstance(expression, REDUCTIONS):
         limits = expression.limits
         over = sheet.indices.get(limits[0][0])
         if over is None or len(limits) != 1 or limits[0][1:] != (1, over.size):
@@ -300,6 +303,13 @@ def _check_scope(sheet: Sheet, column: Column, expression: Basic, axis: Axis | N
             raise SheetError(
                 f"{column.name}: a sum runs over all rows of one index set ({known}), not over {shown}"
             )
+        if isinstance(expression, Median) and not isinstance(expression.function, Indexed):
+            raise SheetError(
+                f"{column.name}: a median is of the cells of a column, not of {expression.function}; "
+                "give that a column of its own"
+            )
+        if isinstance(expression, Median) and isinstance(column.rule, Root):
+            raise SheetError(f"{column.name}: a median in a root has to be a column of its own")
         _check_scope(sheet, column, expression.function, over)
     elif isinstance(expression, Indexed):
         _check_cell(sheet, column, expression, axis)

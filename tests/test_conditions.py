@@ -10,6 +10,7 @@ import pytest
 from sympy import Expr, IndexedBase, Integer, Max, Piecewise, Sum, Symbol, floor, log, sqrt
 
 from loopsheet.derivations.equation import Equation, Kind
+from loopsheet.derivations.reductions import Median
 from loopsheet.report import build, conditions
 from loopsheet.report.analysis import bounds as numbers
 from loopsheet.report.engines import exact
@@ -131,6 +132,19 @@ def test_a_large_sheet_has_no_smaller_bounds(monkeypatch: pytest.MonkeyPatch, mo
     rest = m + 8 / 3  # the quotient and the sum
     apart, alone = exactly + 8 / 3, exactly * 2 / 3 + (8 - exactly) / 3
     assert found == pytest.approx(exactly + m + rest + (apart if most == 0 else alone))
+
+
+def test_a_median_rests_on_the_rows_in_the_middle() -> None:
+    """And on those that rounding may exchange with them; on no others, however badly they are known."""
+    y = formula("y", Piecewise((x[k] - A, x[k] > 100), (x[k], True)), ROWS)
+    middle = formula("c", Median(Column("y", ROWS, Given(), positive=False)[k], (k, 1, n)))
+    far = bounded(y, middle, a=1e9, x=[1.0, 2.0, 1e9 + 5])
+    assert far["y"][2] == pytest.approx(4e9 + 10)  # the data, and their difference
+    assert far["c"] == pytest.approx([2 + 2])  # the datum, and the mean of the two in the middle
+    tied = bounded(y, middle, a=1e9, x=[1.0, 2.0, 1e9 + 2])
+    assert tied["c"] == pytest.approx([2 + 2 + tied["y"][2]])
+    two = formula("d", Median(x[k], (k, 1, n)) ** 2)
+    assert bounded(two, x=[2.0, np.nan, 5.0])["d"] == pytest.approx([3.5**2 + 7 * (3.5 + (2 + 5) / 2)])
 
 
 def test_names_that_are_taken_stay_free() -> None:

@@ -11,12 +11,14 @@ import pytest
 from sympy import Expr, Sum, Symbol
 
 from loopsheet.derivations.equation import Equation, Kind
+from loopsheet.derivations.reductions import Median
 from loopsheet.report import build
-from loopsheet.report.analysis.enclosure import Enclosure
+from loopsheet.report.analysis.enclosure import Enclosure, slope_kernels
 from loopsheet.report.analysis.intervals import Intervals
 from loopsheet.report.analysis.referee.certificate import Certificate
 from loopsheet.report.analysis.referee.minimax import best
 from loopsheet.report.analysis.referee.problem import Campaign, Problem
+from loopsheet.report.conditions import conditions
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.quantity import Bounds
@@ -127,6 +129,45 @@ def test_what_may_not_be_allowed_may_have_no_value(
     assert (bool(found.sure["x"][0]), bool(found.sure["y"][0])) == (sure, sure)
     values = [engine.evaluate(sheet, {}, {"x": x}, program).status["y"][0] for x in np.linspace(low, high, 9)]
     assert sure == (not any(values))
+
+
+def test_a_median_is_enclosed_with_its_derivatives() -> None:
+    """Rows that may change places, that tie, that may have no value: every sample lies inside."""
+    k, n = Symbol("k", integer=True, positive=True), Symbol("n", integer=True, positive=True)
+    rows = Axis("rows", k, n)
+    x = Column("x", rows, Given(), positive=False)
+
+    def formula(name: str, value: Expr, axis: Axis | None = None, **more: Any) -> Column:
+        definition = Equation("", (Symbol(name), value), "", Kind.DEFINITION)
+        return Column(name, axis, Formula(definition), positive=False, **more)
+
+    y = formula("y", 3 * x[k], rows, requires=((x[k] < 5, "x is less than 5"),))
+    sheet = Sheet((x, y, formula("m", Median(y[k], (k, 1, n)) + 1)))
+    program, made = Program.of(sheet), conditions(sheet)
+    rng, narrow = np.random.default_rng(4), 0
+    for case in range(200):
+        size = 2 + case % 5
+        labels = {"rows": range(1, size + 1)}
+        low = rng.uniform(0, 4, size)
+        high = low + rng.choice([0.01, 1.0, 3.0], size)
+        layouts = engine.evaluate(sheet, labels, {"x": low}, program).layouts
+        enclosure = Enclosure(sheet, program, layouts, {"x": Intervals(low, high)})
+        slopes = enclosure.derivatives(made, slope_kernels(made), {"x": np.arange(size)})["m"]
+        found = enclosure.value["m"]
+        inside = low + rng.random((100, size)) * (high - low)
+        value = engine.evaluate(sheet, labels, {"x": inside}, program).value["m"][:, 0]
+        some = ~np.isnan(value)
+        assert (found.low[0] <= value[some]).all()
+        assert (value[some] <= found.high[0]).all()
+        for row in range(size):
+            moved = inside.copy()
+            moved[:, row] += 1e-7
+            step = engine.evaluate(sheet, labels, {"x": moved}, program).value["m"][:, 0]
+            slope = (step - value)[some] / 1e-7
+            assert (slopes.low[0, row] - 1e-6 <= slope).all()
+            assert (slope <= slopes.high[0, row] + 1e-6).all()
+        narrow += bool(np.isfinite(slopes.high).all() and (slopes.high - slopes.low < 1e-12).all())
+    assert narrow
 
 
 def test_a_sum_over_rows_that_may_have_no_value_is_not_known() -> None:

@@ -13,6 +13,7 @@ import pytest
 from sympy import Max, Piecewise, Sum, Symbol, exp, log, pi, sqrt
 
 from loopsheet.derivations.equation import Equation
+from loopsheet.derivations.reductions import Median
 from loopsheet.report import build
 from loopsheet.report.engines import javascript
 from loopsheet.report.engines.javascript import RUNTIME, Printer
@@ -207,6 +208,7 @@ TOY = Sheet(
         formula("twice", Sum(2 * a[k], (k, 1, n)) - Sum(a[k], (k, 1, n))),
         formula("nested", Sum(a[k] * Sum(gap[p] ** 2, (p, 1, n_pairs)), (k, 1, n))),
         formula("powers", Sum(Symbol("count", positive=True) ** (2 * a[k]), (k, 1, n))),
+        formula("middle", Median(gap[p], (p, 1, n_pairs)) * Median(a[j], (q, 1, n_points))),
         formula("none", Sum(gap[p], (p, 1, n_pairs)) + 1),
     )
 )

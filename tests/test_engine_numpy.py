@@ -28,10 +28,12 @@ from sympy import (
 )
 
 from loopsheet.derivations.equation import Equation
+from loopsheet.derivations.reductions import Median
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program, kernel
 from loopsheet.report.engines.numpy_code import Printer
+from loopsheet.report.engines.numpy_rows import Kept
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Sheet, SheetError
 from loopsheet.report.values import Status, Values
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
@@ -77,10 +79,10 @@ def test_a_kernel_is_called_with_its_cells_in_the_order_of_their_names() -> None
     assert [str(cell) for cell in found.arguments] == ["a[k]", "a[k]", "c"]
     assert [reference.over for reference in found.references] == [None, ROWS, None]
     assert found.source == (
-        "def kernel(a_of_k, a_of_k_, c, total_rows):\n    return (a_of_k*c, c + total_rows(a_of_k_),)"
+        "def kernel(a_of_k, a_of_k_, c, rows_kept):\n    return (a_of_k*c, c + rows_kept.total(a_of_k_),)"
     )
-    own, total = found.run(np.array([1.0, 2.0]), np.array([1.0, 2.0]), 3.0, np.sum)
-    assert (own.tolist(), total) == ([3.0, 6.0], 6.0)
+    own, total = found.run(np.array([1.0, 2.0]), np.array([1.0, 2.0]), 3.0, Kept(np.array([True, True])))
+    assert (own.tolist(), total.tolist()) == ([3.0, 6.0], [6.0])
 
 
 def test_common_parts_are_computed_once() -> None:
@@ -136,6 +138,9 @@ SCOPES: dict[str, tuple[Expr, Axis | None, Any]] = {
         lambda A, G, W: np.repeat(G, 2) + W * np.tile([1, 2], 3),
     ),
     "a running number in a sum": (Sum(s * gap[p], (q, 1, n_points)), None, lambda A, G, W: [3 * G.sum()]),
+    "a median": (Median(gap[p], (p, 1, n_pairs)) * w.symbol, None, lambda A, G, W: [np.median(G) * W]),
+    "a median of a set's parts": (Median(gap[p], (q, 1, n_points)), None, lambda A, G, W: [np.median(G)]),
+    "a median of members": (a[k] - Median(a[j], (p, 1, n_pairs)), ROWS, lambda A, G, W: A - 7),
     "a size without a sum": (gap[p] / n_pairs, PAIRS, lambda A, G, W: G / 3),
     "a scalar on an axis": (w.symbol + 0 * w.symbol, PAIRS, lambda A, G, W: [W] * 3),
     "a number on an axis": (Integer(4), PAIRS, lambda A, G, W: [4] * 3),
@@ -157,7 +162,7 @@ def test_both_engines_know_which_row_is_meant(case: str) -> None:
 
 
 def test_columns_may_be_called_as_the_program_calls_its_own() -> None:
-    names = ("numpy", "t_0", "total_rows", "kernel", "a_of_k")
+    names = ("numpy", "t_0", "rows_kept", "kernel", "a_of_k")
     scalars = [Column(name, None, Given()) for name in names]
     product = sum((column.symbol for column in scalars), Integer(0))
     sheet = Sheet((a, *scalars, formula("f", (product + a[k]) * (product + Sum(a[k], (k, 1, n))), ROWS)))
@@ -248,7 +253,31 @@ def test_sums_leave_out_what_is_in_error_in_each_element_of_a_batch() -> None:
         values.value["alpha_mean"][:2, 0], [alpha[0].mean(), alpha[0][without_last].mean()]
     )
     assert values.status["alpha_mean"][:, 0].tolist() == [Status.OK, Status.OK, Status.INPUT]
+    np.testing.assert_array_equal(
+        values.value["alpha_median"][:, 0], [np.median(alpha[0]), np.median(alpha[0][without_last]), np.nan]
+    )
     assert values.status["alpha_lin"][:, 0].tolist() == [Status.OK, Status.OK, Status.INPUT]
+
+
+@pytest.mark.parametrize("number", [1, 2, 3, 4, 7])
+def test_a_median_is_of_the_rows_that_have_values(number: int) -> None:
+    """Of any number of them, in each element of a batch; of none there is none."""
+    rng = np.random.default_rng(number)
+    middle = formula("m", Median(a[k], (k, 1, n)))
+    rows = rng.normal(size=(50, number))
+    rows[rng.random(rows.shape) < 0.3] = np.nan
+    values = engine.evaluate(Sheet((a, middle)), {"rows": range(1, number + 1)}, {"a": rows})
+    some = ~np.isnan(rows).all(axis=1)
+    np.testing.assert_array_equal(values.value["m"][some, 0], np.nanmedian(rows[some], axis=1))
+    assert (values.status["m"][:, 0] == np.where(some, Status.OK, Status.INPUT)).all()
+    assert some.any()
+    for row in rows[:8]:
+        data = [None if np.isnan(x) else x for x in row]
+        judged = exact.evaluate(Sheet((a, middle)), {"rows": range(1, number + 1)}, {"a": data})
+        (found,) = judged.value["m"]
+        assert (np.nan if found is None else float(found)) == pytest.approx(
+            np.nanmedian(row) if not np.isnan(row).all() else np.nan, rel=1e-15, nan_ok=True
+        )
 
 
 def test_the_blocks_in_which_roots_are_sought_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -337,5 +366,5 @@ def test_whatever_the_data_nothing_is_ok_without_a_number_and_nothing_warns(
 
 
 def test_the_program_can_be_read() -> None:
-    assert "# alpha_mean\ndef kernel(alpha_of_p, n_pairs, total_pairs):" in PROGRAM.source
+    assert "# alpha_mean\ndef kernel(alpha_of_p, n_pairs, pairs_kept):" in PROGRAM.source
     assert "# alpha\n# fixed\ndef kernel(" in PROGRAM.source

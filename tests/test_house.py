@@ -40,7 +40,7 @@ PROVER = {
     f"derivations.{name}"
     for name in (
         *("algebra", "dimensions", "equation", "errata", "evaluation", "proof", "sampling", "system", "text"),
-        "vocabulary",
+        *("reductions", "vocabulary"),
     )
 }
 SHEET = (

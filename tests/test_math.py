@@ -23,6 +23,7 @@ from sympy import (
 from sympy.core.parameters import evaluate
 
 from loopsheet.derivations import soft_impact
+from loopsheet.derivations.reductions import Median
 from loopsheet.derivations.symbols import VOCABULARY, F_of, k, q
 from loopsheet.report.views.math import Printer, latex_names, name_latex, with_index
 from loopsheet.report.views.typeset import TEXT_WIDTH, block, mathml, mathml_block, width
@@ -81,6 +82,7 @@ with evaluate(False):
         (-Integral(b + x, (x, 0, a)), r"-\int_{0}^{a} (b + x) \, dx"),
         (Sum(E[q], (q, 1, n)) / n, r"\frac{1}{n_{\mathrm{points}}} \sum_{q=1}^{n_{\mathrm{points}}} e_{q}"),
         (Sum(E[q] - a, (q, 1, n)), r"\sum_{q=1}^{n_{\mathrm{points}}} (e_{q} - a)"),
+        (Median(E[q], (q, 1, n)), r"\underset{1 \le q \le n_{\mathrm{points}}}{\mathrm{median}} \, e_{q}"),
         (
             Sum(E[q], (q, 1, n)) * Sum(V[q], (q, 1, n)),
             r"\left(\sum_{q=1}^{n_{\mathrm{points}}} e_{q}\right) \sum_{q=1}^{n_{\mathrm{points}}} v'_{q}",

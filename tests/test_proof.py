@@ -30,6 +30,7 @@ from sympy import (
 from loopsheet.derivations import proof, sampling, system
 from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step
 from loopsheet.derivations.proof import LEAST_POINTS, POINTS, Status, check_step, prove, prove_equation
+from loopsheet.derivations.reductions import Median
 
 a, b, c = (Symbol(name, positive=True) for name in "abc")
 y, w = (Symbol(name, real=True) for name in "yw")
@@ -103,6 +104,15 @@ def test_integrals_and_sums_are_claims_like_others() -> None:
     assert decide(claim(Integral(a**c, (a, 0, b)), b ** (c + 1) / (c + 2))).status is Status.REFUTED
     assert decide(claim(Sum(X[q] + b, (q, 1, n)), Sum(X[q], (q, 1, n)) + n * b)).status is Status.PROVED
     assert decide(claim(Sum(X[q] * b, (q, 1, n)), n * b)).status is Status.REFUTED
+
+
+def test_a_median_is_evaluated_and_nothing_is_made_up_about_it() -> None:
+    middle = Median(X[q], (q, 1, n))
+    assert decide(claim(middle + b, b + middle)).status is Status.PROVED
+    assert decide(claim(middle, Sum(X[q], (q, 1, n)) / n)).status is Status.REFUTED
+    assert decide(claim(Median(X[q] + b, (q, 1, n)), middle)).status is Status.REFUTED
+    # True, and seen at every point; but no algebra of ours knows of order.
+    assert decide(claim(Median(X[q] + b, (q, 1, n)), middle + b)).status is Status.UNDECIDED
 
 
 def test_a_sum_is_tried_with_several_numbers_of_terms() -> None:

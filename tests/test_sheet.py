@@ -8,6 +8,7 @@ import pytest
 from sympy import Expr, IndexedBase, Rel, Sum, Symbol
 
 from loopsheet.derivations.equation import Equation, Ledger
+from loopsheet.derivations.reductions import Median
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import (
     Axis,
@@ -210,6 +211,18 @@ REFUSED: dict[str, tuple[tuple[Column, ...], str]] = {
         (a, step, formula("f", Sum(Sum(step[p] * a[k], (p, 1, n_pairs)), (k, 1, n)))),
         "f: a sum runs over all rows of one index set ((k, 1, n), (p, 1, n_pairs)), "
         "not over (p, 1, n_pairs), (k, 1, n)",
+    ),
+    "median from another start": (
+        (a, formula("f", Median(a[k], (k, 2, n)))),
+        "f: a sum runs over all rows of one index set ((k, 1, n)), not over (k, 2, n)",
+    ),
+    "median of an expression": (
+        (a, formula("f", Median(2 * a[k], (k, 1, n)))),
+        "f: a median is of the cells of a column, not of 2*a[k]; give that a column of its own",
+    ),
+    "median in a root": (
+        (a, root("f", b.symbol - Median(a[k], (k, 1, n)), b.symbol)),
+        "f: a median in a root has to be a column of its own",
     ),
     "running number of another axis": (
         (a, step, ramp, count, formula("f", step[p] * s, PAIRS)),

@@ -26,6 +26,7 @@ from sympy.core.parameters import evaluate
 from loopsheet.derivations import power_law_fit
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.dimensions import DimensionError, Dimensions, dimension_of_unit, text_of
+from loopsheet.derivations.reductions import Median
 from loopsheet.derivations.soft_impact import LEDGER
 from loopsheet.derivations.symbols import VOCABULARY, k
 from loopsheet.derivations.text import text, text_of_equation
@@ -62,7 +63,7 @@ def test_what_the_vocabulary_does_not_say() -> None:
 
 
 def test_the_vocabulary_says_every_symbol_of_the_ledger() -> None:
-    counts = {"n_points", "n_pairs", "alpha_mean", "k", "p", "q", "s"}
+    counts = {"n_points", "n_pairs", "alpha_mean", "alpha_median", "k", "p", "q", "s"}
     for equation in LEDGER.equations():
         for side in equation.sides:
             for symbol in side.free_symbols:
@@ -161,6 +162,7 @@ with evaluate(False):
         (a + b * c, "w_1 + w_2*w_3"),
         (And(Le(0, w), Le(w, 1)), "0 <= w <= 1"),
         (Sum(IndexedBase("w")[k], (k, 1, 5)), "sum(w_k, k = 1..5)"),
+        (Median(IndexedBase("w")[k], (k, 1, 5)), "median(w_k, k = 1..5)"),
         (Integral(w**2, (w, 0, 1)), "int(w^2, w = 0..1)"),
     ]
 

@@ -7,6 +7,7 @@ from sympy import Abs, And, Expr, Max, Min, Piecewise, Rational, Sum, Symbol, ex
 
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.equation import Equation
+from loopsheet.derivations.reductions import Median
 from loopsheet.report import units
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
 from loopsheet.report.units import UnitError, dimension_of_unit
@@ -100,6 +101,7 @@ RIGHT: dict[str, tuple[Expr, str, Axis | None]] = {
     "largest with zero": (Max(L - 2 * L, 0), "m", None),
     "size and sign": (Abs(L - 2 * L) * sign(T - 2 * T), "m", None),
     "sum over rows": (Sum(reach[k] ** 2, (k, 1, n)) / n, "m^2", None),
+    "median over rows": (Median(reach[k], (k, 1, n)) ** 2, "m^2", None),
     "cases": (Piecewise((L, And(T > 0, L < 2 * L)), (2 * L, True)), "m", None),
     "zero has any unit": (L - L, "kg", None),
 }

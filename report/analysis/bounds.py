@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 from sympy import Indexed
 
+from ..agreement import LIMIT
 from ..conditions import Conditions, Node, Slope, conditions
 from ..engines.numpy import evaluate
 from ..layout import Layout, precedents, rows_of
@@ -24,6 +25,7 @@ from ..values import Status, Values, rows_kept
 __all__ = ["bounds"]
 
 Array = NDArray[np.float64]
+EPS = float(np.finfo(float).eps)
 Masks = Mapping[str, NDArray[np.bool_]]
 
 
@@ -125,6 +127,8 @@ class _Spread:
             positions = np.arange(values.size)
             if node.over is not None:
                 values, positions = np.where(self.summed(node), values, 0.0), np.zeros_like(positions)
+            if node.middle:
+                values = np.where((share := self.share(node, by, columns)) > 0, share * values, 0.0)
             rounding[positions[np.isnan(values)]] = np.nan
             entries = np.nan_to_num(values)
             if by in self.scalar:
@@ -149,6 +153,20 @@ class _Spread:
             return np.zeros(number, dtype=np.intp)
         rows = rows_of(slope.by, node.over or node.axis, self.found.layouts)
         return np.arange(number) if rows is None else rows
+
+    def share(self, node: Node, name: str, rows: NDArray[np.intp]) -> Array:
+        """How much of the change of each row a median makes: that of the middle, or half of two there.
+
+        A row that rounding may exchange with one in the middle counts as that one does.
+        """
+        value = self.found.value[name][rows]
+        room = LIMIT * EPS * self.total(name, self.weighed(self.whole))[rows]
+        ordered = np.sort(value[self.summed(node)])
+        middle = ordered[[(ordered.size - 1) // 2, ordered.size // 2]] if ordered.size else ordered
+        found: Array = sum((np.abs(value - one) <= room) / 2 for one in middle.tolist()) + np.zeros(
+            value.size
+        )
+        return np.where(self.summed(node), found, 0.0)
 
     def summed(self, node: Node) -> NDArray[np.bool_]:
         """The rows that a sum runs over."""

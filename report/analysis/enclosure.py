@@ -101,7 +101,7 @@ class Enclosure:
     def call(self, kernel: Kernel, column: Column, value: Mapping[str, Intervals]) -> list[Intervals]:
         """What a printed function gives for all rows of a column."""
         arguments = [self._argument(reference, column, value) for reference in kernel.references]
-        results = kernel.run(*arguments, *(self._total(axis) for axis in kernel.totals))
+        results = kernel.run(*arguments, *(self._rows(axis) for axis in kernel.totals))
         return [Intervals.of(result) for result in results]
 
     def _argument(self, reference: Reference, column: Column, value: Mapping[str, Intervals]) -> Any:
@@ -114,18 +114,12 @@ class Enclosure:
         found = value[name_of(cell)]
         if reference.over is not None:
             # A sum leaves out the rows without a value; of one that may have none, anything may be missing.
+            # Of a median too: one that is missing moves it less than one that may lie at either end.
             found = found.where(self.sure[name_of(cell)])
         return found if rows is None else found.take(rows)
 
-    def _total(self, axis: str) -> Any:
-        size = self.layouts[axis].size
-
-        def total(terms: Any) -> Intervals:
-            terms = Intervals.of(terms)
-            every: Intervals = terms.broadcast(np.broadcast_shapes(terms.shape, (size,)))
-            return every.total()
-
-        return total
+    def _rows(self, axis: str) -> _Rows:
+        return _Rows(self.layouts[axis].size)
 
     # --- rules ----------------------------------------------------------------------------------------
 
@@ -140,7 +134,7 @@ class Enclosure:
 
     def _root(self, program: RootProgram, column: Column) -> tuple[Intervals, NDArray[np.bool_]]:
         fixed = self._called(program.fixed, column)
-        rule, totals = program.rule, [self._total(axis) for axis in program.totals]
+        rule, totals = program.rule, [self._rows(axis) for axis in program.totals]
         rest = fixed[5 + len(rule.turning) :]
         shape = np.broadcast_shapes(*(each.shape for each in fixed), (self.size(column),))
         low, high, _, at_low, at_high, *turning = (
@@ -252,10 +246,14 @@ class Enclosure:
             else:
                 values = whole((1,))
             by = slope.by if isinstance(slope.by, str) else name_of(slope.by)
-            theirs, rows = found[by], self._rows(slope, node)
+            theirs, rows = found[by], self._named(slope, node)
             theirs = theirs if rows is None else theirs[rows]
             length = self.size(column)
             product = values.broadcast((length,))[:, None] * theirs
+            if node.middle:
+                row_of = rows_of(slope.by, node.over, self.layouts)
+                terms = self.value[by] if row_of is None else self.value[by].take(row_of)
+                product = _shares(terms.where(self.sure[by])) * product
             if node.over is not None:
                 product = product.broadcast((length, number)).total(axis=0)
             total = total + product
@@ -263,10 +261,46 @@ class Enclosure:
             total = total.where(self.sure[node.name][:, None] | ((total.low == 0) & (total.high == 0)))
         return total
 
-    def _rows(self, slope: Slope, node: Node) -> NDArray[np.intp] | None:
+    def _named(self, slope: Slope, node: Node) -> NDArray[np.intp] | None:
         if not isinstance(slope.by, Indexed):
             return None
         return rows_of(slope.by, node.over or node.axis, self.layouts)
+
+
+class _Rows:
+    """What a kernel takes over the rows of an axis."""
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+
+    def total(self, terms: Any) -> Intervals:
+        """Their sum."""
+        return self.every(terms).total()
+
+    def median(self, terms: Any) -> Intervals:
+        """Their median."""
+        low, high = self.every(terms).middle()
+        return (low + high) / 2  # type: ignore[no-any-return]
+
+    def every(self, terms: Any) -> Intervals:
+        terms = Intervals.of(terms)
+        every: Intervals = terms.broadcast(np.broadcast_shapes(terms.shape, (self.size,)))
+        return every
+
+
+def _shares(terms: Intervals) -> Intervals:
+    """How much of the change of each row a median makes (rows, 1): any part of one that may be in the middle.
+
+    Parameters
+    ----------
+    terms : Intervals (rows,)
+    """
+    total = Intervals(np.zeros(terms.shape), np.zeros(terms.shape))
+    for middle in terms.middle():
+        may_be = (terms.low <= middle.high) & (terms.high >= middle.low)
+        certain = may_be & (np.count_nonzero(may_be) == 1)
+        total = total + Intervals(np.where(certain, 0.5, 0.0), np.where(may_be, 0.5, 0.0))
+    return total[:, None]
 
 
 def slope_kernels(made: Conditions) -> dict[str, Kernel]:

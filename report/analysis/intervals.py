@@ -96,6 +96,12 @@ class Intervals(NDArrayOperatorsMixin):
         sizes = [np.sum(np.abs(end), axis=axis, keepdims=keepdims) for end in (self.low, self.high)]
         return _cleaned(_below(low - slack * sizes[0]), _above(high + slack * sizes[1]))
 
+    def middle(self) -> tuple[Intervals, Intervals]:
+        """The one in the middle along the last dimension, or the two there: the lower and the higher."""
+        size = self.low.shape[-1]
+        ordered = Intervals(np.sort(self.low, axis=-1), np.sort(self.high, axis=-1))
+        return ordered[..., (size - 1) // 2, None], ordered[..., size // 2, None]
+
     @property
     def sign(self) -> Array:
         """-1 or 1 where it is certain, else 0."""

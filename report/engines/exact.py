@@ -10,13 +10,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from statistics import median
 from typing import Any
 
 import mpmath
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Basic, Expr, Indexed, Sum, Symbol, lambdify
+from sympy import Basic, Expr, Indexed, Symbol, lambdify
 
+from ...derivations.reductions import REDUCTIONS, Median
 from ..layout import Layout, lay_out, precedents, rows_of
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, RepeatAxis, Root, Sheet, name_of
@@ -271,9 +273,10 @@ class _Scope:
 
         return run
 
-    def _totals(self, totals: Sequence[Sum], unknown: Symbol | None) -> Callable[..., list[Any]]:
+    def _totals(self, totals: Sequence[Expr], unknown: Symbol | None) -> Callable[..., list[Any]]:
         """All sums, those over one axis in one pass; one that the unknown does not move is taken once."""
         passes = []
+        take = [median if isinstance(total, Median) else mpmath.fsum for total in totals]
         for axis in self.engine.sheet.axes:
             for moving in (False, True):
                 mine = [
@@ -291,9 +294,8 @@ class _Scope:
             for number, (mine, terms, rows, moving) in enumerate(passes):
                 sums = fixed.get(number)
                 if sums is None:
-                    sums = [
-                        mpmath.fsum(column) for column in zip(*(terms(row, *at) for row in rows), strict=True)
-                    ]
+                    columns = zip(*(terms(row, *at) for row in rows), strict=True)
+                    sums = [take[n](column) for n, column in zip(mine, columns, strict=False)]
                     if not moving:
                         fixed[number] = sums
                 for n, total in zip(mine, sums or [mpmath.mpf(0)] * len(mine), strict=True):
@@ -325,11 +327,11 @@ class _Scope:
         return lambda row: values[table[row]]
 
 
-def _sums(expressions: Sequence[Basic]) -> list[Sum]:
-    """The sums in expressions that stand in no other sum."""
-    found: dict[Sum, None] = {}
+def _sums(expressions: Sequence[Basic]) -> list[Expr]:
+    """The sums and medians in expressions that stand in no other."""
+    found: dict[Expr, None] = {}
     for expression in expressions:
-        if isinstance(expression, Sum):
+        if isinstance(expression, REDUCTIONS):
             found[expression] = None
         else:
             found.update(dict.fromkeys(_sums(expression.args)))

@@ -16,6 +16,8 @@ from sympy import Add, Basic, Expr, Function, Integer, Mul, Pow, Rational, Sum
 from sympy.logic.boolalg import BooleanFunction
 from sympy.printing.printer import Printer as SympyPrinter
 
+from ...derivations.reductions import Median
+
 __all__ = ["FUNCTIONS", "IfError", "IsNumber", "NotPrintable", "Printer"]
 
 FUNCTIONS = {
@@ -64,7 +66,7 @@ class Printer(SympyPrinter):
     leaf : callable
         The text for a cell, a size or a running number.
     total : callable or None
-        The text for a sum.
+        The text for a sum or a median.
     rows : bool
         Whether the text stands for all rows of an axis at once, inside of a sum.
     """
@@ -72,7 +74,10 @@ class Printer(SympyPrinter):
     printmethod = "_excel"
 
     def __init__(
-        self, leaf: Callable[[Expr], str], total: Callable[[Sum], str] | None = None, rows: bool = False
+        self,
+        leaf: Callable[[Expr], str],
+        total: Callable[[Sum | Median], str] | None = None,
+        rows: bool = False,
     ) -> None:
         super().__init__()
         self.leaf, self.total, self.rows = leaf, total, rows
@@ -193,8 +198,10 @@ class Printer(SympyPrinter):
     def _print_IsNumber(self, expr: Basic) -> str:
         return f"ISNUMBER({self._print(expr.args[0])})"
 
-    def _print_Sum(self, expr: Sum) -> str:
+    def _print_Sum(self, expr: Sum | Median) -> str:
         return self.total(expr) if self.total is not None else self.emptyPrinter(expr)
+
+    _print_Median = _print_Sum
 
     # --- choices
 

@@ -13,6 +13,7 @@ from typing import Any
 
 from sympy import Expr, Indexed, Sum, Symbol
 
+from ...derivations.reductions import Median
 from ..grid import Place, factors
 from ..layout import Layout, rows_of
 from ..sheet import Axis, Column, Formula, Given, Reference, Root, Sheet, name_of
@@ -197,10 +198,12 @@ class _Writing:
         tests = [f"ISNUMBER({self.ranged(reference.cell, axis)})" for reference in self.summed(axis)]
         return "*".join(tests) or f"ISNUMBER({self.places.indices[axis.name][0].range(self.here)})"
 
-    def total(self, total: Sum) -> str:
-        """A sum over the rows that have values."""
+    def total(self, total: Sum | Median) -> str:
+        """A sum or a median over the rows that have values."""
         axis = self.sheet.indices[total.limits[0][0]]
         terms = Printer(lambda cell: self.leaf(cell, axis), self.total, rows=True).doprint(total.function)
+        if isinstance(total, Median):
+            return f'MEDIAN(IF({self.mask(axis)},{terms},""))'  # of a text, no reader takes account
         return f"SUM(IF({self.mask(axis)},{terms},0))"
 
     # --- errors

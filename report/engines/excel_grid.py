@@ -273,7 +273,9 @@ class _Assembly:
 
 def _computed(block: Block, formulas: tuple[str, ...]) -> Block:
     """The block with its formulas; those that work on ranges are array formulas."""
-    return replace(block, formulas=formulas, array=any("SUM(IF(" in formula for formula in formulas[:1]))
+    return replace(
+        block, formulas=formulas, array=any(taken in formulas[0] for taken in ("SUM(IF(", "MEDIAN(IF("))
+    )
 
 
 def _worksheet(axis: Axis) -> str:

@@ -15,6 +15,7 @@ from typing import Any
 from sympy import Basic, Dummy, Indexed, Integer, Pow, Sum, Symbol, cse, diff, exp, log, numbered_symbols
 from sympy.printing.jscode import JavascriptCodePrinter
 
+from ...derivations.reductions import Median
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet, name_of
 from .roots import derivatives, householder, magnitude
 
@@ -91,7 +92,9 @@ class _Scope:
         return name
 
     def plain(self, expression: Any, axis: Axis | None, row: str, sums: dict[Sum, Symbol]) -> Any:
-        """Replace cells by what is printed for them, and sums by the names of their totals."""
+        """Replace cells by what is printed for them, sums and medians by the names of what they come to."""
+        if isinstance(expression, Median):
+            return self.median(expression)
         if isinstance(expression, Sum):
             # Twice a sum is not another sum.
             number, terms = expression.function.as_coeff_Mul()
@@ -105,6 +108,14 @@ class _Scope:
         if not expression.args:
             return expression
         return expression.func(*(self.plain(argument, axis, row, sums) for argument in expression.args))
+
+    def median(self, taken: Median) -> Symbol:
+        """The name of a median: it is taken once, at the head."""
+        axis = self.sheet.indices[taken.limits[0][0]]
+        name = Symbol(f"M{next(self.numbers)}", **taken.assumptions0)
+        term = self.printer.doprint(self.plain(taken.function, axis, "q", {}))
+        self.head.append(f"      const {name} = median(k.{axis.name}, (q) => {term});")
+        return name
 
     def body(self, expressions: Sequence[Any], indent: str) -> tuple[list[str], list[str]]:
         """Statements that compute what expressions have in common, and the texts of the expressions."""

@@ -19,6 +19,7 @@ from ..sheet import Column, Formula, Given, Reference, RepeatAxis, Root, Sheet, 
 from ..values import Status, Values, inherited, rows_kept
 from .numpy_code import Array, Function, Kernel, kernel, write
 from .numpy_root import RootProgram
+from .numpy_rows import Kept
 
 __all__ = ["Kernel", "Program", "evaluate", "extend", "kernel"]
 
@@ -198,25 +199,13 @@ class _Run:
 
     def _how_many(self, axis: str, kept: Masks) -> Array:
         """How many rows an axis has; for a column that sums over it, those that it sums."""
-        mask = kept.get(axis, np.ones(self.layouts[axis].size, dtype=bool))
-        return np.count_nonzero(mask, axis=-1, keepdims=True).astype(np.float64)
+        return self._kept(axis, kept).number
 
-    def _totals(self, kept: Masks) -> dict[str, Function]:
-        return {axis.name: self._total(axis.name, kept) for axis in self.sheet.axes}
+    def _totals(self, kept: Masks) -> dict[str, Kept]:
+        return {axis.name: self._kept(axis.name, kept) for axis in self.sheet.axes}
 
-    def _total(self, axis: str, kept: Masks) -> Function:
-        """A sum over the rows that have values; NumPy adds pairwise along the last dimension."""
-        size = self.layouts[axis].size
-        mask = kept.get(axis, np.ones(size, dtype=bool))
-        some = not mask.all()
-
-        def total(terms: Array) -> Any:
-            # A term that names no row is the same for all; rows that are left out may hold anything.
-            every = np.broadcast_to(terms, np.broadcast_shapes(np.shape(terms), (size,)))
-            every = np.where(mask, every, 0.0) if some else np.ascontiguousarray(every)
-            return np.sum(every, axis=-1, keepdims=True)
-
-        return total
+    def _kept(self, axis: str, kept: Masks) -> Kept:
+        return Kept(kept.get(axis, np.ones(self.layouts[axis].size, dtype=bool)))
 
     # --- roots ----------------------------------------------------------------------------------------
 

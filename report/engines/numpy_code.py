@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Basic, Expr, Indexed, Max, Min, Piecewise, Sum, Symbol, cse, numbered_symbols
+from sympy import Basic, Expr, Indexed, Max, Min, Piecewise, Symbol, cse, numbered_symbols
 from sympy.printing.codeprinter import PrintMethodNotImplementedError
 from sympy.printing.numpy import NumPyPrinter
 
+from ...derivations.reductions import REDUCTIONS, Median
 from ..sheet import Axis, Reference, SheetError, name_of
 from .roots import Total
 
@@ -63,7 +64,26 @@ class Printer(NumPyPrinter):
 
     def _print_Total(self, expr: Total) -> str:
         terms, axis = expr.args
-        return f"total_{axis}({self._print(terms)})"
+        return f"{axis}_kept.total({self._print(terms)})"
+
+    def _print_Middle(self, expr: Middle) -> str:
+        terms, axis = expr.args
+        return f"{axis}_kept.median({self._print(terms)})"
+
+
+class Middle(Expr):
+    """A median over an axis' rows as a function of the array of its terms.
+
+    Parameters
+    ----------
+    terms : Expr
+        In plain symbols, each of which stands for an array.
+    axis : Symbol
+        The axis' name.
+    """
+
+    is_commutative = True
+    is_real = True
 
 
 @dataclass(frozen=True)
@@ -75,8 +95,8 @@ class Kernel:
     references : tuple of Reference
         Its arguments, in order.
     totals : tuple of str
-        The axes it sums over: after its arguments, it is called with a function for each that sums the
-        terms of that axis.
+        The axes it sums over, or takes a median over: after its arguments, it is called with what does
+        that for each, a :class:`~loopsheet.report.engines.numpy_rows.Kept`.
     source : str
         Its text.
     run : callable
@@ -107,13 +127,14 @@ class Writer:
         self.sums = sums
         self.symbols: dict[Reference, Symbol] = {}
         self._ordinals = {symbol for axis in sums.values() for symbol in axis.ordinals}
-        self._reserved = {"numpy", *(f"total_{axis.name}" for axis in sums.values())}
+        self._reserved = {"numpy", *(f"{axis.name}_kept" for axis in sums.values())}
 
     def plain(self, expression: Any, over: Axis | None = None) -> Any:
         """The expression in plain symbols, each the name of an array; a sum is a :class:`Total`."""
-        if isinstance(expression, Sum):
+        if isinstance(expression, REDUCTIONS):
             axis = self.sums[expression.limits[0][0]]
-            return Total(self.plain(expression.function, axis), Symbol(axis.name))
+            taken = Middle if isinstance(expression, Median) else Total
+            return taken(self.plain(expression.function, axis), Symbol(axis.name))
         if isinstance(expression, (Indexed, Symbol)):
             by_row = isinstance(expression, Indexed) or expression in self._ordinals
             reference = Reference(expression, over if by_row else None)
@@ -151,8 +172,9 @@ def _by_name(reference: Reference) -> tuple[str, str]:
 
 
 def totals_in(expressions: Iterable[Basic]) -> tuple[str, ...]:
-    """The axes that expressions sum over."""
-    return tuple(sorted({t.args[1].name for expression in expressions for t in expression.atoms(Total)}))
+    """The axes that expressions sum over, or take a median over."""
+    found = (taken for expression in expressions for taken in expression.atoms(Total, Middle))
+    return tuple(sorted({taken.args[1].name for taken in found}))
 
 
 def write(
@@ -168,7 +190,7 @@ def write(
     symbols = numbered_symbols("t_", exclude=arguments)
     common, bodies = cse(expressions, symbols=symbols, order="none", list=True)
     printer = Printer()
-    names = [*(a.name for a in arguments), *(f"total_{axis}" for axis in totals)]
+    names = [*(a.name for a in arguments), *(f"{axis}_kept" for axis in totals)]
     try:
         lines = [f"def kernel({', '.join(names)}):"]
         lines += [f"    {name} = {printer.doprint(value)}" for name, value in common]

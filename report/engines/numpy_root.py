@@ -18,6 +18,7 @@ from sympy import Expr, Integer, Symbol
 from ..sheet import Axis, Root
 from ..values import Status
 from .numpy_code import Array, Function, Kernel, Writer, totals_in, write
+from .numpy_rows import Kept
 from .roots import hoist, magnitude, step
 
 __all__ = ["RootProgram", "Solved"]
@@ -111,17 +112,15 @@ class RootProgram:
 
     # --- numbers --------------------------------------------------------------------------------------
 
-    def solve(
-        self, arguments: Sequence[Array], totals: Mapping[str, Function], shape: tuple[int, ...]
-    ) -> Solved:
+    def solve(self, arguments: Sequence[Array], totals: Mapping[str, Kept], shape: tuple[int, ...]) -> Solved:
         """Find the root of every row.
 
         Parameters
         ----------
         arguments : sequence of float array
             What :attr:`fixed` is called with.
-        totals : mapping of axis name to callable
-            How terms are summed.
+        totals : mapping of axis name to Kept
+            What takes sums and medians over its rows.
         shape : tuple of int
             Of the rows, batch first.
         """
@@ -202,7 +201,7 @@ class _Rows:
 
     program: RootProgram
     constants: Sequence[Array]
-    totals: Sequence[Function]
+    totals: Sequence[Kept]
 
     def call(self, function: Function, at: Array) -> Array:
         """A function of the unknown."""

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from sympy import Indexed, Sum, Symbol
+from sympy import Indexed, Symbol
 
+from ...derivations.reductions import REDUCTIONS
 from ..quantity import Printed
 from ..result import Report
 from ..sheet import Column, Formula, Given, Root, name_of
@@ -343,7 +344,7 @@ class Put(Printer):
             members = column.rule.equation.members
         else:
             return ""
-        if any(member.has(Sum) for member in members):
+        if any(member.has(*REDUCTIONS) for member in members):
             return ""
         text = " = ".join(str(self.doprint(member)) for member in members)
         # Two numbers side by side would be read as one.

@@ -17,6 +17,7 @@ from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 from sympy.printing.latex import LatexPrinter, translate
 
+from ...derivations.reductions import Median
 from ...derivations.vocabulary import Vocabulary
 from ..sheet import Column, name_of
 
@@ -313,6 +314,12 @@ class Printer(LatexPrinter):  # type: ignore[misc] # sympy has no types
         for index, low, high in expr.limits:
             text += rf"\sum_{{{self._print(index)}={self._print(low)}}}^{{{self._print(high)}}} "
         return text + self._body(expr.function)
+
+    def _print_Median(self, expr: Median) -> str:
+        runs = ", ".join(
+            " \\le ".join(map(self._print, (low, index, high))) for index, low, high in expr.limits
+        )
+        return rf"\underset{{{runs}}}{{\mathrm{{median}}}} \, {self._body(expr.function)}"
 
     def _print_Integral(self, expr: Integral) -> str:
         text, ends = "", ""

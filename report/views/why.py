@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from sympy import Expr, Sum, Symbol
+from sympy import Expr, Symbol
 
+from ...derivations.reductions import REDUCTIONS
 from ...derivations.text import Writer, text_of_equation
 from ..result import Report
 from ..sheet import Column, Formula, Given, Root, name_of
@@ -121,7 +122,7 @@ def _equation(report: Report, column: Column, row: int, cell: Cell) -> Iterator[
     assert equation is not None
     yield _line("", text_of_equation(equation.origin, report.ledger.vocabulary))
     summed = report.sheet.summed_axes(column)
-    if any(member.has(Sum) for member in equation.members):
+    if any(member.has(*REDUCTIONS) for member in equation.members):
         counted = report.values.counted.get(column.name, {})
         sizes = (f"{counted.get(a.name, report.values.layouts[a.name].size)} {a.name}" for a in summed)
         yield _line("", f"over {', '.join(sizes)}")

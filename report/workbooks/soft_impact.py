@@ -135,6 +135,10 @@ def _sheet(given: frozenset[str]) -> Sheet:
             v, e, x_p, beta, *_masses(given), points_per_pair,
             alpha, *on_pair.values(),
             Column("alpha_mean", None, Formula(points.mean), meaning="mean exponent", latex=r"\bar{\alpha}"),
+            Column(
+                "alpha_median", None, Formula(points.middle),
+                meaning="median exponent", latex=r"\tilde{\alpha}",
+            ),
             x, F, *_log_fit(x, F), *_lin_fit(x, F), *_tests_after_fit(),
         )
     )  # fmt: skip
@@ -280,7 +284,7 @@ WORKBOOK = Workbook(
     check_parameters=_masses_given,
     sheet=_sheet,
     fits=("alpha_mean", "alpha_log", "alpha_lin"),
-    headline=("alpha_mean", "alpha_log", "C_log", "alpha_lin", "C_lin"),
+    headline=("alpha_mean", "alpha_median", "alpha_log", "C_log", "alpha_lin", "C_lin"),
     prose="soft_impact",
     tables=(
         TableSpec("measured", "Impact parameters, as measured", ("v", "e", "x_p"), number="1"),
@@ -315,7 +319,7 @@ WORKBOOK = Workbook(
             "fit",
             "One curve for all tests: the mean and the two fits",
             (
-                *("alpha_mean", "alpha_log", "C_log", "alpha_lin", "C_lin"),
+                *("alpha_mean", "alpha_median", "alpha_log", "C_log", "alpha_lin", "C_lin"),
                 *("x_ref", "F_ref", "mean_ln_x", "mean_ln_F", "ln_F_at_ref"),
             ),
             number="L3",

@@ -60,6 +60,12 @@ function total(kept, count, terms) {
   return sum.map((all, n) => (Number.isFinite(lost[n]) ? all + lost[n] : all));
 }
 
+// The middle of the terms of the rows that are kept; of an even number, the mean of the two there.
+function median(kept, term) {
+  const all = each(kept, term).filter((_, row) => kept[row]).sort(), { length } = all;
+  return (all[(length - 1) >> 1] + all[length >> 1]) / 2;
+}
+
 // The only root of a form in its interval: counted first by the signs between turning points, then taken in
 // fixed steps inside the bracket.
 function solveRoot(root, row) {

@@ -6,6 +6,7 @@ from typing import Any
 from sympy import And, Eq, Max, Min, Ne, Not, Or, Piecewise, Rational, Sum, Symbol, exp, log, pi, sqrt
 
 from loopsheet.derivations.equation import Equation, Kind
+from loopsheet.derivations.reductions import Median
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
 
 k, p, q, i, j, s = (Symbol(name, integer=True, positive=True) for name in "kpqijs")
@@ -66,7 +67,9 @@ def _columns() -> tuple[Column, ...]:
     last = Column(
         "last", None, _formula(Sum(solved.symbol + many[k], (k, 1, n_items)) / n_items), positive=False
     )
-    return a, g, w, per, far, ratio, strict, cases, wave, total, mixed, solved, many, last
+    middle = Column("middle", None, _formula(Median(strict[p], (p, 1, n_pairs)) / w.symbol))
+    carried = Column("carried", None, _formula(Median(strict[p], (q, 1, n_points))), "mm")
+    return a, g, w, per, far, ratio, strict, cases, wave, total, mixed, solved, many, last, middle, carried
 
 
 def _root_of_cubic(g: Any, z: Symbol) -> Root:

@@ -1,0 +1,54 @@
+"""What a printed function takes over the rows of an axis that have values: their sum, their median."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Kept"]
+
+
+@dataclass(frozen=True)
+class Kept:
+    """The rows of an axis, and which of them have values; those that have none may hold anything.
+
+    Parameters
+    ----------
+    mask : boolean array (..., rows)
+    """
+
+    mask: NDArray[np.bool_]
+
+    def total(self, terms: Any) -> Any:
+        """The sum of the kept rows (..., 1); NumPy adds pairwise along the last dimension."""
+        every = self._every(terms)
+        every = np.ascontiguousarray(every) if self._all else np.where(self.mask, every, 0.0)
+        return np.sum(every, axis=-1, keepdims=True)
+
+    def median(self, terms: Any) -> Any:
+        """The median of the kept rows (..., 1); NaN where there is none."""
+        # Those that are left out come last.
+        ordered = np.sort(np.where(self.mask, self._every(terms), np.inf), axis=-1)
+        number = np.broadcast_to(self.number.astype(np.intp), (*ordered.shape[:-1], 1))
+        if not ordered.size:
+            return np.full(number.shape, np.nan)
+        middle = (np.maximum(number - 1, 0) // 2, np.minimum(number // 2, ordered.shape[-1] - 1))
+        low, high = (np.take_along_axis(ordered, place, axis=-1) for place in middle)
+        return np.where(number > 0, (low + high) / 2, np.nan)
+
+    @cached_property
+    def number(self) -> NDArray[np.float64]:
+        """How many rows are kept (..., 1)."""
+        return np.count_nonzero(self.mask, axis=-1, keepdims=True).astype(np.float64)
+
+    @cached_property
+    def _all(self) -> bool:
+        return bool(self.mask.all())
+
+    def _every(self, terms: Any) -> Any:
+        # A term that names no row is the same for all.
+        return np.broadcast_to(terms, np.broadcast_shapes(np.shape(terms), self.mask.shape[-1:]))
