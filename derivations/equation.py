@@ -212,12 +212,25 @@ class Erratum:
 
 @dataclass(frozen=True)
 class Ledger:
-    """All equations of a source, in its order, each with its derivation, and the checks of the print."""
+    """All equations of a source, in its order, each with its derivation, and the checks of the print.
+
+    Raises
+    ------
+    ValueError
+        Two equations have one number: a report could not tell them apart.
+    """
 
     entries: tuple[Equation | Derivation, ...]
     checks: tuple[Callable[[Ledger], Erratum | None], ...] = ()
     vocabulary: Vocabulary = NO_WORDS
     """What its symbols mean, how they are printed and where they are sampled."""
+
+    def __post_init__(self) -> None:
+        """No two equations with a number have the same."""
+        labels = [equation.label for equation in self.equations() if equation.number]
+        twice = [label for place, label in enumerate(labels) if label in labels[:place]]
+        if twice:
+            raise ValueError(f"the ledger has two equations {', '.join(twice)}; a number has exactly one")
 
     def equations(self) -> Iterator[Equation]:
         """All numbered equations, in order."""

@@ -56,7 +56,7 @@ with evaluate(False):
     )
 
     middle = Equation(
-        "(L24)",
+        "(L25)",
         (Symbol("alpha_median", positive=True), Median(ALPHA[p], (p, 1, n_pairs))),
         "half of the pairs lie on either side, so that one pair far off does not move it",
         Kind.DEFINITION,

@@ -109,6 +109,13 @@ def test_a_ledger_is_asked_by_label() -> None:
         ledger["(7)"]
 
 
+def test_a_number_stands_for_one_equation() -> None:
+    other = Equation("(3)", (b, c), "")
+    with pytest.raises(ValueError, match=r"^the ledger has two equations \(3\); a number has exactly one$"):
+        Ledger((LAW, ORDERED, other))
+    assert Ledger((LAW, Equation("(3)", (b, c), "", part="b"), *(Equation("", (a, b), ""),) * 2))
+
+
 def test_a_derivation_ends_in_its_claim() -> None:
     other = Equation("(9)", (a, b), "")
     steps = (Step(other, (), (), ""), Step(ORDERED, (other,), (a,), ""))
