@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from itertools import pairwise
 from statistics import median
 from typing import Any
@@ -254,21 +255,12 @@ class _Scope:
         self, expressions: Sequence[Basic], axis: Axis | None, unknown: Symbol | None
     ) -> Callable[..., Sequence[Any]]:
         """Several expressions of a row of an axis at once, so that their common parts are computed once."""
-        outermost = _sums(expressions)
-        totals = {total: Symbol(f"total_{n}") for n, total in enumerate(outermost)}
-        outer = [expression.xreplace(totals) for expression in expressions]
-        cells = sorted(set().union(*(e.atoms(Indexed) for e in outer)), key=str)
-        plain = {cell: Symbol(f"cell_{n}") for n, cell in enumerate(cells)}
-        bodies = [expression.xreplace(plain) for expression in outer]
-        named = {*plain.values(), *totals.values(), unknown}
-        symbols = sorted(set().union(*(body.free_symbols for body in bodies)) - named, key=str)
-        arguments = [*plain.values(), *symbols, *totals.values()] + ([] if unknown is None else [unknown])
-        function = lambdify(arguments, bodies, modules="mpmath", cse=len(bodies) > 1)
-        readers = [self._reader(cell, axis) for cell in (*cells, *symbols)]
-        sums = self._totals(outermost, unknown)
+        printed = _printed(tuple(expressions), unknown)
+        readers = [self._reader(cell, axis) for cell in printed.cells]
+        sums = self._totals(printed.totals, unknown)
 
         def run(row: int, *at: Any) -> Sequence[Any]:
-            computed: Sequence[Any] = function(*(read(row) for read in readers), *sums(*at), *at)
+            computed: Sequence[Any] = printed.function(*(read(row) for read in readers), *sums(*at), *at)
             return computed
 
         return run
@@ -325,6 +317,31 @@ class _Scope:
             return values.__getitem__
         table = rows.tolist()
         return lambda row: values[table[row]]
+
+
+@dataclass(frozen=True)
+class _Printed:
+    """Expressions as a function of the cells and totals that they name, and of the unknown if there is one."""
+
+    cells: tuple[Expr, ...]
+    totals: tuple[Expr, ...]
+    function: Callable[..., Sequence[Any]]
+
+
+@lru_cache(maxsize=512)
+def _printed(expressions: tuple[Basic, ...], unknown: Symbol | None) -> _Printed:
+    """Print expressions for mpmath; the same for whatever data, and slower than to evaluate a small sheet."""
+    outermost = _sums(expressions)
+    totals = {total: Symbol(f"total_{n}") for n, total in enumerate(outermost)}
+    outer = [expression.xreplace(totals) for expression in expressions]
+    cells = sorted(set().union(*(e.atoms(Indexed) for e in outer)), key=str)
+    plain = {cell: Symbol(f"cell_{n}") for n, cell in enumerate(cells)}
+    bodies = [expression.xreplace(plain) for expression in outer]
+    named = {*plain.values(), *totals.values(), unknown}
+    symbols = sorted(set().union(*(body.free_symbols for body in bodies)) - named, key=str)
+    arguments = [*plain.values(), *symbols, *totals.values()] + ([] if unknown is None else [unknown])
+    function = lambdify(arguments, bodies, modules="mpmath", cse=len(bodies) > 1)
+    return _Printed((*cells, *symbols), tuple(outermost), function)
 
 
 def _sums(expressions: Sequence[Basic]) -> list[Expr]:
