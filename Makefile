@@ -3,25 +3,31 @@
 PYTHON ?= python3
 OUT ?= out
 UV ?= uv==0.13.8
+WORKERS ?= 2
+SEED ?=
 
 VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 LOCK := .venv-lock/bin/uv pip compile --quiet --universal --python-version 3.11 \
 	--fork-strategy fewest --generate-hashes --custom-compile-command "make lock" $(UPGRADE)
+# Files go to the workers whole: the tests of one share what they made.
+PYTEST := $(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadfile $(if $(SEED),--seed $(SEED))
 
 .DEFAULT_GOAL := help
-.PHONY: help report test bench lock clean
+.PHONY: help report test campaigns bench lock clean
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 
 help:
-	@echo 'make report   build the report of the shipped paper into $(OUT)/'
-	@echo 'make test     ruff, mypy and the whole test suite'
-	@echo 'make bench    the benchmarks'
-	@echo 'make lock     pin the dependencies of pyproject.toml again (UPGRADE=--upgrade: to the newest)'
-	@echo 'make clean    remove all that was made here'
+	@echo 'make report      build the report of the shipped paper into $(OUT)/'
+	@echo 'make test        ruff, mypy and all tests, with a few of the campaigns that are drawn at random'
+	@echo 'make campaigns   all of these campaigns, and what was found in them (SEED=7: others)'
+	@echo 'make bench       the benchmarks'
+	@echo 'make lock        pin the dependencies of pyproject.toml again (UPGRADE=--upgrade: to the newest)'
+	@echo 'make clean       remove all that was made here'
 	@echo 'PYTHON=python3.12 make ... takes another interpreter (3.11 or later) for $(VENV)'
+	@echo 'WORKERS=4 make ... tests in four processes instead of two'
 
 report: $(VENV)/.runtime
 	$(BIN)/loopsheet build --out '$(OUT)'
@@ -31,7 +37,10 @@ test: $(VENV)/.test .mypy_root/loopsheet
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy -p loopsheet
-	$(BIN)/python -m pytest
+	$(PYTEST)
+
+campaigns: $(VENV)/.test
+	$(PYTEST) -m campaigns --campaigns all
 
 bench: $(VENV)/.bench
 	set -e; for script in benchmarks/bench_*.py; do echo "== $$script"; $(BIN)/python "$$script"; done

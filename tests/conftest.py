@@ -1,10 +1,12 @@
-"""What all tests share: one hypothesis profile, and `require` for programs outside Python."""
+"""What all tests share: a hypothesis profile, `require` for programs outside Python, campaigns at random."""
 
 import os
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
+from campaign_sizes import SEED, SIZES, Sizes
 from hypothesis import settings
 
 CI = os.environ.get("CI", "").lower() not in ("", "0", "false")
@@ -31,3 +33,39 @@ def find_program(*names: str) -> str:
 def require() -> Callable[..., str]:
     """Give `require("latexmk")`, or `require("chromium", "chromium-browser")` where names differ."""
     return find_program
+
+
+# --- campaigns that are drawn at random ---
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    group = parser.getgroup("campaigns", "campaigns drawn at random (tests/campaign_sizes.py)")
+    group.addoption("--campaigns", choices=SIZES, default="few", help="how many (default: few)")
+    group.addoption("--seed", type=int, default=SEED, help=f"which ones (default: {SEED})")
+
+
+@pytest.fixture(scope="session")
+def sizes(pytestconfig: pytest.Config) -> Sizes:
+    """How many campaigns to draw, and from what seed."""
+    return replace(SIZES[pytestconfig.getoption("campaigns")], seed=pytestconfig.getoption("seed"))
+
+
+@pytest.fixture
+def summary(record_property: Callable[[str, object], None]) -> Callable[[str], None]:
+    """Give `summary("200 honest papers: nobody accused")`, a line at the end of the run."""
+    return lambda line: record_property("campaigns", line)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    reports = [report for kind in ("passed", "failed") for report in terminalreporter.stats.get(kind, ())]
+    said = [
+        line
+        for report in sorted(reports, key=lambda report: report.nodeid.partition("::")[0])
+        for name, line in report.user_properties
+        if name == "campaigns" and report.when == "call"
+    ]
+    if said:
+        how_many, seed = config.getoption("campaigns"), config.getoption("seed")
+        terminalreporter.section(f"campaigns: {how_many}, seed {seed}")
+        for line in said:
+            terminalreporter.write_line(line)

@@ -229,21 +229,25 @@ FORGERS: tuple[Callable[[random.Random], Campaign], ...] = (
 )
 
 
-def accused(seed: int) -> str:
-    """What is wrongly said of an honest campaign."""
-    found = honest(random.Random(seed)).refereed()
+def accused(seed: int, number: int) -> str:
+    """What is wrongly said of one of the honest campaigns of a seed."""
+    found = honest(random.Random(f"honest {seed} {number}")).refereed()
     assert found.joint is not None
     words = {each.verdict for each in (*found.values, *found.tables, found.joint)}
     said = [*map(words.explained, found.explanations), *map(words.relabelled, found.labels)]
     return " ".join([*sorted(words - {EXACT, REACHABLE}), *said])
 
 
-def judged(kind: int, seed: int) -> str:
+def judged(kind: int, seed: int, number: int) -> str:
     """Whether a forgery was named; or that its digits can be reached all the same, so that nobody could."""
-    campaign = FORGERS[kind](random.Random(1000 * kind + seed))
+    campaign = FORGERS[kind](random.Random(f"{FORGERS[kind].__name__} {seed} {number}"))
     found = campaign.refereed()
     assert campaign.forgery is not None
     assert found.joint is not None
     if found.joint.verdict in (EXACT, REACHABLE):
         return "reachable"
-    return "named" if campaign.forgery.named_by(found) else f"missed {campaign.forgery} of seed {seed}"
+    return (
+        "named"
+        if campaign.forgery.named_by(found)
+        else f"missed {campaign.forgery}, number {number} of seed {seed}"
+    )

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import random
 import re
-import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -20,18 +19,9 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from campaign_sizes import ALL, Sizes
 from hypothesis import HealthCheck, Phase, assume, given, settings
-
-from loopsheet.report.analysis.engines import EPS, LIMIT, Judge
-from loopsheet.report.analysis.readers import Reading
-from loopsheet.report.engines import exact, javascript
-from loopsheet.report.engines import numpy as engine
-from loopsheet.report.engines.numpy import Program
-from loopsheet.report.sheet import Column
-from loopsheet.report.values import CODES
-
-sys.path.insert(0, str(Path(__file__).parent))
-
+from hypothesis import seed as seeded
 from random_campaigns import (
     SHEETS,
     VARIANTS,
@@ -46,8 +36,17 @@ from random_campaigns import (
     printed_once,
 )
 
-EACH = {2: 800, 3: 500, 4: 280, 5: 140, 6: 72, 7: 48, 8: 36, 9: 36, 10: 36, 11: 36, 12: 36}
-"""Campaigns of so many tests: 50 digits of the 66 pairs of twelve tests take their time."""
+from loopsheet.report.analysis.engines import EPS, LIMIT, Judge
+from loopsheet.report.analysis.readers import Reading
+from loopsheet.report.engines import exact, javascript
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.engines.numpy import Program
+from loopsheet.report.sheet import Column
+from loopsheet.report.values import CODES
+
+pytestmark = pytest.mark.campaigns
+
+Say = Callable[[str], None]
 
 
 # --- what roundings decide ---
@@ -149,7 +148,7 @@ class Tally:
 
 @pytest.fixture(scope="module")
 def judged(
-    require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory
+    require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory, sizes: Sizes
 ) -> Iterator[Callable[[int], Tally]]:
     """Give `judged(size)`, which compares the engines on campaigns of this size, once for all tests."""
     programs = [javascript.program(sheet) for sheet in SHEETS]
@@ -158,10 +157,10 @@ def judged(
     def judged(size: int) -> Tally:
         tally = Tally()
 
+        @seeded(sizes.seed)
         @settings(
-            max_examples=EACH[size],
-            derandomize=True,
-            deadline=None,
+            max_examples=sizes.engines[size],
+            database=None,
             suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
             phases=[Phase.generate, Phase.shrink],
         )
@@ -202,29 +201,38 @@ def compare(campaign: Campaign, node: Node, tally: Tally) -> None:
     tally.codes.update(code for codes in ours.status.values() for code in codes)
 
 
-@pytest.mark.parametrize("size", EACH)
-def test_numpy_and_javascript_find_what_fifty_digits_find(judged: Callable[[int], Tally], size: int) -> None:
+@pytest.mark.parametrize("size", ALL.engines)
+def test_numpy_and_javascript_find_what_fifty_digits_find(
+    judged: Callable[[int], Tally], sizes: Sizes, summary: Say, size: int
+) -> None:
     tally = judged(size)
+    worst = ", ".join(f"{units:.2f} ({engine})" for engine, units in tally.worst.items())
+    summary(f"campaigns of {size} tests: {len(tally.seen)}, off by at most {worst} eps x condition")
     assert all(0 < units <= LIMIT for units in tally.worst.values())
+    assert len(tally.seen) >= 0.99 * sizes.engines[size]
 
 
-def test_roundings_seldom_decide(judged: Callable[[int], Tally]) -> None:
-    tallies = [judged(size) for size in EACH]
+def test_roundings_seldom_decide(judged: Callable[[int], Tally], sizes: Sizes, summary: Say) -> None:
+    tallies = [judged(size) for size in sizes.engines]
     total = sum(len(tally.seen) for tally in tallies)
-    assert sum(tally.excused["roundings"] for tally in tallies) <= total / 100
-    assert sum(tally.excused["no double"] for tally in tallies) <= total / 50
-    assert sum(tally.excused["reasons"] for tally in tallies) <= total / 50
-    assert sum(tally.unbounded for tally in tallies) <= sum(tally.cells for tally in tallies) / 500
+    cells, unbounded = (sum(getattr(tally, what) for tally in tallies) for what in ("cells", "unbounded"))
+    excused = sum((tally.excused for tally in tallies), Counter())
+    summary(f"{total} campaigns: excused {dict(excused)}, {unbounded} of {cells} cells without a bound")
+    # Of few campaigns, three are no more than chance.
+    assert excused["roundings"] <= max(total / 100, 3)
+    assert excused["no double"] <= max(total / 50, 3)
+    assert excused["reasons"] <= max(total / 50, 3)
+    assert unbounded <= cells / 500
 
 
-def test_the_campaigns_are_thousands_and_of_every_kind(judged: Callable[[int], Tally]) -> None:
-    tallies = [judged(size) for size in EACH]
-    assert sum(len(tally.seen) for tally in tallies) >= 2000
-    assert min(len(tally.seen) for tally in tallies) >= 36
+def test_the_campaigns_are_of_every_kind(judged: Callable[[int], Tally], sizes: Sizes, summary: Say) -> None:
+    tallies = [judged(size) for size in sizes.engines]
     codes = sum((tally.codes for tally in tallies), Counter())
+    broken = sum(tally.broken for tally in tallies)
+    summary(f"their cells: {dict(codes.most_common())}, {broken} break a condition")
     assert set(codes) == set(CODES.values())
-    assert min(codes.values()) > 5000
-    assert sum(tally.broken for tally in tallies) > 1000
+    assert min(codes.values()) > sizes.of_each_code
+    assert broken > sizes.broken
 
 
 # --- changes to the programs are caught ---
@@ -283,7 +291,7 @@ def numpy_mutants(program: Program) -> Mutants:
 
 @pytest.mark.parametrize("name", ["numpy", "JavaScript"])
 def test_a_character_changed_in_a_program_is_caught(
-    require: Callable[..., str], tmp_path: Path, name: str
+    require: Callable[..., str], tmp_path: Path, sizes: Sizes, summary: Say, name: str
 ) -> None:
     sheet, ours = SHEETS[1], name == "numpy"
     mutants = list(
@@ -295,7 +303,8 @@ def test_a_character_changed_in_a_program_is_caught(
     assert {column for column, _, _ in mutants} == sheet.by_name.keys() - without_operator
     programs = [javascript.program(sheet)] + ([] if ours else [program for _, _, program in mutants])
     with Node(require("node"), tmp_path, programs) as node:
-        judges = [(one, judge_of(one)) for one in drawn(campaigns(6, variants=[1]), 36)]
+        chosen = drawn(campaigns(6, variants=[1]), 36, sizes.seed)
+        judges = [(one, judge_of(one)) for one in chosen]
         honest = [(one, judge) for one, judge in judges if not judge.agreement(node.read(one, 0)[0]).findings]
         assert len(honest) > 30
         for number, (column, what, program) in enumerate(mutants, start=1):
@@ -304,3 +313,4 @@ def test_a_character_changed_in_a_program_is_caught(
                 for one, judge in honest
             )
             assert any(found) or any(part in what for part in EQUIVALENT), (column, what)
+    summary(f"characters changed in the {name} program: {len(mutants)}, all caught")

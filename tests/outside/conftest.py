@@ -1,14 +1,11 @@
-"""Lets the tests beside it import what they share."""
+"""What the tests beside it share: npm packages."""
 
 import shutil
 import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 
 
 @pytest.fixture(scope="session")

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import sample_sheet
 import spreadsheets
+from campaign_sizes import Sizes
 
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
@@ -131,7 +132,7 @@ def test_every_construct_means_what_numpy_means(hyperformula: Recalculate) -> No
 _OTHERS = {"+": "-", "-": "+", "*": "/", "/": "*"}
 
 
-def mutants(grid: Grid, how_many: int) -> list[list[str]]:
+def mutants(grid: Grid, how_many: int, seed: int) -> list[list[str]]:
     """Formulas of the first rows with one character of their arithmetic changed."""
     found = []
     for block in grid.blocks:
@@ -150,15 +151,20 @@ def mutants(grid: Grid, how_many: int) -> list[list[str]]:
                 changed = formula[:place] + _OTHERS[formula[place]] + formula[place + 1 :]
                 address = block.place.cell(0, sheet).replace("$", "")
                 found.append([sheet, address, f"{{{changed}}}" if block.array else changed])
-    return random.Random(20).sample(found, min(how_many, len(found)))
+    return random.Random(seed).sample(found, how_many)
 
 
-def test_one_changed_character_is_noticed(hyperformula: Recalculate) -> None:
+@pytest.mark.campaigns
+def test_one_changed_character_is_noticed(
+    hyperformula: Recalculate, sizes: Sizes, summary: Callable[[str], None]
+) -> None:
     """In every kind of cell; the value of the cell itself or of one that depends on it is another."""
     paper = spreadsheets.paper()
     book = spreadsheets.formulas_of(paper.edited({("x_p", 1): 29.8}))
-    changed = mutants(paper.grid, 150)
-    assert len(changed) == 150
+    changed = mutants(paper.grid, sizes.workbook_mutants, sizes.seed)
     read = hyperformula({"paper": book}, changed)
     unnoticed = [mutant for mutant, differing in zip(changed, read["mutants"], strict=True) if not differing]
+    summary(
+        f"characters changed in the workbook: {len(changed)}, {len(unnoticed)} not noticed by HyperFormula"
+    )
     assert not unnoticed, (len(unnoticed), unnoticed[:3])

@@ -1,19 +1,16 @@
 """One Chromium for all tests of the page; every test gets a page of its own that must not report an error."""
 
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import driving
 import pytest
 from playwright.sync_api import Browser, sync_playwright
 
+from loopsheet.report import build
+
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE))
-
-import driving  # noqa: E402 - it stands beside this file
-
-from loopsheet.report import build  # noqa: E402
 
 Open = Callable[..., driving.Live]
 

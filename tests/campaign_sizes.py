@@ -1,0 +1,68 @@
+"""How many campaigns the tests draw at random, and from what seed: the one place for both.
+
+`make test` draws FEW, `make campaigns` ALL; `SEED=7 make campaigns` draws others. A test that draws is marked
+`campaigns`, asks for the fixture `sizes`, derives all its dice from `sizes.seed` and says with the fixture
+`summary` what it found: a line at the end of the run. A new kind of campaign is a new field here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+SEED = 2
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """How many campaigns of each kind are drawn, and what they must have among them at least.
+
+    Parameters
+    ----------
+    honest : int
+        Papers printed as they were computed.
+    forged : int
+        Papers of each forger that were changed so that somebody could see it.
+    engines : mapping of int to int
+        For each number of tests, campaigns for NumPy, JavaScript and 50 digits; the 66 pairs of twelve tests
+        take their time.
+    of_each_code : int
+        Cells of the campaigns for the engines that have a value, and that have each of the codes.
+    broken : int
+        Cells of them that break a condition.
+    workbook_mutants, page_mutants : int
+        Changed characters in the formulas of the workbook and in the program of the page.
+    seed : int
+    """
+
+    honest: int
+    forged: int
+    engines: Mapping[int, int]
+    of_each_code: int
+    broken: int
+    workbook_mutants: int
+    page_mutants: int
+    seed: int = SEED
+
+
+FEW = Sizes(
+    honest=10,
+    forged=3,
+    engines={2: 50, 3: 30, 4: 16, 5: 8, 6: 4, 7: 3, 8: 3, 9: 3, 10: 3, 11: 3, 12: 3},
+    of_each_code=100,
+    broken=50,
+    workbook_mutants=30,
+    page_mutants=4,
+)
+ALL = Sizes(
+    honest=200,
+    forged=40,
+    engines={2: 800, 3: 500, 4: 280, 5: 140, 6: 72, 7: 48, 8: 36, 9: 36, 10: 36, 11: 36, 12: 36},
+    of_each_code=5000,
+    broken=1000,
+    workbook_mutants=150,
+    page_mutants=30,
+)
+assert sum(ALL.engines.values()) > 2000
+
+SIZES = {"few": FEW, "all": ALL}
