@@ -1,12 +1,11 @@
 """What the reader of a folder refuses, every engine refuses too, with the same code in the same cells."""
 
 import math
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
+from random_campaigns import SHEETS, Campaign, Node, numpy_reads, printed_once
 
 from loopsheet.report.engines import exact, javascript
 from loopsheet.report.engines import numpy as engine
@@ -15,10 +14,6 @@ from loopsheet.report.number_text import read_value
 from loopsheet.report.unit_text import parse_unit
 from loopsheet.report.values import CODES, Status
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
-
-sys.path.insert(0, str(Path(__file__).parent))
-
-from random_campaigns import SHEETS, Campaign, Node, numpy_reads, printed_once
 
 SHEET, GIVEN = SHEETS[1], ("v", "e", "x_p", "beta", "points_per_pair", "ball_diameter", "target_mass")
 PAPER = Campaign(

@@ -1,12 +1,8 @@
 """Published values as a user of `check` meets them: what counts as the same, what pins a difference."""
 
-import sys
 from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
-
 from small_report import end_gauge
 
 from loopsheet.report import build

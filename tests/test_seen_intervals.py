@@ -1,18 +1,14 @@
 """An interval that is shown with a value contains it, also where derivatives vanish or change their signs."""
 
 import random
-import sys
 from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import pytest
-from sympy import Expr, Rational, Symbol, exp, log, sqrt
-
-sys.path.insert(0, str(Path(__file__).parent))
-
 from small_report import end_gauge
+from sympy import Expr, Rational, Symbol, exp, log, sqrt
 
 from loopsheet.derivations.equation import Equation, Kind, Ledger
 from loopsheet.report.analysis.referee import compare, print_as, referee
