@@ -2,12 +2,13 @@
 
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import pytest
 from campaign_sizes import SEED, SIZES, Sizes
 from hypothesis import settings
+from hypothesis.internal.conjecture import providers
 
 CI = os.environ.get("CI", "").lower() not in ("", "0", "false")
 
@@ -15,6 +16,14 @@ CI = os.environ.get("CI", "").lower() not in ("", "0", "false")
 # examples are the same in every run, so that a red run can be repeated.
 settings.register_profile("loopsheet", deadline=None, print_blob=True, derandomize=CI)
 settings.load_profile("loopsheet")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _drawn_by_the_seed_alone() -> Iterator[None]:
+    """Hypothesis likes constants of loaded modules: what is drawn would depend on which tests ran before."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(providers, "_get_local_constants", providers.Constants)
+        yield
 
 
 def find_program(*names: str) -> str:
