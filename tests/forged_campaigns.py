@@ -11,6 +11,7 @@ from math import prod
 from pathlib import Path
 from typing import Any
 
+from loopsheet.report import verdict_words as words
 from loopsheet.report.analysis.referee import print_as, referee
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
@@ -233,9 +234,9 @@ def accused(seed: int, number: int) -> str:
     """What is wrongly said of one of the honest campaigns of a seed."""
     found = honest(random.Random(f"honest {seed} {number}")).refereed()
     assert found.joint is not None
-    words = {each.verdict for each in (*found.values, *found.tables, found.joint)}
+    verdicts = {each.verdict for each in (*found.values, *found.tables, found.joint)}
     said = [*map(words.explained, found.explanations), *map(words.relabelled, found.labels)]
-    return " ".join([*sorted(words - {EXACT, REACHABLE}), *said])
+    return " ".join([*sorted(verdicts - {EXACT, REACHABLE}), *said])
 
 
 def judged(kind: int, seed: int, number: int) -> str:

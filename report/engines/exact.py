@@ -321,7 +321,7 @@ class _Scope:
 
 @dataclass(frozen=True)
 class _Printed:
-    """Expressions as a function of the cells and totals that they name, and of the unknown if there is one."""
+    """Expressions as a function of the cells and totals that they name, and of the unknown if any."""
 
     cells: tuple[Expr, ...]
     totals: tuple[Expr, ...]
