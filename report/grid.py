@@ -11,9 +11,11 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 
+from .quantity import Bounds
 from .sheet import Axis, Column, Sheet
 
 __all__ = [
+    "CHECKED",
     "FIRST_ROW",
     "SCALARS",
     "STEPS",
@@ -23,6 +25,7 @@ __all__ = [
     "Grid",
     "Place",
     "Series",
+    "checked",
     "factors",
     "letters",
 ]
@@ -31,6 +34,8 @@ FIRST_ROW = 7
 """The row, from 0, of the first cell below the header of an axis' worksheet."""
 SCALARS = "report"
 """The worksheet of the scalars."""
+CHECKED = 6
+"""Its column, from 0, of what is given where it is allowed."""
 STEPS = "steps"
 """The worksheet of the steps to a scalar root."""
 
@@ -59,6 +64,17 @@ def factors(scale: Fraction) -> tuple[str, str]:
     up, down = (f"*{above}" if above > 1 else ""), (f"/{below}" if below > 1 else "")
     back = (f"*{below}" if below > 1 else "") + (f"/{above}" if above > 1 else "")
     return up + down, back
+
+
+def checked(name: str) -> str:
+    """What the cells are called that hold a given column where it is allowed, and a code where it is not.
+
+    All formulas name these: what is pasted, filled down or put in by a program is seen by no other check.
+
+    >>> checked("x_p")
+    'x_p checked'
+    """
+    return f"{name} checked"
 
 
 @dataclass(frozen=True)
@@ -124,8 +140,9 @@ class Block:
     name : str
         The column's name; for a cell on the way to a root the column's, a dot and its own.
     kind : str
-        ``index`` (the numbers of rows), ``given``, ``computed``, ``carried`` (another axis' cells,
-        repeated for a sum), ``step`` (on the way to a root) or ``drawn`` (for a chart).
+        ``index`` (the numbers of rows), ``given``, ``checked`` (what is given, if it is allowed),
+        ``computed``, ``carried`` (another axis' cells, repeated for a sum), ``step`` (on the way to a
+        root) or ``drawn`` (for a chart).
     title, meaning : str
         What stands above or beside its cells.
     place : Place
@@ -140,11 +157,15 @@ class Block:
     source : str
         The number of its equation, or where it was given.
     of : str
-        The column whose root it is on the way to, or the column that it carries.
+        The column whose root it is on the way to, or that it carries or checks.
     step : int
         Which step towards the root; 0 before the first.
     kept : mapping of str to str
         For each axis that is summed over, the array formula that counts its rows that have values.
+    bounds : Bounds
+        What a given cell may be, in its unit; a count no other than that of the rows there are.
+    guard : str
+        The formula, without its equals sign, that says whether the cell `{0}` is that.
     """
 
     name: str
@@ -160,6 +181,8 @@ class Block:
     of: str = ""
     step: int = 0
     kept: Mapping[str, str] = field(default_factory=dict)
+    bounds: Bounds = field(default_factory=Bounds)
+    guard: str = ""
 
 
 @dataclass(frozen=True)
@@ -240,11 +263,14 @@ class Grid:
     axes : mapping of worksheet name to Axis
         Those that hold the rows of an axis.
     drawn : Drawn or None
+    notes : mapping of worksheet name to Place
+        Free cells beside the given columns of an axis, for what is wrong with them.
     """
 
     blocks: tuple[Block, ...]
     axes: Mapping[str, Axis]
     drawn: Drawn | None = None
+    notes: Mapping[str, Place] = field(default_factory=dict)
 
     @cached_property
     def by_name(self) -> Mapping[str, Block]:

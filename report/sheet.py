@@ -46,6 +46,7 @@ __all__ = [
     "Sheet",
     "SheetError",
     "name_of",
+    "within",
 ]
 
 

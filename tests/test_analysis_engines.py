@@ -16,7 +16,7 @@ from loopsheet.report import build
 from loopsheet.report.analysis import engines, readers
 from loopsheet.report.analysis.readers import Book, Reading
 from loopsheet.report.engines import exact, excel_grid
-from loopsheet.report.grid import Place
+from loopsheet.report.grid import Place, checked
 from loopsheet.report.result import Report
 from loopsheet.report.views import xlsx
 
@@ -211,20 +211,19 @@ def test_a_delivered_workbook_is_read_as_it_is_stored(report: Report, book: Book
     assert set(status["alpha"]) == {"ok"}
     bare = readers.read_cells(readers.without_results(book.content))
     value, status, _ = readers._columns(report.sheet, book.grid, bare)
-    assert set(status["alpha"]) == {"nothing"}
-    assert set(status["v"]) == {"ok"}
+    assert set(status["alpha"]) == {"nothing"} == set(status["v"]), "what is typed is checked by a formula"
 
 
-def test_a_number_that_was_not_typed_is_a_missing_input(report: Report, book: Book) -> None:
+def test_what_is_given_is_what_its_check_says(report: Report, book: Book) -> None:
     cells: dict[str, dict[str, float | str]] = {
         name: dict(each) for name, each in readers.read_cells(book.content).items()
     }
-    place: Place = book.grid["v"].place
-    first, second, _ = (place.cell(row, place.worksheet).replace("$", "") for row in range(3))
-    cells[place.worksheet][first] = "fast"
+    place: Place = book.grid[checked("v")].place
+    first, second = (place.cell(row, place.worksheet).replace("$", "") for row in range(2))
+    cells[place.worksheet][first] = "#INPUT!"
     del cells[place.worksheet][second]
     _, status, _ = readers._columns(report.sheet, book.grid, cells)
-    assert status["v"][:3] == ["#INPUT!", "#INPUT!", "ok"]
+    assert status["v"][:3] == ["#INPUT!", "nothing", "ok"]
 
 
 def test_digits_of_the_caller_do_not_matter(report: Report, judge: engines.Judge) -> None:

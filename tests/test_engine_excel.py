@@ -41,9 +41,11 @@ from loopsheet.report import build
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.excel import IfError, IsNumber, NotPrintable, Printer
+from loopsheet.report.engines.excel_formulas import guard
 from loopsheet.report.engines.excel_roots import unroll
 from loopsheet.report.engines.excel_values import auxiliary_values
-from loopsheet.report.grid import Block, Grid, Place, factors, letters, quoted
+from loopsheet.report.grid import Block, Grid, Place, checked, factors, letters, quoted
+from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
 from loopsheet.report.workbooks import soft_impact_charts
 
@@ -214,9 +216,14 @@ def column(name: str, axis: Axis | None, value: Any = None, **more: Any) -> Colu
 a, w, per = column("a", ITEMS), column("w", None), column("per", None)
 
 
-def made(*columns: Column, units: dict[str, str] | None = None, **data: Any) -> Grid:
+def made(
+    *columns: Column,
+    units: dict[str, str] | None = None,
+    bounds: dict[str, Bounds] | None = None,
+    **data: Any,
+) -> Grid:
     given = {"a": [3.0, 5.0], "w": 2.0, "per": 2, **data}
-    sheet = Sheet(columns)
+    sheet = Sheet(columns).bounded(bounds or {})
     values = engine.evaluate(sheet, {"items": (1, 2)}, {name: given[name] for name in given if name in sheet})
     return excel_grid.grid(sheet, values, units or {})
 
@@ -228,16 +235,49 @@ def first(grid: Grid, name: str) -> str:
 def test_a_row_names_the_cells_of_its_members() -> None:
     grid = made(a, column("b", PAIRS, a[i] / a[j], positive=False))
     assert first(grid, "b") == (
-        "=IF(AND(ISNUMBER(items!$B$8),ISNUMBER(items!$B$9)),"
-        'IFERROR(items!$B$8/items!$B$9,"#DOMAIN!"),"#INPUT!")'
+        "=IF(AND(ISNUMBER(items!$D$8),ISNUMBER(items!$D$9)),"
+        'IFERROR(items!$D$8/items!$D$9,"#DOMAIN!"),"#INPUT!")'
     )
+
+
+@pytest.mark.parametrize(
+    ("bounds", "tests"),
+    [
+        (Bounds(), []),
+        (Bounds(low=0, low_open=True), ["{0}>0"]),
+        (Bounds(-1, 0.5), ["{0}<=0.5", "{0}>=(0-1)"]),
+        (Bounds(high=1.5707963267948966, high_open=True), ["{0}<1.5707963267948966"]),
+        (Bounds(2, 1e22, integer=True), ["{0}<=10000000000000000000000", "{0}=INT({0})", "{0}>=2"]),
+    ],
+)
+def test_what_is_allowed_is_asked_of_numbers_only(bounds: Bounds, tests: list[str]) -> None:
+    asked = "NOT(ISLOGICAL({0}))"
+    asked = f"AND({','.join([asked, *tests])})" if tests else asked
+    assert guard(bounds) == f"IF(ISNUMBER({{0}}),{asked},FALSE())"
+
+
+def test_a_given_cell_is_checked_in_a_cell_of_its_own() -> None:
+    grid = made(column("a", ITEMS, unit="m"), units={"a": "mm"}, bounds={"a": Bounds(high=0.5)})
+    typed, check = grid["a"], grid[checked("a")]
+    assert (typed.kind, typed.formulas, check.kind, check.of) == ("given", (), "checked", "a")
+    assert (check.unit, check.values) == ("mm", ("#INPUT!", "#INPUT!"))
+    assert typed.bounds == Bounds(high=500)
+    assert check.formulas[1] == f'=IF({typed.guard.format("$B$9")},$B$9,"#INPUT!")'
+    assert "$B$9<=500" in check.formulas[1]
+    assert (typed.place.column, grid.notes["items"].column, check.place.column) == (1, 2, 3)
+
+
+def test_a_count_is_that_of_the_rows_there_are() -> None:
+    grid = made(a, per, column("c", POINTS, s * a[i]), bounds={"per": Bounds(1, 9)})
+    assert grid["per"].bounds == Bounds(2, 2)
+    assert "{0}<=2,{0}>=2" in grid["per"].guard
 
 
 def test_an_error_is_carried_on_before_anything_is_computed() -> None:
     b = column("b", ITEMS, a[k] * 2)
     grid = made(a, w, b, column("c", ITEMS, b[k] + w.symbol, positive=False))
     assert first(grid, "c") == (
-        '=IF(ISNUMBER(report!$B$6),IF(ISNUMBER($C$8),IFERROR(report!$B$6+$C$8,"#DOMAIN!"),$C$8),"#INPUT!")'
+        '=IF(ISNUMBER(report!$G$6),IF(ISNUMBER($D$8),IFERROR(report!$G$6+$D$8,"#DOMAIN!"),$D$8),"#INPUT!")'
     )
 
 
@@ -245,7 +285,7 @@ def test_a_positive_quantity_has_no_other_value() -> None:
     grid = made(
         a, w, column("c", ITEMS, a[k] - w.symbol), column("d", ITEMS, a[k] - w.symbol, positive=False)
     )
-    core = "$B$8-report!$B$6"
+    core = "$F$8-report!$G$6"
     assert f'IFERROR(IF({core}>0,{core},"#DOMAIN!"),"#DOMAIN!")' in first(grid, "c")
     assert f'IFERROR({core},"#DOMAIN!")' in first(grid, "d")
 
@@ -253,14 +293,14 @@ def test_a_positive_quantity_has_no_other_value() -> None:
 def test_what_is_typed_may_be_zero_although_its_symbol_is_positive() -> None:
     twice = column("b", ITEMS, a[k] * 2)
     grid = made(a, twice, column("c", ITEMS, twice[k] * 2))
-    assert 'IF(2*$B$8>0,2*$B$8,"#DOMAIN!")' in first(grid, "b")
+    assert 'IF(2*$F$8>0,2*$F$8,"#DOMAIN!")' in first(grid, "b")
     assert ">0" not in first(grid, "c")  # its precedent was checked in its own cell
 
 
 def test_conditions_come_before_the_value() -> None:
     needs = ((a[k] > w.symbol, "for a test"), (Ne(a[k], 4), "for a test"))
     grid = made(a, w, column("c", ITEMS, a[k] + w.symbol, requires=needs, positive=False))
-    body = 'IFERROR(IF(AND($B$8>report!$B$6,$B$8<>4),report!$B$6+$B$8,"#DOMAIN!"),"#DOMAIN!")'
+    body = 'IFERROR(IF(AND($E$8>report!$G$6,$E$8<>4),report!$G$6+$E$8,"#DOMAIN!"),"#DOMAIN!")'
     assert body in first(grid, "c")
 
 
@@ -268,7 +308,7 @@ def test_cells_in_other_units_are_converted_where_they_are_named() -> None:
     length: dict[str, Any] = {"unit": "m", "positive": False}
     b = column("b", ITEMS, a[k] * 2, **length)
     grid = made(column("a", ITEMS, **length), b, units={"a": "mm", "b": "km"})
-    assert 'IFERROR(2*($B$8/1000)/1000,"#DOMAIN!")' in first(grid, "b")
+    assert 'IFERROR(2*($E$8/1000)/1000,"#DOMAIN!")' in first(grid, "b")
     assert grid["b"].values == (0.006, 0.01)
     assert grid["a"].unit == "mm"
 
@@ -280,11 +320,11 @@ def test_a_symbol_in_a_unit_leaves_si() -> None:
 
 def test_a_sum_leaves_rows_without_values_out() -> None:
     grid = made(a, w, column("c", None, w.symbol * Sum(a[k] ** 2, (k, 1, n_items)) / n_items, positive=False))
-    cells = "items!$B$8:$B$9"
+    cells = "items!$D$8:$D$9"
     rows = f"SUM(IF(ISNUMBER({cells}),1,0))"
     assert first(grid, "c") == (
-        f"=IF(AND(OR({rows}>0,ISNUMBER(items!$B$8)),ISNUMBER($B$6)),"
-        f"IFERROR($B$6*SUM(IF(ISNUMBER({cells}),({cells})^(2),0))/"
+        f"=IF(AND(OR({rows}>0,ISNUMBER(items!$D$8)),ISNUMBER($G$6)),"
+        f"IFERROR($G$6*SUM(IF(ISNUMBER({cells}),({cells})^(2),0))/"
         f'{rows},"#DOMAIN!"),"#INPUT!")'
     )
     assert grid["c"].array
@@ -293,7 +333,7 @@ def test_a_sum_leaves_rows_without_values_out() -> None:
 
 def test_the_size_of_an_axis_that_is_not_summed_counts_all_rows() -> None:
     grid = made(a, column("b", PAIRS, a[i]), w, column("c", None, w.symbol * n_pairs))
-    assert "ROWS(pairs!$A$8:$A$8)*$B$6" in first(grid, "c")
+    assert "ROWS(pairs!$A$8:$A$8)*$G$6" in first(grid, "c")
     assert not grid["c"].array
 
 
@@ -309,7 +349,7 @@ def test_a_sum_reaches_another_axis_through_a_column_of_its_own() -> None:
 
 def test_a_missing_datum_is_carried_as_such() -> None:
     grid = made(a, per, column("c", POINTS, s / 2 + a[i]), column("d", None, Sum(a[i] * s, (q, 1, n_points))))
-    assert grid["a[i] of points"].formulas[0] == '=IF(ISNUMBER(items!$B$8),items!$B$8,"#INPUT!")'
+    assert grid["a[i] of points"].formulas[0] == "=items!$D$8"
 
 
 def test_worksheets_of_reserved_names_get_another() -> None:
@@ -358,10 +398,10 @@ def test_the_cells_of_a_root() -> None:
         name: grid[f"root.{name}"].place.cell(0, "items")
         for name in ("check", "roots", "u_0", "f_1", "step_1")
     }
-    assert first(grid, "root.check") == '=IF(ISNUMBER($B$8),"ready","#INPUT!")'
+    assert first(grid, "root.check") == '=IF(ISNUMBER($E$8),"ready","#INPUT!")'
     assert first(grid, "root.low") == f'=IF({at["check"]}="ready",IFERROR((0-3),""),"")'
     u = at["u_0"]
-    assert first(grid, "root.f_1") == f'=IF({at["roots"]}=1,IFERROR(SUM(({u})^(3),0-3*{u},0-$B$8),""),"")'
+    assert first(grid, "root.f_1") == f'=IF({at["roots"]}=1,IFERROR(SUM(({u})^(3),0-3*{u},0-$E$8),""),"")'
     f, *slopes = (
         grid[f"root.{name}"].place.cell(0, "items") for name in ("f_1", "slope0_1", "slope1_1", "slope2_1")
     )
@@ -420,8 +460,8 @@ def every(grid: Grid) -> list[tuple[Block, str]]:
 def test_nothing_younger_than_excel_2016_is_used(paper: Grid) -> None:
     used = {name for _, formula in every(paper) for name in re.findall(r"([A-Z][A-Z0-9.]*)\(", formula)}
     assert used <= {
-        "ABS", "AND", "EXP", "IF", "IFERROR", "ISNUMBER", "LN", "MAX", "MEDIAN", "NA", "OR", "PI", "ROWS",
-        "SIGN", "SQRT", "SUM",
+        "ABS", "AND", "EXP", "FALSE", "IF", "IFERROR", "ISLOGICAL", "ISNUMBER", "LN", "MAX", "MEDIAN", "NA",
+        "NOT", "OR", "PI", "ROWS", "SIGN", "SQRT", "SUM",
     }  # fmt: skip
 
 

@@ -29,7 +29,6 @@ from loopsheet.report.views.xlsx_style import (
     fragments,
     height,
     number_format,
-    number_text,
     open_format,
 )
 from loopsheet.report.workbooks import soft_impact_charts
@@ -144,7 +143,8 @@ def test_panes_are_frozen_and_steps_are_an_outline(grid: Grid, book: Any) -> Non
 def test_the_first_worksheet(book: Any, shown: Any, report: Report) -> None:
     cells = shown["report"]
     assert cells["A1"].value == "Soft steel, ball drop"
-    assert [cells.cell(row, 1).value for row in range(6, 11)] == list(report.workbook.headline)
+    headline = report.workbook.headline
+    assert [cells.cell(row, 1).value for row in range(6, 6 + len(headline))] == list(headline)
     assert cells["B6"].value == pytest.approx(1.30264345, abs=1e-8)
     assert [cells.cell(6, n).value for n in (3, 4, 5, 7)] == ["1", "mean exponent", "(L12)", "10 of 10 pairs"]
     text = "\n".join(str(c.value) for row in cells.iter_rows() for c in row if c.value)
@@ -164,7 +164,7 @@ def test_published_values_stand_beside_live_ones(book: Any, shown: Any, report: 
         assert now.cell(row, 8).value == pytest.approx(comparison.distance, abs=1e-9)
         assert now.cell(row, 12).value == comparison.published.reason
     depth = next(row for row in range(6, 40) if now.cell(row, 2).value == "x_m")
-    assert live.cell(depth, 6).value == "=IF(ISNUMBER(tests!$E$8),tests!$E$8,tests!$E$8)"
+    assert live.cell(depth, 6).value == "=IF(ISNUMBER(tests!$F$8),tests!$F$8,tests!$F$8)"
 
 
 def test_equations_and_their_proofs(shown: Any) -> None:
@@ -183,18 +183,72 @@ def validations(sheet: Any) -> dict[str, Any]:
 
 
 def test_what_may_be_typed_is_checked(book: Any, grid: Grid) -> None:
+    def guard(cell: str, *tests: str) -> str:
+        return f"IF(ISNUMBER({cell}),AND({','.join([f'NOT(ISLOGICAL({cell}))', *tests])}),FALSE())"
+
     tests = validations(book["tests"])
-    assert tests["B8:B12"].formula1 == "AND(ISNUMBER(B8),B8>0)"
-    assert tests["C8:C12"].formula1 == "AND(ISNUMBER(C8),C8>=0,C8<=1)"
-    assert tests["D8:D12"].error == "x_p must be greater than 0, in um."
+    assert tests["B8:B12"].formula1 == guard("B8", "B8>0")
+    assert tests["C8:C12"].formula1 == guard("C8", "C8<=1", "C8>=0")
+    assert tests["D8:D12"].error == "x_p must be greater than 0 um."
     count = grid["points_per_pair"].place.cell(0, "report").replace("$", "")
-    assert validations(book["report"])[count].formula1 == f"AND(ISNUMBER({count}),{count}>=50,{count}<=50)"
+    assert validations(book["report"])[count].formula1 == guard(count, f"{count}<=50", f"{count}>=50")
+
+
+def test_what_is_refused_is_told_beside_it(book: Any, grid: Grid) -> None:
+    tests, report = book["tests"], book["report"]
+    assert (tests["E4"].value, tests["I4"].value, tests["I3"].value) == (
+        "check",
+        "v [m/s]",
+        "as checked",
+    )
+    assert tests["E8"].value == (
+        '=IF(OR(NOT(ISNUMBER($I$8)),NOT(ISNUMBER($J$8)),NOT(ISNUMBER($K$8))),"#INPUT! "'
+        '&IF(NOT(ISNUMBER($I$8)),"v must be greater than 0 m/s. ","")'
+        '&IF(NOT(ISNUMBER($J$8)),"e must be between 0 and 1. ","")'
+        '&IF(NOT(ISNUMBER($K$8)),"x_p must be greater than 0 um. ",""),"ok")'
+    )
+    row = grid["points_per_pair"].place.row + 1
+    assert "change report.toml and build again" in report[f"H{row}"].value
+    assert report[f"G{row}"].value.startswith("=IF(IF(ISNUMBER(")
+    (rule,) = next(own for own in tests.conditional_formatting if str(own.sqref) == "B8:B12").rules
+    assert rule.formula == ["NOT(ISNUMBER(I8))"]
+
+
+def test_no_formula_names_a_given_cell_but_its_check(grid: Grid, book: Any) -> None:
+    typed = {
+        f"{prefix}{address}"
+        for block in grid.blocks
+        if block.kind == "given"
+        for address in block.place.cells(range(block.place.rows), block.place.worksheet)
+        for prefix in (f"{block.place.worksheet}!", f"{block.place.worksheet} alone ")
+    }
+    named = set()
+    for sheet in book.worksheets:
+        for row in sheet.iter_rows():
+            for cell in row:
+                formula = cell.value.text if isinstance(cell.value, ArrayFormula) else cell.value
+                if not isinstance(formula, str) or not formula.startswith("="):
+                    continue
+                found = re.findall(r"(?:(\w+)!)?(\$[A-Z]+\$[0-9]+)", formula)
+                found = {
+                    f"{of}!{address}" if of else f"{sheet.title} alone {address}" for of, address in found
+                }
+                if found & typed:
+                    named.add((sheet.title, cell.coordinate))
+    checks = {
+        (block.place.worksheet, block.place.cell(row, block.place.worksheet).replace("$", ""))
+        for block in grid.blocks
+        if block.kind == "checked"
+        for row in range(block.place.rows)
+    }
+    assert named == checks
+    assert len(checks) == 15 + 4 + 1
 
 
 def test_notes_say_meaning_bounds_and_origin(book: Any, grid: Grid) -> None:
     note = book["tests"]["D9"].comment.text
     assert "x_p: imprint depth" in note
-    assert "It must be greater than 0, in um." in note
+    assert "x_p must be greater than 0 um." in note
     assert "Given as 29.7 um in measurements.csv:3:15." in note
     fixed = book["report"][grid["points_per_pair"].place.cell(0, "report").replace("$", "")].comment.text
     assert "build again" in fixed
@@ -202,13 +256,13 @@ def test_notes_say_meaning_bounds_and_origin(book: Any, grid: Grid) -> None:
 
 
 def test_bounds_are_told_in_the_unit_of_the_cells(report: Report) -> None:
-    high = tuple(
-        replace(m, bounds=Bounds(low=1e-6, high=0.001, high_open=True)) for m in report.workbook.measured
-    )
-    inputs = replace(report.inputs, workbook=replace(report.workbook, measured=high))
-    changed = replace(report, workbook=inputs.workbook, inputs=inputs)
+    bounds = Bounds(low=1e-6, high=0.001, high_open=True)
+    sheet = report.sheet.bounded(dict.fromkeys(("v", "e", "x_p"), bounds))
+    changed = replace(report, sheet=sheet, values=replace(report.values, sheet=sheet))
     book = openpyxl.load_workbook(io.BytesIO(xlsx.render(changed, grid_of(changed))))
-    assert validations(book["tests"])["D8:D12"].formula1 == "AND(ISNUMBER(D8),D8>=1,D8<1000)"
+    assert "AND(NOT(ISLOGICAL(D8)),D8<1000,D8>=1)" in validations(book["tests"])["D8:D12"].formula1
+    assert "AND(NOT(ISLOGICAL(B8)),B8<0.001,B8>=0.000001)" in validations(book["tests"])["B8:B12"].formula1
+    assert "x_p must be at least 1 and less than 1000 um. " in book["tests"]["E8"].value
 
 
 # --- charts ----------------------------------------------------------------------------------------------
@@ -378,13 +432,6 @@ def test_rows_are_as_high_as_their_text() -> None:
     assert height([("short", 20)]) == 15
     assert height([("a word or two more than fit", 10)]) == 45
     assert height([("one\ntwo", 20)]) == 30
-
-
-@pytest.mark.parametrize(
-    ("value", "text"), [(1e-7, "0.0000001"), (1e4, "10000"), (0.5, "0.5"), (1e22, "1" + "0" * 22)]
-)
-def test_numbers_in_checks_have_no_power_of_ten(value: float, text: str) -> None:
-    assert number_text(value) == text
 
 
 def test_a_report_without_anything_to_draw_or_to_compare(report: Report) -> None:

@@ -25,7 +25,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from ..engines import javascript as printed
-from ..grid import Grid
+from ..grid import Grid, checked
 from ..sheet import Given, Sheet
 from ..values import CODES, Status, Values
 
@@ -357,7 +357,7 @@ def _cells(worksheet: ElementTree.Element, shared: Sequence[str]) -> Iterator[tu
         address = str(cell.get("r"))
         if kind == "inlineStr":
             yield address, "".join(t.text or "" for t in cell.iter(f"{_MAIN}t"))
-        elif text is not None:
+        elif text:
             yield address, float(text) if kind == "n" else shared[int(text)] if kind == "s" else text
 
 
@@ -369,18 +369,16 @@ def _columns(
     status: dict[str, list[str]] = {}
     rounded: dict[str, list[Fraction]] = {}
     for column in sheet.columns:
-        place = grid[column.name].place
+        place = grid[checked(column.name) if isinstance(column.rule, Given) else column.name].place
         found = [
             cells[place.worksheet].get(address.replace("$", ""))
             for address in place.cells(range(place.rows), place.worksheet)
         ]
-        # Nothing, or a word, where a number is to be typed is what the sheet calls a missing input.
-        missing = CODES[Status.INPUT] if isinstance(column.rule, Given) else "nothing"
         numbers = [x if isinstance(x, float) and math.isfinite(x) else None for x in found]
         value[column.name] = [None if x is None else Fraction(x) * place.scale for x in numbers]
         rounded[column.name] = [Fraction(0) if x is None else _lost(x) * place.scale for x in numbers]
         status[column.name] = [
-            OK if x is not None else held if isinstance(held, str) and held.startswith("#") else missing
+            OK if x is not None else held if isinstance(held, str) and held.startswith("#") else "nothing"
             for x, held in zip(numbers, found, strict=True)
         ]
     return value, status, rounded

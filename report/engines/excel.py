@@ -28,6 +28,7 @@ FUNCTIONS = {
     "cos": "COS",
     "cosh": "COSH",
     "exp": "EXP",
+    "floor": "INT",
     "log": "LN",
     "sign": "SIGN",
     "sin": "SIN",

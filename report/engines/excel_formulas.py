@@ -11,17 +11,18 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from sympy import Expr, Indexed, Sum, Symbol
+from sympy import And, Expr, Float, Indexed, Rational, Rel, Sum, Symbol
 
 from ...derivations.reductions import Median
 from ..grid import Place, factors
 from ..layout import Layout, rows_of
-from ..sheet import Axis, Column, Formula, Given, Reference, Root, Sheet, name_of
+from ..quantity import Bounds
+from ..sheet import Axis, Column, Formula, Given, Reference, Root, Sheet, name_of, within
 from ..values import CODES, Status
 from .excel import IfError, Printer
 from .excel_roots import READY, Auxiliary, Unrolled
 
-__all__ = ["Formulas", "Places", "carried", "carried_name"]
+__all__ = ["Formulas", "Places", "carried", "carried_name", "guard"]
 
 _CODE = {status: f'"{code}"' for status, code in CODES.items()}
 _UNSETTLED = '"#STEPS!"'
@@ -36,12 +37,16 @@ class Places:
     Parameters
     ----------
     columns : mapping of str to Place
-        Of columns, auxiliaries (``alpha.u_1``) and carried cells, by name.
+        Of columns, auxiliaries (``alpha.u_1``) and carried cells, by name; of a given column, those of its
+        checked cells (:func:`~loopsheet.report.grid.checked`), which all formulas name.
+    typed : mapping of str to Place
+        Of given columns, where they are typed.
     indices : mapping of axis name to tuple of Place
         The numbers of an axis' rows, one place a part.
     """
 
     columns: Mapping[str, Place]
+    typed: Mapping[str, Place]
     indices: Mapping[str, tuple[Place, ...]]
 
 
@@ -77,6 +82,12 @@ class Formulas:
     def __init__(self, sheet: Sheet, layouts: Mapping[str, Layout], places: Places) -> None:
         self.sheet, self.layouts, self.places = sheet, layouts, places
 
+    def checked(self, column: Column, guard: str) -> tuple[str, ...]:
+        """The formulas of what is given, if it is allowed, or else its code."""
+        writing = _Writing(self, column, column.name)
+        cell = writing.fill(self.places.typed[column.name])
+        return writing.rows(f"IF({guard.format(cell)},{cell},{_CODE[Status.INPUT]})")
+
     def column(self, column: Column, unrolled: Unrolled | None = None) -> tuple[str, ...]:
         """The formulas of a computed column, one a row."""
         writing = _Writing(self, column, column.name)
@@ -101,14 +112,27 @@ class Formulas:
         """The formulas that repeat another axis' cells on this one."""
         stand_in = Column(carried_name(cell, axis), axis, Given())
         writing = _Writing(self, stand_in, stand_in.name)
-        here = writing.own(cell)
-        given = isinstance(self.sheet[name_of(cell)].rule, Given)
-        return writing.rows(f"IF(ISNUMBER({here}),{here},{_CODE[Status.INPUT]})" if given else here)
+        return writing.rows(writing.own(cell))
 
     def kept(self, column: Column) -> dict[str, str]:
         """For each axis that a column sums over, the formula that counts the rows with values."""
         writing = _Writing(self, column, column.name)
         return {axis.name: f"={writing.number_kept(axis)}" for axis in self.sheet.summed_axes(column)}
+
+
+def guard(bounds: Bounds) -> str:
+    """The formula, without its equals sign, that says whether the cell ``{0}`` holds a number within bounds.
+
+    A truth value is a number to some readers and larger than any to others, and an error passes through all
+    that is asked of it. Two numbers that fifteen digits do not tell apart are equal to every spreadsheet.
+
+    >>> guard(Bounds(low=0, low_open=True))
+    'IF(ISNUMBER({0}),AND(NOT(ISLOGICAL({0})),{0}>0),FALSE())'
+    """
+    allowed = within(Symbol("{0}", real=True), bounds)
+    allowed = allowed.xreplace({number: Float(float(number)) for number in allowed.atoms(Rational)})
+    tests = [str(Printer(str).doprint(test)) for test in And.make_args(allowed) if isinstance(test, Rel)]
+    return f"IF(ISNUMBER({{0}}),{_all(['NOT(ISLOGICAL({0}))', *sorted(tests)])},FALSE())"
 
 
 class _Writing:

@@ -11,11 +11,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from ..grid import FIRST_ROW, SCALARS, STEPS, Block, Drawn, Grid, Place
+from ..grid import CHECKED, FIRST_ROW, SCALARS, STEPS, Block, Drawn, Grid, Place, checked
+from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, PairAxis, RepeatAxis, Root, Sheet, name_of
 from ..unit_text import UnitError, parse_unit
 from ..values import CODES, Values
-from .excel_formulas import Formulas, Places, carried
+from .excel_formulas import Formulas, Places, carried, guard
 from .excel_roots import Unrolled, unroll
 from .excel_values import auxiliary_values
 from .numpy import extend
@@ -116,13 +117,16 @@ class _Assembly:
             axis.name: _Room(self.names[axis.name], values.layouts[axis.name].size) for axis in whole.axes
         }
         self.places: dict[str, Place] = {}
+        self.notes: dict[str, Place] = {}
         self.indices: dict[str, tuple[Place, ...]] = {}
         self.unrolled = {c.name: unroll(c) for c in sheet.columns if isinstance(c.rule, Root)}
         self.carried = {k: v for c in whole.columns for k, v in carried(whole, c).items()}
 
     def grid(self) -> Grid:
         self.put_all()
-        formulas = Formulas(self.whole, self.values.layouts, Places(self.places, self.indices))
+        named = {name: self.places[checked(name)] for name in self.whole.bounds}
+        places = Places({**self.places, **named}, {name: self.places[name] for name in named}, self.indices)
+        formulas = Formulas(self.whole, self.values.layouts, places)
         blocks = [*self.index_blocks(), *self.column_blocks(formulas), *self.step_blocks(formulas)]
         order = [SCALARS, *self.names.values(), STEPS]
         blocks.sort(
@@ -133,7 +137,8 @@ class _Assembly:
                 b.place.column,
             )
         )
-        return Grid(tuple(blocks), {self.names[axis.name]: axis for axis in self.whole.axes}, self.drawn)
+        axes = {self.names[axis.name]: axis for axis in self.whole.axes}
+        return Grid(tuple(blocks), axes, self.drawn, self.notes)
 
     # --- places
 
@@ -142,9 +147,17 @@ class _Assembly:
             parts = self.values.layouts[axis.name].labels.shape[1]
             self.indices[axis.name] = tuple(self.rooms[axis.name].next() for _ in range(parts))
         self.put_scalars()
+        given = [c for c in self.whole.columns if c.axis is not None and isinstance(c.rule, Given)]
+        for column in given:
+            self.put(column, column.name)
+        for worksheet in dict.fromkeys(self.places[column.name].worksheet for column in given):
+            (room,) = (room for room in self.rooms.values() if room.worksheet == worksheet)
+            self.notes[worksheet] = room.next()
         for column in self.whole.columns:
-            if column.axis is not None:
-                self.places[column.name] = self.rooms[column.axis.name].next(self.unit(column)[1])
+            if column.axis is not None and column not in given:
+                self.put(column, column.name)
+        for column in given:
+            self.put(column, checked(column.name))
         for name, (cell, axis) in sorted(self.carried.items()):
             self.places[name] = self.rooms[axis.name].next(self.places[name_of(cell)].scale)
         row = _TOP - 2
@@ -156,11 +169,17 @@ class _Assembly:
             else:
                 row = self.put_steps(unrolled, row)
 
+    def put(self, column: Column, name: str) -> None:
+        """The next free column of its worksheet."""
+        assert column.axis is not None
+        self.places[name] = self.rooms[column.axis.name].next(self.unit(column)[1])
+
     def put_scalars(self) -> None:
         """The result, what is given, and the rest, each group under a title."""
         for axis in self.whole.axes:
             if isinstance(axis, RepeatAxis) and axis.count not in self.sheet:
-                self.places[axis.count] = Place(self.names[axis.name], FIRST_ROW - _ABOVE, 1)
+                for name, at in ((axis.count, 1), (checked(axis.count), 2)):
+                    self.places[name] = Place(self.names[axis.name], FIRST_ROW - _ABOVE, at)
         scalars = [column for column in self.sheet.columns if column.axis is None]
         groups = (
             [self.sheet[name] for name in self.first if name in self.sheet and self.sheet[name].axis is None],
@@ -170,7 +189,9 @@ class _Assembly:
         row = _TOP
         for group in groups:
             for column in group:
-                self.places[column.name] = Place(SCALARS, row, 1, 1, self.unit(column)[1])
+                self.places[column.name] = place = Place(SCALARS, row, 1, 1, self.unit(column)[1])
+                if isinstance(column.rule, Given):
+                    self.places[checked(column.name)] = replace(place, column=CHECKED)
                 row += 1
             row += _GAP if group else 0
 
@@ -226,7 +247,7 @@ class _Assembly:
                 source=column.source,
             )
             if isinstance(column.rule, Given):
-                yield block
+                yield from self.given_blocks(column, block, formulas)
             elif column.name not in self.sheet:
                 shown = tuple(None if isinstance(value, str) else value for value in shown)
                 yield _computed(replace(block, kind="drawn", values=shown), formulas.drawn(column))
@@ -243,6 +264,21 @@ class _Assembly:
                 unit=self.unit(column)[0], of=column.name,
             )  # fmt: skip
             yield _computed(block, formulas.carried(cell, axis))
+
+    def given_blocks(self, column: Column, block: Block, formulas: Formulas) -> Iterator[Block]:
+        """What is typed, and what of it is allowed; how many rows there are is what the worksheets have."""
+        bounds = self.whole.bounds[column.name].over(block.place.scale)
+        if any(isinstance(axis, RepeatAxis) and axis.count == column.name for axis in self.whole.axes):
+            there = self.values.scalar(column.name)
+            bounds = Bounds(there, there)
+        test = guard(bounds)
+        yield replace(block, bounds=bounds, guard=test)
+        name = checked(column.name)
+        own = replace(
+            block, name=name, kind="checked", meaning=f"{column.name}, where it is allowed",
+            place=self.places[name], of=column.name,
+        )  # fmt: skip
+        yield _computed(own, formulas.checked(column, test))
 
     def shown(self, column: Column) -> tuple[float | str | None, ...]:
         """A column's values in the unit of its cells; the code where there is none."""

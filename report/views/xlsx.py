@@ -17,9 +17,10 @@ from xlsxwriter.worksheet import Worksheet
 from ..grid import SCALARS, STEPS, Grid
 from ..result import Report
 from .xlsx_charts import write_charts
+from .xlsx_inputs import Inputs
 from .xlsx_pages import write_equations, write_published, write_report
 from .xlsx_style import Style
-from .xlsx_tables import Inputs, write_axis, write_steps
+from .xlsx_tables import write_axis, write_steps
 
 __all__ = ["render"]
 

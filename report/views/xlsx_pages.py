@@ -6,12 +6,13 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from ...derivations.text import Writer, text_of_equation
-from ..grid import SCALARS, Block, Grid, factors, letters
+from ..grid import CHECKED, SCALARS, Block, Grid, checked, factors, letters
 from ..result import Comparison, Report
 from ..sheet import RepeatAxis
 from .json import proof_statuses
+from .xlsx_inputs import Inputs
 from .xlsx_style import Style, height
-from .xlsx_tables import Inputs, mark_errors, write_block
+from .xlsx_tables import mark_errors, write_block
 
 __all__ = ["write_equations", "write_published", "write_report"]
 
@@ -21,24 +22,25 @@ __all__ = ["write_equations", "write_published", "write_report"]
 
 def write_report(sheet: Any, style: Style, report: Report, grid: Grid, inputs: Inputs) -> None:
     """Write the first worksheet: what came out, what went in, how to use the workbook."""
-    for column, width in enumerate((18, 17, 15, 52, 12, 10, 22)):
+    for column, width in enumerate((18, 17, 15, 52, 12, 10, 22, 40)):
         sheet.set_column(column, column, width)
     style.text(sheet, 0, 0, report.title, "title")
     style.text(sheet, 1, 0, report.workbook.title, "subtitle")
+    style.formula(sheet, 2, 0, inputs.summary(), "", style("error"))
     row = 0
-    for group in _groups(grid.on(SCALARS)):
-        row = group[0].place.row
+    for group in _groups(grid.on(SCALARS, "given", "computed")):
+        row, given = group[0].place.row, group[0].kind == "given"
         for at in range(7):
             style.text(sheet, row - 2, at, _title(report, group) if not at else "", "section")
-        for at, head in enumerate(
-            ("name", "value", "unit", "meaning", "equation", "symbol", "computed from")
-        ):
+        last = ("as checked", "check") if given else ("computed from",)
+        for at, head in enumerate(("name", "value", "unit", "meaning", "equation", "symbol", *last)):
             style.text(sheet, row - 1, at, head, "head")
         for block in group:
             row = block.place.row
             _write_scalar(sheet, style, report, grid, block, inputs)
     _write_notes(sheet, style, report, grid, row + 2)
-    mark_errors(sheet, style, 0, 1, row, 1)
+    for column in (1, CHECKED, CHECKED + 1):
+        mark_errors(sheet, style, 0, column, row, column)
     sheet.set_landscape()
     sheet.set_paper(9)
     sheet.fit_to_pages(1, 0)
@@ -74,6 +76,9 @@ def _write_scalar(sheet: Any, style: Style, report: Report, grid: Grid, block: B
     style.text(sheet, row, 4, column.source, "text")
     style.symbol(sheet, row, 5, column.latex or column.name, "text")
     sheet.set_row(row, height([(block.meaning, 52)]))
+    if block.kind == "given":
+        style.formula(sheet, row, CHECKED + 1, inputs.told([block]), "ok", style("aside"))
+        write_block(sheet, style, report, grid[checked(block.name)], inputs)
     if block.kept:
         formula, value = _counted(report, grid, block)
         style.formula(sheet, row, 6, formula, value, style("text"), array=True)
@@ -102,7 +107,8 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
         "in any spreadsheet program that recalculates.",
         "Every computed cell is a formula made from the proved equation that its row or header names. "
         "Names such as ls_" + (report.workbook.headline or ("alpha",))[0] + " stand for whole columns.",
-        "A cell that cannot be computed shows a code: #INPUT! a datum is missing, #DOMAIN! outside the "
+        "A cell that cannot be computed shows a code: #INPUT! a datum is missing or is not what it may be "
+        "(the column check says what is wrong, however it came into its cell), #DOMAIN! outside the "
         "equation's domain, #NOROOT! no value satisfies it, #TWOROOTS! several do, #STEPS! the steps of "
         "this workbook do not reach the root (build the report again: it takes as many as are needed). "
         "What depends on such a cell shows its code; a sum leaves such rows out and says from how many it "
@@ -170,7 +176,8 @@ def _write_comparison(
     sheet: Any, style: Style, report: Report, grid: Grid, row: int, comparison: Comparison
 ) -> None:
     value, cell = comparison.published, comparison.cell
-    printed, place = value.printed, grid[value.cell].place
+    given = grid[value.cell].kind == "given"
+    printed, place = value.printed, grid[checked(value.cell) if given else value.cell].place
     for at, words in enumerate((value.source, value.cell, "-".join(map(str, value.index)), printed.unit)):
         style.text(sheet, row, at, words)
     decimals = printed.decimals

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from fractions import Fraction
 from math import floor, log10
 from typing import Any
 
-from ..quantity import Bounds
 from .math import with_index
 
-__all__ = ["Style", "fragments", "height", "in_unit", "number_format", "number_text", "open_format", "said"]
+__all__ = ["Style", "fragments", "height", "number_format", "open_format", "said"]
 
 LONGEST = 32_000
 """Characters of a cell; Excel takes 32 767."""
@@ -156,27 +154,6 @@ def open_format(decimals: int) -> str:
     if not shown:
         return "General"  # Excel would leave a decimal point behind a whole number
     return f"0.{'0' * shown}{'#' * (_MOST_DECIMALS - shown)}"
-
-
-def in_unit(bounds: Bounds, scale: Fraction) -> Bounds:
-    """What is allowed, in another unit than SI's."""
-
-    def end(value: float | None) -> float | None:
-        return None if value is None else float(Fraction(repr(value)) / scale)
-
-    return Bounds(end(bounds.low), end(bounds.high), bounds.low_open, bounds.high_open, bounds.integer)
-
-
-def number_text(value: float) -> str:
-    """A number as formulas write it: no power of ten.
-
-    >>> number_text(1e-07), number_text(10000.0)
-    ('0.0000001', '10000')
-    """
-    from decimal import Decimal
-
-    text = f"{Decimal(repr(value)):f}"
-    return text.rstrip("0").rstrip(".") if "." in text else text
 
 
 # --- text ------------------------------------------------------------------------------------------------

@@ -3,81 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import Any
 
 from ..grid import FIRST_ROW, STEPS, Block, Grid, letters
-from ..quantity import Bounds, Printed
 from ..result import Report
 from ..sheet import Axis, PairAxis, RepeatAxis
-from .xlsx_style import Style, height, in_unit, number_format, number_text, open_format, said
+from .xlsx_inputs import Inputs
+from .xlsx_style import Style, height, number_format, said
 
-__all__ = ["Inputs", "mark_errors", "write_axis", "write_block", "write_steps"]
+__all__ = ["mark_errors", "write_axis", "write_block", "write_steps"]
 
 _GROUP, _NAME, _MEANING, _SOURCE, _SYMBOL = range(FIRST_ROW - 5, FIRST_ROW)
-_MOST_NOTES = 500
-"""Cells of a column that get a note of their own; a longer one has it in its header only."""
-_WIDTH, _STEP_WIDTH, _INDEX_WIDTH = 15.0, 13.0, 9.0
+_WIDTH, _STEP_WIDTH, _INDEX_WIDTH, _NOTE_WIDTH = 15.0, 13.0, 9.0, 40.0
 _SMALL = 1.15
 """How many small letters take the room of one."""
-_GROUPS = {"drawn": "for the charts", "carried": "repeated for sums"}
-
-
-class Inputs:
-    """What a user may type: each given column's printed numbers, and what is allowed.
-
-    Parameters
-    ----------
-    report : Report
-    grid : Grid
-    """
-
-    def __init__(self, report: Report, grid: Grid) -> None:
-        self.report = report
-        self.bounds = {each.name: each.bounds for each in report.workbook.measured}
-        self.bounds |= {each.name: each.bounds for each in report.workbook.parameters}
-        self.counts = {axis.count: axis for axis in grid.axes.values() if isinstance(axis, RepeatAxis)}
-
-    def allowed(self, block: Block) -> Bounds:
-        """What is allowed, in the unit of the cells."""
-        return in_unit(self.bounds.get(block.name, Bounds()), block.place.scale)
-
-    def note(self, block: Block, row: int) -> str:
-        """What a cell is, what it may be, and where it comes from."""
-        printed = self.report.inputs.printed(block.name)[row]
-        lines = [f"{block.name}: {block.meaning}."]
-        if block.name in self.counts:
-            lines.append(
-                "It decides how many rows there are, so it is fixed here: change report.toml and build again."
-            )
-        else:
-            lines.append(f"It must be {self.allowed(block)}, in {block.unit}.")
-        source = printed.where.partition(":")[0]
-        lines.append(
-            f"Given as {printed.text} {printed.unit} in {printed.where}." if source else "The default."
-        )
-        return "\n".join(lines)
-
-    def validation(self, block: Block, cell: str) -> dict[str, Any]:
-        """What Excel is to accept in a cell; `cell` is its relative address."""
-        bounds = self.allowed(block)
-        message = f"{block.name} must be {bounds}, in {block.unit}."
-        if block.name in self.counts:
-            (printed,) = self.report.inputs.printed(block.name)
-            bounds = Bounds(float(printed.value), float(printed.value))
-            message = f"{block.name} decides how many rows there are: change report.toml and build again."
-        tests = [f"ISNUMBER({cell})", *([f"{cell}=INT({cell})"] if bounds.integer else [])]
-        if bounds.low is not None:
-            tests.append(f"{cell}>{'' if bounds.low_open else '='}{number_text(bounds.low)}")
-        if bounds.high is not None:
-            tests.append(f"{cell}<{'' if bounds.high_open else '='}{number_text(bounds.high)}")
-        return {
-            "validate": "custom",
-            "value": f"=AND({','.join(tests)})",
-            "ignore_blank": False,
-            "error_title": block.name[:32],
-            "error_message": message[:255],
-        }
+_GROUPS = {"drawn": "for the charts", "checked": "as checked", "carried": "repeated for sums"}
 
 
 # --- the cells of a block ----------------------------------------------------------------------------------
@@ -88,7 +28,7 @@ def write_block(
 ) -> None:
     """Write the cells of a block."""
     if block.kind == "given":
-        _write_given(sheet, style, block, inputs)
+        inputs.write(sheet, style, block)
         return
     place = block.place
     if block.kind == "index":
@@ -105,30 +45,6 @@ def _number_format(report: Report, block: Block) -> str:
     return number_format(block.values, shown.digits if shown else 4)
 
 
-def _write_given(sheet: Any, style: Style, block: Block, inputs: Inputs) -> None:
-    printed, place = inputs.report.inputs.printed(block.name), block.place
-    fixed = block.name in inputs.counts
-    if not printed:
-        for row, number in enumerate(block.values):
-            sheet.write_number(place.row + row, place.column, number, style("fixed", "0"))
-        return
-    for row, each in enumerate(printed):
-        at = (place.row + row, place.column)
-        value = each.value / place.scale
-        form = style("fixed" if fixed else "input", open_format(_decimals(each, place.scale)))
-        sheet.write_number(*at, float(value), form)
-        if row < _MOST_NOTES:
-            sheet.write_comment(*at, inputs.note(block, row), {"x_scale": 2.2, "y_scale": 1.1})
-    first = f"{letters(place.column)}{place.row + 1}"
-    last_row = place.row + place.rows - 1
-    sheet.data_validation(place.row, place.column, last_row, place.column, inputs.validation(block, first))
-
-
-def _decimals(printed: Printed, scale: Fraction) -> int:
-    """Decimals of a printed number in the unit of its cell."""
-    return printed.decimals if printed.scale == scale else 0
-
-
 # --- the worksheet of an axis ----------------------------------------------------------------------------
 
 
@@ -137,13 +53,16 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
     axis, blocks = grid.axes[name], grid.on(name)
     main = [b for b in blocks if b.kind in ("given", "computed")] or list(blocks)
     style.text(sheet, 0, 0, f"{name}: {_described(axis)}", "title")
-    if any(b.kind == "given" and b.place.row == FIRST_ROW for b in blocks):
+    if name in grid.notes:
         says = "Type over the yellow cells; all else follows. An empty one leaves its test out of all sums."
         style.text(sheet, 1, 0, says, "subtitle")
+        given = [b for b in blocks if b.kind == "given" and b.place.row == FIRST_ROW]
+        _write_note(sheet, style, grid.notes[name].column)
+        inputs.write_told(sheet, style, given, grid.notes[name])
     for block in blocks:
         if block.place.row == FIRST_ROW:
             _write_header(sheet, style, report, block)
-        else:
+        elif block.kind == "given":
             style.text(sheet, block.place.row, 0, block.name, "subtitle")
         write_block(sheet, style, report, block, inputs)
     _write_groups(sheet, style, report, blocks)
@@ -188,7 +107,7 @@ def _width(block: Block) -> float:
 
 def _write_header(sheet: Any, style: Style, report: Report, block: Block) -> None:
     at = block.place.column
-    options = {"level": 1} if block.kind in ("step", "carried") else {}
+    options = {"level": 1} if block.kind in ("step", "carried", "checked") else {}
     sheet.set_column(at, at, _width(block), None, options)
     unit = said(block.unit) if block.kind not in ("index", "step") else ""
     style.text(sheet, _NAME, at, block.title + unit, "head")
@@ -199,6 +118,18 @@ def _write_header(sheet: Any, style: Style, report: Report, block: Block) -> Non
         style.symbol(sheet, _SYMBOL, at, column.latex)
     else:
         style.text(sheet, _SYMBOL, at, "", "symbol")
+
+
+def _write_note(sheet: Any, style: Style, at: int) -> None:
+    """Write the header of the column that says what is wrong with the given cells of its row."""
+    sheet.set_column(at, at, _NOTE_WIDTH)
+    for row, words, name in (
+        (_NAME, "check", "head"),
+        (_MEANING, "whether the given cells are what they may be", "meaning"),
+        (_SOURCE, "", "source"),
+        (_SYMBOL, "", "symbol"),
+    ):
+        style.text(sheet, row, at, words, name)
 
 
 def _write_groups(sheet: Any, style: Style, report: Report, blocks: Sequence[Block]) -> None:

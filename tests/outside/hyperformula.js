@@ -1,9 +1,11 @@
 "use strict";
 // Recalculates workbooks with HyperFormula. Reads {module, books: {name: {worksheet: {address: cell}}}} from
-// standard input, array formulas in braces, and writes every value in the same shape. With `mutants`, lists of
-// worksheet, address and formula, it also says of each how many cells of the first book it changes.
+// standard input, array formulas in braces, and writes every value in the same shape, after the `changes` of
+// rows in a book: a worksheet, the row from 0, and how many are put in (or, below zero, taken out). With
+// `mutants`, lists of worksheet, address and formula, it also says of each how many cells of the first book it
+// changes.
 const { readFileSync } = require("node:fs");
-const { books, mutants = [], module: path } = JSON.parse(readFileSync(0, "utf8"));
+const { books, changes = {}, mutants = [], module: path } = JSON.parse(readFileSync(0, "utf8"));
 const { HyperFormula, DetailedCellError } = require(path);
 
 // Nothing is rounded, and nothing small is taken for zero: the comparison is to the last digits.
@@ -30,6 +32,11 @@ for (const [name, worksheets] of Object.entries(books)) {
     sheets[worksheet] = Array.from(rows, (row) => Array.from(row ?? [], (cell) => cell ?? null));
   }
   const engine = HyperFormula.buildFromSheets(sheets, options);
+  for (const [worksheet, row, number] of changes[name] ?? []) {
+    const sheet = engine.getSheetId(worksheet);
+    if (number > 0) engine.addRows(sheet, [row, number]);
+    else engine.removeRows(sheet, [row, -number]);
+  }
   out[name] = {};
   for (const [worksheet, cells] of Object.entries(worksheets)) {
     out[name][worksheet] = {};

@@ -7,6 +7,7 @@ from sympy import And, Eq, Max, Min, Ne, Not, Or, Piecewise, Rational, Sum, Symb
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.derivations.reductions import Median
+from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
 
 k, p, q, i, j, s = (Symbol(name, integer=True, positive=True) for name in "kpqijs")
@@ -26,10 +27,11 @@ def _formula(value: Any) -> Formula:
 
 
 def _columns() -> tuple[Column, ...]:
-    a = Column("a", ITEMS, Given(), "m")
-    g = Column("g", ITEMS, Given(), positive=False)
-    w = Column("w", None, Given(), "m")
-    per = Column("per", None, Given())
+    positive = Given("given", Bounds(low=0, low_open=True))
+    a = Column("a", ITEMS, positive, "m")
+    g = Column("g", ITEMS, Given("given", Bounds(high=1000)), positive=False)
+    w = Column("w", None, positive, "m")
+    per = Column("per", None, Given("given", Bounds(high=9)))
     far = Column("far", None, _formula(1000 * w.symbol + Sum(a[k], (k, 1, n_items))), "m")
     ratio = Column("ratio", PAIRS, _formula(a[i] / a[j] - a[j] ** 2 / (a[i] + w.symbol)), positive=False)
     strict = Column(

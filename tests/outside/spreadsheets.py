@@ -20,14 +20,20 @@ from loopsheet.report import build
 from loopsheet.report.analysis.readers import ALWAYS_RECALCULATE
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.grid import Drawn, Grid
+from loopsheet.report.grid import Drawn, Grid, checked
 from loopsheet.report.result import Report
-from loopsheet.report.sheet import Given, Sheet
+from loopsheet.report.sheet import Given, RepeatAxis, Sheet
 from loopsheet.report.values import CODES, Status, Values
 from loopsheet.report.views import xlsx
 from loopsheet.report.workbooks import soft_impact_charts
 
-Edits = Mapping[tuple[str, int], float | str | None]
+
+class Error(str):
+    """An error of Excel's, such as ``#DIV/0!``."""
+
+
+Typed = float | str | bool | Error | None
+Edits = Mapping[tuple[str, int], Typed]
 """What is typed: by column and row (from 0), a number in the cell's unit, a text, or None for nothing."""
 
 LARGEST = 1e-12
@@ -54,7 +60,7 @@ class Delivered:
 
     def edited(self, edits: Edits) -> bytes:
         """The delivered file after somebody typed into it, everything else as it was stored."""
-        by_sheet: dict[str, dict[str, float | str | None]] = {}
+        by_sheet: dict[str, dict[str, Typed]] = {}
         for (name, row), value in edits.items():
             place = self.grid[name].place
             by_sheet.setdefault(place.worksheet, {})[place.cell(row, place.worksheet).replace("$", "")] = (
@@ -63,7 +69,7 @@ class Delivered:
         return typed(self.content, by_sheet)
 
     def values(self, edits: Edits) -> Values:
-        """What the NumPy engine makes of the same inputs."""
+        """What the NumPy engine makes of the same inputs; as many rows as there are, or none at all."""
         data: dict[str, Any] = {}
         for column in self.whole.columns:
             if isinstance(column.rule, Given):
@@ -76,9 +82,15 @@ class Delivered:
                     x * block.place.scale if isinstance(x, Fraction) else _number(x, block.place.scale)
                     for x in cells
                 ]
-                data[column.name] = np.array([float(x) for x in numbers])
+                fixed = column.name in self.counts and cells[0] != block.values[0]
+                data[column.name] = np.array([np.nan if fixed else float(x) for x in numbers])
         labels = {a.name: self.report.inputs.tests for a in self.whole.axes if not a.parents}
         return engine.evaluate(self.whole, labels, data, self.program)
+
+    @property
+    def counts(self) -> set[str]:
+        """The given columns that say how many rows there are."""
+        return {axis.count for axis in self.whole.axes if isinstance(axis, RepeatAxis)}
 
     def _given(self, name: str, row: int) -> Fraction:
         """An input as it stands in its cell."""
@@ -89,8 +101,8 @@ class Delivered:
         return Fraction(value) if known is None else known.value / self.grid[name].place.scale
 
 
-def _number(value: float | str | None, scale: Fraction) -> float:
-    if value is None or isinstance(value, str):
+def _number(value: Typed, scale: Fraction) -> float:
+    if value is None or isinstance(value, (str, bool)):
         return float("nan")
     return float(Fraction(repr(value)) * scale)
 
@@ -110,11 +122,16 @@ def paper() -> Delivered:
     return deliver()
 
 
-def folder_with(folder: Path, tests: Sequence[tuple[float, float, float]], more: str = "") -> Path:
-    """A report folder with other tests: v in m/s, e, x_p in um."""
+def folder_with(
+    folder: Path,
+    tests: Sequence[tuple[float, float, float]],
+    more: str = "",
+    header: str = "test,v [m/s],e [1],x_p [um]",
+) -> Path:
+    """A report folder with other tests."""
     folder.mkdir()
     rows = [f"{n},{v},{e},{x_p}" for n, (v, e, x_p) in enumerate(tests, start=1)]
-    (folder / "measurements.csv").write_text("\n".join(["test,v [m/s],e [1],x_p [um]", *rows, ""]))
+    (folder / "measurements.csv").write_text("\n".join([header, *rows, ""]))
     (folder / "report.toml").write_text(
         f'title = "Made for a test"\nworkbook = "soft_impact"\n[parameters]\nball_mass = "8.366 g"\n{more}'
         '[measurements]\nfile = "measurements.csv"\n'
@@ -146,7 +163,7 @@ def part_of(files: Mapping[str, bytes], worksheet: str) -> str:
     return f"xl/worksheets/sheet{names.index(worksheet) + 1}.xml"
 
 
-def typed(content: bytes, by_sheet: Mapping[str, Mapping[str, float | str | None]]) -> bytes:
+def typed(content: bytes, by_sheet: Mapping[str, Mapping[str, Typed]]) -> bytes:
     """Put other values into cells, as a program does that saves without recalculating."""
     files = parts(content)
     for worksheet, cells in by_sheet.items():
@@ -161,9 +178,14 @@ def typed(content: bytes, by_sheet: Mapping[str, Mapping[str, float | str | None
     return packed(files)
 
 
-def _cell(address: str, value: float | str | None) -> str:
+def _cell(address: str, value: Typed) -> str:
     if value is None:
         return f'<c r="{address}"\\1/>'
+    if isinstance(value, bool):
+        # It comes with its own format: as a number's, LibreOffice takes it for 1 or 0, and shows it so.
+        return f'<c r="{address}" t="b"><v>{int(value)}</v></c>'
+    if isinstance(value, Error):
+        return f'<c r="{address}"\\1 t="e"><v>{value}</v></c>'
     if isinstance(value, str):
         return f'<c r="{address}"\\1 t="inlineStr"><is><t>{value}</t></is></c>'
     return f'<c r="{address}"\\1><v>{value!r}</v></c>'
@@ -185,7 +207,7 @@ class Difference:
 def compare(
     delivered: Delivered, values: Values, read: Mapping[str, Mapping[str, Any]], largest: float = LARGEST
 ) -> Difference:
-    """Every computed cell against NumPy.
+    """Every computed cell, and what is checked, against NumPy.
 
     Parameters
     ----------
@@ -194,16 +216,18 @@ def compare(
     """
     found = Difference()
     for column in delivered.whole.columns:
-        if isinstance(column.rule, Given):
-            continue
-        place, drawn = delivered.grid[column.name].place, column.name not in delivered.report.sheet
-        known = values.value[column.name]
+        given = isinstance(column.rule, Given)
+        place = delivered.grid[checked(column.name) if given else column.name].place
+        drawn = column.name not in delivered.report.sheet and not given
+        known, codes = values.value[column.name], values.status[column.name]
+        if not known.size:
+            # A count that is refused leaves no rows; those of the workbook say so.
+            known, codes = np.full(place.rows, np.nan), np.full(place.rows, Status.INPUT)
         scale = 1e-6 * np.nanmax(np.abs(known), initial=0.0) if np.isfinite(known).any() else 0.0
         # A logarithm near zero has no relative precision of its own; its column has.
-        scale = max(
-            scale, np.nanmax(np.abs(known)) if not column.positive and np.isfinite(known).any() else 0.0
-        )
-        for row, (value, status) in enumerate(zip(known, values.status[column.name], strict=True)):
+        if not column.positive:
+            scale = max(scale * 1e6, float(column.unit == "1"))
+        for row, (value, status) in enumerate(zip(known, codes, strict=True)):
             address = place.cell(row, place.worksheet).replace("$", "")
             cell, code = read[place.worksheet].get(address), CODES[Status(int(status))]
             name = f"{column.name}, {place.worksheet}!{address}"

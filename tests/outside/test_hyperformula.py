@@ -29,11 +29,15 @@ def hyperformula(require: Callable[..., str], npm_packages: Callable[[Path], Pat
     """Recalculate books of formulas; the package is installed once, outside of the checkout."""
     node, packages = require("node"), npm_packages(HERE)
 
-    def recalculate(books: Mapping[str, Any], mutants: list[list[str]] | None = None) -> dict[str, Any]:
-        module = str(packages / "hyperformula")
+    def recalculate(
+        books: Mapping[str, Any],
+        mutants: list[list[str]] | None = None,
+        changes: Mapping[str, Any] | None = None,
+    ) -> dict[str, Any]:
+        asked = {"books": books, "mutants": mutants or [], "changes": changes or {}}
         run = subprocess.run(
             [node, str(HERE / "hyperformula.js")],
-            input=json.dumps({"module": module, "books": books, "mutants": mutants or []}),
+            input=json.dumps({"module": str(packages / "hyperformula"), **asked}),
             capture_output=True, text=True, timeout=300, check=False,
         )  # fmt: skip
         assert run.returncode == 0, run.stderr
@@ -49,6 +53,11 @@ EDITS: dict[str, spreadsheets.Edits] = {
     "e of test 3": {("e", 2): 0.9},
     "an empty input": {("x_p", 1): None},
     "nothing measured": {("v", row): None for row in range(5)},
+    "e above 1": {("e", 1): 1.2},
+    "a truth": {("v", 1): True},
+    "a number with its unit": {("x_p", 1): "29.7 um"},
+    "an error": {("x_p", 1): spreadsheets.Error("#DIV/0!")},
+    "more points": {("points_per_pair", 0): 60.0},
 }
 
 
@@ -61,6 +70,28 @@ def test_recalculates_the_paper_as_numpy_does(hyperformula: Recalculate) -> None
         found = spreadsheets.compare(paper, paper.values(edits), read[name])
         assert not found.wrong, (name, len(found.wrong), found.wrong[:5])
         assert found.cells > 3900
+
+
+def test_rows_that_come_and_go_are_told(hyperformula: Recalculate) -> None:
+    """The formulas are for the rows there were: one taken out, an empty one put in, one written below."""
+    paper = spreadsheets.paper()
+    book = spreadsheets.formulas_of(paper.content)
+    below = {**book, "tests": {**book["tests"], "A13": 6, "B13": 5.9, "C13": 0.43, "D13": 61.0}}
+    changes = {"taken out": [["tests", 8, -1]], "put in": [["tests", 8, 1]]}
+    read = hyperformula({"issued": book, "taken out": book, "put in": book, "below": below}, changes=changes)
+    mean = paper.grid["alpha_mean"].place.cell(0, "report").replace("$", "")
+    alpha = {name: [cells["pairs"][f"C{row}"] for row in range(8, 18)] for name, cells in read.items()}
+    for name in ("taken out", "put in", "below"):
+        told = read[name]["tests"]["A3"]
+        assert told.startswith("#INPUT! the formulas are for 5 rows, and ")
+        assert told.endswith("change the file of the measurements and build again")
+        assert told in read[name]["report"]["A3"], "on the first worksheet, too"
+    assert [read["issued"][sheet]["A3"] for sheet in ("report", "tests")] == ["", ""]
+    # The pairs of the others stay what they were, and nothing is made of half a test.
+    assert alpha["put in"] == alpha["below"] == alpha["issued"]
+    pairs = zip(paper.report.values.labels(paper.report.sheet["alpha"]), alpha["issued"], strict=True)
+    assert alpha["taken out"] == ["#INPUT!" if 2 in label else value for label, value in pairs]
+    assert read["taken out"]["report"][mean] != read["issued"]["report"][mean]
 
 
 # --- a sheet that uses everything ---------------------------------------------------------------------------
@@ -83,6 +114,7 @@ def cells(grid: Grid, data: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     return book
 
 
+LABELS = {"items": (1, 2, 3, 4)}
 NAN = float("nan")
 VARIANTS = {
     "plain": {},
@@ -91,12 +123,32 @@ VARIANTS = {
     "a scalar is missing": {"w": NAN},
     "no row has a value": {"g": [NAN] * 4},
     "outside its conditions": {"g": [-3.0, -3.0, 4.0, 4.0]},
+    "a datum is not allowed": {"a": [0.012, -0.025, 0.031, 0.044], "g": [2.5, -3.0, 12.0, 1000.5]},
+    "a scalar is not allowed": {"w": 0.0},
 }
 
 
+def test_another_number_of_rows_is_refused(hyperformula: Recalculate) -> None:
+    """What NumPy would compute with, this workbook has no rows for."""
+    issued = engine.evaluate(sample_sheet.SHEET, LABELS, sample_sheet.DATA)
+    grid = excel_grid.grid(sample_sheet.SHEET, issued, sample_sheet.UNITS)
+    read = hyperformula({str(per): cells(grid, {**sample_sheet.DATA, "per": per}) for per in (2, 2.5, 3, 4)})
+    on_points = [
+        c for c in sample_sheet.SHEET.columns if any(a.name == "per" for a in sample_sheet.SHEET.ancestors(c))
+    ]
+    assert {"wave", "total", "solved", "last"} <= {column.name for column in on_points}
+    for per, found in read.items():
+        for column in on_points:
+            place = grid[column.name].place
+            codes = {
+                found[place.worksheet][a.replace("$", "")]
+                for a in place.cells(range(place.rows), place.worksheet)
+            }
+            assert (codes == {"#INPUT!"}) == (per != "3"), (per, column.name)
+
+
 def test_every_construct_means_what_numpy_means(hyperformula: Recalculate) -> None:
-    program = engine.Program.of(sample_sheet.SHEET)
-    labels = {"items": (1, 2, 3, 4)}
+    program, labels = engine.Program.of(sample_sheet.SHEET), LABELS
     found, books = {}, {}
     issued = engine.evaluate(sample_sheet.SHEET, labels, sample_sheet.DATA, program)
     grid = excel_grid.grid(sample_sheet.SHEET, issued, sample_sheet.UNITS, ("far",))

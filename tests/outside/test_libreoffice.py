@@ -27,7 +27,36 @@ EDITS: dict[str, spreadsheets.Edits] = {
     "other parameters": {("beta", 0): 1.2, ("ball_diameter", 0): 10.0},
     "a test gives nothing back": {("e", 0): 0.0},
     "a negative speed": {("v", 0): -2.0},
+    "nothing of a ball": {("ball_diameter", 0): 0.0},
 }
+PASTED: dict[str, spreadsheets.Edits] = {
+    "e above 100 %": {("e", 1): 120.0},
+    "e a little above 100 %": {("e", 1): 100.000000000001},
+    "e below 0": {("e", 1): -0.1},
+    "a speed of 0": {("v", 1): 0.0},
+    "a depth below 0": {("x_p", 1): -29.7},
+    "a number as text": {("v", 1): "2.94"},
+    "a number with its unit": {("x_p", 1): "29.7 um"},
+    "a decimal comma": {("x_p", 1): "29,7"},
+    "a space": {("x_p", 1): " "},
+    "a truth": {("v", 1): True},
+    "no truth": {("e", 1): False},
+    "an error": {("v", 1): spreadsheets.Error("#DIV/0!"), ("x_p", 2): spreadsheets.Error("#N/A")},
+    "a date for e": {("e", 1): 45413.0},
+    "beta of 0": {("beta", 0): 0.0},
+    "beta below 0": {("beta", 0): -1.5},
+    "beta as text": {("beta", 0): "1.5"},
+    "a mass below 0": {("ball_mass", 0): -8.366},
+    "more points": {("points_per_pair", 0): 12.0},
+    "fewer points": {("points_per_pair", 0): 9.0},
+    "half a point": {("points_per_pair", 0): 10.5},
+    "no points": {("points_per_pair", 0): 0.0},
+    "points as text": {("points_per_pair", 0): "10"},
+    "points left empty": {("points_per_pair", 0): None},
+    "other branches": {("loop_points", 0): 21.0},
+    "several at once": {("v", 0): 0.0, ("e", 2): 700.0, ("x_p", 1): -1.0, ("beta", 0): "x"},
+}
+"""What data validation refuses when it is typed, and does not see when it is pasted."""
 ROOTS: spreadsheets.Edits = {("v", 1): 130.27, ("e", 1): 0.6, ("x_p", 1): 18.5}
 """A speed and a depth that no drop test has: four steps do not reach the root of pair 1-2."""
 
@@ -44,12 +73,17 @@ class Office:
         few = spreadsheets.folder_with(
             folder / "few", [(2.2, 0.535, 22.58), (3.1, 0.505, 31.92), (4.3, 0.47, 44.61)]
         )
+        units = spreadsheets.folder_with(
+            folder / "units", [(7.92, 53.5, 22.58), (11.16, 50.5, 31.92), (15.48, 47.0, 44.61)],
+            'points_per_pair = "10"\n', "test,v [km/h],e [%],x_p [um]",
+        )  # fmt: skip
         title = f'title = "{HOSTILE}"\n'
         many = spreadsheets.folder_with(folder / "many", TWELVE, 'points_per_pair = "20"\n')
         toml = many / "report.toml"
         toml.write_text(re.sub(r'title = ".*"\n', lambda _: title, toml.read_text()))
         self.delivered = {
             **dict.fromkeys((*EDITS, "steps", "one character"), self.paper),
+            **dict.fromkeys(PASTED, spreadsheets.deliver(units)),
             **{
                 name: spreadsheets.deliver(path)
                 for name, path in (("three tests", few), ("twelve tests", many))
@@ -57,6 +91,7 @@ class Office:
         }
         self.edits = {
             **EDITS,
+            **PASTED,
             "steps": ROOTS,
             "three tests": {("e", 1): 0.5},
             "twelve tests": {("x_p", 4): 36.1},
@@ -71,7 +106,7 @@ def mutated(content: bytes) -> bytes:
     files = spreadsheets.parts(content)
     name = spreadsheets.part_of(files, "tests")
     text = files[name].decode()
-    changed, found = re.subn(r"(<f>IF\([^<]*\(\$C\$9\)\^\()2(\)[^<]*</f>)", r"\g<1>3\2", text, count=1)
+    changed, found = re.subn(r"(<f>IF\([^<]*\(\$J\$9\)\^\()2(\)[^<]*</f>)", r"\g<1>3\2", text, count=1)
     assert found == 1
     assert sum(a != b for a, b in zip(text, changed, strict=True)) == 1
     files[name] = changed.encode()
@@ -83,15 +118,40 @@ def office(require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory
     return Office(require("soffice", "libreoffice"), tmp_path_factory.mktemp("office"))
 
 
-@pytest.mark.parametrize("name", [*EDITS, "three tests", "twelve tests"])
+@pytest.mark.parametrize("name", [*EDITS, *PASTED, "three tests", "twelve tests"])
 def test_recalculates_after_an_edit_as_numpy_does(office: Office, name: str) -> None:
     delivered = office.delivered[name]
     values = delivered.values(office.edits[name])
     found = spreadsheets.compare(delivered, values, office.read[name])
     assert not found.wrong, (len(found.wrong), found.wrong[:5])
-    assert found.cells == sum(
-        delivered.grid[c.name].place.rows for c in delivered.whole.columns if c.equation is not None
-    )
+    assert found.cells == sum(delivered.grid[c.name].place.rows for c in delivered.whole.columns)
+
+
+@pytest.mark.parametrize("name", PASTED)
+def test_what_is_pasted_is_checked_and_told(office: Office, name: str) -> None:
+    """The code stands beside what was pasted, with what it must be, and on the first worksheet."""
+    cells, grid = office.read[name], office.delivered[name].grid
+    for column, row in PASTED[name]:
+        place = grid[column].place
+        if column in ("v", "e", "x_p"):
+            told = cells["tests"][f"E{place.row + row + 1}"]
+        elif column != "loop_points":
+            told = cells["report"][f"H{place.row + 1}"]
+        else:
+            continue  # what only the charts have is told by their gaps
+        assert told.startswith("#INPUT! ")
+        decides = column == "points_per_pair"
+        assert f"{column} decides how many rows" in told if decides else f"{column} must be " in told
+    number = sum(column != "loop_points" for column, _ in PASTED[name])
+    said = f"#INPUT! given cells that are refused: {number}. "
+    assert cells["report"].get("A3", "") == (said if number else "")
+
+
+def test_nothing_is_told_where_nothing_is_wrong(office: Office) -> None:
+    cells = office.read["as issued"]
+    assert [cells["tests"][f"E{row}"] for row in range(8, 13)] == ["ok"] * 5
+    assert "A3" not in cells["report"]
+    assert "A3" not in cells["tests"]
 
 
 def test_the_edits_reach_every_error(office: Office) -> None:

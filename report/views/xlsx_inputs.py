@@ -1,0 +1,138 @@
+"""What may be typed into the workbook: the given cells, what they may be, and what is said where not.
+
+Excel's own validation sees what is typed, and nothing that is pasted, filled down or put in by a program. So
+it only comes first: no formula names a given cell but the one that checks it, and that tells what it found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+from ..grid import FIRST_ROW, SCALARS, Block, Grid, Place, checked, letters
+from ..quantity import Printed
+from ..result import Report
+from ..sheet import RepeatAxis
+from ..values import CODES, Status
+from .xlsx_style import Style, open_format
+
+__all__ = ["Inputs"]
+
+_MOST_NOTES = 500
+"""Cells of a column that get a note of their own; a longer one has it in its header only."""
+_BELOW = 1000
+"""Rows below the last one in which numbers are looked for that are in no formula."""
+_LONGEST = 255
+"""Characters of a text in a formula; Excel takes no more."""
+_ROWS_TOLD = FIRST_ROW - 5
+"""The row, from 0, of the cell that says whether the rows are those that the formulas are for."""
+_CODE, _FINE = CODES[Status.INPUT], "ok"
+
+
+class Inputs:
+    """The given cells: each column's printed numbers, what is allowed, and what is refused.
+
+    Parameters
+    ----------
+    report : Report
+    grid : Grid
+    """
+
+    def __init__(self, report: Report, grid: Grid) -> None:
+        self.report, self.grid = report, grid
+        self.counts = {axis.count for axis in grid.axes.values() if isinstance(axis, RepeatAxis)}
+
+    def allowed(self, block: Block) -> str:
+        """What a cell must be, as a sentence without its full stop."""
+        if block.name in self.counts:
+            return f"{block.name} decides how many rows there are: change report.toml and build again"
+        return f"{block.name} must be {block.bounds.said(block.unit)}"
+
+    # --- cells
+
+    def write(self, sheet: Any, style: Style, block: Block) -> None:
+        """Write the given cells of a column, with what Excel is to accept in them."""
+        printed, place = self.report.inputs.printed(block.name), block.place
+        fixed = block.name in self.counts
+        if not printed:
+            for row, number in enumerate(block.values):
+                sheet.write_number(place.row + row, place.column, number, style("fixed", "0"))
+            return
+        for row, each in enumerate(printed):
+            at = (place.row + row, place.column)
+            form = style("fixed" if fixed else "input", open_format(_decimals(each, place.scale)))
+            sheet.write_number(*at, float(each.value / place.scale), form)
+            if row < _MOST_NOTES:
+                sheet.write_comment(*at, self.note(block, each), {"x_scale": 2.2, "y_scale": 1.1})
+        every = (place.row, place.column, place.row + place.rows - 1, place.column)
+        sheet.data_validation(*every, self.validation(block))
+        refused = {"type": "formula", "criteria": f"={self._refused(block)}".replace("$", "")}
+        sheet.conditional_format(*every, refused | {"format": style("finding")})
+
+    def note(self, block: Block, printed: Printed) -> str:
+        """What a cell is, what it may be, and where its number comes from."""
+        source = printed.where.partition(":")[0]
+        given = f"Given as {printed.text} {printed.unit} in {printed.where}." if source else "The default."
+        return "\n".join([f"{block.name}: {block.meaning}.", f"{self.allowed(block)}.", given])
+
+    def validation(self, block: Block) -> dict[str, Any]:
+        """What Excel is to accept in the cells of a column."""
+        return {
+            "validate": "custom",
+            "value": f"={block.guard.format(block.place.cell(0, block.place.worksheet).replace('$', ''))}",
+            "ignore_blank": False,
+            "error_title": block.name[:32],
+            "error_message": f"{self.allowed(block)}."[:_LONGEST],
+        }
+
+    # --- what is told beside the cells
+
+    def write_told(self, sheet: Any, style: Style, blocks: Sequence[Block], note: Place) -> None:
+        """Write beside each row which of its given cells are refused, and above all what became of rows."""
+        for row in range(note.rows):
+            style.formula(sheet, note.row + row, note.column, self.told(blocks, row), _FINE, style("aside"))
+        style.formula(sheet, _ROWS_TOLD, 0, self._rows(blocks, note), "", style("error"))
+
+    def told(self, blocks: Sequence[Block], row: int = 0) -> str:
+        """The formula that tells which given cells of a row are refused, and what they must be."""
+        refused = [self._refused(block, row) for block in blocks]
+        told = [
+            f'IF({test},{_text(f"{self.allowed(block)}. ")},"")'
+            for test, block in zip(refused, blocks, strict=True)
+        ]
+        return f'=IF(OR({",".join(refused)}),"{_CODE} "&{"&".join(told)},"{_FINE}")'
+
+    def _refused(self, block: Block, row: int = 0) -> str:
+        """The formula, without its equals sign, that says whether a given cell is refused."""
+        place = self.grid[checked(block.name)].place
+        return f"NOT(ISNUMBER({place.cell(row, place.worksheet)}))"
+
+    def _rows(self, blocks: Sequence[Block], note: Place) -> str:
+        """The formula that tells of rows that were put in, taken out, or written below the last one."""
+        columns, first = [block.place.column for block in blocks], note.row + note.rows + 1
+        below = f"${letters(min(columns))}${first}:${letters(max(columns))}${first + _BELOW - 1}"
+        where = f"{_CODE} the formulas are for {note.rows} rows"
+        again = "change the file of the measurements and build again"
+        moved = _text(f"{where}, and some were put in or taken out: {again}")
+        more = _text(f"{where}, and there are numbers below them: {again}")
+        return f'=IF(ROWS({note.range(note.worksheet)})<>{note.rows},{moved},IF(COUNT({below})>0,{more},""))'
+
+    def summary(self) -> str:
+        """The formula that tells on the first worksheet whether anything given is refused."""
+        given = [b for b in self.grid.blocks if b.kind == "checked" and b.of in self.report.sheet]
+        ranges = [block.place.range(SCALARS) for block in given]
+        number = "+".join(f"ROWS({cells})-COUNT({cells})" for cells in ranges)
+        refused = f'"{_CODE} given cells that are refused: "&{number}&". "'
+        rows = [Place(worksheet, _ROWS_TOLD, 0).cell(0, SCALARS) for worksheet in self.grid.notes]
+        return "=" + "&".join([f'IF({number}>0,{refused},"")', *rows])
+
+
+def _decimals(printed: Printed, scale: Fraction) -> int:
+    """Decimals of a printed number in the unit of its cell."""
+    return printed.decimals if printed.scale == scale else 0
+
+
+def _text(words: str) -> str:
+    """A text in a formula."""
+    return '"' + words[:_LONGEST].replace('"', '""') + '"'
