@@ -34,6 +34,7 @@ __all__ = [
     "PAPER",
     "Step",
     "build",
+    "compared",
     "compute",
     "find_workbook",
     "given_data",
@@ -301,6 +302,15 @@ def refereed(report: Report, step: Step = _silent) -> Report:
     data = Prepared(report.inputs, report.sheet).data
     found = referee.referee(report.sheet, report.inputs, report.values, data, step)
     return replace(report, referee=found, comparisons=referee.refereed(report.comparisons, found))
+
+
+def compared(report: Report) -> Report:
+    """The report with published.csv read again, after only what is known of differences has changed."""
+    from .analysis import referee
+
+    inputs = load(report.inputs.folder, find_workbook)
+    comparisons = referee.refereed(referee.compare(inputs.published, report.values), report.referee)
+    return replace(report, inputs=inputs, comparisons=comparisons)
 
 
 def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:

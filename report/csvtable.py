@@ -27,13 +27,16 @@ _QUOTE = re.compile(r'"("?)')
 class Field(NamedTuple):
     """A field without the blanks and quotes around it, and where it begins.
 
-    `exact` tells whether each character of it is one character of the file (a doubled quote is two).
+    `exact` tells whether each character of it is one character of the file (a doubled quote is two); from
+    `begin` to `end` is all that stands between its separators.
     """
 
     text: str
     offset: int
     length: int
     exact: bool = True
+    begin: int = 0
+    end: int = 0
 
 
 class Row(NamedTuple):
@@ -164,7 +167,7 @@ def _rows(source: Source, findings: Findings) -> list[Row]:
 def _field(part: str, offset: int) -> Field:
     stripped = part.strip(_BLANK)
     shift = len(part) - len(part.lstrip(_BLANK)) if stripped else 0
-    return Field(stripped, offset + shift, max(len(stripped), 1))
+    return Field(stripped, offset + shift, max(len(stripped), 1), True, offset, offset + len(part))
 
 
 def _quoted(source: Source, position: int, findings: Findings) -> tuple[Row, int]:
@@ -184,14 +187,15 @@ def _quoted(source: Source, position: int, findings: Findings) -> tuple[Row, int
                 findings.add("LS313", source.at(begin))
                 return Row(fields, start, False), len(text)
             content = text[begin + 1 : closing.start()]
-            field = _field(content.replace('""', '"'), begin + 1)
-            exact = '"' not in content
-            fields.append(field if exact else Field(field.text, begin, closing.end() - begin, False))
             stop = _stop(text, closing.end())
+            field = _field(content.replace('""', '"'), begin + 1)._replace(begin=position, end=stop)
+            if '"' in content:
+                field = field._replace(offset=begin, length=closing.end() - begin, exact=False)
+            fields.append(field)
             stray = bool(text[closing.end() : stop].strip(_BLANK))
         else:
             stop = _stop(text, begin)
-            fields.append(_field(text[begin:stop], begin))
+            fields.append(_field(text[position:stop], position))
             stray = '"' in fields[-1].text
         if stray:
             findings.add("LS314", source.at(begin, stop - begin), text=text[begin:stop].strip(_BLANK))

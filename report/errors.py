@@ -246,12 +246,6 @@ CATALOGUE: dict[str, Entry] = {
         "a spreadsheet may have turned 1-2 into a date: format the column as text",
     ),
     "LS502": Entry("unknown expectation", "expect is '{text}'", "nothing, or 'differs'", "{suggestion}"),
-    "LS503": Entry(
-        "difference without a reason",
-        "a known difference needs its reason",
-        "a sentence in the column 'reason'",
-        "say why the published value differs from the recomputed one",
-    ),
     "LS504": Entry(
         "doubled published value",
         "{text} is there twice from '{source}', first in line {first}",
@@ -259,6 +253,18 @@ CATALOGUE: dict[str, Entry] = {
     ),
     "LS505": Entry("unknown cell", "the sheet has no cell '{text}'", "{known}", "{suggestion}"),
     "LS506": Entry("unknown index", "{name} has no index '{text}'", "{known}"),
+    "LS507": Entry(
+        "not a known difference",
+        "recomputed is '{text}'",
+        "what is published, an arrow, what is recomputed: 1.234 -> 1.258",
+        "leave it empty: 'loopsheet check --accept FOLDER' writes it",
+    ),
+    "LS508": Entry(
+        "no known difference",
+        "{name} says what a known difference rests on, but expect is empty",
+        "'differs' in the column 'expect', or nothing in both",
+        "leave both empty if the value has to print the same",
+    ),
     # Usage and outputs
     "LS601": Entry(
         "output not writable",
@@ -316,6 +322,13 @@ CATALOGUE: dict[str, Entry] = {
         "not a licence: '{text}'",
         "an identifier of SPDX such as CC-BY-4.0, or an address that begins with https://",
     ),
+    "LS613": Entry(
+        "file not writable",
+        "'{text}' cannot be written: {reason}",
+        "a file that may be written, in a folder that may be written",
+        "nothing was written; check the permissions of both",
+    ),
+    "LS614": Entry("options that do not go together", "{reason}", hint="{known}"),
 }
 
 

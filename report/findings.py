@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from . import verdict_words as words
 from .diagnostics import Diagnostic, Location, visible
+from .verdict import OTHERWISE, UNAMENDED, UNEXPLAINED, UNPINNED, UNREASONED
 
 if TYPE_CHECKING:
     from ..derivations.proof import Proof
@@ -121,18 +122,31 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
     """
     published, cell = comparison.published, comparison.cell
     said = f"{published.source} {cell.address} prints {published.printed.text}"
-    if comparison.as_expected:
-        said += f", recomputed {comparison.again} ({_word(comparison)})"
-        said += f": {published.reason}" if published.reason else ""
-    elif cell.value is None:
+    if cell.value is None and not comparison.as_expected:
         said = f"{published.source} {cell.address} cannot be checked: {cell.reason}"
     elif published.expect and comparison.verdict == "same":
         said += f" and no longer differs; drop its '{published.expect}'"
-    elif published.expect:
-        said += f", recomputed {comparison.again}, and differs otherwise than is known"
+    elif published.expect and not comparison.as_expected:
+        said += f", recomputed {comparison.again}, and {_otherwise(comparison)}"
     else:
         said += f", recomputed {comparison.again} ({_word(comparison)})"
-    return Check("published", name, comparison.as_expected, said, published.places.get("value", _NOWHERE))
+        said += f": {published.reason}" if published.reason else ""
+    field = {UNPINNED: "recomputed", UNREASONED: "reason", UNEXPLAINED: "explained"}
+    at = published.places.get(field.get(comparison.finding, "value"), published.places.get("value", _NOWHERE))
+    return Check("published", name, comparison.as_expected, said, at)
+
+
+def _otherwise(comparison: Comparison) -> str:
+    """In which way a known difference is not as it is known."""
+    published = comparison.published
+    accept = "'loopsheet check --accept' pins it"
+    return {
+        UNPINNED: f"its known difference is not pinned: any other would pass; {accept}",
+        OTHERWISE: f"differs otherwise than is known ({published.pin}); if that is right, {accept}",
+        UNREASONED: "why it differs is not said; say it in the column 'reason'",
+        UNEXPLAINED: f"rests on '{published.explained}', which explains it no more",
+        UNAMENDED: "does not come out once the known misprints are put right",
+    }.get(comparison.finding, comparison.finding)
 
 
 def _word(comparison: Comparison) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from .csvtable import Field, Row, Table, match_columns, read_table
 from .errors import Findings, Location, listing, suggest
-from .number_text import NumberError, read_printed
+from .number_text import NumberError, read_number, read_printed
 from .unit_text import UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
@@ -17,12 +17,48 @@ if TYPE_CHECKING:
     from .quantity import Printed
     from .sources import Source
 
-__all__ = ["PublishedValue", "check_published", "read_published"]
+__all__ = ["COLUMNS", "Pin", "PublishedValue", "check_published", "read_published"]
 
 _REQUIRED = ("source", "cell", "index", "value", "unit")
-_OPTIONAL = ("label", "expect", "reason")
+_OPTIONAL = ("label", "expect", "recomputed", "explained", "reason")
+COLUMNS = (*_REQUIRED, *_OPTIONAL)
+"""The columns of published.csv, in the order in which they are best written."""
 _INDEX = re.compile(r"[1-9][0-9]{0,8}(?:-[1-9][0-9]{0,8})?")
 _EXPECT = ("", "differs")
+_ARROW = " -> "
+_CODE = re.compile(r"#[A-Z]+!")
+
+
+@dataclass(frozen=True)
+class Pin:
+    """What a known difference is: any other one is a finding.
+
+    Parameters
+    ----------
+    printed : str
+        The published number when the difference was accepted.
+    again : str
+        The recomputed one, printed alike; or the code of a cell that had no value.
+    """
+
+    printed: str
+    again: str
+
+    def __str__(self) -> str:
+        """As it is written, ``1.234 -> 1.258``."""
+        return f"{self.printed}{_ARROW}{self.again}"
+
+    def holds(self, printed: Printed, again: str) -> bool:
+        """Whether the difference is still that one; numbers are compared by value and decimals."""
+        return _same(self.printed, printed.text) and _same(self.again, again)
+
+
+def _same(one: str, other: str) -> bool:
+    try:
+        read = [read_printed(text, parse_unit("1")) for text in (one, other)]
+    except NumberError:
+        return one == other
+    return read[0].value == read[1].value and read[0].decimals == read[1].decimals
 
 
 @dataclass(frozen=True)
@@ -41,6 +77,10 @@ class PublishedValue:
         The number with its digits and its unit.
     expect : str
         Empty, or ``differs`` for a difference that is known.
+    pin : Pin or None
+        What it differs to; None where nobody has said it.
+    explained : str
+        The name of the explanation that it rests on, as the referee calls it: ``misprint x_p[2]``.
     reason : str
         Why it differs.
     where : str
@@ -56,6 +96,8 @@ class PublishedValue:
     index: tuple[int, ...]
     printed: Printed
     expect: str = ""
+    pin: Pin | None = None
+    explained: str = ""
     reason: str = ""
     where: str = ""
     places: Mapping[str, Location] = field(default_factory=dict, compare=False, repr=False)
@@ -72,7 +114,7 @@ def read_published(source: Source, findings: Findings) -> tuple[PublishedValue, 
     findings : Findings
         Where findings go.
     """
-    table = read_table(source, [*_REQUIRED, *_OPTIONAL], findings)
+    table = read_table(source, COLUMNS, findings)
     if table is None:
         return ()
     names = [field.text for field in table.header]
@@ -106,13 +148,14 @@ def _value(table: Table, row: Row, fields: Mapping[str, Field], findings: Findin
     index = fields["index"]
     if index.text and not _INDEX.fullmatch(index.text):
         findings.add("LS501", table.at(index), text=index.text)
-    expect = fields["expect"].text if "expect" in fields else ""
-    reason = " ".join(fields["reason"].text.split()) if "reason" in fields else ""
-    if expect not in _EXPECT:
-        at = table.at(fields["expect"])
-        findings.add("LS502", at, text=expect, suggestion=suggest(expect, ["differs"]))
-    if expect == "differs" and not reason:
-        findings.add("LS503", table.at(fields["reason" if "reason" in fields else "expect"]))
+    words = {name: " ".join(fields[name].text.split()) if name in fields else "" for name in _OPTIONAL}
+    if words["expect"] not in _EXPECT:
+        at, text = table.at(fields["expect"]), words["expect"]
+        findings.add("LS502", at, text=text, suggestion=suggest(text, ["differs"]))
+    for name in ("recomputed", "explained"):
+        if words[name] and not words["expect"]:
+            findings.add("LS508", table.at(fields[name]), name=name)
+    pin = _pin(table, fields["recomputed"], findings) if words["recomputed"] else None
     printed = _printed(table, fields, findings)
     if printed is None or len(findings.found) > before:
         return None
@@ -121,12 +164,26 @@ def _value(table: Table, row: Row, fields: Mapping[str, Field], findings: Findin
         fields["cell"].text,
         tuple(int(number) for number in index.text.split("-")) if index.text else (),
         printed,
-        expect,
-        reason,
+        words["expect"],
+        pin,
+        words["explained"],
+        words["reason"],
         printed.where,
         {name: table.at(field) for name, field in fields.items()},
-        " ".join(fields["label"].text.split()) if "label" in fields else "",
+        words["label"],
     )
+
+
+def _pin(table: Table, field: Field, findings: Findings) -> Pin | None:
+    printed, _, again = (part.strip() for part in field.text.partition(_ARROW.strip()))
+    try:
+        read_number(printed)
+        if not _CODE.fullmatch(again):
+            read_number(again)
+    except NumberError:
+        findings.add("LS507", table.at(field), text=field.text)
+        return None
+    return Pin(printed, again)
 
 
 def _printed(table: Table, fields: Mapping[str, Field], findings: Findings) -> Printed | None:

@@ -14,7 +14,16 @@ from .agreement import Agreement
 from .inputs import Inputs, PublishedValue
 from .sheet import Sheet
 from .values import Cell, Values
-from .verdict import Referee, Verdict
+from .verdict import (
+    OTHERWISE,
+    UNAMENDED,
+    UNEXPECTED,
+    UNEXPLAINED,
+    UNPINNED,
+    UNREASONED,
+    Referee,
+    Verdict,
+)
 from .workbook import Workbook
 
 __all__ = ["Comparison", "Curve", "Report", "Shown"]
@@ -77,10 +86,10 @@ class Comparison:
         Recomputed minus published, in units of the last printed digit; None where there is no value.
     verdict : str
         ``same`` (prints the same), ``differs`` or ``not-checkable`` (the cell has no value).
-    as_expected : bool
-        False is a finding: it differs unexpectedly, or no longer differs although that is expected. What
-        the referee found reachable differs by no more than the printed digits of the inputs allow, and is
-        no finding.
+    finding : str
+        What is not as expected, in a word of :mod:`~loopsheet.report.verdict`; empty if all is. What the
+        referee found reachable differs by no more than the printed digits of the inputs allow, and is no
+        finding.
     refereed : Verdict or None
         What the referee says of it; None if it was not asked.
     """
@@ -90,8 +99,30 @@ class Comparison:
     again: str
     distance: float | None
     verdict: str
-    as_expected: bool
+    finding: str
     refereed: Verdict | None = None
+
+    @property
+    def as_expected(self) -> bool:
+        """Whether there is nothing to find."""
+        return not self.finding
+
+    @property
+    def known(self) -> tuple[str | None, str]:
+        """What a view that recalculates shall expect, and what there is to find even so.
+
+        None for a value that shall print as published, and what there is to find if it does not. For a known
+        difference what is recomputed then, printed as here; nothing where no number would do.
+        """
+        published, pin = self.published, self.published.pin
+        if not published.expect:
+            return None, "" if self.verdict == "differs" and self.as_expected else UNEXPECTED
+        if pin is None:
+            return "", UNPINNED
+        if not pin.holds(published.printed, pin.again):
+            return "", OTHERWISE  # another number was published when it was pinned
+        even_so = self.finding if self.finding in (UNREASONED, UNEXPLAINED, UNAMENDED) else ""
+        return self.again if pin.holds(published.printed, self.again) else pin.again, even_so
 
     @property
     def word(self) -> str:

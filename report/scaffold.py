@@ -148,7 +148,7 @@ def _lines(workbook: Workbook) -> Iterator[str]:
         f'# {last} = "truncated"                    # if digits were cut off; without this, "rounded"',
         "",
         "# [published]                            # values to compare with, if there are any",
-        '# file = "published.csv"                 # source,cell,index,value,unit,expect,reason',
+        '# file = "published.csv"                 # source,cell,index,value,unit,expect,recomputed,reason',
     )
 
 

@@ -1,4 +1,4 @@
-"""Where a report is written: a temporary folder beside the output, moved in whole or not at all."""
+"""Where files are written: beside what they replace, moved in whole or not at all."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from .errors import OutputError, diagnose
+from .errors import Location, OutputError, diagnose
 
-__all__ = ["put", "staged"]
+__all__ = ["put", "replaced", "staged"]
 
 
 def put(path: Path, content: str | bytes) -> None:
@@ -25,6 +25,43 @@ def put(path: Path, content: str | bytes) -> None:
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(content.encode() if isinstance(content, str) else content)
+
+
+def replaced(path: Path, before: bytes, after: bytes) -> None:
+    """Replace a user's file as a whole; what it may be read and written by stays as it is.
+
+    Parameters
+    ----------
+    path : Path
+        Where a link leads to is replaced, not the link.
+    before : bytes
+        What was read; a file that somebody has changed since is left alone.
+    after : bytes
+
+    Raises
+    ------
+    OutputError
+        It cannot be written; it is as it was then.
+    """
+    target, stage = path.resolve(), None
+    try:
+        # An administrator may write anything: what counts is what the owner has said.
+        if not target.stat().st_mode & 0o222 or not os.access(target, os.W_OK):
+            raise PermissionError("it is read-only")
+        if target.read_bytes() != before:
+            raise PermissionError("somebody has changed it meanwhile")
+        handle, stage = tempfile.mkstemp(prefix=".loopsheet-", dir=target.parent)
+        with os.fdopen(handle, "wb") as file:
+            file.write(after)
+        shutil.copymode(target, stage)
+        os.replace(stage, target)
+    except OSError as error:
+        if stage is not None:
+            Path(stage).unlink(missing_ok=True)
+        reason = error.strerror or str(error)
+        raise OutputError(
+            diagnose("LS613", Location(path.as_posix()), text=path.name, reason=reason)
+        ) from error
 
 
 @contextmanager

@@ -19,8 +19,14 @@ __all__ = [
     "INPUT",
     "NOT_CHECKABLE",
     "NOT_FOUND",
+    "OTHERWISE",
     "REACHABLE",
+    "UNAMENDED",
+    "UNEXPECTED",
+    "UNEXPLAINED",
+    "UNPINNED",
     "UNREACHABLE",
+    "UNREASONED",
     "WITHIN",
     "Change",
     "Explanation",
@@ -44,6 +50,19 @@ NOT_FOUND = "not found"
 """None was found, and that there is none could not be made certain."""
 NOT_CHECKABLE = "not-checkable"
 """The cell has no value to compare with."""
+
+UNEXPECTED = "unexpectedly"
+"""It differs, or has no value, and nobody has said so; or somebody has, and it prints the same."""
+OTHERWISE = "otherwise than is known"
+"""The known difference is another one."""
+UNPINNED = "not pinned"
+"""That it differs is said, but not what it differs to: any difference would do."""
+UNREASONED = "without a reason"
+"""Why it differs is not said."""
+UNEXPLAINED = "no longer explained"
+"""The explanation that the known difference rests on is none any more."""
+UNAMENDED = "not by the known misprints"
+"""It does not come out once the known misprints are put right."""
 
 
 ALL = "all"

@@ -49,6 +49,7 @@ __all__ = [
     "joined",
     "lines",
     "mismatch",
+    "name",
     "perhaps",
     "relabelled",
     "suggested",
@@ -215,6 +216,15 @@ def _whose(table: TableVerdict) -> str:
 def explained(found: Explanation) -> str:
     """What is claimed and what follows."""
     return f"{' and '.join(claimed(change) for change in found.changes)}: {follows(found)}"
+
+
+def name(found: Explanation) -> str:
+    """What a known difference that rests on it calls it: ``misprint x_p[2]``, ``order x_m (Table 3)``."""
+    return " and ".join(
+        f"{change.kind} {address(change.cell, change.index)}"
+        + ("" if change.source == INPUT else f" ({change.source})")
+        for change in found.changes
+    )
 
 
 def perhaps(explanations: Sequence[Explanation], of: TableVerdict) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ import hashlib
 import json
 import os
 import re
+from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
 
@@ -34,6 +35,8 @@ from loopsheet.report.inputs import check_published, load
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.results import read_manifest, read_result
 from loopsheet.report.scaffold import new
+from loopsheet.report.staging import replaced
+from loopsheet.report.verbs import check
 from loopsheet.report.workbook import Measured, Parameter, Workbook
 
 MESSAGES = Path(__file__).parent / "hostile" / "messages.txt"
@@ -104,6 +107,17 @@ def csv(old: str, new_text: str) -> Callable[[], None]:
 def published(old: str, new_text: str) -> Callable[[], None]:
     assert old in PUBLISHED
     return lambda: campaign(published=PUBLISHED.replace(old, new_text))
+
+
+def pinned(fields: str) -> str:
+    return PUBLISHED.replace("expect,", "expect,recomputed,").replace("differs", fields)
+
+
+def replaced_read_only() -> None:
+    path = Path("published.csv")
+    path.write_text(PUBLISHED)
+    path.chmod(0o444)
+    replaced(path, PUBLISHED.encode(), b"")
 
 
 def load_there(name: str) -> Callable[[], None]:
@@ -241,10 +255,11 @@ CASES: dict[str, Callable[[], None]] = {
     "LS425": csv("v [m/s]", "v [km/min kg]"),
     "LS501": published("1-2", "2-Jan"),
     "LS502": published("differs", "differ"),
-    "LS503": published("misprint", ""),
     "LS504": published("\nTable 2", "\nTable 2,alpha,1-2,1.234,1,,\nTable 2"),
     "LS505": published("alpha", "alfa"),
     "LS506": published("1-2", "2-3"),
+    "LS507": lambda: campaign(published=pinned("differs,1.258")),
+    "LS508": lambda: campaign(published=pinned(",1.234 -> 1.258")),
     "LS601": new_in_a_file,
     "LS602": new_on_a_file,
     "LS603": new_in_a_used_folder,
@@ -266,6 +281,8 @@ CASES: dict[str, Callable[[], None]] = {
     "LS610": crate_of_a_changed_output,
     "LS611": lambda: crate("31.3.2026", "MIT"),
     "LS612": lambda: crate("2026-03-31", "all mine"),
+    "LS613": replaced_read_only,
+    "LS614": lambda: check.run(Namespace(accept=False, reason="a slip", folder=None)) and None,
 }
 
 

@@ -1,38 +1,389 @@
 """Published values as a user of `check` meets them: what counts as the same, what pins a difference."""
 
+import json
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
 from small_report import end_gauge
 
 from loopsheet.report import build
+from loopsheet.report.analysis.referee import compare, refereed
 from loopsheet.report.cli import main
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.engines.numpy import Program
+from loopsheet.report.errors import Findings
+from loopsheet.report.published import PublishedValue, read_published
+from loopsheet.report.sources import Source
+from loopsheet.report.verdict import (
+    OTHERWISE,
+    UNEXPECTED,
+    UNEXPLAINED,
+    UNPINNED,
+    Change,
+    Explanation,
+    Referee,
+    Verdict,
+)
+
+Check = Callable[..., tuple[int, str]]
 
 
-@pytest.fixture(autouse=True)
-def engines_are_as_they_were(monkeypatch: pytest.MonkeyPatch) -> None:
-    """They are judged elsewhere, and take longer than all that is done here."""
+@pytest.fixture
+def check(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Check:
+    """Give a function that runs `check` in the folder; the engines are judged elsewhere."""
     monkeypatch.setattr(build, "judged", lambda report, step: report)
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> tuple[int, str]:
+        code = main(["check", *arguments, "."])
+        captured = capsys.readouterr()
+        assert code < 3, captured.err
+        return code, captured.err if code == 2 else captured.out
+
+    return run
+
+
+def published(folder: Path, *rows: str, header: str = "source,cell,index,value,unit") -> Path:
+    """The end gauge with these published values: 50.000623 mm is given, 50.000838 mm is its length."""
+    end_gauge(folder, "\n".join((header, *rows, "")))
+    return folder / "published.csv"
+
+
+# --- what prints the same ----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("text", ["50.000838", "5.0000838e1", "5.0000838E+01", "+50.000838", "50000.838e-3"])
-def test_check_counts_what_prints_the_same_in_any_notation(
-    tmp_path: Path, text: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert (
-        main(["check", str(end_gauge(tmp_path, f"source,cell,index,value,unit\nH.1,l,1,{text},mm\n"))]) == 0
-    )
-    out = capsys.readouterr().out
+def test_check_counts_what_prints_the_same_in_any_notation(tmp_path: Path, check: Check, text: str) -> None:
+    published(tmp_path, f"H.1,l,1,{text},mm")
+    code, out = check()
+    assert code == 0
     assert "published  1 values: 1 print the same, 0 differ as is known\n" in out
     assert "->" not in out
 
 
-def test_a_value_of_seventy_digits_can_be_compared(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+def test_a_value_of_seventy_digits_can_be_compared(tmp_path: Path, check: Check) -> None:
+    published(tmp_path, "H.1,l,1,1.5,mm")
+    toml = tmp_path / "report.toml"
+    toml.write_text(toml.read_text().replace("50.000623 mm", "5e70 mm"))
+    code, out = check()
+    assert code == 1
+    assert f"1.5 -> {1000 * int(5e67)}.0 " in out
+
+
+# --- known differences -------------------------------------------------------------------------------------
+
+KNOWN = "source,cell,index,value,unit,expect,recomputed,explained,reason"
+
+
+@pytest.mark.parametrize(
+    ("value", "rest", "column", "said"),
+    [
+        ("51.2", "differs,51.2 -> 50.0,,a slip", None, ""),
+        ("51.2", "differs,5.12e1 -> 50.0,,a slip", None, ""),
+        ("51.2", "differs,51.2 -> 50.0,misprint l_S,a slip", None, ""),
+        ("51.2", "differs,,,a slip", 26, "and its known difference is not pinned: any other would pass"),
+        (
+            "51.3",
+            "differs,51.2 -> 50.0,,a slip",
+            10,
+            "and differs otherwise than is known (51.2 -> 50.0)",
+        ),
+        (
+            "51.2",
+            "differs,51.2 -> 50.1,,a slip",
+            10,
+            "and differs otherwise than is known (51.2 -> 50.1)",
+        ),
+        ("51.2", "differs,51.20 -> 50.0,,a slip", 10, "and differs otherwise than is known"),
+        (
+            "51.2",
+            "differs,51.2 -> 50.0,,",
+            40,
+            "and why it differs is not said; say it in the column 'reason'",
+        ),
+        (
+            "51.2",
+            "differs,51.2 -> 50.0,misprint theta,a slip",
+            39,
+            "and rests on 'misprint theta', which explains it no more",
+        ),
+        ("51.2", ",,,", 10, "(unreachable: by interval arithmetic"),
+    ],
+)
+def test_a_known_difference_is_green_only_as_it_is_known(
+    tmp_path: Path, check: Check, value: str, rest: str, column: int | None, said: str
 ) -> None:
-    csv = "source,cell,index,value,unit\nH.1,l,1,1.5,mm\n"
-    toml = (end_gauge(tmp_path) / "report.toml").read_text().replace("50.000623 mm", "5e70 mm")
-    assert main(["check", str(end_gauge(tmp_path, csv, report=toml))]) == 1
-    captured = capsys.readouterr()
-    assert "bug" not in captured.err
-    assert f"1.5 -> {1000 * int(5e67)}.0 " in captured.out
+    published(tmp_path, f"H.1,l_S,,{value},mm,{rest}", header=KNOWN)
+    code, out = check("--format", "json")
+    data = json.loads(out)
+    assert code == int(column is not None)
+    assert data["published"][0]["expected"] is (column is None)
+    found = [each for each in data["findings"] if "l_S prints" in each and "published.csv" in each]
+    start = f"published.csv:2:{column}: H.1 l_S prints {value}, recomputed 50.0"
+    assert [each.startswith(start) and said in each for each in found] == [True] * code
+
+
+def test_a_known_difference_that_is_none_is_a_finding(tmp_path: Path, check: Check) -> None:
+    published(tmp_path, "H.1,l_S,,50.0,mm,differs,51.2 -> 50.0,,a slip", header=KNOWN)
+    code, out = check()
+    assert code == 1
+    assert "published.csv:2:10: H.1 l_S prints 50.0 and no longer differs; drop its 'differs'" in out
+
+
+def test_a_cell_without_a_value_may_be_known(tmp_path: Path) -> None:
+    """Then it is the code that is pinned; the sheet of the paper has a pair without an exponent here."""
+    folder = tmp_path / "campaign"
+    shutil.copytree(build.PAPER, folder)
+    tests = folder / "measurements.csv"
+    tests.write_text(tests.read_text().replace("5,4.993,0.453,51.03", "5,4.993,0.453,23.03"))
+    report = build.compute(folder, prove=False)
+    assert report.values.cell("alpha", (1, 5)).status.code == "#NOROOT!"
+    path = folder / "published.csv"
+    path.write_text(f"{KNOWN}\nT,alpha,1-5,1.299,1,differs,1.299 -> #NOROOT!,,a slip\n")
+    assert [c.finding for c in build.compute(folder, prove=False).comparisons] == [""]
+    path.write_text(f"{KNOWN}\nT,alpha,1-5,1.299,1,differs,1.299 -> 1.294,,a slip\n")
+    assert [c.finding for c in build.compute(folder, prove=False).comparisons] == [OTHERWISE]
+
+
+def test_the_referee_excuses_no_known_difference(tmp_path: Path) -> None:
+    """What is reachable need not print the same; what is known to differ has to differ as is known."""
+    published(
+        tmp_path,
+        "H.1,l,1,50.1,mm,,,,",
+        "H.1,l,2,50.1,mm,differs,,,a slip",
+        "H.1,l_S,,51.2,mm,differs,51.2 -> 50.0,label x (T),a slip",
+        header=KNOWN,
+    )
+    comparisons = build.compute(tmp_path, prove=False).comparisons
+    assert [c.finding for c in comparisons] == [UNEXPECTED, UNPINNED, ""]
+    said = Referee((Verdict("reachable"), Verdict("reachable"), Verdict("unreachable")))
+    assert [c.finding for c in refereed(comparisons, said)] == ["", UNPINNED, UNEXPLAINED]
+    exchanged = Explanation((Change("label", "x", (), "T", "1", "2"),), 0.5, 3, 3)
+    explained = Referee(said.values, explanations=(exchanged,))
+    assert [c.finding for c in refereed(comparisons, explained)] == ["", UNPINNED, ""]
+
+
+# --- the paper ---------------------------------------------------------------------------------------------
+
+
+def one_digit_off(text: str) -> Iterator[str]:
+    """A number with one of its digits one more or one less."""
+    for place, digit in enumerate(text):
+        for other in (int(digit) - 1, int(digit) + 1) if digit.isdigit() else ():
+            if 0 <= other <= 9:
+                yield f"{text[:place]}{other}{text[place + 1 :]}"
+
+
+def test_every_digit_of_the_paper_is_pinned() -> None:
+    """One digit more or less in any published or measured value, and a known difference is another one.
+
+    That is seen before the referee is asked, and the referee excuses no known difference.
+    """
+    report = build.compute(build.PAPER, prove=False)
+    program, prepared = Program.of(report.sheet), build.Prepared(report.inputs, report.sheet)
+    assert all(c.published.pin is not None and c.as_expected for c in report.comparisons)
+    rows = (build.PAPER / "published.csv").read_text().splitlines()
+    tried = 0
+    for line, row in enumerate(rows[1:], start=1):
+        cells = row.split(",")
+        for text in one_digit_off(cells[3]):
+            changed = [*rows[:line], ",".join([*cells[:3], text, *cells[4:]]), *rows[line + 1 :]]
+            found = compare(published_in(changed), report.values)
+            assert [n for n, c in enumerate(found) if not c.as_expected] == [line - 1], text
+            tried += 1
+    for name, column in report.inputs.measured.items():
+        for row, printed in enumerate(column):
+            for text in one_digit_off(printed.text):
+                data = {**prepared.data, name: list(prepared.data[name])}
+                data[name][row] = float(Fraction(text) * printed.scale)
+                values = engine.evaluate(report.sheet, prepared.labels, data, program)
+                found = compare(report.inputs.published, values)
+                assert not all(c.as_expected for c in found), (name, row, text)
+                tried += 1
+    assert tried > 270
+
+
+def published_in(rows: list[str]) -> tuple[PublishedValue, ...]:
+    findings = Findings()
+    found = read_published(Source("p", "p", "\n".join(rows)), findings)
+    findings.check()
+    return found
+
+
+# --- accepting ---------------------------------------------------------------------------------------------
+
+ROWS = (
+    "H.1,l,1,50.000838,mm,,,",
+    "H.1,l,2,70.5,mm,differs,,read off a plot",
+    "H.1,l_S,,51.2,mm,differs,51.2 -> 49.9,a slip",
+    "H.1,theta,,0.2,K,,,",
+    "H.1,d,1,215,nm,differs,216 -> 215,a slip",
+    "H.1,d,2,207,nm,differs,,",
+)
+HEADER = "source,cell,index,value,unit,expect,recomputed,reason"
+ACCEPTED = (
+    "H.1,l,1,50.000838,mm,,,",
+    "H.1,l,2,70.5,mm,differs,70.5 -> 50.0,read off a plot",
+    "H.1,l_S,,51.2,mm,differs,51.2 -> 50.0,a slip",
+    "H.1,theta,,0.2,K,,,",
+    "H.1,d,1,215,nm,,,",
+    "H.1,d,2,207,nm,differs,207 -> 204,",
+)
+
+
+def test_accepting_writes_what_is_recomputed_and_shows_it(tmp_path: Path, check: Check) -> None:
+    path = published(tmp_path, *ROWS, header=HEADER)
+    code, out = check("--accept")
+    assert path.read_text() == "\n".join((HEADER, *ACCEPTED, ""))
+    assert out.splitlines()[:9] == [
+        "published.csv: 4 lines changed",
+        *(
+            f"  {line} {sign} {row}" if sign == "-" else f"    {sign} {row}"
+            for line in (3, 4, 6, 7)
+            for sign, row in (("-", ROWS[line - 2]), ("+", ACCEPTED[line - 2]))
+        ),
+    ]
+    # Of what nobody announced, and of what has no reason, none is invented.
+    assert code == 1
+    left = [line for line in out.splitlines() if line.startswith("finding: published.csv:")]
+    assert [line.split(": ")[1] for line in left] == ["published.csv:5:12", "published.csv:7:35"]
+    code, out = check("--accept", "--reason", 'as "printed", by hand')
+    assert code == 0
+    quoted = '"as ""printed"", by hand"'
+    assert path.read_text().splitlines()[4:7] == [
+        f"H.1,theta,,0.2,K,differs,0.2 -> -0.1,{quoted}",
+        "H.1,d,1,215,nm,,,",
+        f"H.1,d,2,207,nm,differs,207 -> 204,{quoted}",
+    ]
+    before = path.stat()
+    code, out = check("--accept")
+    assert (code, out.splitlines()[0]) == (0, "published.csv: no lines changed")
+    assert path.stat().st_mtime_ns == before.st_mtime_ns
+    assert check()[0] == 0
+
+
+def test_a_table_without_the_columns_gets_those_it_needs(tmp_path: Path, check: Check) -> None:
+    path = published(tmp_path, "H.1,l_S,,51.2,mm", "H.1,l,1,50.000838,mm")
+    assert check("--accept")[0] == 1
+    assert path.read_text() == "source,cell,index,value,unit\nH.1,l_S,,51.2,mm\nH.1,l,1,50.000838,mm\n"
+    code, out = check("--accept", "--reason", "a slip")
+    assert path.read_text() == (
+        "source,cell,index,value,unit,expect,recomputed,reason\n"
+        "H.1,l_S,,51.2,mm,differs,51.2 -> 50.0,a slip\nH.1,l,1,50.000838,mm,,,\n"
+    )
+    assert code == 0
+    assert out.startswith("published.csv: 2 lines changed\n  1 - source,cell,index,value,unit\n")
+    assert "  1 more got an empty field" in out
+    path = published(
+        tmp_path, "differs,H.1,l_S,,51.2,mm,a slip", header="expect,source,cell,index,value,unit,reason"
+    )
+    assert check("--accept")[0] == 0
+    assert path.read_text().splitlines()[1] == "differs,51.2 -> 50.0,H.1,l_S,,51.2,mm,a slip"
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("{h}\n{r}\n", "{h2}\n{r2}\n"),
+        ("{h}\r\n{r}\r\n{s}\r\n", "{h2}\r\n{r2}\r\n{s2}\r\n"),
+        ("{h}\r{r}\r", "{h2}\r{r2}\r"),
+        ("\ufeff{h}\n{r}", "\ufeff{h2}\n{r2}"),
+        ("{h}\n{r}\n\n ,,,,,,\n\n", "{h2}\n{r2}\n\n ,,,,,,\n\n"),
+        ("{h}\n{s}\n{r}\n", "{h2}\n{s2}\n{r2}\n"),
+        (
+            'source, cell ,"index",value,unit,expect,reason\n'
+            '"H.1",\tl_S , ,51.2, mm,"differs" , "a\r\n""slip"", µ" \n',
+            'source, cell ,"index",value,unit,expect,recomputed,reason\n'
+            '"H.1",\tl_S , ,51.2, mm,"differs" ,51.2 -> 50.0, "a\r\n""slip"", µ" \n',
+        ),
+        ('"{h3}"\n"{r3}"\n', '"{h4}"\n"{r4}"\n'),
+        ("{h2}\n{r5}, 1 -> 2\t,a\n", "{h2}\n{r5}, 51.2 -> 50.0\t,a\n"),
+        ('{h2}\n{r5},"",a\n', '{h2}\n{r5},"51.2 -> 50.0",a\n'),
+    ],
+)
+def test_accepting_keeps_every_other_byte(tmp_path: Path, check: Check, before: str, after: str) -> None:
+    """Line ends, byte order mark, quotes, blanks, empty lines at the end, rows over several lines."""
+    parts = {
+        "h": "source,cell,index,value,unit,expect,reason",
+        "h2": "source,cell,index,value,unit,expect,recomputed,reason",
+        "r": "H.1,l_S,,51.2,mm,differs,a slip",
+        "r2": "H.1,l_S,,51.2,mm,differs,51.2 -> 50.0,a slip",
+        "s": "H.1,l,1,50.000838,mm,,",
+        "s2": "H.1,l,1,50.000838,mm,,,",
+        "h3": '","'.join(HEADER.replace("recomputed,", "").split(",")),
+        "h4": '","'.join(HEADER.split(",")),
+        "r3": '","'.join(("H.1", "l_S", "", "51.2", "mm", "differs", "a")),
+        "r4": '","'.join(("H.1", "l_S", "", "51.2", "mm", "differs", "51.2 -> 50.0", "a")),
+        "r5": "H.1,l_S,,51.2,mm,differs",
+    }
+    path = published(tmp_path)
+    path.write_bytes(before.format(**parts).encode())
+    code, out = check("--accept")
+    assert path.read_bytes().decode() == after.format(**parts)
+    assert code == 0, out
+
+
+def test_accepting_leaves_the_file_alone_if_it_cannot_be_written(tmp_path: Path, check: Check) -> None:
+    path = published(tmp_path, *ROWS, header=HEADER)
+    before = path.read_bytes()
+    path.chmod(0o444)
+    code, out = check("--accept")
+    assert code == 2
+    assert "error[LS613]: 'published.csv' cannot be written: it is read-only\n  --> published.csv\n" in out
+    assert path.read_bytes() == before
+    assert sorted(os.listdir(tmp_path)) == ["d.csv", "published.csv", "report.toml", "workbook.py"]
+
+
+def test_accepting_leaves_a_file_alone_that_has_changed_meanwhile(
+    tmp_path: Path, check: Check, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = published(tmp_path, *ROWS, header=HEADER)
+    honest = build.refereed
+
+    def meanwhile(*arguments):  # type: ignore[no-untyped-def]
+        path.write_text("somebody else's\n")
+        return honest(*arguments)
+
+    monkeypatch.setattr(build, "refereed", meanwhile)
+    code, out = check("--accept")
+    assert code == 2
+    assert "somebody has changed it meanwhile" in out
+    assert path.read_text() == "somebody else's\n"
+
+
+def test_accepting_follows_a_link_and_keeps_the_permissions(tmp_path: Path, check: Check) -> None:
+    path = published(tmp_path, *ROWS, header=HEADER)
+    (tmp_path / "tables").mkdir()
+    target = path.rename(tmp_path / "tables" / "own.csv")
+    path.symlink_to(target)
+    target.chmod(0o640)
+    check("--accept")
+    assert path.is_symlink()
+    assert target.stat().st_mode & 0o777 == 0o640
+    assert "70.5 -> 50.0" in target.read_text()
+
+
+def test_accepting_needs_a_folder_and_a_reason_needs_accepting(
+    tmp_path: Path, check: Check, capsys: pytest.CaptureFixture[str]
+) -> None:
+    published(tmp_path, *ROWS, header=HEADER)
+    assert main(["check", "--accept"]) == 2
+    assert "LS614" in capsys.readouterr().err
+    for arguments in (("--reason", "a slip"), ("--accept", "--reason", "a\x1bslip")):
+        code, out = check(*arguments)
+        assert (code, "LS614" in out) == (2, True)
+    assert (tmp_path / "published.csv").read_text().splitlines()[1:] == list(ROWS)
+
+
+def test_accepting_tells_machines_what_is_left(tmp_path: Path, check: Check) -> None:
+    published(tmp_path, *ROWS, header=HEADER)
+    code, out = check("--accept", "--format", "github")
+    assert code == 1
+    assert out.startswith("::error file=published.csv,line=5,col=12,")
+    toml = tmp_path / "report.toml"
+    toml.write_text(toml.read_text().partition("[published]")[0])
+    assert check("--accept")[0] == 0

@@ -56,7 +56,7 @@ file = "measurements.csv"
 # x_p = "truncated"                    # if digits were cut off; without this, "rounded"
 
 # [published]                            # values to compare with, if there are any
-# file = "published.csv"                 # source,cell,index,value,unit,expect,reason
+# file = "published.csv"                 # source,cell,index,value,unit,expect,recomputed,reason
 """
 
 

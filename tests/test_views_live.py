@@ -162,7 +162,7 @@ def test_digits_follow_from_what_a_column_rests_on(known: dict[str, Any], report
 def test_published_values_keep_their_digits(known: dict[str, Any]) -> None:
     (tables, *_) = known["published"]
     assert tables["id"] == "published-Table-2"
-    assert tables["rows"][0] == ["alpha", "1-2", "1.234", ["1", "1"], False, True]
+    assert tables["rows"][0] == ["alpha", "1-2", "1.234", ["1", "1"], False, "1.258", ""]
 
 
 def test_foreign_text_cannot_end_the_element(tmp_path: Path) -> None:

@@ -160,9 +160,11 @@ def test_published_values_stand_beside_live_ones(book: Any, shown: Any, report: 
     assert live["I6"].value == '=IF(ISNUMBER($F$6),IF(ROUND($F$6,3)=$E$6,"same","differs"),"not-checkable")'
     for row, comparison in enumerate(report.comparisons, start=6):
         assert now.cell(row, 9).value == comparison.verdict
-        assert now.cell(row, 11).value == ("yes" if comparison.as_expected else "no")
+        assert now.cell(row, 11).value == float(comparison.again)
+        assert now.cell(row, 12).value == ("yes" if comparison.as_expected else "no")
         assert now.cell(row, 8).value == pytest.approx(comparison.distance, abs=1e-9)
-        assert now.cell(row, 12).value == comparison.published.reason
+        assert now.cell(row, 13).value == comparison.published.reason
+    assert live["L6"].value == '=IF($I$6="differs",IF(ROUND($F$6,3)=$K$6,"yes","no"),"no")'
     depth = next(row for row in range(6, 40) if now.cell(row, 2).value == "x_m")
     assert live.cell(depth, 6).value == "=IF(ISNUMBER(tests!$F$8),tests!$F$8,tests!$F$8)"
 
@@ -368,7 +370,7 @@ def test_text_stays_text(report: Report, grid: Grid, text: str) -> None:
     content = xlsx.render(changed, grid)
     book = openpyxl.load_workbook(io.BytesIO(content))
     assert book["report"]["A1"].data_type == "s"
-    assert book["published"]["L6"].data_type == "s"
+    assert book["published"]["M6"].data_type == "s"
     strings = files(content)["xl/sharedStrings.xml"].decode()
     escaped = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     assert f">{escaped.replace('_x0041_', '_x005F_x0041_')}<" in strings

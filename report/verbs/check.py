@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .common import Progress, folder_argument, format_argument, outcome, print_checks
 
 if TYPE_CHECKING:
+    from ..accepting import Accepted
     from ..findings import Check
     from ..result import Report
 
@@ -20,6 +21,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     folder_argument(parser)
     format_argument(parser, "text", "json", "junit", "github", "markdown")
+    parser.add_argument(
+        "--accept",
+        action="store_true",
+        help="check the published values alone, and write into FOLDER's published.csv what they differ to",
+    )
+    parser.add_argument(
+        "--reason", metavar="TEXT", default="", help="with --accept: why they differ, where that is not said"
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -27,6 +36,8 @@ def run(options: argparse.Namespace) -> int:
     from .. import build
     from ..findings import checks
 
+    if options.accept or options.reason:
+        return _accept(options)
     with Progress(sys.stderr) as progress:
         report = build.compute(options.folder or build.PAPER, progress)
         report = build.judged(report, step=progress)
@@ -37,6 +48,52 @@ def run(options: argparse.Namespace) -> int:
     else:
         print_checks(found, options.format, report.title, _details(report))
     return outcome(found)
+
+
+def _accept(options: argparse.Namespace) -> int:
+    """Write the known differences of a folder, show what was written, and print what is left to find."""
+    from .. import build
+    from ..accepting import accepted
+    from ..errors import UsageError, diagnose
+    from ..findings import checks
+    from ..staging import replaced
+
+    reason = " ".join(options.reason.split())
+    if not options.accept or options.folder is None or not reason.isprintable():
+        known = "loopsheet check --accept --reason 'a sentence' FOLDER"
+        said = "--accept needs a FOLDER, --reason a sentence and --accept"
+        raise UsageError(diagnose("LS614", reason=said, known=known))
+    with Progress(sys.stderr) as progress:
+        report = build.refereed(build.compute(options.folder, progress, prove=False), progress)
+    if report.comparisons:
+        found = accepted(report, reason)
+        if found.after != found.before:
+            replaced(found.path, found.before, found.after)
+            report = build.compared(report)
+        if options.format == "text":
+            _show(found)
+    left = checks(report)
+    if options.format != "text":
+        print_checks(left, options.format, report.title, {})
+        return outcome(left)
+    for check in left:
+        if not check.passed:
+            print(f"finding: {check.sentence}")
+    return outcome(left)
+
+
+def _show(found: Accepted) -> None:
+    from ..diagnostics import visible
+
+    number = len(found.changes)
+    changed = "1 line" if number == 1 else f"{number or 'no'} lines"
+    print(f"{visible(found.path.as_posix())}: {changed} changed")
+    for change in found.changes:
+        width = len(str(change.line))
+        print(f"  {change.line} - {visible(change.before)}")
+        print(f"  {' ' * width} + {visible(change.after)}")
+    if found.others:
+        print(f"  {found.others} more got an empty field")
 
 
 def _print(report: Report, found: Iterable[Check]) -> None:
@@ -79,6 +136,7 @@ def _details(report: Report) -> dict[str, Any]:
                 "again": c.again,
                 "verdict": c.word,
                 "expected": c.as_expected,
+                "finding": c.finding or None,
             }
             for c in report.comparisons
         ],

@@ -107,6 +107,7 @@ def _published(comparison: Any) -> dict[str, Any]:
         "interval": _interval(comparison.refereed),
         "bounds": verdict_data.bounds(comparison.refereed),
         "expected": comparison.as_expected,
+        "finding": comparison.finding or None,
     }
 
 

@@ -20,6 +20,7 @@ from ..quantity import Printed
 from ..result import Report
 from ..sheet import Column, Formula, Given, Root, name_of
 from ..unit_text import parse_unit
+from ..verdict import OTHERWISE, UNEXPECTED
 from .compact import short_script
 from .document import Document
 from .drawing import unit_text
@@ -125,6 +126,7 @@ def data(report: Report, document: Document) -> str:
             for figure in report.workbook.figures
             if figure.draw in FIGURES
         },
+        "findings": {"unexpected": UNEXPECTED, "otherwise": OTHERWISE},
         "published": [
             {
                 "id": f"published-{slug(group.source)}",
@@ -135,7 +137,7 @@ def data(report: Report, document: Document) -> str:
                         pair.printed.text,
                         _fraction(pair.printed.scale),
                         pair.printed.mode == "truncated",
-                        pair.comparison.published.expect == "differs",
+                        *pair.comparison.known,
                     ]
                     for pair in group.pairs
                 ],

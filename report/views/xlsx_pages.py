@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ...derivations.text import Writer, text_of_equation
@@ -143,6 +143,7 @@ _PUBLISHED = (
     ("in last digits", 12, "the difference, in units of the last printed digit"),
     ("verdict", 15, "whether it prints the same"),
     ("expected", 11, "a difference that is known"),
+    ("known", 14, "what it is known to differ to"),
     ("as expected", 11, "no: a finding"),
     ("reason", 70, "why a difference is expected"),
 )
@@ -163,7 +164,7 @@ def write_published(sheet: Any, style: Style, report: Report, grid: Grid) -> Non
     last = 4 + len(report.comparisons)
     mark_errors(sheet, style, 5, 5, last, 5)
     finding = {"type": "cell", "criteria": "==", "value": '"no"', "format": style("finding")}
-    sheet.conditional_format(5, 10, last, 10, finding)
+    sheet.conditional_format(5, 11, last, 11, finding)
     sheet.freeze_panes(5, 3)
     sheet.autofilter(3, 0, last, len(_PUBLISHED) - 1)
     sheet.set_landscape()
@@ -200,14 +201,32 @@ def _write_comparison(
     shortened = f"ROUND({cells['recomputed']},{decimals})"
     if printed.mode == "truncated":  # in the 15 digits that a double keeps: 29.7 is not cut to 29.6
         shortened = f"TRUNC(ROUND({cells['recomputed']},{15 - printed.digits + decimals}),{decimals})"
-    same = f"{shortened}={cells['printed']}".replace(",-", ",0-")
+    shortened = shortened.replace(",-", ",0-")
+    same = f"{shortened}={cells['printed']}"
     live = f'=IF(ISNUMBER({cells["recomputed"]}),IF({same},"same","differs"),"not-checkable")'
     style.formula(sheet, row, 8, live, comparison.verdict, style("unit"))
     style.text(sheet, row, 9, value.expect or "same")
-    live = f'=IF({cells["verdict"]}={cells["expected"]},"yes","no")'
-    style.formula(sheet, row, 10, live, "yes" if comparison.as_expected else "no", style("text"))
-    style.text(sheet, row, 11, value.reason, "wrapped")
+    _write_expected(sheet, style, row, comparison, cells, shortened)
+    style.text(sheet, row, 12, value.reason, "wrapped")
     sheet.set_row(row, height([(value.reason, 70)]))
+
+
+def _write_expected(
+    sheet: Any, style: Style, row: int, comparison: Comparison, cells: Mapping[str, str], again: str
+) -> None:
+    """Write what it is known to differ to and whether it does; `again` is the recomputed value as printed."""
+    known, even_so = comparison.known
+    verdict = cells["verdict"]
+    yes = '"no"' if even_so else '"yes"'
+    if known is None:
+        live = f'=IF({verdict}="same","yes",IF({verdict}="differs",{yes},"no"))'
+    elif known[:1] in {"", "#"}:  # no number: a code, or nothing that would do
+        style.text(sheet, row, 10, known)
+        live = f'=IF({cells["recomputed"]}={cells["known"]},{yes},"no")' if known else '="no"'
+    else:
+        sheet.write_number(row, 10, float(known), style("number", "General"))
+        live = f'=IF({verdict}="differs",IF({again}={cells["known"]},{yes},"no"),"no")'
+    style.formula(sheet, row, 11, live, "yes" if comparison.as_expected else "no", style("text"))
 
 
 def _signed(form: str) -> str:

@@ -1,13 +1,23 @@
 // Published values beside their recomputation, and the sentences that count them.
 
-function compared(look, [cell, index, text, scale, truncated, differs]) {
+// What is not as expected of a published value. `known` is what it is known to differ to, null if it shall not
+// differ, nothing if no number would do; `other` is what there is to find even so.
+function findingOf(same, again, known, other) {
+  if (known === null) return same ? "" : other;
+  if (same) return LIVE.findings.unexpected;
+  return known === "" || again === known ? other : LIVE.findings.otherwise;
+}
+
+function compared(look, [cell, index, text, scale, truncated, known, other]) {
   const row = look.trace.row(cell, index);
   if (row < 0 || !look.trace.isOk(cell, row)) {
-    return { again: row < 0 ? "–" : CODES[look.trace.sheet.status[cell][row]], verdict: "no value", expected: false };
+    const again = row < 0 ? "–" : CODES[look.trace.sheet.status[cell][row]];
+    const finding = known === null ? LIVE.findings.unexpected : findingOf(false, again, known, other);
+    return { again, verdict: "no value", finding };
   }
   const size = { n: BigInt(scale[0]), d: BigInt(scale[1]) };
   const { again, distance, same } = beside(look.trace.sheet.value[cell][row], text, size, truncated);
-  return { again, distance, verdict: same ? "same" : "differs", expected: same !== differs };
+  return { again, distance, verdict: same ? "same" : "differs", finding: findingOf(same, again, known, other) };
 }
 
 const distanceText = (distance) => signedText(decimals(distance, 1));
@@ -17,12 +27,12 @@ function writePublished(look) {
   for (const { id, rows, called, found } of groups) {
     const body = byId(id)?.querySelector("tbody");
     if (!body) continue;
-    found.forEach(({ again, distance, verdict, expected }, place) => {
+    found.forEach(({ again, distance, verdict, finding }, place) => {
       const row = body.rows[place], cells = row.cells;
       setText(cells[3], again);
       setText(cells[5], distance === undefined ? "" : distanceText(distance));
-      setText(cells[6], verdict + (expected ? "" : ", unexpectedly"));
-      row.classList.toggle("unexpected", !expected);
+      setText(cells[6], verdict + (finding && `, ${finding}`));
+      row.classList.toggle("unexpected", finding !== "");
       const [cell, index] = rows[place], now = look.trace.row(cell, index), before = look.issued.trace.row(cell, index);
       const same = now >= 0 && before >= 0 && isSameCell(look, cell, now, look.issued, before);
       cells[3].classList.toggle("changed", !same);
@@ -39,7 +49,7 @@ function writeTally(found) {
   const element = all("#result > p").find((p) => p.querySelector('a[href="#published"]'));
   if (!element) return;
   const count = (verdict) => found.filter((one) => one.verdict === verdict).length;
-  const differing = count("differs"), unchecked = count("no value"), surprises = found.filter((one) => !one.expected).length;
+  const differing = count("differs"), unchecked = count("no value"), surprises = found.filter((one) => one.finding).length;
   const parts = [`Of ${found.length} published values, ${comes(count("same"))} out as printed`];
   if (differing) parts.push(` and ${differing} ${differing === 1 ? "differs" : "differ"}`);
   if (unchecked) parts.push(`; ${unchecked} could not be compared`);

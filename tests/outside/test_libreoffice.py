@@ -220,10 +220,13 @@ def test_rows_left_out_are_counted(office: Office) -> None:
 def test_published_values_are_compared_again(office: Office) -> None:
     cells: dict[str, dict[str, Any]] = office.read
     assert cells["as issued"]["published"]["I6"] == "differs"
-    assert cells["as issued"]["published"]["K6"] == "yes"
+    assert cells["as issued"]["published"]["K6"] == 1.258
+    assert cells["as issued"]["published"]["L6"] == "yes"
+    assert cells["x_p of test 2"]["published"]["I6"] == "differs"
+    assert cells["x_p of test 2"]["published"]["L6"] == "no"  # otherwise than is known
     assert cells["an empty input"]["published"]["F6"] == "#INPUT!"
     assert cells["an empty input"]["published"]["I6"] == "not-checkable"
-    assert cells["an empty input"]["published"]["K6"] == "no"
+    assert cells["an empty input"]["published"]["L6"] == "no"
 
 
 def test_text_stays_text(office: Office) -> None:

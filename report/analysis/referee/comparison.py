@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from decimal import Context, Decimal
 from fractions import Fraction
 
+from ... import verdict_words as words
 from ...published import PublishedValue
 from ...quantity import Printed
 from ...result import Comparison
 from ...values import Values
-from ...verdict import EXACT, REACHABLE, WITHIN, Explanation, Referee, Verdict
+from ...verdict import (
+    EXACT,
+    OTHERWISE,
+    REACHABLE,
+    UNAMENDED,
+    UNEXPECTED,
+    UNEXPLAINED,
+    UNPINNED,
+    UNREASONED,
+    WITHIN,
+    Referee,
+    Verdict,
+)
 
 __all__ = ["compare", "print_as", "prints_same", "refereed"]
 
@@ -63,37 +75,47 @@ def compare(published: tuple[PublishedValue, ...], values: Values) -> tuple[Comp
 
 
 def _compare(published: PublishedValue, values: Values) -> Comparison:
-    cell = values.cell(published.cell, published.index)
+    cell, printed = values.cell(published.cell, published.index), published.printed
     if cell.value is None:
-        return Comparison(published, cell, cell.status.code, None, "not-checkable", as_expected=False)
-    printed = published.printed
-    again = print_as(cell.value, printed)
-    distance = float((Fraction(cell.value) - printed.value) / (2 * printed.half_unit))
-    verdict = "same" if prints_same(cell.value, printed) else "differs"
-    return Comparison(
-        published,
-        cell,
-        again,
-        distance,
-        verdict,
-        as_expected=(verdict == "differs") == (published.expect == "differs"),
-    )
+        again, distance, verdict = cell.status.code, None, "not-checkable"
+    else:
+        again = print_as(cell.value, printed)
+        distance = float((Fraction(cell.value) - printed.value) / (2 * printed.half_unit))
+        verdict = "same" if prints_same(cell.value, printed) else "differs"
+    return Comparison(published, cell, again, distance, verdict, _finding(published, again, verdict))
+
+
+def _finding(published: PublishedValue, again: str, verdict: str) -> str:
+    """What is not as expected, before the referee was asked."""
+    if not published.expect:
+        return "" if verdict == "same" else UNEXPECTED
+    if verdict == "same":
+        return UNEXPECTED
+    if published.pin is None:
+        return UNPINNED
+    if not published.pin.holds(published.printed, again):
+        return OTHERWISE
+    return "" if published.reason else UNREASONED
 
 
 def refereed(comparisons: tuple[Comparison, ...], found: Referee) -> tuple[Comparison, ...]:
     """Comparisons with what the referee says of each."""
     return tuple(
-        replace(comparison, refereed=verdict, as_expected=_as_expected(comparison, verdict, found.misprints))
+        replace(comparison, refereed=verdict, finding=_refereed(comparison, verdict, found))
         for comparison, verdict in zip(comparisons, found.values, strict=True)
     )
 
 
-def _as_expected(comparison: Comparison, verdict: Verdict, misprints: Sequence[Explanation]) -> bool:
-    """A known difference must differ, and only as is known; anything else must be possible."""
+def _refereed(comparison: Comparison, verdict: Verdict, found: Referee) -> str:
+    """What is not as expected: the referee excuses what is reachable, and knows what explains the rest."""
     published = comparison.published
-    if published.expect == "differs":
-        own = (published.source, published.cell, published.index)
-        return comparison.verdict == "differs" and own not in {
-            (change.source, change.cell, change.index) for found in misprints for change in found.changes
-        }
-    return verdict.verdict in (EXACT, REACHABLE, WITHIN)
+    if not published.expect:
+        return "" if verdict.verdict in (EXACT, REACHABLE, WITHIN) else UNEXPECTED
+    if comparison.finding:
+        return comparison.finding
+    own = (published.source, published.cell, published.index)
+    wrong = (change for each in found.misprints for change in each.changes)
+    if own in {(change.source, change.cell, change.index) for change in wrong}:
+        return UNAMENDED
+    holding = {"", *map(words.name, found.explanations)}
+    return "" if published.explained in holding else UNEXPLAINED
