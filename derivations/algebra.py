@@ -20,6 +20,16 @@ from sympy import (
     Mul,
     Pow,
     Sum,
+    acosh,
+    acoth,
+    asinh,
+    atanh,
+    cosh,
+    coth,
+    csch,
+    erf,
+    erfc,
+    erfi,
     exp,
     expand,
     expand_log,
@@ -29,7 +39,10 @@ from sympy import (
     nan,
     oo,
     powsimp,
+    sech,
     simplify,
+    sinh,
+    tanh,
     together,
     zoo,
 )
@@ -214,6 +227,21 @@ def _powers(expression: Expr) -> Expr:
     return expression.replace(exp, product)
 
 
+_FAMILIES = (
+    ((erfc, erfi), erf),
+    ((asinh, acosh, atanh, acoth), log),
+    ((sinh, cosh, tanh, coth, sech, csch), exp),
+)
+"""Functions that are another one in disguise, by their definitions."""
+
+
+def _undisguised(expression: Any) -> Any:
+    """Write functions of a family by the one that defines them."""
+    for disguised, plain in _FAMILIES:
+        expression = expression.rewrite(disguised, plain)
+    return expression
+
+
 def vanishes(residual: Expr) -> bool:
     """Whether the residual is identically zero; False means only that it was not seen to be.
 
@@ -231,6 +259,7 @@ def vanishes(residual: Expr) -> bool:
         lambda: expand(powsimp(numerator)),
         lambda: simplify(numerator),
         lambda: simplify(residual),
+        lambda: simplify(_undisguised(residual)),
     )
     return any(attempt() == 0 for attempt in attempts)
 

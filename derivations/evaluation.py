@@ -13,8 +13,8 @@ from statistics import median
 from typing import Any
 
 import mpmath
+import sympy
 from sympy import (
-    Abs,
     Add,
     And,
     Basic,
@@ -26,8 +26,6 @@ from sympy import (
     Integral,
     Le,
     Lt,
-    Max,
-    Min,
     Mul,
     Ne,
     Not,
@@ -37,12 +35,7 @@ from sympy import (
     Pow,
     Rational,
     Sum,
-    exp,
-    gamma,
-    log,
-    sin,
 )
-from sympy import cos as cosine
 from sympy.logic.boolalg import BooleanAtom
 
 from .reductions import REDUCTIONS, Median
@@ -52,15 +45,22 @@ __all__ = ["UNDEFINED", "NotEvaluable", "Program", "is_real"]
 UNDEFINED = (ZeroDivisionError, ValueError, OverflowError, TypeError, IndexError)
 """What running a program raises where an expression has no value."""
 
+_SAME_NAME = (
+    "exp log sin cos tan cot sec csc asin acos atan atan2 sinh cosh tanh coth sech csch "
+    "asinh acosh atanh acoth gamma loggamma polygamma beta factorial binomial erf erfc erfi erfinv zeta "
+    "floor sign besselj bessely besseli besselk"
+)
+"""Functions that sympy and mpmath call by one name and define alike."""
+
 _FUNCTIONS: dict[Any, Callable[..., Any]] = {
-    Abs: abs,
-    Max: max,
-    Min: min,
-    exp: mpmath.exp,
-    log: mpmath.log,
-    gamma: mpmath.gamma,
-    sin: mpmath.sin,
-    cosine: mpmath.cos,
+    **{getattr(sympy, name): getattr(mpmath, name) for name in _SAME_NAME.split()},
+    sympy.ceiling: mpmath.ceil,
+    sympy.LambertW: mpmath.lambertw,
+    sympy.elliptic_k: mpmath.ellipk,
+    sympy.elliptic_e: mpmath.ellipe,
+    sympy.Abs: abs,
+    sympy.Max: max,
+    sympy.Min: min,
     Lt: operator.lt,
     Le: operator.le,
     Gt: operator.gt,

@@ -19,11 +19,18 @@ from sympy import (
     Rational,
     Sum,
     Symbol,
+    asinh,
+    cosh,
+    erf,
+    erfc,
+    gamma,
     log,
     nan,
     oo,
     sin,
+    sinh,
     sqrt,
+    tanh,
     zoo,
 )
 
@@ -113,6 +120,21 @@ def test_a_median_is_evaluated_and_nothing_is_made_up_about_it() -> None:
     assert decide(claim(Median(X[q] + b, (q, 1, n)), middle)).status is Status.REFUTED
     # True, and seen at every point; but no algebra of ours knows of order.
     assert decide(claim(Median(X[q] + b, (q, 1, n)), middle + b)).status is Status.UNDECIDED
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "wrong"),
+    [
+        (cosh(a) ** 2 - sinh(a) ** 2, Integer(1), cosh(a)),
+        (tanh(a), sinh(a) / cosh(a), cosh(a) / sinh(a)),
+        (gamma(a + 1), a * gamma(a), gamma(a)),
+        (erf(a) + erfc(a), Integer(1), erf(a)),
+        (sinh(asinh(a) + log(b)), (b * (a + sqrt(a**2 + 1)) - 1 / (b * (a + sqrt(a**2 + 1)))) / 2, a * b),
+    ],
+)
+def test_functions_of_every_field_have_values(left: Expr, right: Expr, wrong: Expr) -> None:
+    assert decide(claim(left, right)).status is Status.PROVED
+    assert decide(claim(left, wrong)).status is Status.REFUTED
 
 
 def test_a_sum_is_tried_with_several_numbers_of_terms() -> None:
