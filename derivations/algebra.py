@@ -13,7 +13,6 @@ from typing import Any
 
 from sympy import (
     Add,
-    Basic,
     Expr,
     Integer,
     Integral,
@@ -47,7 +46,12 @@ from sympy import (
     zoo,
 )
 
+from .facts import Facts
+from .sums import in_terms
+
 __all__ = ["Solved", "definite", "settle", "solve_for", "vanishes"]
+
+NOTHING = Facts()
 
 
 @dataclass(frozen=True)
@@ -69,19 +73,19 @@ class Solved:
     powers: tuple[Expr, ...] = ()
 
 
-def solve_for(unknown: Expr, left: Expr, right: Expr) -> Solved | None:
+def solve_for(unknown: Expr, left: Expr, right: Expr, facts: Facts = NOTHING) -> Solved | None:
     """Solve left = right for a positive unknown; None where the solution was not seen to be the only one.
 
     Two kinds of equation are solved. One is linear in the unknown after its denominators are cleared.
     In the other the unknown stands in one place, under products, powers and logarithms, each of which takes
-    a value once where its argument is positive.
+    a value once where its argument is positive; `facts` may know that it is.
     """
     for here, there in ((left, right), (right, left)):
         if here == unknown and not there.has(unknown):
             return Solved(there)
     for cleared in (False, True):
         difference = left - right
-        difference = _linear_sums(_numerator(difference) if cleared else difference)
+        difference = in_terms(_numerator(difference) if cleared else difference)
         if difference.has(Sum):
             difference = expand(difference)
         slope = _slope(difference, unknown)
@@ -91,7 +95,7 @@ def solve_for(unknown: Expr, left: Expr, right: Expr) -> Solved | None:
             return None
     if left.has(unknown) and right.has(unknown):
         return None
-    return _undo(unknown, *((left, right) if left.has(unknown) else (right, left)))
+    return _undo(unknown, *((left, right) if left.has(unknown) else (right, left)), facts)
 
 
 def _slope(expression: Expr, unknown: Expr) -> Expr | None:
@@ -122,7 +126,7 @@ def _slope_of_product(term: Expr, unknown: Expr) -> Expr | None:
     )
 
 
-def _undo(unknown: Expr, here: Expr, there: Expr) -> Solved | None:
+def _undo(unknown: Expr, here: Expr, there: Expr, facts: Facts) -> Solved | None:
     """Undo what was done to the unknown, the outermost operation first."""
     pivots: list[Expr] = []
     powers: list[Expr] = []
@@ -138,11 +142,11 @@ def _undo(unknown: Expr, here: Expr, there: Expr) -> Solved | None:
             case Mul():
                 pivots.append(Mul(*rest))
                 there /= Mul(*rest)
-            case Pow() if here.base == inner and inner.is_positive:
+            case Pow() if here.base == inner and facts.positive(inner):
                 pivots.append(here.exp)
                 powers.append(there)
                 there = there ** (1 / here.exp)
-            case log() if inner.is_positive:
+            case log() if facts.positive(inner):
                 there = exp(there)
             case exp():
                 powers.append(there)
@@ -157,9 +161,9 @@ def _numerator(expression: Expr) -> Expr:
     return fraction(together(expression))[0]
 
 
-def settle(expression: Any, solution: Mapping[Expr, Expr]) -> Any:
-    """Put a solution in and integrate; sums stay (sympy would search closed forms for them)."""
-    settled = expression.xreplace(dict(solution))
+def settle(expression: Any, solution: Mapping[Expr, Expr], facts: Facts = NOTHING) -> Any:
+    """Put a solution and what is known in, and integrate; sums stay (sympy would search closed forms)."""
+    settled = facts.put(expression.xreplace(dict(solution)))
     integrals = settled.atoms(Integral)
     return (
         settled.xreplace({integral: _integrate(integral) for integral in integrals}) if integrals else settled
@@ -194,22 +198,6 @@ def _integrated(term: Expr, variable: Expr, low: Expr, high: Expr) -> Expr | Non
     if not (power.is_integer or (at_low.is_nonnegative and at_high.is_nonnegative)):
         return None
     return outer * (at_high ** (power + 1) - at_low ** (power + 1)) / (power + 1) / slope
-
-
-def _linear_sums(expression: Any) -> Any:
-    """Split every sum into terms and take out what does not run with its index."""
-    if not isinstance(expression, Basic) or not expression.has(Sum):
-        return expression
-    if isinstance(expression, Sum) and len(expression.limits) == 1:
-        index, low, high = expression.limits[0]
-        total = Add()
-        body = expand(expand_log(expand_power_base(_linear_sums(expression.function))))
-        for term in Add.make_args(body):
-            outer, inner = term.as_independent(index, as_Add=False)
-            inner = powsimp(inner)
-            total += outer * ((high - low + 1) if inner == 1 else Sum(inner, (index, low, high)))
-        return total
-    return expression.func(*(_linear_sums(argument) for argument in expression.args))
 
 
 def _powers(expression: Expr) -> Expr:
@@ -250,7 +238,7 @@ def vanishes(residual: Expr) -> bool:
     """
     if residual.has(nan, zoo, oo):
         return False
-    residual = _powers(_linear_sums(residual))
+    residual = _powers(in_terms(residual))
     if residual == 0:
         return True
     numerator = expand(_numerator(expand_power_base(residual)))

@@ -13,10 +13,12 @@ from typing import Any
 import mpmath
 from sympy import And, Expr, Indexed, Integer, Piecewise, Symbol, expand
 
+from .cells import Cells
 from .dimensions import Dimensions, dimension_of_unit, power, product
 from .equation import Equation, Erratum, Kind, Ledger
 from .evaluation import UNDEFINED, Program, is_real
-from .sampling import AGREES, DIGITS, Space, said, short
+from .sampling import AGREES, DIGITS
+from .space import Space, said, short
 from .text import Writer
 from .vocabulary import Quantity, Vocabulary
 
@@ -57,10 +59,9 @@ def _values(
     expressions: list[Any], seed: str, vocabulary: Vocabulary
 ) -> Iterator[tuple[dict[str, str], list[Any]]]:
     """Yield seeded points of the symbols' spans, with the expressions' values there."""
-    cells = {cell for expression in expressions for cell in expression.atoms(Indexed)}
-    flat = {cell: Symbol(str(cell), **cell.base.label.assumptions0) for cell in cells}
-    plain = [expression.xreplace(flat) for expression in expressions]
-    space = Space(plain, {symbol: cell for cell, symbol in flat.items()}, vocabulary)
+    cells = Cells.of(expressions)
+    plain = [cells.plain(expression) for expression in expressions]
+    space = Space(plain, cells.names, vocabulary)
     with mpmath.workdps(DIGITS):
         program = Program(space.symbols)
         group = program.add(plain)

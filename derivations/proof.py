@@ -14,7 +14,8 @@ from functools import lru_cache
 
 from .equation import Derivation, Equation, Kind, Ledger, Step
 from .evaluation import NotEvaluable
-from .sampling import DIGITS, POINTS, examine, said
+from .sampling import DIGITS, POINTS, examine
+from .space import said
 from .system import Refused, prepare
 from .text import text
 from .vocabulary import NO_WORDS, Vocabulary

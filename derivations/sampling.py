@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
@@ -12,12 +11,11 @@ import mpmath
 from sympy import Abs, Add, Expr, Indexed, Integral, Mul, Pow, Sum, Symbol
 
 from .evaluation import UNDEFINED, Program, is_real
-from .reductions import REDUCTIONS, Median
+from .reductions import Median
+from .space import Rows, Space, said, short
 from .system import Refused, System
-from .text import text
-from .vocabulary import Vocabulary
 
-__all__ = ["DIGITS", "POINTS", "Outcome", "Space", "examine", "short"]
+__all__ = ["DIGITS", "POINTS", "Outcome", "examine"]
 
 DIGITS = 50
 POINTS = 20
@@ -27,8 +25,6 @@ AGREES = mpmath.mpf(10) ** (10 - DIGITS)
 DETERMINES = mpmath.mpf(10) ** (-DIGITS // 2)
 """Smallest relative divisor that counts as not zero."""
 _TRIES = 60 * POINTS
-_MOST_TERMS = 5
-"""The size of a sum is drawn from two to this number."""
 
 
 @dataclass(frozen=True)
@@ -41,91 +37,6 @@ class Outcome:
     sides: tuple[str, str] = ("", "")
 
 
-class Space:
-    """Where symbols are drawn from: sizes of sums, columns under sums, and free symbols.
-
-    Parameters
-    ----------
-    expressions : sequence of Expr
-        What is to be evaluated.
-    names : mapping
-        The cell or the quantity that a symbol stands for, where it is not its own name.
-    vocabulary : Vocabulary
-        What the symbols are called, and in which interval each is drawn.
-    fixed : collection of Expr
-        Symbols that are not drawn.
-    """
-
-    def __init__(
-        self, expressions: Any, names: Mapping[Any, Any], vocabulary: Vocabulary, fixed: Any = ()
-    ) -> None:
-        self.names, self.vocabulary = names, vocabulary
-        sums = [total for e in expressions for total in e.atoms(*REDUCTIONS)]
-        columns = {cell.base.label for e in expressions for cell in e.atoms(Indexed)}
-        sizes = {
-            s for total in sums for limit in total.limits for place in limit[1:] for s in place.free_symbols
-        }
-        free = {s for e in expressions for s in e.free_symbols if isinstance(s, Symbol)}
-        self.sizes = sorted(sizes, key=self.name)
-        self.columns = sorted(columns, key=self.name)
-        self.scalars = sorted(free - sizes - columns - set(fixed), key=self.name)
-
-    @property
-    def symbols(self) -> list[Any]:
-        """All that is drawn, in the order of a point's values."""
-        return [*self.sizes, *self.columns, *self.scalars]
-
-    def name(self, symbol: Any) -> str:
-        """How a reader knows the symbol."""
-        return text(self.names.get(symbol, symbol), self.vocabulary)
-
-    def points(self, seed: str, count: int) -> Iterator[list[Any]]:
-        """Draw points; the same seed always gives the same ones."""
-        rng = random.Random(seed)
-        columns = [self._span(column) for column in self.columns]
-        scalars = [self._span(symbol) for symbol in self.scalars]
-
-        def number(low: Any, width: Any, whole: bool) -> Any:
-            value = low + width * rng.random()
-            return mpmath.floor(value) if whole else value
-
-        for _ in range(count):
-            yield [
-                *(mpmath.mpf(rng.randint(2, _MOST_TERMS)) for _ in self.sizes),
-                *([number(*span) for _ in range(_MOST_TERMS + 1)] for span in columns),
-                *(number(*span) for span in scalars),
-            ]
-
-    def _span(self, symbol: Any) -> tuple[Any, Any, bool]:
-        """Where the interval of a symbol begins, how wide it is, and whether only whole numbers count.
-
-        It is the vocabulary's, where its symbol is no freer than this one.
-        """
-        quantity = self.vocabulary.find(self.names.get(symbol, symbol))
-        if quantity is not None and (quantity.positive or not symbol.is_positive):
-            low, high = quantity.span
-        elif symbol.is_integer:
-            low, high = (1.0 if symbol.is_positive else -9.0), 9.0
-        else:
-            low, high = (0.5 if symbol.is_positive else -2.0), 2.0
-        return mpmath.mpf(low), mpmath.mpf(high) - mpmath.mpf(low), bool(symbol.is_integer)
-
-    def describe(self, point: list[Any], more: Mapping[Any, Any] | None = None) -> dict[str, str]:
-        """Say where a point lies; of a column, the terms that the sums use."""
-        most = max((int(value) for value in point[: len(self.sizes)]), default=0)
-        found = {}
-        for symbol, value in [*zip(self.symbols, point, strict=True), *(more or {}).items()]:
-            found[self.name(symbol)] = (
-                f"({', '.join(map(short, value[1 : most + 1]))})" if isinstance(value, list) else short(value)
-            )
-        return found
-
-
-def short(value: Any) -> str:
-    """Write a number for a reader."""
-    return str(mpmath.nstr(value, 6))
-
-
 class _Trial:
     """The operations of one step, and how to judge them at a point."""
 
@@ -134,6 +45,7 @@ class _Trial:
         self.space = Space(system.expressions, system.names, system.vocabulary, self.unknowns)
         self.labels = [label for label, _, _ in system.premises]
         self.program = program = Program(self.space.symbols)
+        self.rows = [self._row(unknown) for unknown in self.unknowns]
         self.found = [program.define(unknown, solved.value) for unknown, solved in system.chain]
         self.powers = program.add(power for _, solved in system.chain for power in solved.powers)
         self.conditions = program.add(system.conditions)
@@ -147,6 +59,12 @@ class _Trial:
     def add(self, side: Expr) -> tuple[Expr, Any]:
         """An expression, and the group that computes it."""
         return side, self.program.add([side])
+
+    def _row(self, unknown: Expr) -> tuple[int, Any] | None:
+        """Where an eliminated cell stands in its column: the column's place in a point, and the row."""
+        if not isinstance(unknown, Indexed):
+            return None
+        return self.space.symbols.index(unknown.base.label), self.program.add([unknown.indices[0]])
 
     def value(self, side: tuple[Expr, Any]) -> Any:
         return self.program.values(side[1])[0]
@@ -170,10 +88,13 @@ class _Trial:
     def lies_in_domain(self, point: list[Any]) -> bool:
         """Begin at a point; whether the premises have a positive solution there and the conditions hold."""
         self.program.start(point)
-        for unknown, group in zip(self.unknowns, self.found, strict=True):
+        for unknown, group, row in zip(self.unknowns, self.found, self.rows, strict=True):
             value = self.program.values(group)
             if not is_real(value) or (unknown.is_positive and value <= 0):
                 return False
+            if row is not None:  # it is one of the data that a sum runs over
+                place, number = row
+                point[place].known[int(self.program.values(number)[0])] = value
         powers = self.program.values(self.powers)
         return all(is_real(power) and power > 0 for power in powers) and all(
             self.program.values(self.conditions)
@@ -185,8 +106,13 @@ class _Trial:
             if not abs(self.value(pivot)) > DETERMINES * self.size(pivot):
                 raise Refused("a premise does not determine what it is solved for")
         for label, (left, right) in zip(self.labels, self.premises, strict=True):
-            if any(not residual <= AGREES for _, _, residual in self.gap(left, right)):
+            if any(not residual <= self.exact for _, _, residual in self.gap(left, right)):
                 raise Refused(f"what {label} was solved for does not satisfy it")
+
+    @property
+    def exact(self) -> Any:
+        """The residual up to which sides may be equal, for all that is known at the point."""
+        return max(AGREES, 1000 * self.program.blur)
 
     def residuals(self) -> Iterator[tuple[Any, Any, Any]]:
         """Neighbouring sides of the claim and their relative difference."""
@@ -249,7 +175,8 @@ def examine(system: System, seed: str) -> Outcome:
                 found = list(trial.residuals())
             except UNDEFINED:
                 found = [(mpmath.nan,) * 3]
-            if not all(mpmath.isfinite(side) for pair in found for side in pair[:2]):
+            finite = all(mpmath.isfinite(side) for pair in found for side in pair[:2])
+            if not finite or any(AGREES < residual <= trial.exact for _, _, residual in found):
                 undefined = undefined or trial.describe(point)
                 continue
             for a, b, residual in found:
@@ -272,11 +199,6 @@ def examine(system: System, seed: str) -> Outcome:
         if counted
         else "no point satisfies its premises and conditions"
     )
-
-
-def said(point: Mapping[str, str]) -> str:
-    """Write a point as a list of values."""
-    return ", ".join(f"{name} = {value}" for name, value in point.items())
 
 
 def _witness(trial: _Trial, point: list[Any], counted: int) -> Outcome:
@@ -305,7 +227,7 @@ def _solved_for(trial: _Trial, point: list[Any], place: int) -> list[Any] | None
                 return None
             scale = t - g * (t - s) / (g - f)
         old = point[place]
-        new = [old[0], old[1] * scale, *old[2:]] if isinstance(old, list) else old * scale
+        new = old.with_row(1, old[1] * scale) if isinstance(old, Rows) else old * scale
         moved = [*point[:place], new, *point[place + 1 :]]
         try:
             if not scale > 0 or not trial.lies_in_domain(moved):

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from sympy import Expr, Float, Indexed, IndexedBase, Integral, Rel, Symbol, true
+from sympy import Expr, Float, Indexed, Rel, true
 from sympy.core.function import AppliedUndef
 
-from .algebra import Solved, definite, settle, solve_for, vanishes
+from .algebra import NOTHING, Solved, definite, settle, solve_for, vanishes
+from .cells import Cells, running
 from .equation import Equation, Step
-from .reductions import REDUCTIONS
+from .facts import Facts
+from .sums import in_terms
 from .text import Writer
 from .vocabulary import Vocabulary
 
@@ -41,7 +43,9 @@ class System:
     solution : dict
         Each eliminated symbol in terms of the free ones alone.
     conditions : tuple of Rel
-        What the claim says of its domain.
+        What the claim says of its domain, and where the cells exist that it names.
+    facts : Facts
+        What follows from them for the algebra.
     multiplied : tuple of Expr or None
         Factor and both sides of the premise that is not solved: factor times premise is the claim.
     names : dict
@@ -55,6 +59,7 @@ class System:
     chain: tuple[tuple[Expr, Solved], ...]
     solution: dict[Expr, Expr]
     conditions: tuple[Rel, ...]
+    facts: Facts
     multiplied: tuple[Expr, Expr, Expr] | None
     names: dict[Any, Any]
     vocabulary: Vocabulary
@@ -68,11 +73,20 @@ class System:
 
     def residual_is_zero(self) -> bool:
         """Whether every difference of neighbouring members vanishes once the premises are put in."""
-        sides = [settle(side, self.solution) for side in self.claim]
+        return all(
+            any(vanishes(self._residual(a, b, facts)) for facts in (NOTHING, self.facts))
+            for a, b in pairwise(self.claim)
+        )
+
+    def _residual(self, a: Expr, b: Expr, facts: Facts) -> Expr:
+        """What must vanish for two members to be equal."""
+        parts = [settle(part, self.solution, facts) for part in (a, b, *(self.multiplied or ()))]
+        residual = parts[0] - parts[1]
         if self.multiplied is not None:
-            factor, left, right = (settle(part, self.solution) for part in self.multiplied)
-            return vanishes((sides[0] - sides[1]) - factor * (left - right))
-        return all(vanishes(a - b) for a, b in pairwise(sides))
+            factor, left, right = parts[2:]
+            residual -= factor * (left - right)
+        # A row that was eliminated may come out of a sum.
+        return facts.put(in_terms(residual).xreplace(self.solution))
 
 
 def prepare(step: Step, vocabulary: Vocabulary) -> System:
@@ -102,37 +116,49 @@ def prepare(step: Step, vocabulary: Vocabulary) -> System:
     given = [side.xreplace(functions) for equation in equations for side in equation.sides]
     given += [condition for equation in (*equations, *step.premises) for condition in equation.conditions]
     given += [unknown for unknown in step.eliminate if unknown not in functions]
-    names, flat = _plain_names([*given, *([step.multiplier] if step.multiplier else [])], told)
+    given += [step.multiplier] if step.multiplier else []
+    _check_running(given, told)
+    cells = Cells.of(given)
 
     def plain(expression: Any) -> Any:
-        return expression.xreplace(functions).xreplace(flat)
+        return cells.plain(expression.xreplace(functions))
 
     def ends(equation: Equation) -> tuple[Expr, Expr]:
         return plain(equation.sides[0]), plain(equation.sides[-1])
 
+    def domain(equation: Equation) -> dict[Any, Any]:
+        """Where an equation says something: what it states, and that the cells exist which it names."""
+        exist = cells.exist(side.xreplace(functions) for side in equation.sides)
+        return {plain(condition): condition for condition in (*equation.conditions, *exist)}
+
+    conditions = tuple(domain(step.claim))
+    stated = Facts(conditions)
     solution: dict[Expr, Expr] = {}
     chain: list[tuple[Expr, Solved]] = []
     for premise, cell in pairs:
         unknown = plain(cell)
         left, right = (settle(side, solution) for side in ends(premise))
-        solved = solve_for(unknown, left, right)
+        solved = solve_for(unknown, left, right, stated)
         if solved is None:
             raise Refused(f"{premise.label} was not seen to have one solution for {told(cell)}")
+        if isinstance(unknown, Indexed) and any(
+            row.base == unknown.base and not row.indices[0].is_Integer for row in solved.value.atoms(Indexed)
+        ):
+            raise Refused(f"{premise.label} holds {told(cell)} also as one of all its rows")
         solution = {known: value.xreplace({unknown: solved.value}) for known, value in solution.items()}
         solution[unknown] = solved.value
         chain.insert(0, (unknown, solved))
-    conditions = tuple(plain(condition) for condition in step.claim.conditions)
+    facts = Facts(settle(condition, solution) for condition in conditions)
     for premise in step.premises:
-        for condition in premise.conditions:
-            if plain(condition) not in conditions and not _is_implied(plain(condition), solution):
+        for condition, written in domain(premise).items():
+            if condition not in conditions and not _is_implied(condition, solution, facts):
                 raise Refused(
-                    f"{premise.label} holds only where {told(condition)}, "
-                    f"which {step.claim.label} does not say"
+                    f"{premise.label} holds only where {told(written)}, which {step.claim.label} does not say"
                 )
     multiplied = None
     if step.multiplier is not None:
         multiplied = (plain(step.multiplier), *ends(unsolved[0]))
-        if not definite(multiplied[0]):
+        if not definite(stated.put(multiplied[0])):
             raise Refused(f"the factor {told(step.multiplier)} was not seen to be of one sign")
     return System(
         claim=tuple(plain(side) for side in step.claim.sides),
@@ -140,8 +166,9 @@ def prepare(step: Step, vocabulary: Vocabulary) -> System:
         chain=tuple(chain),
         solution=solution,
         conditions=conditions,
+        facts=facts,
         multiplied=multiplied,
-        names=names,
+        names=cells.names,
         vocabulary=vocabulary,
     )
 
@@ -174,40 +201,31 @@ def _functions(step: Step, told: Told) -> dict[Expr, Expr]:
     return laws
 
 
-def _plain_names(expressions: list[Any], told: Told) -> tuple[dict[Any, Any], dict[Indexed, Expr]]:
-    """Plain symbols for cells: algebra on them is faster, and no cell shares its name with a column."""
-    limits = [limit for e in expressions for loop in e.atoms(Integral, *REDUCTIONS) for limit in loop.limits]
-    bound = {limit[0] for limit in limits}
+def _check_running(expressions: list[Any], told: Told) -> None:
+    """Refuse what runs here and is fixed there, and what is positive by name but runs below zero."""
+    limits = running(expressions)
     free = {symbol for expression in expressions for symbol in expression.free_symbols}
+    bound = {limit[0] for limit in limits}
     for variable in sorted(bound & free, key=str):
         raise Refused(f"{told(variable)} runs in one expression and is fixed in another")
+    cells = {cell for expression in expressions for cell in expression.atoms(Indexed)}
+    for cell in sorted((c for c in cells if len(c.indices) > 1 and c.free_symbols & bound), key=str):
+        raise Refused(f"{told(cell)} has several indices, and one of them runs")
     for variable, *places in limits:
-        if variable.is_positive and not all(_may_start(place, variable) for place in places):
-            raise Refused(f"{told(variable)} is positive, but its limits are not")
-    names: dict[Any, Any] = {}
-    flat: dict[Indexed, Expr] = {}
-    for cell in {cell for expression in expressions for cell in expression.atoms(Indexed)}:
-        label = cell.base.label
-        if cell.free_symbols & bound:
-            column = Symbol(f"{label}[]", **label.assumptions0)
-            names[column] = label
-            flat[cell] = IndexedBase(column)[cell.indices]
+        # A sum that ends before it begins has no terms; an integral runs backwards.
+        if variable.is_integer and variable.is_positive:
+            starts = bool(places[0].is_positive)
         else:
-            symbol = Symbol(f"{label}[{','.join(map(str, cell.indices))}]", **label.assumptions0)
-            names[symbol] = cell
-            flat[cell] = symbol
-    return names, flat
+            starts = not variable.is_positive or all(place.is_nonnegative for place in places)
+        if not starts:
+            raise Refused(f"{told(variable)} is positive, but its limits are not")
 
 
-def _may_start(place: Expr, variable: Expr) -> bool:
-    return bool(place.is_positive if variable.is_integer else place.is_nonnegative)
-
-
-def _is_implied(condition: Any, solution: Mapping[Expr, Expr]) -> bool:
-    """Whether a condition of a premise follows from the signs of the symbols once the solution is in."""
+def _is_implied(condition: Any, solution: Mapping[Expr, Expr], facts: Facts) -> bool:
+    """Whether a condition of a premise follows from what is known once the solution is in."""
     if condition == true:
         return True
     if not isinstance(condition, Rel) or condition.rel_op not in (">", ">=", "<", "<="):
         return False
     margin = settle(condition.gts - condition.lts, solution)
-    return bool(margin.is_positive if condition.rel_op in "<>" else margin.is_nonnegative)
+    return facts.positive(margin) if condition.rel_op in "<>" else facts.nonnegative(margin)

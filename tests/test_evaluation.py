@@ -3,7 +3,7 @@
 import mpmath
 import pytest
 import sympy
-from sympy import Expr, Rational, Symbol
+from sympy import Expr, Rational, Sum, Symbol
 
 from loopsheet.derivations.evaluation import UNDEFINED, NotEvaluable, Program, is_real
 
@@ -42,6 +42,58 @@ def test_a_function_has_the_value_that_the_library_gives_it(expression: Expr) ->
     with mpmath.workdps(50):
         expected = mpmath.mpmathify(sympy.N(expression.subs(AT), 50))
         assert abs(found - expected) <= mpmath.mpf(10) ** -46 * max(1, abs(expected))
+
+
+X = sympy.IndexedBase(Symbol("X", positive=True))
+q, r, n = (Symbol(name, integer=True, positive=True) for name in "qrn")
+ROWS = [None, 2, 3, 5, 7]
+
+
+def of_rows(expression: Expr, size: int = 4) -> mpmath.mpf:
+    program = Program([n, X.label])
+    group = program.add([expression])
+    program.start([mpmath.mpf(size), ROWS])
+    return program.values(group)[0]
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        (Sum(X[q], (q, 1, n)), 17),
+        (Sum(X[q], (q, 2, n)) + X[1], 17),
+        (Sum(X[q], (q, 2, n - 3)), 0),
+        (Sum(X[q] * X[r], (q, 1, n), (r, 1, n)), 17**2),
+        (Sum(X[q], (q, 1, r), (r, 1, n)), 2 + 5 + 10 + 17),
+        (Sum(X[r] * Sum(X[q], (q, 1, r)), (r, 1, n)), 2 * 2 + 3 * 5 + 5 * 10 + 7 * 17),
+        (Sum(X[q] * Sum(X[q], (q, 1, 2)), (q, 1, n)), 5 * 17),  # what runs inside hides what runs outside
+        (X[n] - X[n - 1], 2),
+    ],
+    ids=str,
+)
+def test_sums_run_over_the_rows_of_a_column(expression: Expr, expected: int) -> None:
+    assert of_rows(expression) == expected
+
+
+@pytest.mark.parametrize(
+    "expression", [X[n - 4], X[n - 5], X[n / 3], X[5], Sum(X[q], (q, 1, n / 3))], ids=str
+)
+def test_a_row_that_is_not_there_has_no_value(expression: Expr) -> None:
+    with pytest.raises(UNDEFINED):
+        of_rows(expression)
+
+
+@pytest.mark.parametrize("beside", ["0.1", "1e-3", "1e-5", "1e-7", "0"])
+@pytest.mark.parametrize("power", ["0.03", "1.58", "2.5"])
+def test_an_integral_beside_a_branch_point_is_resolved(beside: str, power: str) -> None:
+    """Its error was a hundred thousand times what a proof allows, and true claims were refuted."""
+    with mpmath.workdps(50):
+        program = Program([x, y])
+        group = program.add(
+            [sympy.Integral((q + x) ** y, (q, 0, 1)), ((1 + x) ** (y + 1) - x ** (y + 1)) / (y + 1)]
+        )
+        program.start([mpmath.mpf(beside), mpmath.mpf(power)])
+        found, expected = program.values(group)
+        assert abs(found - expected) <= mpmath.mpf(10) ** -43 * expected
 
 
 def test_what_has_no_value_says_its_name() -> None:
