@@ -4,19 +4,17 @@ from dataclasses import replace
 
 import mpmath
 import pytest
+from proving import X, a, b, c, claim, decide, given, n, q, w, y
 from sympy import (
     Abs,
-    Eq,
     Expr,
     Float,
     Function,
     Indexed,
-    IndexedBase,
     Integer,
     Integral,
     Max,
     Min,
-    Ne,
     Piecewise,
     Rational,
     Sum,
@@ -40,28 +38,6 @@ from loopsheet.derivations import proof, sampling, system
 from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step
 from loopsheet.derivations.proof import LEAST_POINTS, POINTS, Status, check_step, prove, prove_equation
 from loopsheet.derivations.reductions import Median
-
-a, b, c = (Symbol(name, positive=True) for name in "abc")
-y, w = (Symbol(name, real=True) for name in "yw")
-q, n = Symbol("q", integer=True, positive=True), Symbol("n", integer=True, positive=True)
-X = IndexedBase(Symbol("X", positive=True))
-
-
-def given(left: Expr, right: Expr, *conditions: Expr) -> Equation:
-    return Equation("", (left, right), "", Kind.ASSUMPTION, f"{left} = {right}", conditions=conditions)
-
-
-def claim(*members: Expr, conditions: tuple[Expr, ...] = ()) -> Equation:
-    return Equation("(1)", members, "", conditions=conditions)
-
-
-def decide(
-    claimed: Equation, *premises: tuple[Equation, Expr], factor: Expr | None = None
-) -> proof.StepProof:
-    """Check a step; a premise without anything to solve for is the one that the factor multiplies."""
-    unknowns = tuple(unknown for _, unknown in premises if unknown is not None)
-    return check_step(Step(claimed, tuple(premise for premise, _ in premises), unknowns, "", factor))
-
 
 # --- what must come out ---------------------------------------------------------------------------------
 
@@ -374,179 +350,6 @@ def test_a_cell_and_a_symbol_of_the_same_name_are_two() -> None:
     assert decide(claim(X[1], x_1)).status is Status.REFUTED
     column = Symbol("X", positive=True)
     assert decide(claim(Sum(X[q] * column, (q, 1, n)), column * Sum(X[q], (q, 1, n)))).status is Status.PROVED
-
-
-# --- a cell and the column that is summed are one set of data -----------------------------------------------
-
-Y = IndexedBase(Symbol("Y", real=True))
-Z = IndexedBase(Symbol("Z", positive=True))
-k, m, r = (Symbol(name, integer=True, positive=True) for name in "kmr")
-
-
-def total(body: Expr, low: Expr | int = 1, high: Expr | int = n, index: Symbol = q) -> Sum:
-    return Sum(body, (index, low, high))
-
-
-@pytest.mark.parametrize(
-    ("left", "right", "conditions"),
-    [
-        (total(X[q]), X[1] + total(X[q], 2), ()),
-        (total(X[q]), X[1] + X[2] + total(X[q], 3), ()),
-        (total(X[q]), total(X[q], 1, n - 1) + X[n], ()),
-        (total(X[q], 1, n + 1), total(X[q]) + X[n + 1], ()),
-        (total(X[q]), X[1] + X[n] + total(X[q], 2, n - 1), (n > 1,)),
-        (total(X[q]), X[1] + X[n] + total(X[q], 2, n - 1), (n >= 2,)),
-        (total(X[q]) - total(X[q], 1, k - 1) - total(X[q], k + 1), X[k], ()),
-        (total(X[q] ** 2 + X[q]), X[1] ** 2 + X[1] + total(X[q] ** 2, 2) + total(X[r], 2, n, r), ()),
-        (total((X[q] - X[1]) ** 2), total((X[q] - X[1]) ** 2, 2), ()),
-        (total(X[q]) / n - X[k], total(X[q] - X[k]) / n, ()),
-        (total(X[q + 1] - X[q], 1, n - 1), X[n] - X[1], ()),
-        (Sum(X[q] * Y[r], (q, 1, n), (r, 1, m)), total(X[q]) * total(Y[q], 1, m), ()),
-        (Sum(X[q] * X[r], (q, 1, n), (r, 1, n)), total(X[q]) ** 2, ()),
-        (Sum(X[r], (r, 1, q), (q, 1, n)), X[1] + Sum(X[r], (r, 1, q), (q, 2, n)), ()),
-        (total(q**2 * b), b * n * (n + 1) * (2 * n + 1) / 6, ()),
-        (total(X[q], 1, 3), X[1] + X[2] + X[3], ()),
-        (total(X[q]) + X[7], total(X[q], 2) + X[7] + X[1], ()),
-        (Piecewise((X[1], Eq(k, 1)), (X[k], True)), X[k], ()),
-        (total(1 / q, 2), total(1 / q) - 1, ()),
-    ],
-)
-def test_a_cell_is_one_of_the_data_that_are_summed(
-    left: Expr, right: Expr, conditions: tuple[Expr, ...]
-) -> None:
-    assert decide(claim(left, right, conditions=conditions)).sentence.startswith("residual 0; 20 points")
-    assert decide(claim(left + a / 10**20, right, conditions=conditions)).status is Status.REFUTED
-
-
-@pytest.mark.parametrize(
-    ("left", "right", "at"),
-    [
-        (total(X[q]), X[2] + total(X[q], 2), {}),
-        (total(X[q]), 2 * X[1] + total(X[q], 2), {}),
-        (total(X[q]), X[1] + X[n] + total(X[q], 2, n - 1), {"n": "1.0"}),  # the first is the last
-        (total(X[q]), X[1] + X[2] + total(X[q], 2), {}),
-        (Sum(X[q] * X[r], (q, 1, n), (r, 1, n)), total(X[q] ** 2), {}),
-        (total(X[q]) - total(X[q], 1, m), total(X[q], m + 1), {}),  # m may be larger than n
-        (total(X[q]), n * X[k], {}),
-        (X[k] * (k - 1), X[1] * (k - 1), {}),
-    ],
-)
-def test_what_is_wrong_of_the_data_is_refuted(left: Expr, right: Expr, at: dict[str, str]) -> None:
-    found = decide(claim(left, right))
-    assert found.status is Status.REFUTED
-    assert at.items() <= found.counterexample.items()
-
-
-def test_the_rows_of_a_counterexample_yield_its_sides() -> None:
-    found = decide(claim(total(X[q]), 2 * X[1] + total(X[q], 2)))
-    rows = [float(row) for row in found.counterexample["X"].strip("()").split(",")]
-    assert len(rows) == float(found.counterexample["n"])
-    assert [float(side) for side in found.sides] == pytest.approx([sum(rows), sum(rows) + rows[0]], rel=1e-4)
-    far = decide(claim(X[4], X[9] + 0 * total(X[q])))
-    assert set(far.counterexample) == {"X_4", "X_9"}
-
-
-def test_a_row_that_is_eliminated_is_eliminated_from_the_sum() -> None:
-    first = (given(X[1], b), X[1])
-    assert decide(claim(b + total(X[q], 2), total(X[q])), first).status is Status.PROVED
-    wrong = decide(claim(2 * b + total(X[q], 2), total(X[q])), first)
-    assert wrong.status is Status.REFUTED
-    assert wrong.counterexample["X"].startswith(f"({wrong.counterexample['b']}")
-    found = decide(claim(X[1], b), (given(X[1], b - total(X[q])), X[1]))
-    assert found.why.endswith("holds X_1 also as one of all its rows")
-
-
-def test_a_premise_speaks_only_of_rows_that_there_are() -> None:
-    found = decide(claim(total(X[q]), n * b), (given(X[k], b), X[k]))
-    assert found.why == "X[k] = b holds only where n >= k, which (1) does not say"
-    assert decide(claim(X[k] + total(X[q]), b + total(X[q])), (given(X[k], b), X[k])).status is Status.PROVED
-
-
-@pytest.mark.parametrize(
-    ("left", "right"),
-    [
-        (total(Z[q, 1]), total(Z[q, 2])),
-        (total(X[q / 2]), total(X[q / 2])),
-        (total(X[q - 1]), total(X[q - 1])),  # there is no row 0
-        (total(1 / (q - 1)), total(1 / (q - 1))),
-        (Sum(X[q], (q, 1, n / 2)), Sum(X[q], (q, 1, n / 2))),
-    ],
-)
-def test_rows_that_do_not_exist_prove_nothing(left: Expr, right: Expr) -> None:
-    found = decide(claim(left, right))
-    assert found.status is Status.UNDECIDED
-    assert "has several indices, and one of them runs" in found.why or "has no value at" in found.why
-
-
-# --- conditions are known to the algebra too ----------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("left", "right", "conditions"),
-    [
-        (sqrt((a - b) ** 2), a - b, (a > b,)),
-        (sqrt((a - b) ** 2), a - b, (b <= a,)),
-        (sqrt((a - b) ** 2), b - a, (a < b,)),
-        (sqrt(a**2 - 2 * a * b + b**2), a - b, (a > b,)),
-        (Abs(a**2 - b**2), (a - b) * (a + b), (a > b,)),
-        (Max(a, b) + c, a + c, (a >= b,)),
-        (log(a**2 - 2 * a * b + b**2), 2 * log(a - b), (a > b,)),
-        (((a - b) ** c) ** (1 / c), a - b, (a > b,)),
-        (sqrt((a - c) ** 2), a - c, (a > b, b > c)),
-        (sqrt((a - c) ** 2), a - c, (b > c, a > b)),
-        (sqrt((1 - a) ** 2), 1 - a, (a < 1,)),
-        (sqrt((1 - a**2) ** 2), 1 - a**2, (a < 1,)),  # a is positive as well
-        (sqrt((1 - c * a**2) ** 2), 1 - c * a**2, (1 - c * a**2 > 0,)),
-        (log(1 - a) + log(1 + a), log(1 - a**2), (a < 1,)),
-        (sqrt(y**2), -y, (y < 0,)),
-        (sqrt((y - w) ** 2), y - w, (y > w,)),
-        (sqrt((n - 2) ** 2), n - 2, (n > 1,)),  # n is whole
-    ],
-)
-def test_conditions_are_used_by_the_algebra(left: Expr, right: Expr, conditions: tuple[Expr, ...]) -> None:
-    assert decide(claim(left, right, conditions=conditions)).status is Status.PROVED
-    assert decide(claim(left, -right, conditions=conditions)).status is Status.REFUTED
-    assert decide(claim(left, right)).status is not Status.PROVED
-
-
-@pytest.mark.parametrize(
-    ("left", "right", "conditions", "status"),
-    [
-        (sqrt((a - b) ** 2), a - b, (a > c,), Status.REFUTED),
-        (sqrt((a - b) ** 2), a - b, (Ne(a, b),), Status.REFUTED),
-        (sqrt((a - b) ** 2), a - b, (Eq(a, b),), Status.UNDECIDED),
-        (sqrt((a - b) ** 2), a - b, (a > b, b > a), Status.UNDECIDED),
-        (sqrt((n - 2) ** 2), n - 2, (n > Rational(1, 2),), Status.REFUTED),
-        (sqrt((a * b - c) ** 2), c - a * b, (a * b > c,), Status.REFUTED),
-        (sqrt((1 - a**2) ** 2), 1 - a**2, (a < 2,), Status.REFUTED),
-    ],
-)
-def test_no_more_is_known_than_the_conditions_say(
-    left: Expr, right: Expr, conditions: tuple[Expr, ...], status: Status
-) -> None:
-    assert decide(claim(left, right, conditions=conditions)).status is status
-
-
-def test_conditions_help_to_solve_a_premise() -> None:
-    law = (given((a - b) ** c, y**2), a)
-    assert decide(claim((a - b) ** (2 * c), y**4, conditions=(a > b,)), law).status is Status.PROVED
-    assert "one solution for a" in decide(claim((a - b) ** (2 * c), y**4), law).why
-
-
-def test_conditions_of_a_premise_follow_from_those_of_the_claim() -> None:
-    premise = given(c, a - b, a > b)
-    assert decide(claim(c + b, a, conditions=(a > b + 1,)), (premise, c)).status is Status.PROVED
-    found = decide(claim(c + b, a, conditions=(a > b - 1,)), (given(c, a - b, a > b + 1), c))
-    assert found.why == "c = a - b holds only where a > 1 + b, which (1) does not say"
-    whole = given(y, a - n, n > 1)
-    assert decide(claim(y + n, a, conditions=(n > 2,)), (whole, y)).status is Status.PROVED
-    assert decide(claim(y + n, a, conditions=(n > 0,)), (whole, y)).status is Status.UNDECIDED
-
-
-def test_a_factor_is_of_one_sign_where_the_conditions_hold() -> None:
-    premise = (given(c * (a - b), b * (a - b)), None)
-    assert decide(claim(c, b, conditions=(a > b,)), premise, factor=1 / (a - b)).status is Status.PROVED
-    assert decide(claim(c, b, conditions=(a >= b,)), premise, factor=1 / (a - b)).status is Status.UNDECIDED
 
 
 # --- a claim that is a multiple of its premise -------------------------------------------------------------
