@@ -1,14 +1,19 @@
-"""What all tests share: a hypothesis profile, `require` for programs outside Python, campaigns at random."""
+"""What all tests share: hypothesis, programs outside Python, the shipped paper, campaigns at random."""
 
 import os
 import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from campaign_sizes import SEED, SIZES, Sizes
 from hypothesis import settings
 from hypothesis.internal.conjecture import providers
+
+if TYPE_CHECKING:
+    from loopsheet.report.result import Report
 
 CI = os.environ.get("CI", "").lower() not in ("", "0", "false")
 
@@ -42,6 +47,44 @@ def find_program(*names: str) -> str:
 def require() -> Callable[..., str]:
     """Give `require("latexmk")`, or `require("chromium", "chromium-browser")` where names differ."""
     return find_program
+
+
+# --- the shipped paper, made once: nothing in it may be changed, `replace` gives another ---
+
+
+@pytest.fixture(scope="session")
+def report() -> "Report":
+    """The report of the shipped paper, computed and proved."""
+    from loopsheet.report import build
+
+    return build.compute(build.PAPER)
+
+
+@pytest.fixture(scope="session")
+def paper(report: "Report") -> "Report":
+    """The report of the shipped paper, refereed too."""
+    from loopsheet.report import build
+
+    return build.refereed(report)
+
+
+@pytest.fixture(scope="session")
+def issued(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the shipped paper, and in `out` its report as `loopsheet build` writes it."""
+    from loopsheet.report import build
+
+    folder = shutil.copytree(build.PAPER, tmp_path_factory.mktemp("issued") / "steel")
+    build.build(folder, folder / "out")
+    return folder
+
+
+@pytest.fixture
+def unjudged(report: "Report", monkeypatch: pytest.MonkeyPatch) -> None:
+    """Builds without judge and referee, its proofs known already: for tests of how files are written."""
+    from loopsheet.report import build
+
+    monkeypatch.setattr(build, "judged", lambda report, *_: report)
+    monkeypatch.setattr(build, "_refereed", lambda report, _: (report.referee, report.comparisons, {}))
 
 
 # --- campaigns that are drawn at random ---

@@ -24,11 +24,6 @@ CELLS = 2117
 
 
 @pytest.fixture(scope="module")
-def report() -> Report:
-    return build.compute(build.PAPER, prove=False)
-
-
-@pytest.fixture(scope="module")
 def prepared() -> build.Prepared:
     return build.prepare(build.PAPER)
 

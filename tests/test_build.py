@@ -14,6 +14,7 @@ import pytest
 
 from loopsheet.report import build
 from loopsheet.report.errors import InputError, OutputError, UsageError
+from loopsheet.report.result import Report
 
 
 def copy_paper(folder: Path) -> Path:
@@ -31,17 +32,16 @@ def hashes(folder: Path) -> dict[str, str]:
     }
 
 
-def test_default_outputs(tmp_path: Path) -> None:
-    _, files = build.build(build.PAPER, tmp_path / "out")
-    names = {p.relative_to(tmp_path / "out").as_posix() for p in files}
+def test_default_outputs(issued: Path) -> None:
+    files = [p for p in (issued / "out").rglob("*") if p.is_file()]
+    names = {p.relative_to(issued / "out").as_posix() for p in files}
     assert {"report.html", "report.tex", "report.xlsx", "values.json", "manifest.json"} <= names
     assert {n for n in names if n.startswith("figures/")} >= {"figures/loops.svg", "figures/loops.pdf"}
     assert all(p.stat().st_size for p in files)
 
 
-def test_the_page_gets_the_program_of_sheet_and_curves(tmp_path: Path) -> None:
-    build.build(build.PAPER, tmp_path, ["html"])
-    page = (tmp_path / "report.html").read_text()
+def test_the_page_gets_the_program_of_sheet_and_curves(issued: Path) -> None:
+    page = (issued / "out" / "report.html").read_text()
     assert "evaluateSheet" in page
     assert "unloading_F" in page
     assert len(page.encode()) <= 300_000
@@ -62,43 +62,43 @@ def test_too_many_rows_for_a_worksheet_are_refused_before_anything_is_written(tm
     assert not (tmp_path / "out").exists()
 
 
-def test_same_bytes_everywhere(tmp_path: Path) -> None:
-    """Hash seed, time zone, locale, folder and working directory must not show."""
-    found = []
-    for number, (seed, zone, locale) in enumerate((("0", "UTC", "C"), ("4711", "Asia/Tokyo", "C.UTF-8"))):
-        home = tmp_path / f"place {number}"
-        home.mkdir()
-        folder = copy_paper(home / "in put")
-        environment = {**os.environ, "PYTHONHASHSEED": seed, "TZ": zone, "LC_ALL": locale, "HOME": str(home)}
-        subprocess.run(
-            [sys.executable, "-m", "loopsheet", "build", str(folder), "--out", "o"],
-            cwd=home, env=environment, check=True, capture_output=True,
-        )  # fmt: skip
-        found.append(hashes(home / "o"))
-    assert found[0] == found[1]
-    assert len(found[0]) > 8
+def test_same_bytes_everywhere(issued: Path, tmp_path: Path) -> None:
+    """Process, hash seed, time zone, locale, folder and working directory must not show."""
+    home = tmp_path / "another place"
+    home.mkdir()
+    folder = copy_paper(home / "in put")
+    elsewhere = {"PYTHONHASHSEED": "4711", "TZ": "Asia/Tokyo", "LC_ALL": "C", "HOME": str(home)}
+    subprocess.run(
+        [sys.executable, "-m", "loopsheet", "build", str(folder), "--out", "o"],
+        cwd=home, env={**os.environ, **elsewhere}, check=True, capture_output=True,
+    )  # fmt: skip
+    found = hashes(home / "o")
+    assert found == hashes(issued / "out")
+    assert len(found) > 8
 
 
-def test_proofs_from_a_process_of_their_own_are_of_the_ledgers_own_equations(tmp_path: Path) -> None:
-    report, _ = build.build(build.PAPER, tmp_path / "out", ("json",))
-    here = build.compute(build.PAPER)
-    assert (report.proofs, report.errata) == (here.proofs, here.errata)
-    assert any(proof.remark for proof in report.proofs)
-    for proof, entry in zip(report.proofs, report.ledger.entries, strict=True):
+@pytest.mark.usefixtures("unjudged")
+def test_proofs_from_a_process_of_their_own_are_of_the_ledgers_own_equations(
+    report: Report, tmp_path: Path
+) -> None:
+    built, _ = build.build(build.PAPER, tmp_path / "out", ("json",))
+    assert (built.proofs, built.errata) == (report.proofs, report.errata)
+    assert any(proof.remark for proof in built.proofs)
+    for proof, entry in zip(built.proofs, built.ledger.entries, strict=True):
         assert proof.equation is getattr(entry, "claim", entry)
         assert [found.step for found in proof.steps] == list(getattr(entry, "steps", ()))
 
 
-def test_outputs_name_no_place_of_the_machine(tmp_path: Path) -> None:
-    folder = copy_paper(tmp_path / "here")
-    build.build(folder, tmp_path / "out")
-    for path in (tmp_path / "out").rglob("*"):
+def test_outputs_name_no_place_of_the_machine(issued: Path) -> None:
+    for path in (issued / "out").rglob("*"):
         if path.is_file():
-            assert str(tmp_path).encode() not in path.read_bytes(), path
+            assert str(issued.parent).encode() not in path.read_bytes(), path
 
 
+@pytest.mark.usefixtures("unjudged")
 def test_manifest_names_every_output_by_its_content(tmp_path: Path) -> None:
-    build.build(build.PAPER, tmp_path / "out", ("json",))
+    _, files = build.build(build.PAPER, tmp_path / "out", ("json",))
+    assert files == [tmp_path / "out" / name for name in ("manifest.json", "values.json")]
     manifest = json.loads((tmp_path / "out" / "manifest.json").read_text())
     assert manifest["outputs"] == {"values.json": hashes(tmp_path / "out")["values.json"]}
     assert set(manifest["inputs"]) == {"report.toml", "measurements.csv", "published.csv"}
@@ -106,6 +106,7 @@ def test_manifest_names_every_output_by_its_content(tmp_path: Path) -> None:
     assert manifest["versions"]["loopsheet"]
 
 
+@pytest.mark.usefixtures("unjudged")
 def test_other_files_in_the_output_folder_stay(tmp_path: Path) -> None:
     out = tmp_path / "out"
     out.mkdir()
@@ -115,6 +116,7 @@ def test_other_files_in_the_output_folder_stay(tmp_path: Path) -> None:
     assert sorted(p.name for p in out.iterdir()) == ["manifest.json", "notes.txt", "values.json"]
 
 
+@pytest.mark.usefixtures("unjudged")
 def test_a_failure_while_writing_leaves_everything_as_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -197,9 +199,8 @@ def test_a_workbook_whose_columns_go_in_a_circle_shows_the_path(tmp_path: Path) 
         build.compute(folder)
 
 
-def test_other_units_other_masses_and_other_numbers_of_tests(tmp_path: Path) -> None:
+def test_other_units_other_masses_and_other_numbers_of_tests(report: Report, tmp_path: Path) -> None:
     """The same campaign in other units gives the same numbers; a finite target scales the forces only."""
-    paper = build.compute(build.PAPER, prove=False)
     folder = copy_paper(tmp_path / "units")
     (folder / "report.toml").write_text(
         'title = "other units"\nworkbook = "soft_impact"\n[parameters]\nball_mass = "8.365741 g"\n'
@@ -213,13 +214,14 @@ def test_other_units_other_masses_and_other_numbers_of_tests(tmp_path: Path) -> 
     other = build.compute(folder, prove=False)
     assert [c.label for c in other.values.cells("alpha")] == [(10, 20), (10, 30), (20, 30)]
     for mine, theirs in (((10, 20), (1, 2)), ((10, 30), (1, 3)), ((20, 30), (2, 3))):
-        a, b = other.values.cell("alpha", mine).value, paper.values.cell("alpha", theirs).value
+        a, b = other.values.cell("alpha", mine).value, report.values.cell("alpha", theirs).value
         assert a == pytest.approx(b, rel=1e-13)
-        c, d = other.values.cell("C", mine).value, paper.values.cell("C", theirs).value
+        c, d = other.values.cell("C", mine).value, report.values.cell("C", theirs).value
         assert c == pytest.approx(d * 1000 / 1001, rel=1e-6)
     assert other.shown["x_m"].unit == "mm"
 
 
+@pytest.mark.usefixtures("unjudged")
 def test_a_move_that_fails_half_way_is_taken_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Fail at each replacement in turn: every time the old output is there to the last byte."""
     import os as system
@@ -245,6 +247,7 @@ def test_a_move_that_fails_half_way_is_taken_back(tmp_path: Path, monkeypatch: p
         assert hashes(out) == before, fatal
 
 
+@pytest.mark.usefixtures("unjudged")
 def test_what_is_in_the_way_is_named_and_nothing_is_touched(tmp_path: Path) -> None:
     out = tmp_path / "out"
     (out / "values.json").mkdir(parents=True)
@@ -255,6 +258,7 @@ def test_what_is_in_the_way_is_named_and_nothing_is_touched(tmp_path: Path) -> N
     assert sorted(p.name for p in out.iterdir()) == ["manifest.json", "values.json"]
 
 
+@pytest.mark.usefixtures("unjudged")
 def test_what_an_earlier_build_made_goes_unless_it_was_changed(tmp_path: Path) -> None:
     out = tmp_path / "out"
     build.build(build.PAPER, out, ("json", "latex"))

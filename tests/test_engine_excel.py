@@ -37,7 +37,6 @@ from sympy import (
 from sympy.core.parameters import evaluate
 
 from loopsheet.derivations.equation import Equation, Kind
-from loopsheet.report import build
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.excel import IfError, IsNumber, NotPrintable, Printer
@@ -46,6 +45,7 @@ from loopsheet.report.engines.excel_roots import unroll
 from loopsheet.report.engines.excel_values import auxiliary_values
 from loopsheet.report.grid import Block, Grid, Place, checked, factors, letters, quoted
 from loopsheet.report.quantity import Bounds
+from loopsheet.report.result import Report
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
 from loopsheet.report.workbooks import soft_impact_charts
 
@@ -446,8 +446,7 @@ def test_every_sum_of_a_scalar_root_has_a_cell_of_its_own() -> None:
 
 
 @pytest.fixture(scope="module")
-def paper() -> Grid:
-    report = build.compute(build.PAPER, prove=False)
+def paper(report: Report) -> Grid:
     units = {name: shown.unit for name, shown in report.shown.items()}
     drawn = soft_impact_charts.drawn(report.sheet)
     return excel_grid.grid(report.sheet, report.values, units, report.workbook.headline, drawn)

@@ -11,45 +11,45 @@ import pytest
 
 from loopsheet.report import build
 from loopsheet.report.agreement import Agreement
+from loopsheet.report.result import Report
 from loopsheet.report.views import json as view
 
 
 @pytest.fixture(scope="module")
-def paper() -> dict[str, object]:
-    return json.loads(view.values(build.compute(build.PAPER)))  # type: ignore[no-any-return]
+def values(report: Report) -> dict[str, object]:
+    return json.loads(view.values(report))  # type: ignore[no-any-return]
 
 
-def test_shape(paper: dict) -> None:  # type: ignore[type-arg]
-    assert paper["schema"] == 1
-    assert paper["workbook"] == "soft_impact"
-    alpha = paper["cells"]["alpha"]
+def test_shape(values: dict) -> None:  # type: ignore[type-arg]
+    assert values["schema"] == 1
+    assert values["workbook"] == "soft_impact"
+    alpha = values["cells"]["alpha"]
     assert alpha["axis"] == "pairs"
     assert alpha["index"][:2] == [[1, 2], [1, 3]]
     assert alpha["unit"] == "1"
     assert alpha["status"] == ["ok"] * 10
     assert alpha["value"][0] == 1.2579969787312368
-    assert paper["cells"]["alpha_mean"]["axis"] is None
-    assert paper["cells"]["v"]["index"] == [1, 2, 3, 4, 5]
-    assert paper["cells"]["v"]["u"][0] == pytest.approx(0.0005 / 3**0.5)
-    assert {c["axis"] for c in paper["cells"].values()} == {"tests", "pairs", "points", None}
+    assert values["cells"]["alpha_mean"]["axis"] is None
+    assert values["cells"]["v"]["index"] == [1, 2, 3, 4, 5]
+    assert values["cells"]["v"]["u"][0] == pytest.approx(0.0005 / 3**0.5)
+    assert {c["axis"] for c in values["cells"].values()} == {"tests", "pairs", "points", None}
 
 
-def test_cells_of_the_design_are_there(paper: dict) -> None:  # type: ignore[type-arg]
+def test_cells_of_the_design_are_there(values: dict) -> None:  # type: ignore[type-arg]
     names = (
         "v e x_p m_red beta alpha x_m1 x_m2 C Cprime_1 Cprime_2 alpha_mean alpha_log C_log alpha_lin C_lin"
     )
-    assert set(f"{names} x_m Cprime_eq7 Cprime_eq9".split()) <= set(paper["cells"])
+    assert set(f"{names} x_m Cprime_eq7 Cprime_eq9".split()) <= set(values["cells"])
 
 
-def test_every_column_says_what_makes_it(paper: dict) -> None:  # type: ignore[type-arg]
-    cells = paper["cells"]
+def test_every_column_says_what_makes_it(values: dict) -> None:  # type: ignore[type-arg]
+    cells = values["cells"]
     assert cells["v"]["rule"] == cells["beta"]["rule"] == "given"
     assert cells["x_m2"]["rule"] == "(12a) x_m2,p = x_p,j/(1 - (beta + 1)/(alpha_p + 1)*e_j^2)"
     assert all(c["rule"] for c in cells.values())
 
 
-def test_the_manifest_says_what_computed_it() -> None:
-    report = build.compute(build.PAPER, prove=False)
+def test_the_manifest_says_what_computed_it(report: Report) -> None:
     report = replace(report, engines=(Agreement(1, 0.0, "", (), engine="JavaScript", program="node 20.1"),))
     found = json.loads(view.manifest(report, {"b": b"2", "a": b"1"}, {"method": "00"}))
     assert list(found) == ["schema", "title", "inputs", "outputs", "sources", "versions", "engines"]
@@ -58,14 +58,14 @@ def test_the_manifest_says_what_computed_it() -> None:
     assert found["sources"] == {"method": "00"}
 
 
-def test_proofs_by_number(paper: dict) -> None:  # type: ignore[type-arg]
-    assert paper["proofs"]["(11)"] == "proved"
-    assert paper["proofs"]["(12)"] == "proved with a correction of the print"
-    assert paper["proofs"]["(8)"] == "definition"
+def test_proofs_by_number(values: dict) -> None:  # type: ignore[type-arg]
+    assert values["proofs"]["(11)"] == "proved"
+    assert values["proofs"]["(12)"] == "proved with a correction of the print"
+    assert values["proofs"]["(8)"] == "definition"
 
 
-def test_published(paper: dict) -> None:  # type: ignore[type-arg]
-    first = paper["published"][0]
+def test_published(values: dict) -> None:  # type: ignore[type-arg]
+    first = values["published"][0]
     assert (first["cell"], first["index"], first["printed"], first["verdict"]) == (
         "alpha",
         [1, 2],

@@ -22,11 +22,6 @@ from loopsheet.report.result import Report
 from loopsheet.report.verdict import REACHABLE, UNREACHABLE, WITHIN, Referee
 
 
-@pytest.fixture(scope="module")
-def paper() -> Report:
-    return refereed(compute(PAPER, prove=False))
-
-
 def printed(text: str, unit: str = "1", scale: Fraction = Fraction(1)) -> Printed:
     """A printed number without a file."""
     return Printed(text, unit, Fraction(text) * scale, scale)
@@ -88,9 +83,9 @@ def test_printing_moves_a_value_by_half_a_digit_at_most(value: float, decimals: 
     assert abs(Fraction(Decimal(print_as(value, like))) - Fraction(value)) <= like.half_unit
 
 
-def test_the_paper_value_by_value() -> None:
+def test_the_paper_value_by_value(report: Report) -> None:
     """All 27 published values are compared; each known difference differs, none is hidden."""
-    comparisons = compute(PAPER, prove=False).comparisons
+    comparisons = report.comparisons
     assert len(comparisons) == 27
     assert {c.published.source for c in comparisons} == {"Table 2", "Table 3", "text"}
     assert all(c.as_expected for c in comparisons)

@@ -30,16 +30,18 @@ def hashes(folder: Path) -> dict[str, str]:
 
 
 @pytest.fixture(scope="module")
-def issued(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A campaign with its report inside."""
+def unpublished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A campaign with its report inside, and nothing for the referee, who takes longer than all the rest."""
     folder = shutil.copytree(build.PAPER, tmp_path_factory.mktemp("verify") / "steel")
+    toml = folder / "report.toml"
+    toml.write_text(toml.read_text().partition("[published]")[0])
     build.build(folder, folder / "out", ("json",))
     return folder
 
 
 @pytest.fixture
-def campaign(issued: Path, tmp_path: Path) -> Path:
-    return shutil.copytree(issued, tmp_path / "steel")
+def campaign(unpublished: Path, tmp_path: Path) -> Path:
+    return shutil.copytree(unpublished, tmp_path / "steel")
 
 
 def failed(found: Verification) -> dict[str, list[str]]:
@@ -51,8 +53,9 @@ def failed(found: Verification) -> dict[str, list[str]]:
     return names
 
 
-def test_the_same_report_again_anywhere(campaign: Path, tmp_path: Path) -> None:
+def test_the_same_report_again_anywhere(issued: Path, tmp_path: Path) -> None:
     """Another process, with another hash seed, time zone, locale and folder."""
+    campaign = shutil.copytree(issued, tmp_path / "steel")
     before = hashes(campaign)
     elsewhere = {"PYTHONHASHSEED": "4711", "TZ": "Asia/Tokyo", "LC_ALL": "C", "HOME": str(tmp_path)}
     done = subprocess.run(

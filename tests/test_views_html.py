@@ -25,11 +25,6 @@ XHTML = "{http://www.w3.org/1999/xhtml}"
 
 
 @pytest.fixture(scope="module")
-def report() -> Report:
-    return build.compute(build.PAPER)
-
-
-@pytest.fixture(scope="module")
 def page(report: Report) -> str:
     return html.render(report, {figure.name: SVG for figure in report.workbook.figures})
 

@@ -9,16 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from loopsheet.report import build
 from loopsheet.report.result import Report
 from loopsheet.report.views import figures, latex
 
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ Șα"
-
-
-@pytest.fixture(scope="module")
-def report() -> Report:
-    return build.compute(build.PAPER)
 
 
 @pytest.fixture(scope="module")

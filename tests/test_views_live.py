@@ -39,11 +39,6 @@ RUNTIME = ROOT / "templates" / "engines" / "runtime.js"
 
 
 @pytest.fixture(scope="module")
-def report() -> Report:
-    return build.compute(build.PAPER, prove=False)
-
-
-@pytest.fixture(scope="module")
 def page(report: Report) -> str:
     drawn = {figure.name: figures.svg(report, figure.name) for figure in report.workbook.figures}
     return html.render(report, drawn, program=javascript.program(report.sheet))

@@ -41,12 +41,6 @@ SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="360pt" height="180pt"><pat
 XHTML = "{http://www.w3.org/1999/xhtml}"
 
 
-@pytest.fixture(scope="session")
-def paper() -> Report:
-    """The shipped paper, refereed: the most that the software finds by itself."""
-    return build.refereed(build.compute(build.PAPER))
-
-
 def chapter_of(report: Report) -> Refereed:
     return Document(report).refereed
 

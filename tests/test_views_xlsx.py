@@ -2,11 +2,8 @@
 
 import io
 import json
-import os
 import re
 import shutil
-import subprocess
-import sys
 import zipfile
 from collections.abc import Mapping
 from dataclasses import replace
@@ -38,11 +35,6 @@ def grid_of(report: Report) -> Grid:
     units = {name: shown.unit for name, shown in report.shown.items()}
     drawn = soft_impact_charts.drawn(report.sheet)
     return excel_grid.grid(report.sheet, report.values, units, report.workbook.headline, drawn)
-
-
-@pytest.fixture(scope="module")
-def report() -> Report:
-    return build.compute(build.PAPER)
 
 
 @pytest.fixture(scope="module")
@@ -316,29 +308,6 @@ def test_what_has_no_value_is_left_out_of_a_chart(tmp_path: Path) -> None:
 
 def test_same_bytes_for_the_same_report(report: Report, content: bytes) -> None:
     assert xlsx.render(report, grid_of(report)) == content
-
-
-def test_same_bytes_under_another_hash_seed() -> None:
-    code = (
-        "import sys\n"
-        "from loopsheet.report import build\n"
-        "from loopsheet.report.engines import excel_grid\n"
-        "from loopsheet.report.views import xlsx\n"
-        "from loopsheet.report.workbooks import soft_impact_charts as charts\n"
-        "r = build.compute(build.PAPER, prove=False)\n"
-        "u = {n: s.unit for n, s in r.shown.items()}\n"
-        "g = excel_grid.grid(r.sheet, r.values, u, r.workbook.headline, charts.drawn(r.sheet))\n"
-        "sys.stdout.buffer.write(xlsx.render(r, g))"
-    )
-    made = set()
-    for seed, zone in (("0", "UTC"), ("4711", "Asia/Tokyo")):
-        environment = {**os.environ, "PYTHONHASHSEED": seed, "TZ": zone}
-        made.add(
-            subprocess.run(
-                [sys.executable, "-c", code], env=environment, capture_output=True, check=True
-            ).stdout
-        )
-    assert len(made) == 1
 
 
 def test_no_clock_and_no_place(content: bytes) -> None:

@@ -32,11 +32,6 @@ FROM_TABLE_1 = {
 
 
 @pytest.fixture(scope="module")
-def report() -> Report:
-    return compute(PAPER, prove=False)
-
-
-@pytest.fixture(scope="module")
 def values(report: Report) -> Values:
     return report.values
 
