@@ -182,9 +182,16 @@ function onPaste(event) {
   event.preventDefault();
   if (editing) cancel();
   const rows = text.replace(/[\r\n]+$/, "").split(/\r\n|\r|\n/).map((line) => line.split("\t").map(normalised));
-  // A first line without any number is the head of the block.
-  if (rows.length > 1 && !rows[0].some((field) => NUMBER.test(field))) rows.shift();
+  if (rows.length > 1 && isHead(rows[0])) rows.shift();
   pasteBlock(element, rows);
+}
+
+// A first line of different words is the head of a block; what stands for a missing datum is no head.
+const NO_DATUM = /^(?:nan|n\/?a|none|null|inf|infinity|true|false)$/i;
+
+function isHead(fields) {
+  const words = fields.filter(Boolean);
+  return words.length > 0 && new Set(words).size === words.length && words.every((word) => /^\p{L}/u.test(word) && !NO_DATUM.test(word));
 }
 
 // A selection over a table is copied as text, with what stands in its inputs.

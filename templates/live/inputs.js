@@ -3,7 +3,8 @@
 
 // What people write for a number, in our notation: a decimal comma becomes a point, a real minus a hyphen.
 function normalised(text) {
-  const plain = text.replace(/[\s\u00a0\u2007\u202f'_]/g, "").replace(/[\u2212\u2013]/g, "-");
+  // A blank or a mark groups digits by three, or it is no part of a number.
+  const plain = text.trim().replace(/([0-9])[\s\u00a0\u2007\u202f'_](?=[0-9]{3}(?![0-9]))/g, "$1").replace(/[\u2212\u2013]/g, "-");
   const comma = plain.lastIndexOf(","), point = plain.lastIndexOf(".");
   if (comma < 0 || plain.indexOf(",") !== comma && point < 0) return plain;
   // Of comma and point together, the last is the decimal sign and the others group digits.
@@ -23,7 +24,9 @@ function readInput(given, text) {
   if (text.length > 100 || Math.abs(Number(found[5] ?? 0)) > 300) return { why: `“${text}” is out of all range; ${allowed}` };
   const exact = readExact(text), scale = { n: BigInt(given.scale[0]), d: BigInt(given.scale[1]) };
   const value = { n: exact.n * scale.n, d: exact.d * scale.d };
-  if (value.n !== 0n && !isSane(value)) return { why: `“${text}” is out of all range; ${allowed}` };
+  // Its last digit is asked for, too: from it comes the uncertainty.
+  const places = decimalsOf(text), unit = places < 0 ? { n: scale.n * tenTo(-places), d: scale.d } : { n: scale.n, d: scale.d * tenTo(places) };
+  if (!isSane(unit) || (value.n !== 0n && !isSane(value))) return { why: `“${text}” is out of all range; ${allowed}` };
   const { low, high, low_open, high_open, integer } = given.bounds;
   const wrong = [
     integer && value.n % value.d !== 0n,

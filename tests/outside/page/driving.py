@@ -209,13 +209,14 @@ def static(report: Report, path: Path) -> Path:
     return path
 
 
-def with_missing(report: Report, name: str, test: int) -> Values:
-    """The same values where one datum is refused."""
+def with_missing(report: Report, *refused: tuple[str, int]) -> Values:
+    """The same values where some data are refused, each by its name and its test."""
     data: dict[str, Any] = dict(build.given_data(report.inputs))
-    column = np.array(data[name], dtype=float)
-    column[report.inputs.tests.index(test)] = math.nan
+    for name, test in refused:
+        data[name] = np.array(data[name], dtype=float)
+        data[name][report.inputs.tests.index(test)] = math.nan
     labels = {axis.name: report.inputs.tests for axis in report.sheet.axes if not axis.parents}
-    return engine.evaluate(report.sheet, labels, data | {name: column})
+    return engine.evaluate(report.sheet, labels, data)
 
 
 def differences(cells: list[Shown], values: Values) -> list[str]:

@@ -11,6 +11,7 @@ from campaign_sizes import SEED, Sizes
 from driving import Live
 
 from loopsheet.report import build
+from loopsheet.report.errors import InputError
 from loopsheet.report.views import live as live_view
 
 Open = Callable[..., Live]
@@ -95,7 +96,7 @@ NO_NUMBERS = ("abc", "-3", "0", "1e999", "", "1..2", "0x10", "NaN", "<b>1</b>", 
 
 def test_input_that_is_no_number_says_so(live: Live, tmp_path: Path) -> None:
     report = driving.built(tmp_path / "folder", driving.paper())
-    values = driving.with_missing(report, "x_p", 3)
+    values = driving.with_missing(report, ("x_p", 3))
     for text in NO_NUMBERS:
         if text:
             live.type("x_p", 3, text)
@@ -114,6 +115,48 @@ def test_input_that_is_no_number_says_so(live: Live, tmp_path: Path) -> None:
     assert driving.differences(live.cells(), report.values) == []
     assert live.text("live-banner") == ""
     assert live.input("x_p", 3).get_attribute("aria-invalid") is None
+
+
+REFUSED = {("v", 1): "0", ("e", 1): "1.2", ("x_p", 1): "-23.5", ("v", 2): "fast", ("x_p", 2): ""}
+
+
+def test_what_is_pasted_is_refused_as_the_reader_refuses_it(open_page: Open, tmp_path: Path) -> None:
+    """In the same cells, in the words of the reader; taken back, all is as it was."""
+    live = open_page(permissions=["clipboard-read", "clipboard-write"])
+    before = live.cells()
+    live.input("v", 1).click()
+    block = "0\t1.2\t-23.5\nfast\t0.512\t\n"
+    live.page.evaluate("text => navigator.clipboard.writeText(text)", block)
+    live.press("Control+v")
+    with pytest.raises(InputError) as told:
+        driving.built(tmp_path / "folder", driving.edited(REFUSED))
+    findings = told.value.diagnostics
+    places = [(2, "LS406"), (2, "LS406"), (2, "LS406"), (3, "LS401"), (3, "LS403")]
+    assert [(finding.at.line, finding.code) for finding in findings] == places
+    for (name, test), text in REFUSED.items():
+        cell = live.cell(name, str(test))
+        assert (cell.status, cell.text) == ("#INPUT!", text)
+        allowed = [d.allowed for d in findings if d.code == "LS406" and d.message.startswith(f"{name} ")]
+        assert f"it must be {allowed[0]}; as issued" in cell.title
+    report = driving.built(tmp_path / "issued", driving.paper())
+    values = driving.with_missing(report, *REFUSED)
+    assert driving.differences(live.cells(), values) == []
+    live.press("Control+z")
+    assert live.cells() == before
+    live.press("Control+y")
+    assert driving.differences(live.cells(), values) == []
+
+
+@pytest.mark.parametrize("first", ["n/a\tn/a\tn/a", "\t\t", "NaN\t0.53\t23.5", "0,5 m/s\t.53\t23.5"])
+def test_a_line_without_data_keeps_its_row(open_page: Open, first: str) -> None:
+    """Or the next line would be taken for another test's."""
+    live = open_page(permissions=["clipboard-read", "clipboard-write"])
+    live.input("v", 1).click()
+    live.page.evaluate("text => navigator.clipboard.writeText(text)", f"{first}\n2.95\t0.512\t29.8\n")
+    live.press("Control+v")
+    assert live.cell("v", "1").status == "#INPUT!"
+    assert [live.input(name, 2).input_value() for name in ("v", "e", "x_p")] == ["2.95", "0.512", "29.8"]
+    assert live.input("v", 3).input_value() == "4.089"
 
 
 def test_parameters_are_edited_too(live: Live, tmp_path: Path) -> None:
