@@ -1,8 +1,22 @@
-"""A report folder that takes no time: the end gauge of JCGM 100:2008, H.1, one sum of products."""
+"""Reports that take no time: the end gauge of JCGM 100:2008, H.1, and any small sheet without a folder."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
 from pathlib import Path
+from typing import Any
+
+from loopsheet.derivations.equation import Ledger
+from loopsheet.report.analysis.referee import compare, referee, refereed
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.inputs import Inputs
+from loopsheet.report.published import PublishedValue
+from loopsheet.report.quantity import Printed
+from loopsheet.report.result import Comparison
+from loopsheet.report.sheet import Sheet
+from loopsheet.report.values import Values
+from loopsheet.report.workbook import Workbook
 
 SOURCE = """\
 from sympy import Symbol
@@ -65,3 +79,38 @@ def end_gauge(folder: Path, published: str = "", **files: str | bytes) -> Path:
         content = (published if name == "published.csv" else "") or files.get(name.partition(".")[0], text)
         (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
     return folder
+
+
+def pure(text: str) -> Printed:
+    """A printed number without a unit and a file."""
+    return Printed(text, "1", Fraction(text), Fraction(1))
+
+
+def judged(
+    sheet: Sheet,
+    measured: Mapping[str, Sequence[Printed]],
+    parameters: Mapping[str, Printed],
+    publish: Callable[[Values], Sequence[PublishedValue]],
+) -> tuple[Comparison, ...]:
+    """Compare and referee what is published of a sheet over one axis of rows.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    measured : mapping of column name to sequence of Printed
+    parameters : mapping of column name to Printed
+    publish : callable
+        Takes the values of the sheet; returns what is published of them.
+    """
+    rows = tuple(range(1, 1 + len(next(iter(measured.values())))))
+    data: dict[str, Any] = {name: [float(p.value) for p in column] for name, column in measured.items()}
+    data |= {name: float(p.value) for name, p in parameters.items()}
+    (axis,) = sheet.axes
+    values = engine.evaluate(sheet, {axis.name: rows}, data)
+    published = tuple(publish(values))
+    inputs = Inputs(
+        Path(), "", Workbook("made", "", "", lambda: Ledger(()), (), (), lambda given: sheet),
+        dict(parameters), frozenset(parameters), rows,
+        {name: tuple(column) for name, column in measured.items()}, {}, published, {},
+    )  # fmt: skip
+    return refereed(compare(published, values), referee(sheet, inputs, values, data))

@@ -11,14 +11,19 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from small_report import judged, pure
+from sympy import Symbol
 
+from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.report.analysis.referee import print_as, prints_same
 from loopsheet.report.build import PAPER, compute, prepare, refereed
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.errors import InputError
 from loopsheet.report.findings import checks
+from loopsheet.report.published import PublishedValue
 from loopsheet.report.quantity import Printed
 from loopsheet.report.result import Report
+from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
 from loopsheet.report.verdict import REACHABLE, UNREACHABLE, WITHIN, Referee
 
 
@@ -247,6 +252,27 @@ def test_a_stated_uncertainty_may_reach_further_than_the_digits(tmp_path: Path) 
     words = {c.published.index: c.word for c in report.comparisons if c.published.source == "Table 2"}
     assert words[2, 4] == WITHIN
     assert words[1, 2] == REACHABLE
+
+
+@pytest.mark.parametrize(
+    ("text", "verdict"),
+    [("30.999", WITHIN), ("31.001", UNREACHABLE), ("29.001", WITHIN), ("28.999", UNREACHABLE)],
+)
+def test_uncertainties_combine_in_quadrature_and_cover_twice(text: str, verdict: str) -> None:
+    """JCGM 100:2008, (10) and 6.3.3: u(a) = 0.3 and u(b) = 0.4 are 0.5 in a + b, twice that is covered."""
+    k, n = (Symbol(name, integer=True, positive=True) for name in "kn")
+    a, b = (Column(name, Axis("rows", k, n), Given()) for name in "ab")
+    total = Formula(Equation("", (Symbol("y"), a[k] + b[k]), "for a test", Kind.DEFINITION))
+    sheet = Sheet((a, b, Column("y", a.axis, total)))
+    measured = {
+        name: [replace(pure(digits), given_u=Fraction(u))]
+        for name, digits, u in (("a", "10.000", "0.3"), ("b", "20.000", "0.4"))
+    }
+    (comparison,) = judged(sheet, measured, {}, lambda _: [PublishedValue("Table", "y", (1,), pure(text))])
+    found = comparison.refereed
+    assert found is not None
+    assert found.u == pytest.approx(0.5, rel=1e-9)
+    assert found.verdict == verdict
 
 
 def test_a_truncated_column_is_no_misprint(tmp_path: Path) -> None:

@@ -2,34 +2,28 @@
 
 import random
 from collections.abc import Iterator
-from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 import pytest
-from small_report import end_gauge
+from small_report import end_gauge, judged, pure
 from sympy import Expr, Rational, Symbol, exp, log, sqrt
 
-from loopsheet.derivations.equation import Equation, Kind, Ledger
-from loopsheet.report.analysis.referee import compare, print_as, referee
-from loopsheet.report.analysis.referee import refereed as judged
+from loopsheet.derivations.equation import Equation, Kind
+from loopsheet.report.analysis.referee import print_as
 from loopsheet.report.build import compute, refereed
-from loopsheet.report.engines import numpy as engine
-from loopsheet.report.inputs import Inputs
 from loopsheet.report.published import PublishedValue
 from loopsheet.report.quantity import Printed
 from loopsheet.report.result import Comparison
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
+from loopsheet.report.values import Values
 from loopsheet.report.verdict import EXACT, REACHABLE
 from loopsheet.report.views.document import Document
-from loopsheet.report.workbook import Workbook
 
 # --- random sheets ----------------------------------------------------------------------------------------
 
 k, n = (Symbol(name, integer=True, positive=True) for name in "kn")
 ROWS = Axis("rows", k, n)
 SHEETS = 40
-ONE = Fraction(1)
 
 
 def expression(rng: random.Random, leaves: list[Expr], depth: int) -> Expr:
@@ -53,8 +47,7 @@ def expression(rng: random.Random, leaves: list[Expr], depth: int) -> Expr:
 
 def printed(rng: random.Random) -> Printed:
     """A small number, often zero: there derivatives of products vanish."""
-    text = f"{rng.choice((0, 0, rng.uniform(-2, 2), rng.uniform(0, 9))):.{rng.randrange(3)}f}"
-    return Printed(text, "1", Fraction(text), ONE)
+    return pure(f"{rng.choice((0, 0, rng.uniform(-2, 2), rng.uniform(0, 9))):.{rng.randrange(3)}f}")
 
 
 def sheet_of(rng: random.Random) -> Sheet:
@@ -73,27 +66,18 @@ def sheet_of(rng: random.Random) -> Sheet:
 
 def comparisons_of(rng: random.Random) -> tuple[Comparison, ...]:
     """A random sheet of random numbers, each computed cell published rightly or somewhat wrongly."""
-    sheet, tests = sheet_of(rng), (1, 2, 3)
-    measured = {name: tuple(printed(rng) for _ in tests) for name in "ab"}
+
+    def published(values: Values) -> Iterator[PublishedValue]:
+        for name in "yz":
+            for cell in values.cells(name):
+                if cell.value is not None and abs(cell.value) < 1e6:
+                    like = pure("0." + "0" * rng.randrange(1, 5))
+                    text = print_as(cell.value + rng.choice((0, 0, 1, 30)) * float(like.half_unit), like)
+                    yield PublishedValue("Table", name, cell.label, pure(text))
+
+    measured = {name: [printed(rng) for _ in range(3)] for name in "ab"}
     parameters = {name: printed(rng) for name in "cd"}
-    data: dict[str, Any] = {name: [float(p.value) for p in column] for name, column in measured.items()}
-    data |= {name: float(p.value) for name, p in parameters.items()}
-    values = engine.evaluate(sheet, {"rows": tests}, data)
-    published = []
-    for name in "yz":
-        for cell in values.cells(name):
-            if cell.value is not None and abs(cell.value) < 1e6:
-                like = Printed("0." + "0" * rng.randrange(1, 5), "1", Fraction(0), ONE)
-                text = print_as(cell.value + rng.choice((0, 0, 1, 30)) * float(like.half_unit), like)
-                published.append(
-                    PublishedValue("Table", name, cell.label, Printed(text, "1", Fraction(text), ONE))
-                )
-    workbook = Workbook("made", "", "", lambda: Ledger(()), (), (), lambda given: sheet)
-    inputs = Inputs(
-        Path(), "", workbook, parameters, frozenset("cd"), tests, measured, {}, tuple(published), {}
-    )
-    found = referee(sheet, inputs, values, data)
-    return judged(compare(inputs.published, values), found)
+    return judged(sheet_of(rng), measured, parameters, lambda values: list(published(values)))
 
 
 def intervals(seeds: range) -> Iterator[tuple[int, Comparison]]:

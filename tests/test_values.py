@@ -109,6 +109,23 @@ def test_a_sum_of_rows_in_error_carries_the_first_ones_error() -> None:
     assert np.isnan(values.scalar("mean"))
 
 
+def test_of_several_errors_the_first_is_told() -> None:
+    """The first row of a sum, and of what a rule names the column that was declared first."""
+    values = compute([3, 2, NAN], [2, 3, 5], c=NAN)
+    fallen = "slope[1-2]: outside the domain of (1): a must rise"
+    missing = "the datum is missing or invalid"
+    assert reasons(values, "slope")[1:] == [
+        f"#INPUT! slope[{pair}] needs a[3]: {missing}" for pair in ("1-3", "2-3")
+    ]
+    assert reasons(values, "mean") == [f"#DOMAIN! mean needs {fallen}"]
+    assert reasons(values, "offset") == [
+        f"#DOMAIN! offset[1] needs {fallen}",
+        f"#DOMAIN! offset[2] needs {fallen}",
+        f"#INPUT! offset[3] needs a[3]: {missing}",
+    ]
+    assert reasons(values, "scaled") == [f"#INPUT! scaled needs c: {missing}"]
+
+
 def test_a_row_in_error_may_still_use_the_sum_over_the_others() -> None:
     values = compute([1, NAN, 4], [2, 3, 5])
     assert reasons(values, "excess") == [
@@ -165,6 +182,14 @@ def test_a_sum_without_rows_is_outside_the_domain() -> None:
         "#DOMAIN! scaled needs mean: outside the domain of (1): pairs has no rows"
     ]
     assert list(values.cells("slope")) == []
+
+
+def test_a_sum_without_rows_is_so_in_every_draw() -> None:
+    draws = {"a": [[1.0], [2.0], [3.0]], "b": [[2.0], [3.0], [NAN]], "c": [[1.0], [NAN], [1.0]]}
+    values = engine.evaluate(SHEET, {"rows": [1]}, draws, PROGRAM)
+    assert values.status["mean"].tolist() == [[Status.DOMAIN]] * 3
+    assert values.status["scaled"].tolist() == [[Status.DOMAIN], [Status.INPUT], [Status.DOMAIN]]
+    assert values.status["offset"].tolist() == [[Status.DOMAIN]] * 3
 
 
 def test_cells_are_found_by_their_labels() -> None:
