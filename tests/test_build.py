@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from loopsheet.report import build
+from loopsheet.report.cli import main
 from loopsheet.report.errors import InputError, OutputError, UsageError
 from loopsheet.report.result import Report
 
@@ -219,6 +220,39 @@ def test_other_units_other_masses_and_other_numbers_of_tests(report: Report, tmp
         c, d = other.values.cell("C", mine).value, report.values.cell("C", theirs).value
         assert c == pytest.approx(d * 1000 / 1001, rel=1e-6)
     assert other.shown["x_m"].unit == "mm"
+
+
+@pytest.mark.usefixtures("unjudged")
+@pytest.mark.parametrize(
+    ("change", "digits", "alpha_mean"),
+    [
+        (("", ""), 4, "1.303"),  # e and three depths have three digits
+        (("5,4.993,0.453,51.03", "5,4.993,0.45,51.03"), 3, "1.32"),
+        (("41.6\n", "41.60\n"), 4, "1.303"),
+        (("5,4.993,0.453,51.03", "5,5,0.453,51.03"), 2, "1.3"),
+    ],
+)
+def test_a_digit_more_is_shown_than_the_least_precise_measured_number_has(
+    tmp_path: Path, change: tuple[str, str], digits: int, alpha_mean: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = copy_paper(tmp_path / "in")
+    tests, toml = folder / "measurements.csv", folder / "report.toml"
+    assert change[0] in tests.read_text()
+    tests.write_text(tests.read_text().replace(*change))
+    toml.write_text(toml.read_text().partition("[published]")[0])
+    report = build.compute(folder, prove=False)
+    shown = report.shown
+    assert {shown[name].digits for name in ("alpha", "alpha_mean", "x_m", "Cprime_eq7")} == {digits}
+    assert (shown["v"].digits, shown["e"].digits, shown["x_p"].digits) == tuple(
+        1 + min(printed.digits for printed in report.inputs.measured[name]) for name in ("v", "e", "x_p")
+    )
+    assert (shown["ball_density"].digits, shown["ball_diameter"].digits) == (5, 4)
+    assert (shown["beta"].digits, shown["points_per_pair"].digits) == (6, 6)  # not measured: exact
+    assert (shown["x_m"].unit, shown["x_m"].scale) == ("um", 1e-6)
+    assert (shown["C"].unit, shown["C"].scale) == ("N/m^alpha", 1.0)
+    assert main(["build", str(folder), "--out", str(tmp_path / "out"), "--to", "json"]) == 0
+    line = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("alpha_mean "))
+    assert line.split()[1] == alpha_mean
 
 
 @pytest.mark.usefixtures("unjudged")
