@@ -390,6 +390,15 @@ def test_turning_the_tests_round_changes_nothing_but_the_last_bits() -> None:
     assert np.nanmax(apart) < 1e-10
 
 
+@pytest.mark.parametrize(("speed", "depth"), [(2.0**800, 1.0), (2.0**-800, 1.0), (1.0, 2.0**900)])
+def test_the_exponent_does_not_depend_on_the_units(speed: float, depth: float) -> None:
+    """Not even where no double holds the square of a speed."""
+    beta, v, e, x_p = pairs(400, 0.2, 2.0, seed=11)
+    here, there = solve(beta, v, e, x_p), solve(beta, v * speed, e, x_p * depth)
+    np.testing.assert_array_equal(there.status["alpha"], here.status["alpha"])
+    np.testing.assert_array_equal(there.value["alpha"], here.value["alpha"])
+
+
 def test_a_negative_approach_is_never_given_out() -> None:
     beta, v, e, x_p = pairs(5000, 0.2, 3.0, seed=9)
     values = solve(beta, v, e, x_p)

@@ -31,8 +31,8 @@ def alpha_rule(where: Cells) -> Root:
     # Both approaches are positive for alpha + 1 > (beta + 1) e^2 of either test, and alpha is for u < 1.
     livelier = (model.beta + 1) * Max(E[1] ** 2, E[2] ** 2)
     high = 1 / Max(livelier, 1)
-    at_one = form.residuals[0].xreplace({u: Integer(1)})
-    equal_e = evaluated(alpha_root.logarithm).xreplace({E[2]: E[1]}).xreplace({u: 1 / livelier})
+    logarithm = evaluated(alpha_root.logarithm)
+    at_one, equal_e = logarithm.xreplace({u: Integer(1)}), logarithm.xreplace({E[2]: E[1], u: 1 / livelier})
     # The definition of u is linear in alpha; sympy's own solve() would load its system of units for this.
     slope, rest = Poly(numer(together(alpha_root.reciprocal.residuals[0])), model.alpha).all_coeffs()
 
@@ -47,7 +47,8 @@ def alpha_rule(where: Cells) -> Root:
         low=Rational(0),
         high=cells(high),
         # Where u -> 0 the form tends to 1 - x_p1/x_p2. At the other end, if that is not u = 1, the factor of
-        # the livelier test vanishes and the other decides; where both vanish, the logarithm of (L6) does.
+        # the livelier test vanishes and the other decides; where both vanish, or none, the logarithm of (L6)
+        # does: it takes no square of a speed that doubles may not hold.
         sign_low=cells(XP[2] - XP[1]),
         sign_high=cells(Piecewise((at_one, livelier < 1), (E[2] - E[1], Ne(E[1], E[2])), (equal_e, True))),
         turning=(cells(_turning()),),
