@@ -206,18 +206,20 @@ def _evaluated(prepared: Prepared, ledger: Ledger, step: Step) -> Report:
     inputs, sheet = prepared.inputs, prepared.sheet
     from .analysis.referee import compare
     from .engines import numpy as engine
+    from .marks import Marks, margins
     from .result import Report
 
     step("computing the sheet")
     values = engine.evaluate(sheet, prepared.labels, prepared.data)
     check_published(inputs, {c.name: (c.unit, set(values.labels(c))) for c in sheet.columns})
-    workbook = inputs.workbook
+    workbook, limits = inputs.workbook, margins(sheet)
     return Report(
         title=inputs.title,
         workbook=workbook,
         inputs=inputs,
         sheet=sheet,
         values=values,
+        marks=Marks(engine.extend(values, [margin.column for margin in limits], {}), limits),
         shown={column.name: shown(column, sheet, inputs) for column in sheet.columns},
         ledger=ledger,
         proofs=(),
@@ -275,7 +277,7 @@ def judged(report: Report, every: bool = True, step: Step = _silent) -> Report:
     step("judging the engines at 50 digits")
     prepared = Prepared(report.inputs, report.sheet)
     if not every:
-        agreement = engines.compare(report.values, prepared.labels, prepared.exact_data)
+        agreement = engines.compare(report.marks.values, prepared.labels, prepared.exact_data)
         return replace(report, engines=(agreement,))
     from .analysis.readers import Book
 
@@ -284,7 +286,8 @@ def judged(report: Report, every: bool = True, step: Step = _silent) -> Report:
         book = Book(content, grid)
     except UsageError:
         book = None  # there is no such workbook, and nothing to judge
-    agreements = engines.compare_all(report.values, prepared.labels, prepared.data, prepared.exact_data, book)
+    values, exactly = report.marks.values, prepared.exact_data
+    agreements = engines.compare_all(values, prepared.labels, prepared.data, exactly, book)
     return replace(report, engines=agreements)
 
 
@@ -475,10 +478,10 @@ def _program(report: Report) -> str:
     """The sheet as the page's program, with the curves that the page draws."""
     from .engines import javascript
 
-    drawn = _drawn(report)
+    drawn, sheet = _drawn(report), report.marks.values.sheet
     if drawn is None:
-        return javascript.program(report.sheet)
-    return javascript.program(drawn.with_curves(report.sheet), drawn.given)
+        return javascript.program(sheet)
+    return javascript.program(drawn.with_curves(sheet), drawn.given)
 
 
 def _write(
@@ -549,7 +552,8 @@ def _workbook(report: Report) -> tuple[Grid, bytes]:
 
     units = {name: how.unit for name, how in report.shown.items()}
     try:
-        grid = excel_grid.grid(report.sheet, report.values, units, report.workbook.headline, _drawn(report))
+        first, values = report.workbook.headline, report.marks.values
+        grid = excel_grid.grid(report.sheet, values, units, first, _drawn(report))
     except NotPrintable as error:
         raise UsageError(
             diagnose("LS606", reason=error, known="functions that every spreadsheet has")

@@ -22,6 +22,7 @@ __all__ = [
     "Column",
     "Formula",
     "Given",
+    "Limit",
     "PairAxis",
     "Reference",
     "RepeatAxis",
@@ -231,6 +232,45 @@ Rule = Given | Formula | Root
 
 
 @dataclass(frozen=True)
+class Limit:
+    """Where the cells of a column are expected, and who says so.
+
+    Parameters
+    ----------
+    inside : Boolean or Bounds
+        What holds where all is as expected: comparisons of cells that the column's axis may name, joined by
+        and; or what the cell itself may be, in SI.
+    says : str
+        What is odd outside, in a few words.
+    source : str
+        The number of the statement that says so, ``(4)``; empty if it is the workbook's own.
+    """
+
+    inside: Boolean | Bounds
+    says: str
+    source: str = ""
+
+    @classmethod
+    def of(cls, equation: Equation) -> Limit:
+        """A relation of a ledger, in a sheet's cells."""
+        return cls(equation.value, equation.title, equation.label)
+
+    @property
+    def mark(self) -> str:
+        """What is said of a cell outside."""
+        return f"outside {self.source}" if self.source else self.says
+
+    @property
+    def told(self) -> str:
+        """The mark, with what the statement is about."""
+        return f"{self.mark}, {self.says}" if self.source else self.says
+
+    def rows(self, axis: str) -> str:
+        """What is behind a number of rows that lie outside: ``pairs outside (4)``."""
+        return f"{axis}{'' if self.source else ':'} {self.mark}"
+
+
+@dataclass(frozen=True)
 class Column:
     """One quantity over one index set.
 
@@ -255,6 +295,8 @@ class Column:
         its domain. (A root is held by its interval, a given value by what the workbook allows.)
     requires : tuple
         Relations that must hold for a row, each with the sentence that explains a ``#DOMAIN!``.
+    limits : tuple of Limit
+        Where its cells are expected. One outside keeps its value and carries a mark.
     exact : bool
         Whether a given value is a choice or a convention, so that its digits say nothing of precision.
     """
@@ -269,6 +311,7 @@ class Column:
     positive: bool = True
     requires: tuple[tuple[Rel, str], ...] = ()
     exact: bool = False
+    limits: tuple[Limit, ...] = ()
 
     @cached_property
     def symbol(self) -> Symbol:

@@ -142,7 +142,7 @@ class Block:
     kind : str
         ``index`` (the numbers of rows), ``given``, ``checked`` (what is given, if it is allowed),
         ``computed``, ``carried`` (another axis' cells, repeated for a sum), ``step`` (on the way to a
-        root) or ``drawn`` (for a chart).
+        root), ``margin`` (how far inside of a limit another's cells lie) or ``drawn`` (for a chart).
     title, meaning : str
         What stands above or beside its cells.
     place : Place

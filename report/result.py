@@ -12,6 +12,7 @@ from ..derivations.equation import Erratum, Ledger
 from ..derivations.proof import Proof
 from .agreement import Agreement
 from .inputs import Inputs, PublishedValue
+from .marks import Marks
 from .sheet import Sheet
 from .values import Cell, Values
 from .verdict import (
@@ -143,6 +144,8 @@ class Report:
     sheet : Sheet
     values : Values
         Every cell, in SI, without a batch dimension.
+    marks : Marks
+        Which of them lie outside of what is expected.
     shown : mapping of column name to Shown
     ledger : Ledger
     proofs : tuple of Proof
@@ -166,6 +169,7 @@ class Report:
     inputs: Inputs
     sheet: Sheet
     values: Values
+    marks: Marks
     shown: Mapping[str, Shown]
     ledger: Ledger
     proofs: tuple[Proof, ...]

@@ -20,6 +20,7 @@ from .column import (
     Column,
     Formula,
     Given,
+    Limit,
     PairAxis,
     Reference,
     RepeatAxis,
@@ -38,6 +39,7 @@ __all__ = [
     "CycleError",
     "Formula",
     "Given",
+    "Limit",
     "PairAxis",
     "Reference",
     "RepeatAxis",
@@ -143,6 +145,10 @@ class Sheet:
             return replace(column, rule=replace(column.rule, bounds=declared[column.name]))
 
         return Sheet(tuple(map(bound, self.columns)))
+
+    def limited(self, declared: Mapping[str, tuple[Limit, ...]]) -> Sheet:
+        """The sheet with where its columns are expected."""
+        return Sheet(tuple(replace(c, limits=declared.get(c.name, c.limits)) for c in self.columns))
 
     @cached_property
     def bounds(self) -> dict[str, Bounds]:

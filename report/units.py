@@ -14,6 +14,7 @@ from sympy import Basic, Expr, Indexed, sstr
 from ..derivations import dimensions
 from ..derivations.dimensions import PURE, Dimension, DimensionError, Dimensions, text_of
 from ..derivations.vocabulary import NO_WORDS
+from .quantity import Bounds
 from .sheet import Column, Formula, Given, Root, Sheet, SheetError, name_of
 
 __all__ = ["Dimension", "UnitError", "check", "dimension_of_unit"]
@@ -118,6 +119,9 @@ def check(sheet: Sheet) -> None:
             raise SheetError(f"{column.name}: unknown kind of rule {rule!r}")
         for condition, _ in column.requires:
             checker.relation(condition)
+        for limit in column.limits:
+            if not isinstance(limit.inside, Bounds):
+                checker.relation(limit.inside)
 
 
 def _expect(checker: _Checker, expression: Expr, own: Dimension) -> None:

@@ -54,7 +54,7 @@ SHEET = (
         "report.workbook",
     }
 )
-VALUES = SHEET | {"report.layout", "report.trace", "report.values"}
+VALUES = SHEET | {"report.layout", "report.marks", "report.trace", "report.values"}
 RESULT = VALUES | {
     "report.agreement",
     "report.differences",

@@ -51,7 +51,8 @@ def grid(
     ----------
     sheet : Sheet
     values : Values
-        All columns, computed, without a batch dimension.
+        All columns, computed, without a batch dimension; those that are not of the sheet are the margins
+        of its limits.
     units : mapping of str to str
         The unit that each column is shown in; one that is no plain multiple of SI's leaves SI.
     first : sequence of str
@@ -68,7 +69,7 @@ def grid(
     """
     check_rows(values)
     every = values if drawn is None else extend(values, drawn.columns, drawn.given)
-    return _Assembly(sheet, every.sheet, every, units, first, drawn).grid()
+    return _Assembly(sheet, values.sheet, every.sheet, every, units, first, drawn).grid()
 
 
 def check_rows(values: Values) -> None:
@@ -104,13 +105,14 @@ class _Assembly:
     def __init__(
         self,
         sheet: Sheet,
+        judged: Sheet,
         whole: Sheet,
         values: Values,
         units: Mapping[str, str],
         first: Sequence[str],
         drawn: Drawn | None,
     ) -> None:
-        self.sheet, self.whole, self.values, self.units = sheet, whole, values, units
+        self.sheet, self.judged, self.whole, self.values, self.units = sheet, judged, whole, values, units
         self.first, self.drawn = first, drawn
         self.names = {axis.name: _worksheet(axis) for axis in whole.axes}
         self.rooms = {
@@ -185,6 +187,7 @@ class _Assembly:
             [self.sheet[name] for name in self.first if name in self.sheet and self.sheet[name].axis is None],
             [c for c in scalars if isinstance(c.rule, Given) and c.name not in self.first],
             [c for c in scalars if not isinstance(c.rule, Given) and c.name not in self.first],
+            [c for c in self.judged.columns if c.axis is None and c.name not in self.sheet],
         )
         row = _TOP
         for group in groups:
@@ -248,12 +251,13 @@ class _Assembly:
             )
             if isinstance(column.rule, Given):
                 yield from self.given_blocks(column, block, formulas)
-            elif column.name not in self.sheet:
+            elif column.name not in self.judged:
                 shown = tuple(None if isinstance(value, str) else value for value in shown)
                 yield _computed(replace(block, kind="drawn", values=shown), formulas.drawn(column))
             else:
                 written = formulas.column(column, self.unrolled.get(column.name))
-                yield _computed(replace(block, kind="computed", kept=formulas.kept(column)), written)
+                kind = "computed" if column.name in self.sheet else "margin"
+                yield _computed(replace(block, kind=kind, kept=formulas.kept(column)), written)
         for name, (cell, axis) in sorted(self.carried.items()):
             column = self.whole[name_of(cell)]
             named = self.values.layouts[axis.name].rows[cell.indices[0]]

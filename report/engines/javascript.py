@@ -272,24 +272,36 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
             "name": column.name,
             "axis": None if column.axis is None else column.axis.name,
             "kind": kind,
-            "refs": [] if kind == "given" else list(_references(sheet, column)),
+            "refs": [] if kind == "given" else [_least(each) for each in _references(sheet, column)],
             "sums": [axis.name for axis in sheet.summed_axes(column)],
+            "positive": isinstance(column.rule, Formula) and column.positive,
+            "steps": column.rule.steps if isinstance(column.rule, Root) else None,
         }
-        if isinstance(column.rule, Formula):
-            entry["positive"] = column.positive
-        if isinstance(column.rule, Root):
-            entry["steps"] = column.rule.steps
-        text = json.dumps(entry)[:-1]
+        parts = [f"{name}: {json.dumps(value)}" for name, value in entry.items() if value]
         if column.name in sheet.guards:
             datum, allowed = sheet.guards[column.name]
             x = Symbol("x", real=True)
-            text += f', "allows": (x) => {Printer().doprint(allowed.xreplace({datum: x}))}'
+            parts.append(f"allows: (x) => {Printer().doprint(allowed.xreplace({datum: x}))}")
         kernels = _kernels(sheet, column)
         if kernels:
-            text += f', "kernels": {kernels}'
-        columns.append(f"  {text}}}")
+            parts.append(f"kernels: {kernels}")
+        columns.append(f"  {{{', '.join(parts)}}}")
     axes = ", ".join(json.dumps(_axis(axis)) for axis in sheet.axes)
     fixed = json.dumps({name: [value] for name, value in (constants or {}).items()})
-    return (
-        f'{{\n "constants": {fixed},\n "axes": [{axes}],\n "columns": [\n' + ",\n".join(columns) + "\n ]\n}"
-    )
+    listed = ",\n".join(columns)
+    return f'{{\n "constants": {fixed},\n "axes": [{axes}],\n "columns": [\n{listed}\n ]{_WHOLE}\n}}'
+
+
+_WHOLE = (
+    ".map(({ refs = [], ...column }) => ({ axis: null, sums: [], ...column, "
+    "refs: refs.map(([name, index = null, over = null]) => [name, index, over]) }))"
+)
+"""What a column leaves out is put in again."""
+
+
+def _least(reference: tuple[str | None, ...]) -> list[str | None]:
+    """What is left of a reference without the nulls at its end."""
+    parts = list(reference)
+    while parts[-1] is None:
+        parts.pop()
+    return parts

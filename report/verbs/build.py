@@ -71,5 +71,7 @@ def _line(report: Report, name: str) -> str:
         return cell.reason
     rows = report.values.counted.get(name, {})
     left = "".join(f"  (over {n} {axis} that have values)" for axis, n in rows.items())
+    left += "".join(f"  ({count.said})" for count in report.marks.behind(column) if count.number)
+    left += (mark := report.marks.of(name)[0]) and f"  {mark}"
     unit = "" if how.unit == "1" else f" {how.unit}"
     return f"{name:12} {cell.value / how.scale:#.{how.digits}g}{unit}  {column.meaning} {column.source}{left}"

@@ -28,9 +28,12 @@ def run(options: argparse.Namespace) -> int:
         print(f"  {text_of_equation(column.equation, report.ledger.vocabulary)}")
         precedents = ", ".join(precedent.name for precedent in report.sheet.precedents(column))
         print(f"  computed from {precedents or 'nothing'}")
-    wanted_labels = set(labels)
-    for cell in report.values.cells(name):
+    wanted_labels, marks = set(labels), report.marks.of(name)
+    for cell, mark in zip(report.values.cells(name), marks, strict=True):
         if cell.label in wanted_labels:
             scale = report.shown[name].scale
-            print(f"  {cell.address:16} {cell.reason if cell.value is None else repr(cell.value / scale)}")
+            value = cell.reason if cell.value is None else repr(cell.value / scale)
+            print(f"  {cell.address:16} {value}{mark and f'  {mark}'}")
+    for count in report.marks.behind(column):
+        print(f"  {count.said}")
     return OK

@@ -90,24 +90,29 @@ def short_style(text: str) -> str:
 
 # --- HTML ------------------------------------------------------------------------------------------------
 
-_FLOW = "article|aside|details|div|dl|figure|footer|h[1-6]|header|nav|ol|p|section|table|ul"
+_FLOW = "article|aside|div|dl|footer|h[1-6]|header|nav|ol|p|section|table|ul"
 _IMPLIED = re.compile(
     r"(?P<kept><(?P<name>script|style)\b[\s\S]*?</(?P=name)>)"
-    r"|</t[dh]>(?=<t[dh][ >]|</tr>)|</tr>(?=<tr[ >]|</t(?:body|head)>)"
-    r"|</thead>(?=<tbody[ >])|</tbody>(?=</table>)"
-    r"|</li>(?=<li[ >]|</[ou]l>)|</d[dt]>(?=<d[dt][ >]|</dl>)"
-    rf"|</p>(?=<(?:{_FLOW})[ >]|</(?:article|dd|details|div|figcaption|li|section)>)"
+    r"|</t[dh]>(?=<t[dh][ >])|</tr>(?=<tr[ >])|</thead>(?=<tbody[ >])"
+    rf"|</li>(?=<li[ >])|</d[dt]>(?=<d[dt][ >])|</p>(?=<(?:{_FLOW})[ >])"
+    r"|(?P<tag><(?!meta)[a-z]\w*(?: [\w-]+(?:=\"[^\"<>]*\")?)+ ?/?>)"
 )
-"""End tags that HTML lets one leave out: what follows says that the element is over."""
+"""End tags that HTML lets one leave out, for what begins next says that the element is over; and tags."""
 
 
 def short_markup(page: str) -> str:
-    """A page without the end tags that every reader of HTML puts in again; scripts and styles stay.
+    """A page without the end tags and quotes that every reader puts in again; scripts and styles stay.
 
-    >>> short_markup("<table><tbody><tr><td>1</td></tr></tbody></table><script>'</p></li>'</script>")
-    "<table><tbody><tr><td>1</table><script>'</p></li>'</script>"
+    >>> short_markup("<ul><li>1</li><li>2</li></ul><script>'</li><li>'</script>")
+    "<ul><li>1<li>2</li></ul><script>'</li><li>'</script>"
+    >>> short_markup('<td class="p0" title="a b">x="1" </td>')
+    '<td class=p0 title="a b">x="1" </td>'
     """
-    return _IMPLIED.sub(lambda found: found["kept"] or "", page)
+    return _IMPLIED.sub(lambda found: found["kept"] or _unquoted(found["tag"] or ""), page)
+
+
+def _unquoted(tag: str) -> str:
+    return re.sub(r'="([\w.-]+)"(?=[ >])', r"=\1", tag)
 
 
 # --- MathML ----------------------------------------------------------------------------------------------

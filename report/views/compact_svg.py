@@ -18,6 +18,7 @@ _COUNTS = {"M": 2, "L": 2, "Q": 4, "C": 6, "h": 1}
 def short_svg(svg: str) -> str:
     """An SVG without comments, idle groups and names, its paths told in steps from place to place."""
     text = svg.replace("xlink:href", "href").replace(' xmlns:xlink="http://www.w3.org/1999/xlink"', "")
+    text = text.replace(' version="1.1"', "").replace("#ffffff", "#fff")
     text = _with_texts(text)
     text = re.sub(r"<!--[\s\S]*?-->|<\?xml[^>]*\?>", "", text)
     text = re.sub(r">\s+<", "><", text.strip())
@@ -28,6 +29,7 @@ def short_svg(svg: str) -> str:
     text = re.sub(r' style="[^"]*"', lambda found: re.sub(r"([:;]) +", r"\1", found.group()), text)
     text = _PATH.sub(lambda found: f' d="{_relative(found[1])}"', text)
     text = re.sub(r"translate\([^)]*\)", _rounded, text)
+    text = re.sub(r'<text transform="translate\(([-\d.]+),([-\d.]+)\)"', r'<text x="\1" y="\2"', text)
     text = _with_classes(text)
     while True:
         # A group without attributes does nothing.

@@ -5,21 +5,21 @@ Nothing is calculated here; what is decided is order, wording, digits and what r
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
 
 from ...derivations.equation import Derivation, Equation
 from ...derivations.proof import Proof
+from ..marks import Count
 from ..result import Report
 from ..sheet import Axis, Column, Given, RepeatAxis, Root
-from ..values import Cell
 from ..workbook import FigureSpec, TableSpec
 from . import figures
 from .escape import slug
 from .math import Printer, latex_names, name_latex
 from .numbers import Figure, decimals, read, shown, table_format
-from .parts import Group, Head, Item, Pair, Row, Table
+from .parts import MARK, Group, Head, Item, Pair, Remark, Row, Table
 from .refereed import Refereed
 from .typeset import Block, block
 
@@ -74,8 +74,8 @@ class Document:
             head = replace(head, unit=printed[0].unit)
         places = max((len(figure.fraction) for figure in figures if figure is not None), default=0)
         head = replace(head, format=table_format(figures), places=places)
-        rows = zip(cells, figures, texts, strict=True)
-        return head, tuple(Item(cell, head, figure, text) for cell, figure, text in rows)
+        rows = zip(cells, figures, texts, self.report.marks.of(name), strict=True)
+        return head, tuple(Item(cell, head, figure, text, mark) for cell, figure, text, mark in rows)
 
     def item(self, name: str, index: Iterable[int] = ()) -> Item:
         """One cell."""
@@ -100,6 +100,22 @@ class Document:
         return tuple(
             (axis, rows, self.count(axis)) for axis, rows in counted.items() if rows != self.count(axis)
         )
+
+    # --- marks
+
+    def marked(self, name: str) -> tuple[Count, ...]:
+        """For a scalar, how many of the rows that it rests on lie outside of what is expected."""
+        counts = self.report.marks.behind(self.report.sheet[name])
+        return tuple(count for count in counts if count.number)
+
+    def inside(self, name: str) -> str:
+        """How many cells of a column lie inside of the statement that limits them: ``10 of 10 pairs``."""
+        return self.report.marks.limited(name).inside
+
+    def limits(self, heads: Iterable[Head]) -> tuple[str, ...]:
+        """What a mark in a table may mean, each once."""
+        columns = (self.report.sheet[head.name] for head in heads)
+        return tuple(dict.fromkeys(limit.told for column in columns for limit in column.limits))
 
     # --- tables
 
@@ -253,9 +269,18 @@ class Document:
     # --- errors
 
     @cached_property
-    def missing(self) -> tuple[Cell, ...]:
-        """The cells where an error begins."""
-        return tuple(self.report.values.errors())
+    def remarks(self) -> tuple[Remark, ...]:
+        """The cells where an error begins, then those that lie outside of what is expected."""
+        errors = (Remark(cell, cell.status.code, cell.why) for cell in self.report.values.errors())
+        return (*errors, *self._marks())
+
+    def _marks(self) -> Iterator[Remark]:
+        marks = self.report.marks
+        for margin in marks.margins:
+            cells = self.report.values.cells(margin.of.name)
+            for cell, outside in zip(cells, marks.outside(margin).tolist(), strict=True):
+                if outside:
+                    yield Remark(cell, MARK, margin.limit.told)
 
 
 def _row_name(axis: Axis) -> str:

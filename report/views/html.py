@@ -67,8 +67,13 @@ class HtmlWords(Words):
         name = Markup("")
         if identified and self.first(item.identifier):
             name = Markup('id="{}" ').format(item.identifier)
-        return name + Markup('data-cell="{}" data-index="{}" data-value="{}" data-status="{}"').format(
-            item.cell.name, item.index, item.data, item.code
+        mark = Markup(' data-mark="{0}" title="{0}"').format(item.mark) if item.mark else Markup("")
+        return (
+            name
+            + Markup('data-cell="{}" data-index="{}" data-value="{}" data-status="{}"').format(
+                item.cell.name, item.index, item.data, item.code
+            )
+            + mark
         )
 
     def padding(self, item: Item) -> str:
@@ -121,8 +126,23 @@ class Count(int):
         return str(Markup('<span data-count="{}"{}>{}</span>').format(self.axis, column, int(self)))
 
 
+class Inside(str):
+    """How many rows lie inside of a limit, marked where it stands so that it can follow."""
+
+    margin: str
+
+    def __html__(self) -> str:
+        return str(Markup('<span data-inside="{}">{}</span>').format(self.margin, str(self)))
+
+
 class HtmlDocument(Document):
     """A report whose counts of rows know what they count."""
+
+    def inside(self, name: str) -> str:
+        """How many cells of a column lie inside of the statement that limits them."""
+        made = Inside(super().inside(name))
+        made.margin = self.report.marks.limited(name).margin.column.name
+        return made
 
     def count(self, axis: str) -> int:
         """How many rows an axis has."""
@@ -135,7 +155,7 @@ class HtmlDocument(Document):
 
 def finalize(value: Any) -> Markup:
     """Escape whatever a template puts out, unless it is markup already."""
-    return Markup(value.__html__()) if isinstance(value, Count) else html_finalize(value)
+    return Markup(value.__html__()) if isinstance(value, (Count, Inside)) else html_finalize(value)
 
 
 def csp(style: str, script: str = "") -> str:

@@ -9,6 +9,7 @@ from typing import Any
 
 from ...derivations.text import text_of_equation
 from .. import verdict_data
+from ..marks import Count
 from ..result import Report
 from ..sheet import Column, Given
 from ..values import Status
@@ -48,9 +49,20 @@ def _column(report: Report, column: Column) -> dict[str, Any]:
         entry |= {"axis": column.axis.name, "index": index, "value": numbers, "status": codes}
     if isinstance(column.rule, Given):
         entry["u"] = _given_uncertainty(report, column)
+    if column.limits:
+        marks = [mark or None for mark in report.marks.of(column.name)]
+        entry["mark"] = marks[0] if column.axis is None else marks
     if column.name in report.values.counted:
         entry["rows"] = dict(report.values.counted[column.name])
+    if marked := [_marked(count) for count in report.marks.behind(column) if count.number]:
+        entry["marked"] = marked
     return entry
+
+
+def _marked(count: Count) -> dict[str, Any]:
+    """How many of the rows that a scalar rests on carry a mark."""
+    margin = count.margin
+    return {"cell": margin.of.name, "mark": margin.limit.mark, "rows": count.number, "of": count.size}
 
 
 def _rule(report: Report, column: Column) -> str:

@@ -28,6 +28,8 @@ __all__ = ["TexFailed", "TexMissing", "compile", "render"]
 
 PACKAGES = "latexmk texlive-latex-extra texlive-science texlive-fonts-recommended lmodern"
 """What Debian and Ubuntu call what is needed."""
+DAGGER = r"\textsuperscript{\textdagger}"
+"""What stands behind a number that lies outside of what is expected."""
 _PATIENCE = 300
 """Seconds that TeX may take."""
 _MARKED = 0.82
@@ -100,7 +102,13 @@ class LatexWords(Words):
         """A cell of a column that aligns numbers: what is no number goes in braces."""
         if item.figure is None:
             return Markup(rf"{{{tex(item.printed or item.code)}}}")
-        return Markup(item.figure.plain)
+        return Markup(item.figure.plain + (rf"{{{DAGGER}}}" if item.mark else ""))
+
+    dagger = Markup(DAGGER)
+
+    def quantity(self, item: Item) -> Markup:
+        """A cell's number with its unit, or the code of its error; a mark behind it."""
+        return super().quantity(item) + Markup(DAGGER if item.mark else "")
 
     def columns(self, heads: tuple[Head, ...]) -> Markup:
         """The columns of a table, each as wide as its numbers."""

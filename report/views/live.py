@@ -163,6 +163,10 @@ def _column(report: Report, document: Document, column: Column, grounds: list[Gr
         "unit": unit_text(_unit(report, column)).strip("()"),
         "scale": shown.scale,
     }
+    if limits := report.marks.limiting(column.name):
+        entry["limits"] = [
+            (each.column.name, each.limit.mark, each.limit.told, each.limit.rows("")) for each in limits
+        ]
     if isinstance(column.rule, Given):
         entry["given"] = _given(report, column)
         return entry

@@ -11,8 +11,10 @@ from ..workbook import TableSpec
 from .escape import slug
 from .numbers import Figure
 
-__all__ = ["Group", "Head", "Item", "Pair", "Row", "Table", "address", "index_text"]
+__all__ = ["MARK", "Group", "Head", "Item", "Pair", "Remark", "Row", "Table", "address", "index_text"]
 
+MARK = "†"
+"""What stands behind a number that lies outside of what is expected."""
 LONG = 30
 """A table of more rows than this scrolls in the page and breaks over pages in print."""
 
@@ -74,6 +76,8 @@ class Item:
     head: Head
     figure: Figure | None
     printed: str | None = None
+    mark: str = ""
+    """What it lies outside of, if it does."""
 
     @property
     def ok(self) -> bool:
@@ -112,6 +116,28 @@ class Item:
 
 
 @dataclass(frozen=True)
+class Remark:
+    """A cell to look at: one without a value, or one with a mark.
+
+    Parameters
+    ----------
+    cell : Cell
+    code : str
+        Of its error, or :data:`MARK`.
+    why : str
+    """
+
+    cell: Cell
+    code: str
+    why: str
+
+    @property
+    def marked(self) -> bool:
+        """Whether it has a mark, not an error."""
+        return self.code == MARK
+
+
+@dataclass(frozen=True)
 class Row:
     """One row of a table: what it is called, and its cells."""
 
@@ -142,6 +168,11 @@ class Table:
     axis: str
     heads: tuple[Head, ...]
     rows: tuple[Row, ...]
+
+    @property
+    def marked(self) -> bool:
+        """Whether some cell of it carries a mark."""
+        return any(item.mark for row in self.rows for item in row.items)
 
     @property
     def long(self) -> bool:

@@ -46,12 +46,15 @@ def why(report: Report, name: str, label: tuple[int, ...] = ()) -> str:
     lines = [f"{cell.address} = {value}  {column.meaning}".rstrip()]
     if cell.reason:
         lines.append(_line("reason", cell.reason))
+    if mark := report.marks.of(name)[row]:
+        lines.append(_line("marked", mark))
     if _is_given(column):
         lines.append(_line("given", _where(report, name, row)))
     else:
         lines += list(_sources(report, column))
         lines += list(_equation(report, column, row, cell))
     before = _told(report, precedents_of(report.values, column, row))
+    lines += [_line("marked", count.said) for count in report.marks.behind(column) if count.number]
     after = _told(report, dependents_of(report.values, column, row))
     lines += [_line("rests on", before)] if before else []
     lines += [_line("used by", after)] if after else []

@@ -18,6 +18,7 @@ from ..grid import SCALARS, STEPS, Grid
 from ..result import Report
 from .xlsx_charts import write_charts
 from .xlsx_inputs import Inputs
+from .xlsx_marks import mark_outside
 from .xlsx_pages import write_equations, write_published, write_report
 from .xlsx_style import Style
 from .xlsx_tables import write_axis, write_steps
@@ -80,6 +81,7 @@ def _write(book: Any, report: Report, grid: Grid) -> None:
     write_equations(sheets[_EQUATIONS], style, report)
     if _FIGURES in sheets:
         write_charts(book, sheets[_FIGURES], style, report, grid)
+    mark_outside(sheets, style, report, grid)
     _define_names(book, report, grid)
 
 

@@ -11,6 +11,7 @@ from ..result import Comparison, Report
 from ..sheet import RepeatAxis
 from .json import proof_statuses
 from .xlsx_inputs import Inputs
+from .xlsx_marks import TITLE, counted
 from .xlsx_style import Style, height
 from .xlsx_tables import mark_errors, write_block
 
@@ -28,7 +29,7 @@ def write_report(sheet: Any, style: Style, report: Report, grid: Grid, inputs: I
     style.text(sheet, 1, 0, report.workbook.title, "subtitle")
     style.formula(sheet, 2, 0, inputs.summary(), "", style("error"))
     row = 0
-    for group in _groups(grid.on(SCALARS, "given", "computed")):
+    for group in _groups(grid.on(SCALARS, "given", "computed", "margin")):
         row, given = group[0].place.row, group[0].kind == "given"
         for at in range(7):
             style.text(sheet, row - 2, at, _title(report, group) if not at else "", "section")
@@ -62,11 +63,11 @@ def _groups(blocks: Sequence[Block]) -> Iterator[list[Block]]:
 def _title(report: Report, group: Sequence[Block]) -> str:
     if group[0].name in report.workbook.headline:
         return "Result"
-    return "Given" if group[0].kind == "given" else "On the way"
+    return {"given": "Given", "margin": TITLE}.get(group[0].kind, "On the way")
 
 
 def _write_scalar(sheet: Any, style: Style, report: Report, grid: Grid, block: Block, inputs: Inputs) -> None:
-    column, row = report.sheet[block.name], block.place.row
+    column, row = report.marks.values.sheet[block.name], block.place.row
     style.text(sheet, row, 0, block.name, "name")
     write_block(
         sheet, style, report, block, inputs, "result" if block.name in report.workbook.headline else "number"
@@ -74,25 +75,15 @@ def _write_scalar(sheet: Any, style: Style, report: Report, grid: Grid, block: B
     style.text(sheet, row, 2, block.unit, "unit")
     style.text(sheet, row, 3, block.meaning, "wrapped")
     style.text(sheet, row, 4, column.source, "text")
-    style.symbol(sheet, row, 5, column.latex or column.name, "text")
+    if block.name in report.sheet:
+        style.symbol(sheet, row, 5, column.latex or column.name, "text")
     sheet.set_row(row, height([(block.meaning, 52)]))
     if block.kind == "given":
         style.formula(sheet, row, CHECKED + 1, inputs.told([block]), "ok", style("aside"))
         write_block(sheet, style, report, grid[checked(block.name)], inputs)
     if block.kept:
-        formula, value = _counted(report, grid, block)
+        formula, value = counted(report, grid, block)
         style.formula(sheet, row, 6, formula, value, style("text"), array=True)
-
-
-def _counted(report: Report, grid: Grid, block: Block) -> tuple[str, str]:
-    """How many rows a scalar was computed from, as a formula and as it is now."""
-    parts, now = [], []
-    for axis, formula in block.kept.items():
-        size = report.values.layouts[axis].size
-        kept = report.values.counted.get(block.name, {}).get(axis, size)
-        parts.append(f'{formula.removeprefix("=")}&" of {size} {axis}"')
-        now.append(f"{kept} of {size} {axis}")
-    return "=" + '&", "&'.join(parts), ", ".join(now)
 
 
 def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int) -> None:

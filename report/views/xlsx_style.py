@@ -61,6 +61,7 @@ _FORMATS: dict[str, dict[str, Any]] = {
     "number": {"valign": "top"},
     "result": {"valign": "top", "bold": True},
     "step": {"font_color": "#55606B", "num_format": "General", "font_size": 9},
+    "outside": {"font_color": _ERROR, "bg_color": "#FFE3C2"},
     "error": {"font_color": _ERROR, "bold": True},
     "finding": {"font_color": _ERROR, "bold": True, "bg_color": "#FBE9EC"},
 }

@@ -9,6 +9,7 @@ from ..grid import FIRST_ROW, STEPS, Block, Grid, letters
 from ..result import Report
 from ..sheet import Axis, PairAxis, RepeatAxis
 from .xlsx_inputs import Inputs
+from .xlsx_marks import TITLE
 from .xlsx_style import Style, height, number_format, said
 
 __all__ = ["mark_errors", "write_axis", "write_block", "write_steps"]
@@ -17,7 +18,12 @@ _GROUP, _NAME, _MEANING, _SOURCE, _SYMBOL = range(FIRST_ROW - 5, FIRST_ROW)
 _WIDTH, _STEP_WIDTH, _INDEX_WIDTH, _NOTE_WIDTH = 15.0, 13.0, 9.0, 40.0
 _SMALL = 1.15
 """How many small letters take the room of one."""
-_GROUPS = {"drawn": "for the charts", "checked": "as checked", "carried": "repeated for sums"}
+_GROUPS = {
+    "margin": TITLE,
+    "drawn": "for the charts",
+    "checked": "as checked",
+    "carried": "repeated for sums",
+}
 
 
 # --- the cells of a block ----------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ from ...derivations.symbols import VOCABULARY, p, q, s
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
 from ..workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook
+from .soft_impact_limits import limits
 from .soft_impact_root import alpha_rule, two_tests
 
 if TYPE_CHECKING:
@@ -130,8 +131,7 @@ def _sheet(given: frozenset[str]) -> Sheet:
         "F",
         meaning="force of a generated point",
     )  # fmt: skip
-    return Sheet(
-        (
+    columns = (
             v, e, x_p, beta, *_masses(given), points_per_pair,
             alpha, *on_pair.values(),
             Column("alpha_mean", None, Formula(points.mean), meaning="mean exponent", latex=r"\bar{\alpha}"),
@@ -140,8 +140,8 @@ def _sheet(given: frozenset[str]) -> Sheet:
                 meaning="median exponent", latex=r"\tilde{\alpha}",
             ),
             x, F, *_log_fit(x, F), *_lin_fit(x, F), *_tests_after_fit(),
-        )
     )  # fmt: skip
+    return Sheet(columns).limited(limits(columns, where))
 
 
 def _masses(given: frozenset[str]) -> tuple[Column, ...]:

@@ -54,6 +54,7 @@ class Look {
       text: code !== "ok" ? code : figure ? figureText(figure) : texts[row],
       data: repr(this.trace.sheet.value[name][row]),
       pad: missing > 0 ? `p${Math.min(missing, 8)}${figure.fraction ? "" : " nopoint"}` : "p0",
+      beyond: code === "ok" ? this.trace.outsideOf(name, row).map(([, mark]) => mark).join("; ") : "",
       mark: !this.issued || same ? "" : before >= 0 ? "changed" : "added",
       before: this.issued && before >= 0 && !same ? this.issued.shownText(name, before) : "",
     };
@@ -78,7 +79,7 @@ function isSameCell(look, name, row, other, before) {
 
 // Whether a computed cell looks as it did: then the page is left alone.
 function isUnchanged(look, last, name, row, before) {
-  if (!last?.issued || before < 0) return false;
+  if (!last?.issued || before < 0 || LIVE.columns[name].limits) return false;
   const now = look.trace.sheet, then = last.trace.sheet;
   if (now.value[name][row] !== then.value[name][before] || now.status[name][row] || then.status[name][before]) return false;
   const form = look.column(name), old = last.column(name);
@@ -90,15 +91,17 @@ let written = new WeakMap();
 
 function writeCell(element, look, name, row) {
   const cell = look.cell(name, row);
-  const key = `${cell.code} ${cell.data} ${cell.text} ${cell.printed} ${cell.pad} ${cell.mark} ${cell.before}`;
+  const key = [cell.code, cell.data, cell.text, cell.printed, cell.pad, cell.mark, cell.before, cell.beyond].join(" ");
   if (written.get(element) === key && cell.ok) return;
   written.set(element, key);
   const reason = cell.ok ? "" : look.trace.reason(name, row);
-  const title = [reason, cell.before && `as issued: ${cell.before}`].filter(Boolean).join("; ");
+  const title = [reason || cell.beyond, cell.before && `as issued: ${cell.before}`].filter(Boolean).join("; ");
   element.setAttribute("data-value", cell.ok ? cell.data : "");
   element.setAttribute("data-status", cell.code);
-  if (title) element.setAttribute("title", title);
-  else element.removeAttribute("title");
+  for (const [name, text] of [["title", title], ["data-mark", cell.beyond]]) {
+    if (text) element.setAttribute(name, text);
+    else element.removeAttribute(name);
+  }
   if (element.tagName === "TD") {
     writeComputed(element, look, cell);
     return;

@@ -117,9 +117,19 @@ function writeCounts(look) {
     const { count, counted } = element.dataset;
     setText(element, String(look.trace.sheet.counted[counted]?.[count] || look.trace.sheet.layouts[count].size));
   }
+  for (const element of all("[data-inside]")) {
+    const { axis } = look.trace.declared[element.dataset.inside], [outside, size] = howMany(look, element.dataset.inside);
+    setText(element, `${size - outside} of ${size} ${axis}`);
+  }
 }
 
-// Beside the result: over how many rows it was taken, where some have no value.
+// How many rows lie outside of a limit, of those for which that is known.
+function howMany(look, margin) {
+  const known = look.trace.sheet.value[margin].filter((room) => room === room);
+  return [known.filter((room) => room < 0).length, known.length];
+}
+
+// Beside the result: over how many rows it was taken, where some have no value, and how many carry marks.
 function writeCounted(look) {
   for (const element of all(".headline [data-cell]")) {
     const box = element.parentElement, counted = look.trace.sheet.counted[element.dataset.cell] ?? {};
@@ -131,30 +141,43 @@ function writeCounted(look) {
       const size = look.trace.sheet.layouts[axis].size;
       if (rows) box.append(" ", make("span", { class: "counted" }, `over ${rows} of ${size} ${axis}`));
     }
+    const behind = look.trace.ancestors(element.dataset.cell);
+    for (const { name, axis } of look.trace.order.filter(({ name, axis }) => axis && behind.has(name))) {
+      for (const [margin, , , rows] of LIVE.columns[name].limits ?? []) {
+        const [outside, size] = howMany(look, margin);
+        if (outside) box.append(" ", make("span", { class: "counted" }, `${outside} of ${size} ${axis}${rows}`));
+      }
+    }
   }
 }
 
-// The list of the cells where an error begins; its section is made when there is one.
+// The list of the cells to look at: where an error begins, or a limit ends; its section is made when there is one.
 function writeMissing(look) {
-  const { errors } = look.trace;
+  const { errors, order, sheet } = look.trace;
+  const remarks = errors.map(({ name, row }) => [name, row, CODES[sheet.status[name][row]], look.trace.why(name, row)]);
+  for (const { name } of order) {
+    for (const [margin, , told] of LIVE.columns[name].limits ?? []) {
+      sheet.value[margin].forEach((room, row) => room < 0 && remarks.push([name, row, "†", told]));
+    }
+  }
   let section = byId("missing");
-  if (!section && errors.length) {
+  if (!section && remarks.length) {
     section = byId("live-missing").content.querySelector("section").cloneNode(true);
     const before = byId("published") ?? byId("equations") ?? byId("reproduce");
     if (before) before.before(section);
     else byId("main").append(section);
   }
   if (!section) return;
-  section.hidden = errors.length === 0;
+  section.hidden = remarks.length === 0;
   byId("missing-cells").querySelector("tbody").replaceChildren(
-    ...errors.map(({ name, row }) => {
-      const index = look.trace.index(name, row), code = CODES[look.trace.sheet.status[name][row]];
+    ...remarks.map(([name, row, code, why]) => {
+      const index = look.trace.index(name, row);
       return make(
-        "tr", { id: cellId("why", name, index) },
+        "tr", code === "†" ? {} : { id: cellId("why", name, index) },
         make("th", { scope: "row", class: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
         make("td", { class: "row" }, index.replaceAll("-", "–")),
         make("td", { class: "words" }, make("code", {}, code)),
-        make("td", { class: "words" }, look.trace.why(name, row)),
+        make("td", { class: "words" }, why),
       );
     }),
   );

@@ -78,6 +78,17 @@ class Trace {
     return { name, row };
   }
 
+  // What limits a cell lies outside of.
+  outsideOf(name, row) {
+    return (this.columns[name].limits ?? []).filter(([margin]) => this.sheet.value[margin][row] < 0);
+  }
+
+  // All columns that a column is computed from.
+  ancestors(name, found = new Set()) {
+    for (const [other] of this.declared[name].refs) if (!found.has(other)) this.ancestors(other, found.add(other));
+    return found;
+  }
+
   // Why a cell where an error begins has no value.
   why(name, row) {
     const { source, none, two, requires } = this.columns[name], status = this.sheet.status[name][row];

@@ -50,9 +50,9 @@ class Delivered:
 
     @cached_property
     def whole(self) -> Sheet:
-        """The sheet with what the charts draw."""
+        """The sheet with its margins and what the charts draw."""
         drawn = self.grid.drawn.columns if self.grid.drawn else ()
-        return Sheet((*self.report.sheet.columns, *drawn))
+        return Sheet((*self.report.marks.values.sheet.columns, *drawn))
 
     @cached_property
     def program(self) -> engine.Program:
@@ -112,7 +112,7 @@ def deliver(folder: Path = build.PAPER, drawn: bool = True) -> Delivered:
     report = build.compute(folder, prove=False)
     charts: Drawn | None = soft_impact_charts.drawn(report.sheet) if drawn else None
     units = {name: shown.unit for name, shown in report.shown.items()}
-    grid = excel_grid.grid(report.sheet, report.values, units, report.workbook.headline, charts)
+    grid = excel_grid.grid(report.sheet, report.marks.values, units, report.workbook.headline, charts)
     return Delivered(report, grid, xlsx.render(report, grid))
 
 
@@ -218,7 +218,7 @@ def compare(
     for column in delivered.whole.columns:
         given = isinstance(column.rule, Given)
         place = delivered.grid[checked(column.name) if given else column.name].place
-        drawn = column.name not in delivered.report.sheet and not given
+        drawn = not given and column.name not in delivered.report.marks.values.sheet
         known, codes = values.value[column.name], values.status[column.name]
         if not known.size:
             # A count that is refused leaves no rows; those of the workbook say so.

@@ -9,6 +9,8 @@ from typing import Any
 import pytest
 import spreadsheets
 
+from loopsheet.report.grid import checked
+from loopsheet.report.marks import Marks
 from loopsheet.report.values import Status
 
 HOSTILE = "=cmd|' /C calc'!A0"
@@ -97,16 +99,19 @@ class Office:
             "twelve tests": {("x_p", 4): 36.1},
         }
         books = {name: self.delivered[name].edited(edits) for name, edits in self.edits.items()}
-        books["one character"] = mutated(books["as issued"])
+        e = self.paper.grid[checked("e")].place.cell(1, "tests")
+        books["one character"] = mutated(books["as issued"], e)
         self.read = spreadsheets.recalculate(soffice, folder, books)
 
 
-def mutated(content: bytes) -> bytes:
+def mutated(content: bytes, cell: str) -> bytes:
     """The workbook with one character of one formula changed: a square of e becomes a cube."""
     files = spreadsheets.parts(content)
     name = spreadsheets.part_of(files, "tests")
     text = files[name].decode()
-    changed, found = re.subn(r"(<f>IF\([^<]*\(\$J\$9\)\^\()2(\)[^<]*</f>)", r"\g<1>3\2", text, count=1)
+    changed, found = re.subn(
+        rf"(<f>IF\([^<]*\({re.escape(cell)}\)\^\()2(\)[^<]*</f>)", r"\g<1>3\2", text, count=1
+    )
     assert found == 1
     assert sum(a != b for a, b in zip(text, changed, strict=True)) == 1
     files[name] = changed.encode()
@@ -125,6 +130,21 @@ def test_recalculates_after_an_edit_as_numpy_does(office: Office, name: str) -> 
     found = spreadsheets.compare(delivered, values, office.read[name])
     assert not found.wrong, (len(found.wrong), found.wrong[:5])
     assert found.cells == sum(delivered.grid[c.name].place.rows for c in delivered.whole.columns)
+
+
+@pytest.mark.parametrize("name", ["as issued", "e of test 3", "no root", "an empty input", "twelve tests"])
+def test_marks_are_counted_beside_each_mean(office: Office, name: str) -> None:
+    delivered = office.delivered[name]
+    values, margins = delivered.values(office.edits[name]), delivered.report.marks.margins
+    marks, told = Marks(values, margins), set()
+    for cell in ("alpha_mean", "alpha_log", "alpha_lin"):
+        (axis,) = values.sheet.summed_axes(values.sheet[cell])
+        size = values.layouts[axis.name].size
+        said = f"{values.counted.get(cell, {}).get(axis.name, size)} of {size} {axis.name}"
+        said += "".join(f"; {count.said}" for count in marks.behind(values.sheet[cell]) if count.number)
+        assert office.read[name]["report"][f"G{delivered.grid[cell].place.row + 1}"] == said
+        told.add("outside (4)" in said)
+    assert told == {name in ("e of test 3", "no root", "twelve tests")}
 
 
 @pytest.mark.parametrize("name", PASTED)

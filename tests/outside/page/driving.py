@@ -44,6 +44,8 @@ class Shown:
     changed: bool
     added: bool
     title: str
+    mark: str
+    """What it lies outside of."""
 
 
 _CELLS = """() => Array.from(document.querySelectorAll("main [data-cell][data-value]"), (cell) => {
@@ -51,13 +53,14 @@ _CELLS = """() => Array.from(document.querySelectorAll("main [data-cell][data-va
   return [cell.dataset.cell, cell.dataset.index, cell.dataset.value, cell.dataset.status,
     cell.tagName === "INPUT" ? cell.value : cell.textContent,
     Array.from(box.classList).filter((word) => /^(p[0-9]|nopoint|error)$/.test(word)).sort().join(" "),
-    cell.classList.contains("changed"), cell.classList.contains("added"), cell.title];
+    cell.classList.contains("changed"), cell.classList.contains("added"), cell.title,
+    cell.dataset.mark ?? ""];
 })"""
 
 
-def shown(cells: list[Shown]) -> list[tuple[str, str, str, str]]:
-    """What a reader sees of the cells: their characters, and how far they are moved."""
-    return [(cell.name, cell.index, cell.text, cell.layout) for cell in cells]
+def shown(cells: list[Shown]) -> list[tuple[str, ...]]:
+    """What a reader sees of the cells: their characters, how far they are moved, and their marks."""
+    return [(cell.name, cell.index, cell.text, cell.layout, cell.mark) for cell in cells]
 
 
 # What stands beside the cells and follows from them.
@@ -152,9 +155,8 @@ class Live:
         self.click("live-save")
         links = self.page.locator("#live-downloads a[download]")
         assert links.all_inner_texts() == ["measurements.csv", "report.toml"]
-        for _ in range(1500):  # half a minute at most
-            if len(downloads) < 2:
-                self.page.wait_for_timeout(20)
+        while len(downloads) < 2:
+            self.page.wait_for_timeout(20)
         self.page.remove_listener("download", keep)
         for download in downloads:
             download.save_as(folder / download.suggested_filename)

@@ -1,0 +1,46 @@
+"""Where the numbers of a drop test are expected: by the paper's (4), and by what a drop test is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sympy import Expr
+
+from ...derivations import soft_impact as model
+from ...derivations.soft_impact import E, V
+from ..quantity import Bounds
+from ..sheet import Column, Limit
+
+__all__ = ["limits"]
+
+Cells = Mapping[Expr, Expr]
+"""What the two tests of the derivations are called in a sheet."""
+
+SPEEDS = Limit(Bounds(0.1, 20), "a speed of no drop test: a fall of less than 0.5 mm, or of more than 20 m")
+"""In m/s; free fall in vacuum, v^2/(2 g), is 0.51 mm and 20.4 m."""
+DENSITIES = Limit(Bounds(10, 23000), "lighter than foam, or denser than osmium")
+"""In kg/m^3."""
+
+
+def limits(columns: tuple[Column, ...], where: Cells) -> dict[str, tuple[Limit, ...]]:
+    """The limits of the columns of a sheet, by name.
+
+    Parameters
+    ----------
+    columns : tuple of Column
+    where : mapping of Expr to Expr
+        The cells that the symbols of the two tests stand for.
+    """
+    by_name = {column.name: column for column in columns}
+    exponents = ("alpha", "alpha_mean", "alpha_median", "alpha_log", "alpha_lin")
+    found: dict[str, tuple[Limit, ...]] = {
+        name: (Limit.of(model.eq4.at({model.alpha: by_name[name].cell})),) for name in exponents
+    }
+    falls = (E[2] - E[1]) * (V[2] - V[1]) <= 0
+    found["alpha"] += (Limit(falls.xreplace(dict(where)), "e rises with the speed"),)
+    found["v"] = (SPEEDS,)
+    if "ball_density" in by_name:
+        found["ball_density"] = (DENSITIES,)
+        radius = by_name["ball_diameter"].symbol / 2
+        found["x_p"] = (Limit(by_name["x_p"].cell <= radius, "deeper than the radius of the ball"),)
+    return found
