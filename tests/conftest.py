@@ -96,6 +96,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--seed", type=int, default=SEED, help=f"which ones (default: {SEED})")
 
 
+def drawn(config: pytest.Config) -> str:
+    return f"campaigns: {config.getoption('campaigns')}, seed {config.getoption('seed')}"
+
+
+def pytest_report_header(config: pytest.Config) -> str:
+    return drawn(config)
+
+
 @pytest.fixture(scope="session")
 def sizes(pytestconfig: pytest.Config) -> Sizes:
     """How many campaigns to draw, and from what seed."""
@@ -117,7 +125,6 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
         if name == "campaigns" and report.when == "call"
     ]
     if said:
-        how_many, seed = config.getoption("campaigns"), config.getoption("seed")
-        terminalreporter.section(f"campaigns: {how_many}, seed {seed}")
+        terminalreporter.section(drawn(config))
         for line in said:
             terminalreporter.write_line(line)

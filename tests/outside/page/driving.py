@@ -155,8 +155,9 @@ class Live:
         self.click("live-save")
         links = self.page.locator("#live-downloads a[download]")
         assert links.all_inner_texts() == ["measurements.csv", "report.toml"]
-        while len(downloads) < 2:
-            self.page.wait_for_timeout(20)
+        for _ in range(1500):  # half a minute at most
+            if len(downloads) < 2:
+                self.page.wait_for_timeout(20)
         self.page.remove_listener("download", keep)
         for download in downloads:
             download.save_as(folder / download.suggested_filename)

@@ -407,7 +407,10 @@ _INJECT = """async () => {
   document.body.append(script, button, image, styled);
   button.click();
   try { await fetch("https://example.org/"); } catch { seen.push("fetch failed"); }
-  await new Promise((resolve) => setTimeout(resolve, 50));
+  // What is stopped is told a little later; all that runs in spite of it has run by then.
+  const wait = () => new Promise((resolve) => setTimeout(resolve, 50));
+  for (let n = 0; n < 200 && new Set(seen).size < 6; n++) await wait();
+  await wait();
   return { ran: window.ran ?? null, seen: [...new Set(seen)].sort(), width: image.naturalWidth };
 }"""
 
