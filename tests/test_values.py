@@ -1,5 +1,7 @@
 """Error values: they spread with their first culprit, sums leave them out and count what is left."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from sympy import Expr, Rational, Sum, Symbol, log
@@ -35,6 +37,7 @@ def parabola() -> Column:
         "x0",
         PAIRS,
         Root(equation, equation, x, x, Rational(0), Rational(10), Rational(1), turning=((a[i] + a[j]) / 2,)),
+        requires=((b[i] < 1000, "b is below 1000"),),
     )
 
 
@@ -49,7 +52,8 @@ offset = formula("offset", a[k] - mean.symbol, ROWS, positive=False)
 excess = formula("excess", a[k] - Sum(a[k], (k, 1, n)) / n, ROWS, positive=False)
 root_sum = formula("root_sum", Sum(x0[p], (p, 1, n_pairs)))
 gap = formula("gap", b[k] - 1, ROWS)
-SHEET = Sheet((a, b, c, slope, x0, mean, scaled, offset, excess, root_sum, gap))
+lift = formula("lift", b[k] - Sum(a[k], (k, 1, n)) / n, ROWS, positive=False)
+SHEET = Sheet((a, b, c, slope, x0, mean, scaled, offset, excess, root_sum, gap, lift))
 PROGRAM = engine.Program.of(SHEET)
 
 
@@ -134,6 +138,12 @@ def test_a_row_in_error_may_still_use_the_sum_over_the_others() -> None:
         "",
     ]
     assert values.value["excess"][[0, 2]].tolist() == [-1.5, 1.5]
+    assert values.value["lift"].tolist() == [-0.5, 0.5, 2.5]
+
+
+def test_a_sum_that_has_a_value_is_no_culprit() -> None:
+    values = compute([1, NAN, 4], [2, 3, NAN])
+    assert reasons(values, "lift") == ["", "", "#INPUT! lift[3] needs b[3]: the datum is missing or invalid"]
 
 
 def test_a_missing_scalar_spreads_to_all_that_use_it() -> None:
@@ -173,6 +183,19 @@ def test_no_root_and_two_roots_have_their_sentences() -> None:
         "(several values of the interval satisfy the equation)"
     )
     assert values.counted["root_sum"] == {"pairs": 1}
+
+
+def test_a_root_is_not_sought_where_a_condition_is_broken() -> None:
+    values = compute([4, 4, 4], [1000, 1, 2])
+    assert reasons(values, "x0")[:2] == [
+        f"#DOMAIN! x0[1-{row}]: outside the domain of (2): b is below 1000" for row in (2, 3)
+    ]
+
+
+def test_two_roots_that_nobody_knows_are_told_without_numbers() -> None:
+    values = replace(compute([4, 4], [1, 1]), roots={})
+    said = "(2) has more than one root here: several values of the interval satisfy the equation"
+    assert reasons(values, "x0") == [f"#TWOROOTS! x0[1-2]: {said}"]
 
 
 def test_a_sum_without_rows_is_outside_the_domain() -> None:
