@@ -105,6 +105,19 @@ def test_a_wrong_value_and_a_wrong_status_are_named(
     assert agreement.units_where == "alpha[1-5]"
 
 
+@pytest.mark.parametrize(("units", "believed"), [(7.8, True), (8.2, False)])
+def test_eight_units_are_believed_and_no_more(
+    report: Report, judge: engines.Judge, units: float, believed: bool
+) -> None:
+    found = readers.of_values(report.values, "node")
+    value = {name: list(each) for name, each in found.value.items()}
+    true, bound = judge.judged.value["alpha"][7], judge.bounds["alpha"][7]
+    value["alpha"][7] = float(true + units * engines.EPS * bound)
+    agreement = judge.agreement(replace(found, value=value))
+    assert agreement.units == pytest.approx(units, abs=0.15)
+    assert (agreement.findings == ()) is believed
+
+
 def test_steps_that_do_not_settle_are_told_as_such(report: Report, judge: engines.Judge) -> None:
     found = readers.of_values(report.values, "xlsx")
     status = {**found.status, "alpha": ["#STEPS!", *found.status["alpha"][1:]]}

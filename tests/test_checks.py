@@ -139,6 +139,46 @@ def test_of_many_wrong_cells_some_are_named() -> None:
     assert missing.message == "JavaScript was not compared: node not found"
 
 
+def test_how_engines_agree_in_a_line_and_for_machines() -> None:
+    least = Agreement(7, 0.0, "", ())
+    assert least.line == "numpy       7 cells, at most 0 eps x condition"
+    assert least.data == {
+        "engine": "numpy",
+        "program": None,
+        "missing": None,
+        "cells": 7,
+        "unbounded": 0,
+        "eps_condition": 0.0,
+        "eps_condition_cell": None,
+        "limit": 8.0,
+        "relative": 0.0,
+        "relative_cell": None,
+        "findings": [],
+    }
+    most = Agreement(7, 2e-15, "x[1]", ("x[2]: off",), 3.14, "x[2]", "JavaScript", "node 20", unbounded=2)
+    assert most.line == (
+        "JavaScript  7 cells, at most 3.1 eps x condition (x[2]), 2 without a condition, node 20"
+    )
+    assert most.summary == "JavaScript agrees with 50 digits on 7 cells within 2.0e-15 (x[1])"
+    assert most.data == {
+        **least.data,
+        "engine": "JavaScript",
+        "program": "node 20",
+        "unbounded": 2,
+        "eps_condition": 3.14,
+        "eps_condition_cell": "x[2]",
+        "relative": 2e-15,
+        "relative_cell": "x[1]",
+        "findings": ["x[2]: off"],
+    }
+    missing = Agreement(0, 0.0, "", (), engine="xlsx", missing="LibreOffice")
+    assert missing.line == "xlsx        LibreOffice not found"
+    assert missing.data["missing"] == "LibreOffice"
+    assert Agreement(0, 0.0, "", ("it failed",), engine="xlsx", program="Calc").line == (
+        "xlsx        failed, Calc"
+    )
+
+
 def test_wrong_input_as_checks() -> None:
     (check,) = of_diagnostics([Diagnostic("LS401", "no number", Location("f", 1, 2), "digits", "try")])
     assert (check.kind, check.name, check.passed) == ("input", "LS401", False)
