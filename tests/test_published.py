@@ -8,11 +8,14 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from small_report import end_gauge
 
 from loopsheet.report import build
 from loopsheet.report.analysis.referee import compare, refereed
 from loopsheet.report.cli import main
+from loopsheet.report.csvtable import read_table
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.errors import Findings
@@ -325,6 +328,24 @@ def test_accepting_keeps_every_other_byte(tmp_path: Path, check: Check, before: 
     code, out = check("--accept")
     assert path.read_bytes().decode() == after.format(**parts)
     assert code == 0, out
+
+
+FIELDS = st.one_of(
+    st.text("ab1. é\u00a0\t", max_size=4),
+    st.text('ab, "\r\n', max_size=5).map(lambda text: '"' + text.replace('"', '""') + '"'),
+    st.sampled_from(('"" ', ' "a" ', "\t")),
+)
+
+
+@given(st.lists(st.tuples(FIELDS, FIELDS), min_size=1, max_size=4), st.sampled_from(("\n", "\r\n")))
+def test_a_row_is_what_stands_between_its_separators(pairs: list[tuple[str, str]], end: str) -> None:
+    """From beginning to end its fields are the row, quotes and blanks and all."""
+    rows = [[one, "x", other] for one, other in pairs]
+    text = end.join(["a,b,c", *map(",".join, rows)])
+    table = read_table(Source("p", "p", text), ("a", "b", "c"), Findings())
+    assert table is not None
+    assert [[text[field.begin : field.end] for field in row.fields] for row in table.rows] == rows
+    assert [text[row.offset : row.fields[-1].end] for row in table.rows] == [",".join(row) for row in rows]
 
 
 def test_accepting_leaves_the_file_alone_if_it_cannot_be_written(tmp_path: Path, check: Check) -> None:

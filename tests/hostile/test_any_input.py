@@ -29,7 +29,7 @@ WORKBOOK = Workbook(
 )
 TOML = 'workbook = "w"\n[measurements]\nfile = "m.csv"\n[published]\nfile = "p.csv"\n'
 CSV = "test,v [m/s],e [1]\n1,2.5,0.5\n2,3.5,0.4\n"
-PUBLISHED = "source,cell,index,value,unit,expect,reason\nT,a,1,2,1,,\n"
+PUBLISHED = "source,cell,index,value,unit,expect,recomputed,reason\nT,a,1,2,1,,,\n"
 
 
 def find_workbook(name: str, folder: Path) -> Workbook:
@@ -80,7 +80,7 @@ TOML_WORDS = st.sampled_from(
 CSV_WORDS = st.sampled_from(
     [
         *words("test v e u(v) [m/s] [1] [ ] ( ) , , , ; 1 2 2.5 0.5 1-2 - + e nan inf 1e999"),
-        *words("source cell index value unit expect reason differs é 日"),
+        *words("source cell index value unit expect recomputed explained reason differs -> 1->2 #NO! é 日"),
         *("\n", "\n", "\r\n", "\r", "\t", " ", '"', '""', "9" * 120),
         *("\ufeff", "\u202e", "\x00", "\x1b", "\u2028", "\u0301"),
     ]
@@ -214,7 +214,7 @@ def test_a_table_that_wants_to_exhaust_us(csv: str) -> None:
 def test_code_is_only_text(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     inputs = read(
-        toml=f'title = "{text}"\n{TOML}', published=PUBLISHED + f'"{text}",a,1,2,1,differs,"{text}"\n'
+        toml=f'title = "{text}"\n{TOML}', published=PUBLISHED + f'"{text}",a,1,2,1,differs,2->3,"{text}"\n'
     )
     assert inputs is not None
     assert inputs.title == inputs.published[1].source == inputs.published[1].reason == text
