@@ -192,7 +192,7 @@ def test_a_wrong_engine_is_a_finding(
 def test_the_report_says_how_its_engines_agree(tmp_path: Path) -> None:
     assert main(["build", "--engines", "--out", str(tmp_path), "--to", "html,latex"]) == 0
     page = (tmp_path / "report.html").read_text()
-    section = page.partition('id=engines')[2].partition("</section>")[0]
+    section = page.partition("id=engines")[2].partition("</section>")[0]
     assert "2152 cells" in section
     assert all(name in section for name in ("numpy", "JavaScript", "xlsx"))
     assert "How the engines agree" in (tmp_path / "report.tex").read_text()

@@ -115,7 +115,7 @@ def test_the_paper_lies_inside(report: Report) -> None:
 
 def test_the_paper_says_so(report: Report) -> None:
     page, text = html.render(report, {}), latex.render(report, [])
-    inside = '<span data-inside=alpha_margin>10 of 10 pairs</span> lie inside this range'
+    inside = "<span data-inside=alpha_margin>10 of 10 pairs</span> lie inside this range"
     assert inside in page
     assert "10 of 10 pairs lie inside this range" in text
     assert "data-mark" not in page.partition("</style>")[2]
@@ -165,8 +165,8 @@ def test_marks_in_page_and_print(slipped: Path) -> None:
     assert (
         page.count('data-mark="outside (4)" title="outside (4)"') == 5
     )  # two pairs; a fit in text, result, table
-    assert page.count('<span class=counted>2 of 3 pairs outside (4)</span>') == 6
-    assert '<span data-inside=alpha_margin>1 of 3 pairs</span> lie inside' in page
+    assert page.count("<span class=counted>2 of 3 pairs outside (4)</span>") == 6
+    assert "<span data-inside=alpha_margin>1 of 3 pairs</span> lie inside" in page
     assert text.count(r"{\textsuperscript{\textdagger}}") == 2
     assert text.count("2 of 3 pairs outside (4)") == 6
     assert "1 of 3 pairs lie inside" in text

@@ -160,7 +160,7 @@ def test_it_is_written_as_a_page_a_paper_and_data(folder: Path, tmp_path: Path) 
     for text in (page, paper):
         assert "Distances of a planet" in text or "Mars" in text
         assert "alpha" not in text.replace("\\alpha", "").lower().replace("alphabet", "")
-    assert 'data-cell=r_mean' in page
+    assert "data-cell=r_mean" in page
     cells = json.loads((out / "values.json").read_text(encoding="utf-8"))["cells"]
     assert cells["gap"]["axis"] == "pairs"
     assert cells["r"]["status"] == ["#DOMAIN!", "ok", "ok", "ok"]
