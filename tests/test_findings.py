@@ -98,9 +98,7 @@ def test_a_value_that_the_known_misprints_do_not_explain(small: Report) -> None:
     wrong = replace(small.comparisons[1], finding=UNAMENDED)
     (check,) = of_kind(replace(small, comparisons=(wrong,)), "published")
     assert not check.passed
-    assert check.message == (
-        "Table 2 l[1] prints 51.2, recomputed 50.0, and does not come out once the known misprints are put right"
-    )
+    assert check.message.endswith("50.0, and does not come out once the known misprints are put right")
 
 
 def refereed(small: Report, **more: object) -> list[Check]:
