@@ -61,7 +61,7 @@ ALL = Sizes(
     of_each_code=5000,
     broken=1000,
     workbook_mutants=150,
-    page_mutants=30,
+    page_mutants=15,
 )
 assert sum(ALL.engines.values()) > 2000
 

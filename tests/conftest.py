@@ -79,12 +79,19 @@ def issued(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def unjudged(report: "Report", monkeypatch: pytest.MonkeyPatch) -> None:
-    """Builds without judge and referee, its proofs known already: for tests of how files are written."""
+def unrefereed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No referee, who takes longer than all else."""
+    from loopsheet.report import build
+
+    monkeypatch.setattr(build, "refereed", lambda report, *_: report)
+
+
+@pytest.fixture
+def unjudged(report: "Report", unrefereed: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No judge of the engines either, and the proofs are known: for tests of how files are written."""
     from loopsheet.report import build
 
     monkeypatch.setattr(build, "judged", lambda report, *_: report)
-    monkeypatch.setattr(build, "_refereed", lambda report, _: (report.referee, report.comparisons, {}))
 
 
 # --- campaigns that are drawn at random ---

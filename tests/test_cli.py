@@ -174,6 +174,7 @@ def test_check_of_the_paper_is_as_expected(
     assert engines == [[name, "2152", "cells,", "at"] for name in ("numpy", "JavaScript", "xlsx")]
 
 
+@pytest.mark.usefixtures("unrefereed")
 def test_a_wrong_engine_is_a_finding(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -189,6 +190,7 @@ def test_a_wrong_engine_is_a_finding(
     assert "numpy is off" not in out
 
 
+@pytest.mark.usefixtures("unrefereed")
 def test_the_report_says_how_its_engines_agree(tmp_path: Path) -> None:
     assert main(["build", "--engines", "--out", str(tmp_path), "--to", "html,latex"]) == 0
     page = (tmp_path / "report.html").read_text()
