@@ -4,13 +4,19 @@ import os
 import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import cache
+from importlib import import_module
 from pathlib import Path
+from pkgutil import walk_packages
 from typing import TYPE_CHECKING
 
 import pytest
 from campaign_sizes import SEED, SIZES, Sizes
 from hypothesis import settings
 from hypothesis.internal.conjecture import providers
+from hypothesis.internal.constants_ast import Constants, constants_from_module
+
+import loopsheet
 
 if TYPE_CHECKING:
     from loopsheet.report.result import Report
@@ -23,11 +29,22 @@ settings.register_profile("loopsheet", deadline=None, print_blob=True, derandomi
 settings.load_profile("loopsheet")
 
 
+@cache
+def constants() -> Constants:
+    """All constants of the package."""
+    names = (module.name for module in walk_packages(loopsheet.__path__, "loopsheet."))
+    found = Constants()
+    for name in names:
+        if name != "loopsheet.__main__":
+            found |= constants_from_module(import_module(name))
+    return found
+
+
 @pytest.fixture(scope="session", autouse=True)
-def _drawn_by_the_seed_alone() -> Iterator[None]:
-    """Hypothesis likes constants of loaded modules: what is drawn would depend on which tests ran before."""
+def _examples_whoever_ran_before() -> Iterator[None]:
+    """Hypothesis likes to draw constants of modules, but takes those that happen to be loaded."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(providers, "_get_local_constants", providers.Constants)
+        patch.setattr(providers, "_get_local_constants", constants)
         yield
 
 

@@ -13,9 +13,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import Phase, given, settings
+from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
 from hypothesis import strategies as st
+from hypothesis.internal.conjecture import providers
+from hypothesis.internal.constants_ast import Constants
 
 from loopsheet.report.analysis import bounds
 from loopsheet.report.analysis.engines import Judge
@@ -103,17 +105,32 @@ def campaigns(draw: st.DrawFn, size: int, variants: Sequence[int] = (0, 1)) -> C
     return Campaign(variant, tests, data)
 
 
+def for_each(
+    strategy: st.SearchStrategy[Campaign], number: int, seed: int, check: Callable[[Campaign], None]
+) -> None:
+    """Check so many campaigns of a seed, which says all of them; make one that fails as simple as can be."""
+
+    @seeded(seed)
+    @settings(
+        max_examples=number,
+        database=None,
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
+        phases=[Phase.generate, Phase.shrink],
+    )
+    @given(strategy)
+    def one(campaign: Campaign) -> None:
+        check(campaign)
+
+    with pytest.MonkeyPatch.context() as patch:
+        # Otherwise the constants in the package's source would say too what is drawn.
+        patch.setattr(providers, "_get_local_constants", Constants)
+        one()
+
+
 def drawn(strategy: st.SearchStrategy[Campaign], number: int, seed: int) -> list[Campaign]:
     """So many campaigns of a seed."""
     found: list[Campaign] = []
-
-    @seeded(seed)
-    @settings(max_examples=number, database=None, phases=[Phase.generate])
-    @given(strategy)
-    def draw(campaign: Campaign) -> None:
-        found.append(campaign)
-
-    draw()
+    for_each(strategy, number, seed, found.append)
     return found
 
 

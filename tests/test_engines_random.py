@@ -13,7 +13,6 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +20,7 @@ import mpmath
 import numpy as np
 import pytest
 from campaign_sizes import ALL, Sizes
-from hypothesis import HealthCheck, Phase, assume, given, settings
-from hypothesis import seed as seeded
+from hypothesis import assume
 from random_campaigns import (
     SHEETS,
     VARIANTS,
@@ -31,6 +29,7 @@ from random_campaigns import (
     Node,
     campaigns,
     drawn,
+    for_each,
     judge_of,
     laid_out,
     numpy_reads,
@@ -158,20 +157,12 @@ def judged(
     def judged(size: int) -> Tally:
         tally = Tally()
 
-        @seeded(sizes.seed)
-        @settings(
-            max_examples=sizes.engines[size],
-            database=None,
-            suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
-            phases=[Phase.generate, Phase.shrink],
-        )
-        @given(campaigns(size))
         def agree(campaign: Campaign) -> None:
             assume(repr(campaign) not in tally.seen)  # hypothesis likes to repeat itself
             compare(campaign, node, tally)
             tally.seen.add(repr(campaign))
 
-        agree()
+        for_each(campaigns(size), sizes.engines[size], sizes.seed, agree)
         return tally
 
     with Node(require("node"), tmp_path_factory.mktemp("random"), programs) as node:
@@ -234,15 +225,6 @@ def test_the_campaigns_are_of_every_kind(judged: Callable[[int], Tally], sizes: 
     assert set(codes) == set(CODES.values())
     assert min(codes.values()) > sizes.of_each_code
     assert broken > sizes.broken
-
-
-def test_a_seed_draws_the_same_whatever_is_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Tests run in two processes, in an order that is another every time."""
-    before = repr(drawn(campaigns(3), 100, seed=1))
-    (tmp_path / "more_constants.py").write_text(f"MORE = {[n / 64 for n in range(32, 512)]}")
-    monkeypatch.syspath_prepend(tmp_path)
-    import_module("more_constants")
-    assert repr(drawn(campaigns(3), 100, seed=1)) == before
 
 
 # --- changes to the programs are caught ---
