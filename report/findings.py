@@ -132,7 +132,8 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
         said += f", recomputed {comparison.again} ({_word(comparison)})"
         said += f": {published.reason}" if published.reason else ""
     field = {UNPINNED: "recomputed", UNREASONED: "reason", UNEXPLAINED: "explained"}
-    at = published.places.get(field.get(comparison.finding, "value"), published.places.get("value", _NOWHERE))
+    places = published.places
+    at = places.get(field.get(comparison.finding, ""), places.get("value", _NOWHERE))
     return Check("published", name, comparison.as_expected, said, at)
 
 

@@ -19,6 +19,7 @@ from loopsheet.report.csvtable import read_table
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.errors import Findings
+from loopsheet.report.findings import of_comparison
 from loopsheet.report.published import PublishedValue, read_published
 from loopsheet.report.sources import Source
 from loopsheet.report.verdict import (
@@ -146,10 +147,26 @@ def test_a_cell_without_a_value_may_be_known(tmp_path: Path) -> None:
     report = build.compute(folder, prove=False)
     assert report.values.cell("alpha", (1, 5)).status.code == "#NOROOT!"
     path = folder / "published.csv"
-    path.write_text(f"{KNOWN}\nT,alpha,1-5,1.299,1,differs,1.299 -> #NOROOT!,,a slip\n")
-    assert [c.finding for c in build.compute(folder, prove=False).comparisons] == [""]
-    path.write_text(f"{KNOWN}\nT,alpha,1-5,1.299,1,differs,1.299 -> 1.294,,a slip\n")
-    assert [c.finding for c in build.compute(folder, prove=False).comparisons] == [OTHERWISE]
+    for again, finding, said in (
+        ("#NOROOT!", "", "prints 1.299, recomputed #NOROOT! (not-checkable): a slip"),
+        ("1.294", OTHERWISE, "cannot be checked: #NOROOT! alpha[1-5]: (11) has no root here: "),
+    ):
+        path.write_text(f"{KNOWN}\nT,alpha,1-5,1.299,1,differs,1.299 -> {again},,a slip\n")
+        (comparison,) = build.compute(folder, prove=False).comparisons
+        assert comparison.finding == finding
+        assert of_comparison(comparison, "alpha[1-5]").message.startswith(f"T alpha[1-5] {said}")
+
+
+def test_a_difference_of_an_old_file_is_not_pinned(tmp_path: Path, check: Check) -> None:
+    published(
+        tmp_path, "H.1,l_S,,51.2,mm,differs,a slip", header="source,cell,index,value,unit,expect,reason"
+    )
+    code, out = check("--format", "json")
+    assert code == 1
+    assert json.loads(out)["findings"][0] == (
+        "published.csv:2:10: H.1 l_S prints 51.2, recomputed 50.0, and its known difference is not pinned: "
+        "any other would pass; 'loopsheet check --accept' pins it"
+    )
 
 
 def test_the_referee_excuses_no_known_difference(tmp_path: Path) -> None:

@@ -80,6 +80,9 @@ def test_a_truncated_number_is_not_cut_below_itself() -> None:
         assert prints_same(float(like.value + Fraction(199, 100) * like.half_unit), like)
         assert not prints_same(float(like.value - Fraction(1, 100) * like.half_unit), like)
         assert not prints_same(float(like.value + Fraction(201, 100) * like.half_unit), like)
+    longest = replace(printed("0.123456789012345"), mode="truncated")
+    assert prints_same(0.123456789012345, longest)
+    assert not prints_same(0.123456789012344, longest)
 
 
 @given(st.floats(-1e6, 1e6), st.integers(0, 9))
