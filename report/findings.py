@@ -140,7 +140,7 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
 def _otherwise(comparison: Comparison) -> str:
     """In which way a known difference is not as it is known."""
     published = comparison.published
-    accept = "'loopsheet check --accept' pins it"
+    accept = "'loopsheet check --accept FOLDER' pins it"
     return {
         UNPINNED: f"its known difference is not pinned: any other would pass; {accept}",
         OTHERWISE: f"differs otherwise than is known ({published.pin}); if that is right, {accept}",

@@ -165,7 +165,7 @@ def test_a_difference_of_an_old_file_is_not_pinned(tmp_path: Path, check: Check)
     assert code == 1
     assert json.loads(out)["findings"][0] == (
         "published.csv:2:10: H.1 l_S prints 51.2, recomputed 50.0, and its known difference is not pinned: "
-        "any other would pass; 'loopsheet check --accept' pins it"
+        "any other would pass; 'loopsheet check --accept FOLDER' pins it"
     )
 
 
