@@ -2,7 +2,7 @@
 
 import pytest
 from proving import a, b, c, claim, decide, given, n, w, y
-from sympy import Abs, Eq, Expr, Max, Ne, Rational, log, sqrt
+from sympy import Abs, Eq, Expr, Max, Ne, Or, Rational, log, sqrt
 
 from loopsheet.derivations.proof import Status
 
@@ -67,6 +67,34 @@ def test_conditions_of_a_premise_follow_from_those_of_the_claim() -> None:
     whole = given(y, a - n, n > 1)
     assert decide(claim(y + n, a, conditions=(n > 2,)), (whole, y)).status is Status.PROVED
     assert decide(claim(y + n, a, conditions=(n > 0,)), (whole, y)).status is Status.UNDECIDED
+
+
+@pytest.mark.parametrize(
+    ("needed", "said", "implied"),
+    [
+        (a >= b, (a > b,), True),
+        (a > b, (a >= b,), False),
+        (a >= b, (a >= c, c >= b), True),  # they may all be equal
+        (a > b, (a >= c, c >= b), False),
+        (a > b, (a >= c, c > b), True),
+        (b > a, (a > b + 1,), False),
+        (b < a, (a > b + 1,), True),
+        (y < a, (), True),  # y is a - b, and b is positive
+        (y > a, (), False),
+        (y <= a, (), True),
+        (Ne(a, b), (), False),
+        (Ne(a, b), (a > b,), False),  # it follows, and is no inequality: to know less is sound
+        (Or(a > b, c > b), (c > 2 * b,), False),
+        (a > -b, (), True),
+    ],
+)
+def test_a_condition_of_a_premise_is_implied_or_must_be_said(
+    needed: Expr, said: tuple[Expr, ...], implied: bool
+) -> None:
+    found = decide(claim(y + b, a, conditions=said), (given(y, a - b, needed), y))
+    assert found.status is (Status.PROVED if implied else Status.UNDECIDED)
+    if not implied:
+        assert found.why.endswith("which (1) does not say")
 
 
 def test_a_factor_is_of_one_sign_where_the_conditions_hold() -> None:
