@@ -39,7 +39,9 @@ from sympy import (
 from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import BooleanFunction
 
+from .equation import Equation
 from .reductions import Median
+from .text import text
 from .vocabulary import Vocabulary
 
 __all__ = [
@@ -48,6 +50,7 @@ __all__ = [
     "DimensionError",
     "Dimensions",
     "dimension_of_unit",
+    "mixed",
     "power",
     "product",
     "text_of",
@@ -79,13 +82,14 @@ class DimensionError(ValueError):
     """An expression adds, compares or raises what cannot be, or a unit cannot be read."""
 
 
-def dimension_of_unit(text: str, exponents: Mapping[str, Expr] | None = None) -> Dimension:
+def dimension_of_unit(unit: str, exponents: Mapping[str, Expr] | None = None) -> Dimension:
     """Read a unit such as ``kg/m^3``, ``m/s^2`` or ``N/m^alpha``.
 
     Parameters
     ----------
-    text : str
-        Unit names of SI, multiplied by ``*`` and divided by ``/``, raised by ``^`` to a number or a name.
+    unit : str
+        Unit names of SI, multiplied by ``*`` and divided by ``/``, raised by ``^`` to a number, a fraction in
+        parentheses or a name.
     exponents : mapping of str to Expr
         What the names in exponents stand for.
 
@@ -99,26 +103,27 @@ def dimension_of_unit(text: str, exponents: Mapping[str, Expr] | None = None) ->
     >>> dimension_of_unit("N*s/m") == dimension_of_unit("kg/s")
     True
     """
-    if not re.fullmatch(r"[^*/]+([*/][^*/]+)*", text):
-        raise DimensionError(f"{text!r} is no unit: write names, multiplied by * and divided by /")
+    factor = r"([^*/^()]+)(?:\^(\([^()]+\)|[^*/^()]+))?"
+    if not re.fullmatch(rf"{factor}([*/]{factor})*", unit):
+        raise DimensionError(f"{unit!r} is no unit: write names, multiplied by * and divided by /")
     total = PURE
-    for divided, factor in re.findall(r"(^|[*/])([^*/]+)", text):
-        name, _, raised = (part.strip() for part in factor.partition("^"))
+    for divided, named, raised in re.findall(rf"(^|[*/]){factor}", unit):
+        name = named.strip()
         if name == "1":
             continue
         if name not in _UNITS:
-            raise DimensionError(f"unknown unit {name!r} in {text!r}; known are {', '.join(_UNITS)}")
-        exponent = _exponent(raised or "1", text, exponents or {})
-        step = power({unit: Integer(p) for unit, p in _UNITS[name].items()}, exponent)
+            raise DimensionError(f"unknown unit {name!r} in {unit!r}; known are {', '.join(_UNITS)}")
+        exponent = _exponent(raised.strip("() ") or "1", unit, exponents or {})
+        step = power({base: Integer(p) for base, p in _UNITS[name].items()}, exponent)
         total = product(total, step if divided != "/" else power(step, Integer(-1)))
     return total
 
 
-def _exponent(raised: str, text: str, names: Mapping[str, Expr]) -> Expr:
+def _exponent(raised: str, unit: str, names: Mapping[str, Expr]) -> Expr:
     if re.fullmatch(r"-?\d+(/\d+)?", raised):
         return Rational(raised)
     if raised not in names:
-        raise DimensionError(f"unknown exponent {raised!r} in the unit {text!r}")
+        raise DimensionError(f"unknown exponent {raised!r} in the unit {unit!r}")
     return names[raised]
 
 
@@ -148,8 +153,8 @@ def text_of(dimension: Dimension) -> str:
     """Write a dimension for people, ``kg m^2 s^-2``."""
 
     def written(exponent: Expr) -> str:
-        text = sstr(exponent)
-        return "" if text == "1" else f"^{text}" if re.fullmatch(r"-?\w+", text) else f"^({text})"
+        raised = sstr(exponent)
+        return "" if raised == "1" else f"^{raised}" if re.fullmatch(r"-?\w+", raised) else f"^({raised})"
 
     return " ".join(unit + written(exponent) for unit, exponent in sorted(dimension.items())) or "1"
 
@@ -254,3 +259,50 @@ class Dimensions:
         elif isinstance(condition, BooleanFunction):
             for part in condition.args:
                 self.relation(part)
+
+
+# --- equations of a ledger -------------------------------------------------------------------------------
+
+
+class _Unsaid(Exception):
+    """A symbol of which no unit is said."""
+
+
+class _OfLedger(Dimensions):
+    """Complains in the words of the ledger; of a symbol that it says nothing of, nothing is known."""
+
+    def of_cell(self, cell: Expr) -> Dimension:
+        if self.vocabulary.find(cell) is None and not cell.is_integer:
+            raise _Unsaid
+        return super().of_cell(cell)
+
+    def fail(self, expression: Basic, problem: str) -> Exception:
+        return DimensionError(f"{problem} in {text(expression, self.vocabulary)}")
+
+
+def mixed(equation: Equation, vocabulary: Vocabulary) -> str:
+    """Say what an equation mixes that cannot be equal, added or compared; empty where nothing was found.
+
+    Parameters
+    ----------
+    equation : Equation
+    vocabulary : Vocabulary
+        The units of its symbols. An equation with a symbol that it lacks is not judged; whole numbers are
+        pure.
+    """
+    dimensions = _OfLedger(vocabulary)
+    try:
+        found: dict[str, Expr] = {}
+        for member in equation.members:
+            if isinstance(member, Expr) and member != 0:
+                found.setdefault(text_of(dimensions.of(member)), member)
+            elif not isinstance(member, Expr):
+                dimensions.relation(member)
+        for condition in equation.conditions:
+            dimensions.relation(condition)
+    except _Unsaid:
+        return ""
+    except DimensionError as problem:
+        return str(problem)
+    told = [f"{text(member, vocabulary)} is in {unit}" for unit, member in found.items()]
+    return ", ".join(told) if len(found) > 1 else ""

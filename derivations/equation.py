@@ -14,7 +14,7 @@ from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
-from sympy import Add, Basic, Expr, Integral, Mul, Pow, Rel, Symbol
+from sympy import Add, Basic, Expr, Integral, Mul, Piecewise, Pow, Rel, Symbol
 
 from .reductions import REDUCTIONS
 from .vocabulary import NO_WORDS, Vocabulary
@@ -159,8 +159,13 @@ class Equation:
 
     @property
     def follows_from_origin(self) -> bool:
-        """Whether its members are the origin's, with positive quantities put in for positive ones."""
-        made = self.origin
+        """Whether it says no more than its origin, with positive quantities put in for positive ones.
+
+        A branch of a law by cases is what the law says in that case.
+        """
+        laws = (member for member in self.origin.members if isinstance(member, Piecewise))
+        cases = (case.expr for law in laws for case in law.args)
+        made = replace(self.origin, members=(*self.origin.members, *cases))
         for where in self.renamed:
             if any(old.is_positive and not new.is_positive for old, new in where):
                 return False

@@ -25,7 +25,9 @@ __all__ = [
 ]
 
 XM, ALPHA, CC, XTOP = (VOCABULARY[name] for name in ("x_m", "alpha", "C", "x_top"))
-x, x_top, N, x_ref, F_ref = VOCABULARY.plain("x x_top N x_ref F_ref")
+x, x_top, N, x_ref, F_ref, alpha_mean, alpha_median = VOCABULARY.plain(
+    "x x_top N x_ref F_ref alpha_mean alpha_median"
+)
 n_pairs = Symbol("n_pairs", integer=True, positive=True)
 
 with evaluate(False):
@@ -49,7 +51,7 @@ with evaluate(False):
 
     mean = Equation(
         "(L12)",
-        (Symbol(r"alpha_mean", positive=True), Sum(ALPHA[p], (p, 1, n_pairs)) / n_pairs),
+        (alpha_mean, Sum(ALPHA[p], (p, 1, n_pairs)) / n_pairs),
         "arithmetic mean over the pairs",
         Kind.DEFINITION,
         "mean exponent",
@@ -57,7 +59,7 @@ with evaluate(False):
 
     middle = Equation(
         "(L25)",
-        (Symbol("alpha_median", positive=True), Median(ALPHA[p], (p, 1, n_pairs))),
+        (alpha_median, Median(ALPHA[p], (p, 1, n_pairs))),
         "half of the pairs lie on either side, so that one pair far off does not move it",
         Kind.DEFINITION,
         "median exponent",

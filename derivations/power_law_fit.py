@@ -28,7 +28,7 @@ __all__ = [
 ]
 
 X, Y, x, F = (VOCABULARY[name] for name in ("X", "Y", "x", "F"))
-a, b, Xmean, Ymean, C, alpha, x_ref, F_ref = VOCABULARY.plain("a b Xmean Ymean C alpha x_ref F_ref")
+a, b, Xmean, Ymean, C, C_b, alpha, x_ref, F_ref = VOCABULARY.plain("a b Xmean Ymean C C_b alpha x_ref F_ref")
 size = Symbol("n_points", integer=True, positive=True)
 """How many points there are; the sums run over all of them."""
 _all = (q, 1, size)
@@ -37,20 +37,25 @@ _all = (q, 1, size)
 
 _squares_log = Sum((Y[q] - a - b * X[q]) ** 2, _all)
 _squares_lin = Sum((F[q] - C * x[q] ** alpha) ** 2, _all)
+_F_0 = Symbol("F_0", positive=True)
+_squares_at_ref = Sum((F[q] - _F_0 * (x[q] / x_ref) ** alpha) ** 2, _all)
+"""The same with the force at the reference approach: only of pure numbers has an exponent a logarithm."""
 
 
-def _normal(squares: Expr, parameter: Expr, name: str) -> Equation:
+def _normal(derivative: Expr, name: str, given: str = "") -> Equation:
     """The sum of squares is least where its derivative by a parameter vanishes."""
-    because = f"the sum of squares is least where its derivative by the {name} vanishes"
-    return Equation(
-        "", (diff(squares, parameter), Integer(0)), because, Kind.DEFINITION, f"normal equation of the {name}"
-    )
+    because = f"the sum of squares is least where its derivative by the {name} vanishes{given}"
+    return Equation("", (derivative, Integer(0)), because, Kind.DEFINITION, f"normal equation of the {name}")
 
 
-_normal_a = _normal(_squares_log, a, "intercept")
-_normal_b = _normal(_squares_log, b, "slope")
-_normal_C = _normal(_squares_lin, C, "coefficient")
-_normal_alpha = _normal(_squares_lin, alpha, "exponent")
+_normal_a = _normal(diff(_squares_log, a), "intercept")
+_normal_b = _normal(diff(_squares_log, b), "slope")
+_normal_C = _normal(diff(_squares_lin, C), "coefficient")
+_normal_alpha = _normal(
+    diff(_squares_at_ref, alpha).xreplace({_F_0: C * x_ref**alpha}),
+    "exponent",
+    ", for a given force at the reference approach",
+)
 
 # --- the equations, in the order of terms in which they are shown -----------------------------------------
 
@@ -100,7 +105,7 @@ with evaluate(False):
 
     _line = Equation(
         "",
-        (log(C * x[q] ** b / F_ref), a + b * log(x[q] / x_ref)),
+        (log(C_b * x[q] ** b / F_ref), a + b * log(x[q] / x_ref)),
         "the fitted line, read as a force law",
         Kind.DEFINITION,
         "the line as a force law",
@@ -108,7 +113,7 @@ with evaluate(False):
 
     log_scale = Equation(
         "(L19)",
-        (C, F_ref / x_ref**b * exp(a)),
+        (C_b, F_ref / x_ref**b * exp(a)),
         "the intercept of the line, turned back into a coefficient",
         title="log-log fit: coefficient",
     )
@@ -150,7 +155,7 @@ LOG_FIT = (
         (Xmean, Ymean, a),
         "Solve the normal equation of the intercept.",
     ),
-    Derivation.of(log_scale, (_line,), (C,), "Solve the line for the coefficient."),
+    Derivation.of(log_scale, (_line,), (C_b,), "Solve the line for the coefficient."),
 )
 LIN_FIT = (
     Derivation.of(lin_scale, (_normal_C,), (C,), "The normal equation is linear in C."),

@@ -3,6 +3,9 @@
 Neither half is trusted alone. A computer algebra system may simplify on assumptions that fail somewhere;
 numbers may agree by chance. A claim is proved when both say so, refuted when the numbers show a point of
 the domain where its premises hold and it does not, and undecided otherwise. Undecided is a failure.
+
+What is proved step by step may still say nothing: an equation that rests on itself, or that equates what is
+of different dimension, is refused.
 """
 
 from __future__ import annotations
@@ -12,18 +15,30 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import lru_cache
 
+from .dimensions import mixed
 from .equation import Derivation, Equation, Kind, Ledger, Step
 from .evaluation import NotEvaluable
+from .grounds import circle, is_assumed
 from .sampling import DIGITS, POINTS, examine
 from .space import said
 from .system import Refused, prepare
 from .text import text
 from .vocabulary import NO_WORDS, Vocabulary
 
-__all__ = ["DIGITS", "POINTS", "Proof", "Status", "StepProof", "check_step", "prove", "prove_equation"]
+__all__ = [
+    "DIGITS",
+    "IDENTITY",
+    "POINTS",
+    "Proof",
+    "Status",
+    "StepProof",
+    "check_step",
+    "prove",
+    "prove_equation",
+]
 
-LEAST_POINTS = 20
-"""Fewer points than this prove nothing, whatever they say."""
+IDENTITY = "nothing, it is an identity"
+"""What is said of a claim that needs no premise."""
 
 
 class Status(Enum):
@@ -35,11 +50,12 @@ class Status(Enum):
     CORRECTED = "proved with a correction of the print"
     REFUTED = "refuted"
     UNDECIDED = "undecided"
+    REFUSED = "refused"
 
     @property
     def passes(self) -> bool:
         """Whether a report may rest on it."""
-        return self not in (Status.REFUTED, Status.UNDECIDED)
+        return self not in (Status.REFUTED, Status.UNDECIDED, Status.REFUSED)
 
 
 @dataclass(frozen=True)
@@ -75,7 +91,9 @@ class Proof:
     status: Status
     steps: tuple[StepProof, ...] = ()
     remark: str = ""
-    """How the print differs from what was proved."""
+    """How the print differs from what was proved, or why an equation is refused."""
+    rests_on: tuple[str, ...] = ()
+    """The labels of what a claim finally rests on: definitions, assumptions and premises of its steps."""
 
 
 # --- verdicts ------------------------------------------------------------------------------------------
@@ -102,7 +120,7 @@ def check_step(step: Step, vocabulary: Vocabulary = NO_WORDS) -> StepProof:
         if outcome.counterexample is not None:
             found = StepProof(step, Status.REFUTED, outcome.points, outcome.worst, False)
             return replace(found, counterexample=outcome.counterexample, sides=outcome.sides)
-        if outcome.points < LEAST_POINTS:
+        if outcome.points < POINTS:
             raise Refused(f"only {outcome.points} points of its domain were evaluated")
         if not system.residual_is_zero():
             raise Refused("the numbers agree, but the residual was not reduced to zero")
@@ -132,55 +150,84 @@ def _check_print(step: Step, vocabulary: Vocabulary) -> tuple[Status, str]:
     return Status.UNDECIDED, f"as printed, {claim.label} is undecided: {found.sentence}"
 
 
-def _is_loose(premise: Equation, reached: set[Equation]) -> bool:
-    """Whether a premise is neither assumed nor defined in plain sight, nor proved before."""
-    origin = premise.origin
-    if origin.number and origin not in reached:
-        return True
-    if Kind.CLAIM not in (premise.kind, origin.kind):
-        return False
-    return origin not in reached or not premise.follows_from_origin
+Grounds = Mapping[Equation, tuple[Equation, ...]]
+"""For each equation that stands, the definitions and assumptions that it finally rests on."""
+
+
+def _loose(step: Step, reached: Grounds) -> str:
+    """Say which premise is neither assumed nor defined in plain sight, nor proved before, nor an instance."""
+    unproved = [
+        premise.label
+        for premise in step.premises
+        if (premise.origin.number or not is_assumed(premise)) and premise.origin not in reached
+    ]
+    if unproved:
+        return f"rests on {', '.join(unproved)}, not proved before"
+    forged = [p.label for p in step.premises if p != p.origin and not p.follows_from_origin]
+    return f"rests on what is called {', '.join(forged)} and is no instance of it" if forged else ""
+
+
+def _grounds(step: Step, reached: Grounds) -> tuple[Equation, ...]:
+    """What the claim of a step finally rests on."""
+    behind = (reached.get(premise.origin, (premise.origin,)) for premise in step.premises)
+    return tuple(dict.fromkeys(ground for grounds in behind for ground in grounds))
 
 
 def prove_equation(
-    entry: Equation | Derivation,
-    known: frozenset[Equation] = frozenset(),
-    vocabulary: Vocabulary = NO_WORDS,
+    entry: Equation | Derivation, known: Grounds | None = None, ledger: Ledger | None = None
 ) -> Proof:
     """Decide one entry of a ledger, given the equations that stand before it.
 
     Parameters
     ----------
     entry : Equation or Derivation
-    known : frozenset of Equation
-        What a step may rest on: the entries before this one that passed.
-    vocabulary : Vocabulary
-        Of the ledger.
+    known : mapping of Equation to tuple of Equation, optional
+        What a step may rest on: the entries before this one that passed, each with what it finally rests on.
+    ledger : Ledger, optional
+        Where it stands: the words of its symbols, and the claims that it might rest on in a circle.
     """
+    return _prove_entry(entry, known or {}, ledger or Ledger(()))[0]
+
+
+def _prove_entry(entry: Equation | Derivation, known: Grounds, ledger: Ledger) -> tuple[Proof, Grounds]:
+    """A proof, and the equations that stand after it."""
+    words = ledger.vocabulary
     if isinstance(entry, Equation):
         if entry.kind is Kind.CLAIM:
-            return Proof(entry, Status.UNDECIDED, remark="a claim without a derivation")
-        return Proof(entry, Status(entry.kind.value))
+            return Proof(entry, Status.UNDECIDED, remark="a claim without a derivation"), known
+        if problem := mixed(entry, words):
+            return Proof(entry, Status.REFUSED, remark=problem), known
+        return Proof(entry, Status(entry.kind.value)), {**known, entry: (entry,)}
     steps: list[StepProof] = []
-    reached = set(known)
+    reached = dict(known)
     for step in entry.steps:
-        found = check_step(step, vocabulary)
-        loose = [premise.label for premise in step.premises if _is_loose(premise, reached)]
-        if loose and found.status.passes:
-            found = replace(
-                found, status=Status.UNDECIDED, why=f"rests on {', '.join(loose)}, not proved before"
-            )
+        found = check_step(step, words)
+        if found.status.passes and (why := _loose(step, reached)):
+            found = replace(found, status=Status.UNDECIDED, why=why)
         steps.append(found)
         if found.status.passes:
-            reached.add(step.claim)
+            reached[step.claim] = _grounds(step, reached)
+    status, remark = _verdict(entry, steps, ledger)
+    rests_on = tuple(dict.fromkeys(ground.label for ground in reached.get(entry.claim, ())))
+    proof = Proof(entry.claim, status, tuple(steps), remark, rests_on if status.passes else ())
+    return proof, {**known, entry.claim: reached[entry.claim]} if status.passes else known
+
+
+def _verdict(entry: Derivation, steps: list[StepProof], ledger: Ledger) -> tuple[Status, str]:
+    """What the steps, what they rest on and the print make of a claim, with a remark."""
     verdicts = {found.status for found in steps}
-    for verdict in (Status.REFUTED, Status.UNDECIDED):
-        if verdict in verdicts:
-            return Proof(entry.claim, verdict, tuple(steps))
-    status, remark = Status.PROVED, ""
+    if Status.REFUTED in verdicts:
+        return Status.REFUTED, ""
+    if path := circle(entry, ledger):
+        return Status.REFUSED, f"{entry.claim.label} rests on itself: {path}"
+    for equation in (each for step in entry.steps for each in (*step.premises, step.claim)):
+        if problem := mixed(equation, ledger.vocabulary):
+            return Status.REFUSED, f"{equation.label}: {problem}" if equation != entry.claim else problem
+    if Status.UNDECIDED in verdicts:
+        return Status.UNDECIDED, ""
     if entry.claim.printed is not None:
-        status, remark = _check_print(entry.steps[-1], vocabulary)
-    return Proof(entry.claim, status, tuple(steps), remark)
+        return _check_print(entry.steps[-1], ledger.vocabulary)
+    return Status.PROVED, ""
 
 
 def prove(ledger: Ledger, begin: Callable[[Equation], None] | None = None) -> tuple[Proof, ...]:
@@ -190,15 +237,13 @@ def prove(ledger: Ledger, begin: Callable[[Equation], None] | None = None) -> tu
     ----------
     ledger : Ledger
     begin : callable, optional
-        Told of each equation before it is decided: all of them take the better part of a second.
+        Told of each equation before it is decided: all of them take a second or two.
     """
     proofs: list[Proof] = []
-    known: set[Equation] = set()
+    known: Grounds = {}
     for entry in ledger.entries:
         if begin is not None:
             begin(entry.claim if isinstance(entry, Derivation) else entry)
-        proof = prove_equation(entry, frozenset(known), ledger.vocabulary)
+        proof, known = _prove_entry(entry, known, ledger)
         proofs.append(proof)
-        if proof.status.passes:
-            known.add(proof.equation)
     return tuple(proofs)

@@ -19,12 +19,13 @@ __all__ = ["DIGITS", "POINTS", "Outcome", "examine"]
 
 DIGITS = 50
 POINTS = 20
-"""How many seeded points of the domain every claim is evaluated at."""
+"""How many seeded points of the domain every claim is evaluated at; fewer prove nothing."""
 AGREES = mpmath.mpf(10) ** (10 - DIGITS)
 """Largest relative residual that counts as zero: ten guard digits for the arithmetic in between."""
 DETERMINES = mpmath.mpf(10) ** (-DIGITS // 2)
 """Smallest relative divisor that counts as not zero."""
-_TRIES = 60 * POINTS
+_TRIES, _UNDEFINED = 60 * POINTS, 5 * POINTS
+"""How many points are drawn, and after how many without a value none is looked for that refutes."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ class _Trial:
         """What rounding errors of the sides are small against; computed only where it is asked for."""
         for side, _ in sides:
             if side not in self.magnitudes:
-                self.magnitudes[side] = self.program.add([_magnitude(side)])
+                self.magnitudes[side] = self.program.add([magnitude(side)])
         return max(abs(self.program.values(self.magnitudes[side])[0]) for side, _ in sides)
 
     def gap(self, *sides: tuple[Expr, Any]) -> Iterator[tuple[Any, Any, Any]]:
@@ -135,17 +136,17 @@ class _Trial:
         return self.space.describe(point, solved)
 
 
-def _magnitude(expression: Any) -> Any:
+def magnitude(expression: Any) -> Any:
     """The expression with every term taken positive: its rounding errors are small against this."""
     match expression:
         case Add() | Mul():
-            return expression.func(*map(_magnitude, expression.args), evaluate=False)
+            return expression.func(*map(magnitude, expression.args), evaluate=False)
         case Integral():
-            return Abs(Integral(_magnitude(expression.function), *expression.limits), evaluate=False)
+            return Abs(Integral(magnitude(expression.function), *expression.limits), evaluate=False)
         case Sum() | Median():
-            return expression.func(_magnitude(expression.function), *expression.limits)
+            return expression.func(magnitude(expression.function), *expression.limits)
         case Pow() if expression.exp.is_Integer and expression.exp.is_positive:
-            return Pow(_magnitude(expression.base), expression.exp, evaluate=False)
+            return Pow(magnitude(expression.base), expression.exp, evaluate=False)
         case Symbol() | Indexed() if expression.is_positive:
             return expression
     return Abs(expression, evaluate=False)
@@ -163,7 +164,7 @@ def examine(system: System, seed: str) -> Outcome:
     with mpmath.workdps(DIGITS):
         trial = _Trial(system)
         counted, worst = 0, mpmath.mpf(0)
-        undefined: dict[str, str] = {}
+        undefined: list[dict[str, str]] = []
         for point in trial.space.points(seed, _TRIES):
             try:
                 if not trial.lies_in_domain(point):
@@ -177,7 +178,9 @@ def examine(system: System, seed: str) -> Outcome:
                 found = [(mpmath.nan,) * 3]
             finite = all(mpmath.isfinite(side) for pair in found for side in pair[:2])
             if not finite or any(AGREES < residual <= trial.exact for _, _, residual in found):
-                undefined = undefined or trial.describe(point)
+                undefined.append(trial.describe(point))
+                if len(undefined) > _UNDEFINED:
+                    break
                 continue
             for a, b, residual in found:
                 if not residual <= AGREES:  # also where it is not a number
@@ -191,7 +194,7 @@ def examine(system: System, seed: str) -> Outcome:
             if counted == POINTS:
                 break
     if undefined:
-        raise Refused(f"it has no value at {said(undefined)}")
+        raise Refused(f"it has no value at {said(undefined[0])}")
     if counted == POINTS:
         return Outcome(counted, float(worst))
     raise Refused(

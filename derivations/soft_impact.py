@@ -14,11 +14,11 @@ from . import alpha_root, errata, generated_points, power_law_fit
 from .alpha_root import Lambda, log_speeds, logarithm, reciprocal, root_form, starting_value, turning, u
 from .equation import Derivation, Equation, Kind, Ledger, Step
 from .generated_points import F_scale, N, abscissa, mean, n_pairs, top, x_scale, x_top
-from .symbols import VOCABULARY, F_of, k
+from .symbols import VOCABULARY, F_LN_of, F_of, k
 
 # fmt: off
 __all__ = [  # noqa: RUF022 - symbols, the equations in their order, what other modules add, the ledger
-    "V", "E", "XP", "XM", "CP", "v", "e", "x_p", "x_m", "Cprime", "C", "F", "alpha", "beta", "m_red",
+    "V", "E", "XP", "XM", "CP", "v", "e", "x_p", "x_m", "Cprime", "C", "C_LN", "F", "alpha", "beta", "m_red",
     "m_1", "m_2", "mu", "x", "d", "rho", "n",
     "eq1", "eq2", "eq3", "law_c", "law_r", "eq4", "eq5", "energy_c", "eq6", "energy_r", "eq7", "eq8",
     "continuity", "eq9", "eq10a", "eq10b", "eq10c", "ratio", "eq11", "eq12a", "eq12b", "eq12c", "eq12d",
@@ -35,7 +35,7 @@ v, e, x_p, x_m, Cprime = VOCABULARY.plain("v e x_p x_m Cprime")
 C, alpha, beta, m_red, m_1, m_2, mu, x, d, rho, z, n = VOCABULARY.plain(
     "C alpha beta m_red m_1 m_2 mu x d rho z n"
 )
-v_n1, v_n2 = VOCABULARY.plain("v_n1 v_n2")
+v_n1, v_n2, C_LN = VOCABULARY.plain("v_n1 v_n2 C_LN")
 F = F_of(x)
 half = Rational(1, 2)
 
@@ -54,9 +54,9 @@ with evaluate(False):
     eq2 = Equation(
         "(2)",
         (
-            F,
+            F_LN_of(x),
             Piecewise(
-                (C * x ** Rational(3, 2), And(Le(0, x), Le(x, x_m))),
+                (C_LN * x ** Rational(3, 2), And(Le(0, x), Le(x, x_m))),
                 (Cprime * ((x - x_p) / (x_m - x_p)) ** Rational(3, 2), And(Le(x_p, x), Le(x, x_m))),
             ),
         ),
@@ -148,9 +148,7 @@ with evaluate(False):
         "",
         (_compression.xreplace({x: x_m}), _restitution.xreplace({x: x_m})),
         "both branches of (3) meet at the maximum approach",
-        Kind.ASSUMPTION,
-        "continuity of (3) at the maximum approach",
-        parent=eq3,
+        title="continuity of (3) at the maximum approach",
     )
 
     eq9 = Equation("(9)", (C * x_m**alpha, Cprime), "continuity of the force", title="common maximum force")
@@ -333,7 +331,17 @@ LEDGER = Ledger(
             "Put the restitution branch of (3) under the integral and integrate.",
         ),
         eq8,
-        Derivation.of(eq9, (continuity,), (C,), "At x = x_m the bracket of the restitution branch is 1."),
+        Derivation(
+            (
+                Step(
+                    continuity,
+                    (law_r.at({x: x_m}), law_c.at({x: x_m})),
+                    (F_of(x_m), C),
+                    "Both branches give the force at the maximum approach.",
+                ),
+                Step(eq9, (continuity,), (C,), "At x = x_m the bracket of the restitution branch is 1."),
+            )
+        ),
         Derivation.of(eq10a, (_one_test(eq6.brief, k),), (m_red,), "Write (6) for test k."),
         Derivation.of(eq10b, (_one_test(eq7.brief, k),), (m_red,), "Write (7) for test k."),
         Derivation.of(eq10c, (_one_test(eq9, k),), (C,), "Write (9) for test k."),

@@ -6,7 +6,7 @@ from sympy import Function, Symbol
 
 from .vocabulary import Quantity, Vocabulary
 
-__all__ = ["VOCABULARY", "F_of", "k", "p", "q", "s"]
+__all__ = ["VOCABULARY", "F_LN_of", "F_of", "k", "p", "q", "s"]
 
 VOCABULARY = Vocabulary(
     Quantity(
@@ -22,6 +22,9 @@ VOCABULARY = Vocabulary(
     Quantity("x_m", "maximum normal approach", "m", "x_{m%s}", (1e-5, 1e-4)),
     Quantity("C", "coefficient of the compression law", "N/m^alpha", "C%s", (1e7, 1e10)),
     Quantity("Cprime", "force at the maximum approach", "N", "C'%s", (500.0, 5000.0), text="C'%s"),
+    # The law that the paper quotes for comparison has a coefficient and a force of its own, printed alike.
+    Quantity("C_LN", "coefficient of Lankarani's law", "N/m^(3/2)", "C%s", (1e7, 1e10), text="C%s"),
+    Quantity("F_LN", "force of Lankarani's law", "N", "F%s", (1.0, 5000.0), text="F%s"),
     Quantity("alpha", "exponent of the compression law", "1", r"\alpha%s", (1.0, 1.5)),
     Quantity("beta", "exponent of the restitution law", "1", r"\beta%s", (1.0, 2.5)),
     Quantity("m_red", "reduced mass of the two bodies", "kg", "m_{red%s}", (1e-3, 1e-1)),
@@ -44,6 +47,7 @@ VOCABULARY = Vocabulary(
         "normal component of the relative velocity before impact",
         "m/s",
         r"\mathbf{v}'\cdot\mathbf{n}%s",
+        (0.5, 8.0),
         text="v'.n%s",
     ),
     Quantity(
@@ -51,6 +55,8 @@ VOCABULARY = Vocabulary(
         "normal component of the relative velocity after impact",
         "m/s",
         r"\mathbf{v}''\cdot\mathbf{n}%s",
+        (-8.0, -0.05),
+        positive=False,  # the bodies come apart again
         text="v''.n%s",
     ),
     Quantity(
@@ -77,6 +83,9 @@ VOCABULARY = Vocabulary(
     Quantity("Ymean", "mean of Y over the points", "1", r"\bar{Y}%s", (-1.0, 1.0), positive=False),
     Quantity("a", "intercept of the fitted line", "1", "a%s", (-1.0, 1.0), positive=False),
     Quantity("b", "slope of the fitted line", "1", "b%s", (-1.0, 1.0), positive=False),
+    Quantity("C_b", "coefficient of the fitted line", "N/m^b", "C%s", (1e7, 1e10), text="C%s"),
+    Quantity("alpha_mean", "mean exponent", "1", r"\bar{\alpha}%s", (1.0, 1.5)),
+    Quantity("alpha_median", "median exponent", "1", r"\tilde{\alpha}%s", (1.0, 1.5)),
     Quantity("N", "number of generated points of a pair", "1", "N%s", (5.0, 50.0)),
 )
 
@@ -87,5 +96,5 @@ q = Symbol("q", integer=True, positive=True)
 s = Symbol("s", integer=True, positive=True)
 """The running numbers: k of a test, p of a pair, q of a point, s of a point within its pair."""
 
-F_of = Function("F")
-"""The force as an unknown function of the approach, before a law is put in."""
+F_of, F_LN_of = Function("F"), Function("F_LN")
+"""The force as an unknown function of the approach, before a law is put in: the model's, and Lankarani's."""

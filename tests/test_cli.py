@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -152,6 +153,11 @@ def test_prove_prints_the_ledger_and_passes(capsys: pytest.CaptureFixture[str]) 
     for number in ("(6)", "(7)", "(9)", "(10a)", "(11)", "(12a)"):
         assert any(line.startswith(f"{number} ") and " proved " in line for line in lines), number
     assert any(line.startswith("(12e)") and "proved with a correction of the print" in line for line in lines)
+    after = {line.split()[0]: following.strip() for line, following in pairwise(lines) if line[:1] == "("}
+    assert after["(9)"] == "rests on: (3)"
+    assert after["(6)"] == "rests on: (3); theorem of kinetic energy, compression"
+    assert after["(L6)"] == "rests on: nothing, it is an identity"
+    assert not after["(3)"].startswith("rests on")
 
 
 def test_prove_one_equation_shows_its_steps(capsys: pytest.CaptureFixture[str]) -> None:
@@ -243,6 +249,7 @@ def test_an_unexpected_difference_is_a_finding_in_every_format(
         "campaign/published.csv:7:19: Table 2 alpha[2-4] prints 1.315, recomputed 1.294 (unreachable"
     )
     assert data["proofs"]["(11)"] == "proved"
+    assert data["rests_on"]["(9)"] == ["(3)"]
     assert ElementTree.fromstring(found["junit"]).get("failures") == "1"
     assert found["github"].startswith("::error file=campaign/published.csv,line=7,col=19,")
 

@@ -39,8 +39,8 @@ WORDS = {
 PROVER = {
     f"derivations.{name}"
     for name in (
-        *("algebra", "cells", "dimensions", "equation", "errata", "evaluation", "facts", "proof"),
-        *("reductions", "sampling", "space", "sums", "system", "text", "vocabulary"),
+        *("algebra", "cells", "dimensions", "equation", "errata", "evaluation", "facts", "grounds"),
+        *("proof", "reductions", "sampling", "space", "sums", "system", "text", "vocabulary"),
     )
 }
 SHEET = (

@@ -64,6 +64,13 @@ def test_proofs_by_number(values: dict) -> None:  # type: ignore[type-arg]
     assert values["proofs"]["(8)"] == "definition"
 
 
+def test_what_proofs_rest_on(values: dict) -> None:  # type: ignore[type-arg]
+    assert values["rests_on"]["(9)"] == ["(3)"]
+    assert values["rests_on"]["(6)"] == ["(3)", "theorem of kinetic energy, compression"]
+    assert values["rests_on"]["(L6)"] == []
+    assert "(8)" not in values["rests_on"]  # a definition
+
+
 def test_published(values: dict) -> None:  # type: ignore[type-arg]
     first = values["published"][0]
     assert (first["cell"], first["index"], first["printed"], first["verdict"]) == (

@@ -166,6 +166,20 @@ def test_the_ledger_and_every_derivation_are_there(report: Report, tree: ET.Elem
     assert "50 digits" in _text(by_id["eq-11"])
 
 
+def test_a_claim_says_what_it_finally_rests_on(tree: ET.Element) -> None:
+    by_id = {element.get("id"): element for element in tree.iter() if element.get("id")}
+    work = "theorem of kinetic energy, compression"
+    for number, said in (
+        ("6", f"Rests on: (3); {work}."),
+        ("9", "Rests on: (3)."),
+        ("L6", "Rests on: nothing, it is an identity."),
+    ):
+        assert said in _text(by_id[f"eq-{number}"])
+    assert "Rests on:" not in _text(by_id["eq-8"])
+    (said,) = (p for p in by_id["eq-9"].iter(XHTML + "p") if _text(p).startswith("Rests on:"))
+    assert [link.get("href") for link in said.iter(XHTML + "a")] == ["#eq-3"]
+
+
 def test_findings_about_the_print_are_there(report: Report, tree: ET.Element) -> None:
     (section,) = (e for e in _elements(tree, "section") if e.get("id") == "errata")
     (table,) = section.iter(XHTML + "table")

@@ -57,6 +57,13 @@ def test_numbers_come_from_the_report(article: str) -> None:
     assert "1.234 & 1.258" in article
 
 
+def test_a_claim_says_what_it_finally_rests_on(article: str) -> None:
+    said = [" ".join(found.split()) for found in re.findall(r"Rests on: (.*?)\.\n", article)]
+    assert r"\ref{eq:3}; theorem of kinetic energy,{} compression" in said
+    assert r"\ref{eq:3}" in said
+    assert "nothing,{} it is an identity" in said
+
+
 def test_the_same_bytes_are_asked_for(article: str) -> None:
     for primitive in (r"\pdfinfoomitdate=1", r"\pdftrailerid{}", r"\pdfsuppressptexinfo=-1"):
         assert primitive in article

@@ -167,6 +167,9 @@ def test_equations_and_their_proofs(shown: Any) -> None:
     assert rows["(12e)"][3] == "proved with a correction of the print"
     assert rows["(9)"][2] == "C*x_m^alpha = C'"
     assert "where x_m > x_p" in rows["(L4)"][2]
+    assert rows["(6)"][4] == "(3); theorem of kinetic energy, compression"
+    assert rows["(L6)"][4] == "nothing, it is an identity"
+    assert not rows["(8)"][4]
 
 
 # --- what may be typed -----------------------------------------------------------------------------------

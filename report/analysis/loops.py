@@ -184,7 +184,7 @@ def _closed(
 def _lankarani(samples: int) -> Iterator[Curve]:
     """Equation (2): both branches as they stand in its cases."""
     # The author's own form: evaluated, the cases lose the second, whose domain lies in the first's.
-    up, down = (ForceLaw(case.expr) for case in model.eq2.members[-1].args)
+    up, down = (ForceLaw(case.expr.xreplace({model.C_LN: model.C})) for case in model.eq2.members[-1].args)
     x_m, x_p = SCHEMATIC["x_m"], SCHEMATIC["x_p"]
     yield from _closed("lankarani", up, down, np.linspace(0.0, x_m, samples), np.linspace(x_p, x_m, samples))
 

@@ -124,9 +124,11 @@ def _print(report: Report, found: Iterable[Check]) -> None:
 def _details(report: Report) -> dict[str, Any]:
     """What JSON tells besides the checks: numbers instead of sentences."""
     from ..verdict_data import data
+    from ..views.json import proof_grounds
 
     return {
         "proofs": {p.equation.label: p.status.value for p in report.proofs},
+        "rests_on": proof_grounds(report),
         "engines": [agreement.data for agreement in report.engines],
         "published": [
             {

@@ -61,6 +61,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _print(proof: Proof, vocabulary: Vocabulary, steps: bool) -> None:
+    from ...derivations.proof import IDENTITY
     from ...derivations.text import text_of_equation
 
     print(f"{proof.equation.label:6} {proof.status.value:12} {text_of_equation(proof.equation, vocabulary)}")
@@ -69,10 +70,12 @@ def _print(proof: Proof, vocabulary: Vocabulary, steps: bool) -> None:
     for n, found in enumerate(proof.steps, start=1):
         if steps:
             print(f"  {n}.   {found.step.says}")
-            premises = "; ".join(premise.label for premise in found.step.premises)
-            print(f"       from  {premises or 'nothing: an identity'}")
+            premises = "; ".join(dict.fromkeys(premise.label for premise in found.step.premises))
+            print(f"       from  {premises or IDENTITY}")
             print(f"       holds {text_of_equation(found.step.claim, vocabulary)}")
         if steps or not found.status.passes:
             print(f"       {found.status.value}: {found.sentence}")
+    if proof.steps and proof.status.passes:
+        print(f"       rests on: {'; '.join(proof.rests_on) or IDENTITY}")
     if proof.remark:
         print(f"       {proof.remark}")

@@ -15,7 +15,7 @@ from ..sheet import Column, Given
 from ..values import Status
 from ..verdict import Verdict
 
-__all__ = ["manifest", "proof_statuses", "values"]
+__all__ = ["manifest", "proof_grounds", "proof_statuses", "values"]
 
 SCHEMA = 1
 
@@ -29,6 +29,7 @@ def values(report: Report) -> str:
             "title": report.title,
             "cells": {column.name: _column(report, column) for column in report.sheet.columns},
             "proofs": proof_statuses(report),
+            "rests_on": proof_grounds(report),
             "errata": [{"about": e.about, "kind": e.kind, "sentence": e.sentence} for e in report.errata],
             "published": [_published(comparison) for comparison in report.comparisons],
             **({"referee": verdict_data.data(report.referee)} if report.referee.joint is not None else {}),
@@ -82,6 +83,7 @@ def proof_statuses(report: Report) -> dict[str, str]:
     """Status by number; a number with several lines also has the worst status of its lines."""
     order = [
         "refuted",
+        "refused",
         "undecided",
         "proved with a correction of the print",
         "proved",
@@ -97,6 +99,11 @@ def proof_statuses(report: Report) -> dict[str, str]:
     for proof in report.proofs:
         found[proof.equation.label] = proof.status.value
     return dict(sorted(found.items(), key=lambda item: _natural(item[0])))
+
+
+def proof_grounds(report: Report) -> dict[str, list[str]]:
+    """What each proved claim finally rests on: numbers, and titles of what has none."""
+    return {p.equation.label: list(p.rests_on) for p in report.proofs if p.steps and p.status.passes}
 
 
 def _natural(label: str) -> tuple[bool, int, str]:

@@ -17,7 +17,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from sympy import Expr, Indexed, Integer, Symbol
 
 from ...derivations.equation import Derivation, Equation, Step
-from ...derivations.proof import Proof, Status
+from ...derivations.proof import IDENTITY, Proof, Status
 from ...derivations.text import Writer
 from .document import Document
 from .escape import Markup, slug
@@ -144,7 +144,9 @@ class Words(ABC):
         """Names as sentences of the derivations write them, ``x_m2``: the quantity and its index."""
         text, quantities = Writer(self.vocabulary).text, self.vocabulary.items()
         # x_p is the imprint depth before it is the x of some p.
-        found = {text(quantity.symbol): (name, "") for name, quantity in quantities}
+        found: dict[str, tuple[str, str]] = {}
+        for name, quantity in quantities:
+            found.setdefault(text(quantity.symbol), (name, ""))
         for name, quantity in quantities:
             for index in (1, 2, *map(Symbol, "ijkpq")):
                 found.setdefault(text(quantity[index]), (name, str(index)))
@@ -214,6 +216,16 @@ class Words(ABC):
         if len(own) == len(general) == 1 and own != general and isinstance(next(iter(own)), Integer):
             return named + self.escape(" for ") + self.math(f"{general.pop()} = {own.pop()}")
         return named
+
+    def premises(self, step: Step) -> list[Markup]:
+        """What a step rests on, each once: two branches of one law are one equation."""
+        return list(dict.fromkeys(self.premise(premise) for premise in step.premises))
+
+    def grounds(self, proof: Proof) -> list[Markup]:
+        """What a claim finally rests on: numbers, and titles of what has none."""
+        known = self.document.identifiers
+        found = [self.refer(label) if label in known else self.rich(label) for label in proof.rests_on]
+        return found or [self.escape(IDENTITY)]
 
     def legend(self, heads: tuple[Head, ...]) -> Iterator[tuple[Head, Markup, Markup]]:
         """For each column: its head, its meaning, the equations behind it."""

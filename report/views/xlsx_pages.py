@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from ...derivations.proof import IDENTITY
 from ...derivations.text import Writer, text_of_equation
 from ..grid import CHECKED, SCALARS, Block, Grid, checked, factors, letters
 from ..result import Comparison, Report
 from ..sheet import RepeatAxis
-from .json import proof_statuses
+from .json import proof_grounds, proof_statuses
 from .xlsx_inputs import Inputs
 from .xlsx_marks import TITLE, counted
 from .xlsx_style import Style, height
@@ -227,7 +228,14 @@ def _signed(form: str) -> str:
 
 # --- the equations -----------------------------------------------------------------------------------------
 
-_EQUATIONS = (("number", 10), ("title", 34), ("claim", 78), ("status", 16), ("why it holds", 60))
+_EQUATIONS = (
+    ("number", 10),
+    ("title", 34),
+    ("claim", 78),
+    ("status", 16),
+    ("rests on", 34),
+    ("why it holds", 60),
+)
 
 
 def write_equations(sheet: Any, style: Style, report: Report) -> None:
@@ -237,7 +245,7 @@ def write_equations(sheet: Any, style: Style, report: Report) -> None:
     for at, (head, width) in enumerate(_EQUATIONS):
         sheet.set_column(at, at, width)
         style.text(sheet, 3, at, head, "head")
-    statuses = proof_statuses(report)
+    statuses, grounds = proof_statuses(report), proof_grounds(report)
     for row, equation in enumerate(report.ledger.equations(), start=4):
         claim = text_of_equation(equation, report.ledger.vocabulary)
         if equation.conditions:
@@ -247,6 +255,7 @@ def write_equations(sheet: Any, style: Style, report: Report) -> None:
             equation.title,
             claim,
             statuses.get(equation.label, "not checked"),
+            "; ".join(grounds[equation.label]) or IDENTITY if equation.label in grounds else "",
             equation.because,
         )
         for at, words in enumerate(cells):

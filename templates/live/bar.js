@@ -66,7 +66,7 @@ function sourceLine(column) {
   if (!equations.length) return [`from ${column.source}`];
   return equations.flatMap((label, place) => {
     const { id, status } = LIVE.equations[label];
-    const kind = status.startsWith("proved") ? "holds" : /refuted|undecided/.test(status) ? "fails" : "stated";
+    const kind = status.startsWith("proved") ? "holds" : /refuted|refused|undecided/.test(status) ? "fails" : "stated";
     const link = make("a", { href: `#${id}`, class: "eqref" }, label);
     return [place ? ", solved as " : "from ", link, " ", make("span", { class: `status ${kind}` }, status)];
   });

@@ -1,0 +1,372 @@
+"""Ledgers: what may rest on what, what is refused although each step is right, and what a claim rests on."""
+
+from dataclasses import replace
+
+import pytest
+from proving import X, a, b, c, n, q, y
+from sympy import Expr, Function, Integer, Integral, Min, Piecewise, Rational, Sum, Symbol, exp, log, sqrt
+
+from loopsheet.derivations import soft_impact as model
+from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step
+from loopsheet.derivations.proof import Proof, Status, prove, prove_equation
+from loopsheet.derivations.vocabulary import Quantity, Vocabulary
+
+FIRST = Equation("(1)", (a, b + c), "", Kind.DEFINITION)
+SECOND = Equation("(2)", (b * (a - c), b**2), "")
+THIRD = Equation("(3)", (a**2 - (b + c) ** 2, Integer(0)), "")
+SECOND_HOLDS = Derivation.of(SECOND, (FIRST,), (a,), "")
+BY_CASES = Equation("(1)", (a, Piecewise((b, b > c), (2 * c, b <= c))), "", Kind.ASSUMPTION)
+THIRD_HOLDS = Derivation.of(THIRD, (SECOND,), (a,), "")
+
+
+def statuses(*entries: Equation | Derivation) -> list[Status]:
+    return [found.status for found in prove(Ledger(entries))]
+
+
+def by_label(*entries: Equation | Derivation) -> dict[str, Proof]:
+    return {found.equation.label: found for found in prove(Ledger(entries))}
+
+
+def test_each_entry_may_rest_on_those_before_it() -> None:
+    assert statuses(FIRST, SECOND_HOLDS, THIRD_HOLDS) == [Status.DEFINITION, Status.PROVED, Status.PROVED]
+
+
+@pytest.mark.parametrize(
+    "entries",
+    [
+        (THIRD_HOLDS,),
+        (THIRD_HOLDS, FIRST, SECOND_HOLDS),
+        (SECOND_HOLDS, FIRST),
+        (SECOND, THIRD_HOLDS),
+    ],
+)
+def test_nothing_rests_on_what_comes_later(entries: tuple[Equation | Derivation, ...]) -> None:
+    first = prove(Ledger(entries))[0]
+    assert first.status is Status.UNDECIDED
+    if first.steps:
+        assert first.steps[-1].why.startswith("rests on (")
+        assert first.steps[-1].why.endswith("not proved before")
+
+
+def test_what_rests_on_a_refuted_claim_is_undecided() -> None:
+    wrong = Equation("(2)", (b * (a - c), 2 * b**2), "")
+    rests = Derivation.of(Equation("(3)", (a, 2 * b + c), ""), (wrong,), (a,), "")
+    assert statuses(FIRST, Derivation.of(wrong, (FIRST,), (a,), ""), rests)[1:] == [
+        Status.REFUTED,
+        Status.UNDECIDED,
+    ]
+
+
+def test_a_claim_without_a_derivation_is_undecided() -> None:
+    assert prove_equation(SECOND).status is Status.UNDECIDED
+
+
+@pytest.mark.parametrize(
+    "forged",
+    [
+        replace(SECOND, members=(b * (a - c), 2 * b**2), parent=SECOND),
+        replace(SECOND, members=(b * (a - c), 2 * b**2), parent=SECOND, kind=Kind.ASSUMPTION),
+        Equation("(2)", (b * (a - c), 2 * b**2), "", parent=FIRST),
+        SECOND.at({b: -b}),
+        SECOND.at({b: y}),
+        replace(SECOND.at({b: 2 * b}), renamed=()),
+        replace(SECOND.at({b: 2 * b}), renamed=(((b, 3 * b),),)),
+    ],
+)
+def test_an_instance_is_made_again_before_it_is_trusted(forged: Equation) -> None:
+    found = prove(
+        Ledger((FIRST, SECOND_HOLDS, Derivation.of(replace(forged, number="(4)"), (forged,), (a,), "")))
+    )
+    assert found[-1].status is Status.UNDECIDED
+
+
+BOUNDED = replace(FIRST, conditions=(b > c,))
+
+
+@pytest.mark.parametrize(
+    ("stated", "forged", "side"),
+    [
+        (FIRST, replace(FIRST, members=(a, b + 2 * c), parent=FIRST), b + 2 * c),
+        (FIRST, FIRST.at({c: y**2}), b + y**2),
+        (FIRST, replace(FIRST.at({c: 2 * c}), renamed=()), b + 2 * c),
+        (BOUNDED, replace(BOUNDED, conditions=(), parent=BOUNDED), b + c),
+        (BY_CASES, replace(BY_CASES.branch(1, ""), members=(a, 3 * c)), 3 * c),
+    ],
+)
+def test_so_is_an_instance_of_what_is_stated(stated: Equation, forged: Equation, side: Expr) -> None:
+    claim = Equation("(2)", (a**2, side**2), "")
+    found = by_label(stated, Derivation.of(claim, (forged,), (a,), ""))["(2)"]
+    assert found.status is Status.UNDECIDED
+    assert found.steps[0].why == "rests on what is called (1) and is no instance of it"
+
+
+def test_a_case_of_a_law_is_an_instance_of_it() -> None:
+    claim = Equation("(2)", (a**2, 4 * c**2), "")
+    case = BY_CASES.branch(1, "")
+    assert by_label(BY_CASES, Derivation.of(claim, (case,), (a,), ""))["(2)"].rests_on == ("(1)",)
+
+
+def test_a_true_instance_is_trusted() -> None:
+    instance = SECOND.at({b: b * c}).at({c: 2 * c}).reversed
+    assert (
+        statuses(
+            FIRST,
+            SECOND_HOLDS,
+            Derivation.of(Equation("(4)", (a, 2 * b * c + 2 * c), ""), (instance,), (a,), ""),
+        )[-1]
+        is Status.PROVED
+    )
+
+
+def test_an_instance_keeps_the_conditions_of_its_origin() -> None:
+    bounded = replace(SECOND, conditions=(a > 1,))
+    first = replace(FIRST, conditions=())
+    rests = Derivation.of(THIRD, (replace(bounded, conditions=(), parent=bounded),), (a,), "")
+    found = prove(Ledger((first, Derivation.of(bounded, (first,), (a,), ""), rests)))
+    assert [one.status for one in found[1:]] == [Status.PROVED, Status.UNDECIDED]
+
+
+@pytest.mark.parametrize(
+    ("printed", "status", "remark"),
+    [
+        ((b * (a - c), b**2), Status.PROVED, ""),
+        ((b * (a - c), 2 * b**2), Status.CORRECTED, "as printed, (2) fails: at b = "),
+        (
+            (c, c),
+            Status.CORRECTED,
+            "as printed, (2) does not contain a, which it should determine: it repeats c",
+        ),
+        (
+            (b * (Min(a, 30) - c), b**2),
+            Status.UNDECIDED,
+            "as printed, (2) is undecided: the numbers agree, but",
+        ),
+    ],
+)
+def test_the_print_is_checked_too(printed: tuple[Expr, ...], status: Status, remark: str) -> None:
+    meant = replace(SECOND, printed=printed, defines=a)
+    found = prove(Ledger((FIRST, Derivation.of(meant, (FIRST,), (a,), ""))))[1]
+    assert found.status is status
+    assert found.remark.startswith(remark)
+    assert bool(found.remark) == bool(remark)
+
+
+def test_begin_is_told_of_each_equation_in_order() -> None:
+    told: list[str] = []
+    prove(Ledger((FIRST, SECOND_HOLDS, THIRD_HOLDS)), lambda equation: told.append(equation.label))
+    assert told == ["(1)", "(2)", "(3)"]
+
+
+# --- circles ------------------------------------------------------------------------------------------------
+
+
+def assumed(*members: Expr, title: str = "assumed") -> Equation:
+    return Equation("", members, "", Kind.ASSUMPTION, title)
+
+
+SAID = Equation("(2)", (a, b + c), "")
+
+
+@pytest.mark.parametrize(
+    "premise",
+    [
+        assumed(a, b + c),
+        assumed(b + c, a),
+        assumed(3 * a, 3 * b + 3 * c),
+        assumed(-a / 7, -(b + c) / 7),
+        assumed(a - b, c),
+        assumed(a - b - c, Integer(0)),
+        assumed(a, (b**2 - c**2) / (b - c)),
+        assumed(log(exp(a)) - b, c),
+        assumed(y, a, b + c),
+        assumed(sqrt(2) * a, sqrt(2) * (b + c)),
+        replace(assumed(a, b + c), kind=Kind.DEFINITION),
+        assumed(y, b + c).at({y: a}),
+        replace(assumed(y, b), members=(a, b + c), parent=assumed(y, b)),
+    ],
+)
+def test_a_premise_that_says_what_the_claim_says_proves_nothing(premise: Equation) -> None:
+    found = prove_equation(Derivation.of(SAID, (premise,), (a,), ""))
+    assert found.status is Status.REFUSED
+    assert found.remark == f"(2) rests on itself: (2) -> {premise.label} = (2)"
+    assert found.rests_on == ()
+    assert [step.status for step in found.steps] in ([Status.PROVED], [Status.UNDECIDED])
+
+
+@pytest.mark.parametrize("kind", [Kind.DEFINITION, Kind.ASSUMPTION])
+def test_so_does_a_premise_with_a_number(kind: Kind) -> None:
+    stated = Equation("(1)", (b + c - a, Integer(0)), "", kind)
+    found = by_label(stated, Derivation.of(SAID, (stated,), (a,), ""))
+    assert found["(1)"].status is Status(kind.value)
+    assert found["(2)"].status is Status.REFUSED
+    assert found["(2)"].remark == "(2) rests on itself: (2) -> (1) = (2)"
+
+
+@pytest.mark.parametrize(
+    "premise",
+    [
+        assumed(a**2, (b + c) ** 2),  # a root is more than a number
+        assumed(b * a, b * (b + c)),
+        assumed(1 / a, 1 / (b + c)),
+        assumed(log(a), log(b + c)),
+        assumed(a, Sum(X[q], (q, 1, n)) + Integral(y, (y, 0, c)) * 2 / c - Sum(X[q], (q, 1, n)) + b),
+    ],
+)
+def test_to_work_something_out_is_a_proof(premise: Equation) -> None:
+    found = prove_equation(Derivation.of(SAID, (premise,), (a,), ""))
+    assert found.status is Status.PROVED
+    assert found.rests_on == ("assumed",)
+
+
+def test_a_claim_that_was_proved_may_be_said_again() -> None:
+    again = Equation("(3)", (2 * b**2, 2 * a * b - 2 * b * c), "")
+    found = by_label(FIRST, SECOND_HOLDS, Derivation.of(again, (SECOND,), (a,), ""))
+    assert found["(3)"].status is Status.PROVED
+    assert found["(3)"].rests_on == ("(1)",)
+
+
+def test_an_assumption_for_every_row_yields_one() -> None:
+    every = Equation("(1)", (X[q], b * c), "", Kind.ASSUMPTION)
+    first = Equation("(2)", (X[1], c * b), "")
+    entries = every, Derivation.of(first, (every.at({q: Integer(1)}),), (X[1],), "")
+    assert by_label(*entries)["(2)"].status is Status.PROVED
+
+
+def test_a_circle_is_refused_and_drawn() -> None:
+    """(2) from (3) from (2), each by a step that is right."""
+    squared = Equation("(3)", (a**2, (b + c) ** 2), "")
+    back = Derivation.of(SAID, (squared,), (a,), "")
+    found = by_label(back, Derivation.of(squared, (SAID,), (a,), ""))
+    assert [proof.status for proof in found.values()] == [Status.REFUSED] * 2
+    assert found["(2)"].remark == "(2) rests on itself: (2) -> (3) -> (2)"
+    assert found["(3)"].remark == "(3) rests on itself: (3) -> (2) -> (3)"
+
+
+def test_a_circle_is_seen_through_what_its_premise_is_called() -> None:
+    """(3) from an assumption that says what (2) says, and (2) from (3)."""
+    squared = Equation("(3)", (a**2, (b + c) ** 2), "")
+    hidden = assumed(2 * a - 2 * b, 2 * c, title="the budget")
+    found = by_label(Derivation.of(squared, (hidden,), (a,), ""), Derivation.of(SAID, (squared,), (a,), ""))
+    assert [proof.status for proof in found.values()] == [Status.REFUSED] * 2
+    assert found["(3)"].remark == "(3) rests on itself: (3) -> the budget = (2) -> (3)"
+    assert found["(2)"].remark == "(2) rests on itself: (2) -> (3) -> the budget = (2)"
+
+
+def test_a_circle_within_a_chain_of_steps_is_seen() -> None:
+    between = Equation("", (a**2, (b + c) ** 2), "", title="between")
+    chain = Derivation((Step(between, (assumed(a, b + c),), (a,), ""), Step(SAID, (between,), (a,), "")))
+    found = prove_equation(chain)
+    assert found.status is Status.REFUSED
+    assert found.remark == "(2) rests on itself: (2) -> between -> assumed = (2)"
+
+
+def test_what_rests_on_a_circle_is_no_part_of_it() -> None:
+    squared = Equation("(3)", (a**2, (b + c) ** 2), "")
+    after = Equation("(4)", (a**3, (b + c) ** 3), "")
+    found = by_label(
+        Derivation.of(SAID, (squared,), (a,), ""),
+        Derivation.of(squared, (SAID,), (a,), ""),
+        Derivation.of(after, (squared,), (a,), ""),
+    )
+    assert found["(4)"].status is Status.UNDECIDED
+    assert found["(4)"].steps[0].why == "rests on (3), not proved before"
+
+
+def test_an_unknown_function_is_like_no_other() -> None:
+    f, g = Function("f")(y), Function("g")(y)
+    work = assumed(a, Integral(f, (y, 0, b)))
+    same, other = (Equation("(1)", (2 * Integral(h, (y, 0, b)), 2 * a), "") for h in (f, g))
+    assert prove_equation(Derivation.of(same, (work,), (a,), "")).status is Status.REFUSED
+    assert "rests on itself" not in prove_equation(Derivation.of(other, (work,), (a,), "")).remark
+
+
+# --- dimensions ---------------------------------------------------------------------------------------------
+
+MASS, FORCE, WAY, RATIO = (
+    Quantity("a", "mass", "kg", "a%s"),
+    Quantity("b", "force", "N", "b%s"),
+    Quantity("c", "way", "m", "c%s"),
+    Quantity("y", "exponent", "1", "y%s", positive=False),
+)
+WORDS = Vocabulary(MASS, FORCE, WAY, RATIO)
+
+
+@pytest.mark.parametrize(
+    ("members", "conditions", "problem"),
+    [
+        ((a, b), (), "a is in kg, b is in kg m s^-2"),
+        ((a + c, b), (), "cannot add kg and m in a + c"),
+        ((b, a * exp(c)), (), "the argument of a function must be a pure number, not m, in exp(c)"),
+        ((a, a**c), (), "an exponent must be a pure number, not m, in a^c"),
+        ((a, 2 * a * y), (a > c,), "cannot compare kg and m in a > c"),
+        ((b, a * y, b * y), (), "b is in kg m s^-2, y*a is in kg"),
+    ],
+)
+def test_what_mixes_dimensions_is_refused(
+    members: tuple[Expr, ...], conditions: tuple[Expr, ...], problem: str
+) -> None:
+    mixing = Equation("(1)", members, "", Kind.DEFINITION, conditions=conditions)
+    (found,) = prove(Ledger((mixing,), (), WORDS))
+    assert (found.status, found.remark) == (Status.REFUSED, problem)
+    (unsaid,) = prove(Ledger((mixing,)))
+    assert unsaid.status is Status.DEFINITION
+    premise = replace(mixing, number="", title="mixing")
+    claim = Equation("(2)", (a**2 + c, a**2 + c), "")
+    (found,) = prove(Ledger((Derivation.of(claim, (premise,), (a,), ""),), (), WORDS))
+    assert found.status in (Status.REFUSED, Status.REFUTED)
+    if found.status is Status.REFUSED:
+        assert found.remark.startswith("mixing: ")
+
+
+@pytest.mark.parametrize(
+    "members",
+    [
+        (b * c**2, a * y),  # kg m^3/s^2 and kg
+        (b * c ** (y + 1), b * c ** (1 + y) * y),
+        (a, Integer(0)),
+        (b, a * Symbol("g", positive=True)),  # nothing is said of g
+        (sqrt(a), a ** Rational(1, 2)),
+    ],
+)
+def test_only_what_is_known_to_differ_is_refused(members: tuple[Expr, ...]) -> None:
+    (found,) = prove(Ledger((Equation("(1)", members, "", Kind.DEFINITION),), (), WORDS))
+    differs = members == (b * c**2, a * y)
+    assert (found.remark == "b*c^2 is in kg m^3 s^-2, y*a is in kg") is differs
+
+
+def test_a_mass_is_no_coefficient() -> None:
+    """The paper's reduced mass was proved to be its coefficient, from a definition that says so."""
+    wrong = Equation("(20)", (model.m_red, model.C), "", Kind.DEFINITION)
+    found = prove(replace(model.LEDGER, entries=(*model.LEDGER.entries, wrong)))
+    assert found[-1].status is Status.REFUSED
+    assert found[-1].remark == "m_red is in kg, C is in kg m^(1 - alpha) s^-2"
+    assert all(proof.status.passes for proof in found[:-1])
+
+
+# --- what a claim rests on ----------------------------------------------------------------------------------
+
+
+def test_a_claim_says_what_it_finally_rests_on() -> None:
+    extra = assumed(c, 2 * y, title="c is twice y")
+    fourth = Equation("(4)", (a**3, (b + 2 * y) ** 3), "", conditions=(y > 0,))
+    last = Derivation.of(fourth, (THIRD, extra), (a, c), "")
+    found = by_label(FIRST, SECOND_HOLDS, THIRD_HOLDS, last)
+    assert {label: proof.rests_on for label, proof in found.items()} == {
+        "(1)": (),
+        "(2)": ("(1)",),
+        "(3)": ("(1)",),
+        "(4)": ("(1)", "c is twice y"),
+    }
+
+
+def test_the_claims_of_the_paper_rest_on_its_laws() -> None:
+    found = {proof.equation.label: proof.rests_on for proof in prove(model.LEDGER)}
+    work = "theorem of kinetic energy, {}"
+    assert found["(9)"] == ("(3)",)
+    assert found["(6)"] == ("(3)", work.format("compression"))
+    assert set(found["(11)"]) == {"(3)", work.format("compression"), work.format("restitution")}
+    assert set(found["(L2)"]) == {"(8)", "mass ratio", "immobile target"}
+    assert found["(L6)"] == ()
+    assert set(found["(L17)"]) == {
+        "(L15)", "(L16)", "normal equation of the intercept", "normal equation of the slope",
+    }  # fmt: skip
