@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import sys
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import ExitStack
@@ -12,8 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .background import Background
-from .errors import InputError, Location, UnknownWorkbook, UsageError, close, diagnose, listing
-from .inputs import Inputs, check_published, load
+from .errors import ForeignCode, InputError, UnknownWorkbook, UsageError, close, diagnose, listing
+from .inputs import Find, Inputs, check_published, load
+from .own_workbook import own_workbook
 from .provenance import sources
 from .staging import put, staged
 from .unit_text import UnitError as NotAUnit
@@ -41,6 +41,7 @@ __all__ = [
     "judged",
     "prepare",
     "refereed",
+    "shipped_workbook",
     "versions",
 ]
 
@@ -64,59 +65,42 @@ def _silent(_: str) -> None:
 # --- workbooks -------------------------------------------------------------------------------------------
 
 
-def find_workbook(name: str, folder: Path) -> Workbook:
+def find_workbook(name: str, folder: Path, code: bytes | None = None) -> Workbook:
     """The workbook of a name: a shipped one, or the user's own ``NAME.py`` in the folder.
+
+    Parameters
+    ----------
+    name : str
+    folder : Path
+    code : bytes, optional
+        What that file held when it was read. It is run: whoever names a folder to be computed asks for it.
 
     Raises
     ------
     UnknownWorkbook
         With the names there are.
     InputError
-        The user's own workbook cannot be imported, or declares none.
+        The user's own workbook cannot be run, or declares none.
     """
     if name in SHIPPED:
         workbook: Workbook = importlib.import_module(SHIPPED[name]).WORKBOOK
         return workbook
-    path = folder / name
-    if name.endswith(".py") and Path(name).name == name and path.is_file():
-        return _own_workbook(path)
-    raise UnknownWorkbook([*SHIPPED, *sorted(p.name for p in folder.glob("*.py"))])
+    if code is None:
+        raise UnknownWorkbook([*SHIPPED, *sorted(p.name for p in folder.glob("*.py"))])
+    return own_workbook(folder / name, code)
 
 
-def _own_workbook(path: Path) -> Workbook:
-    """Import the user's own code; what it raises is told with its line."""
-    from .workbook import Workbook
+def shipped_workbook(name: str, folder: Path, code: bytes | None = None) -> Workbook:
+    """The same, for whoever did not ask to run what is in the folder.
 
-    spec = importlib.util.spec_from_file_location(f"loopsheet_workbook_{path.stem}", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    try:
-        spec.loader.exec_module(module)
-        found = module.WORKBOOK
-    except Exception as error:
-        raise InputError(_own_code_failed(path, error)) from error
-    if not isinstance(found, Workbook):
-        raise InputError(
-            diagnose("LS213", Location(path.name), text=path.name, reason="WORKBOOK is no Workbook")
-        )
-    return found
-
-
-def _own_code_failed(path: Path, error: Exception) -> Any:
-    """A finding at the last line of the user's file that the error passed through."""
-    line = getattr(error, "lineno", None) if isinstance(error, SyntaxError) else None
-    traceback = error.__traceback__
-    while traceback is not None:
-        if Path(traceback.tb_frame.f_code.co_filename) == path:
-            line = traceback.tb_lineno
-        traceback = traceback.tb_next
-    source = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    shown = source[line - 1] if line is not None and line <= len(source) else ""
-    text = shown.strip()
-    at = Location(path.name, line, shown.index(text) + 1, len(text), shown) if text else Location(path.name)
-    return diagnose("LS213", at, text=path.name, reason=f"{type(error).__name__}: {error}")
+    Raises
+    ------
+    ForeignCode
+        The workbook is code of the folder.
+    """
+    if name not in SHIPPED and code is not None:
+        raise ForeignCode(name)
+    return find_workbook(name, folder, code)
 
 
 # --- from inputs to values --------------------------------------------------------------------------------
@@ -155,15 +139,22 @@ class Prepared:
         }
 
 
-def prepare(folder: Path) -> Prepared:
+def prepare(folder: Path, find: Find = find_workbook) -> Prepared:
     """Read a folder, lay out its sheet, check dimensions and published cells.
+
+    Parameters
+    ----------
+    folder : Path
+        A report folder.
+    find : callable
+        :func:`find_workbook`, or :func:`shipped_workbook` if nobody asked to run the folder's own code.
 
     Raises
     ------
     InputError
         With every finding.
     """
-    return _prepared(load(folder, find_workbook))
+    return _prepared(load(folder, find))
 
 
 def _prepared(inputs: Inputs) -> Prepared:
@@ -180,7 +171,7 @@ def _prepared(inputs: Inputs) -> Prepared:
     return Prepared(inputs, sheet)
 
 
-def compute(folder: Path, step: Step = _silent, prove: bool = True) -> Report:
+def compute(folder: Path, step: Step = _silent, prove: bool = True, find: Find = find_workbook) -> Report:
     """Compute a whole report.
 
     Parameters
@@ -191,9 +182,11 @@ def compute(folder: Path, step: Step = _silent, prove: bool = True) -> Report:
         Told what is begun.
     prove : bool
         Whether to check the algebra too.
+    find : callable
+        As for :func:`prepare`.
     """
     step("reading the folder")
-    prepared = prepare(folder)
+    prepared = prepare(folder, find)
     report = _evaluated(prepared, prepared.inputs.workbook.ledger(), step)
     if not prove:
         return report
@@ -379,6 +372,7 @@ def build(
     formats: Collection[str] = DEFAULT_FORMATS,
     step: Step = _silent,
     every_engine: bool = False,
+    find: Find = find_workbook,
 ) -> tuple[Report, list[Path]]:
     """Compute a report and write it.
 
@@ -397,6 +391,8 @@ def build(
         Told what is begun.
     every_engine : bool
         Whether JavaScript and the workbook are judged too, by the programs that are installed here.
+    find : callable
+        As for :func:`prepare`.
 
     Returns
     -------
@@ -406,7 +402,7 @@ def build(
     """
     with staged(out) as stage, ExitStack() as running:
         step("reading the folder")
-        inputs = load(folder, find_workbook)
+        inputs = load(folder, find)
         ledger = inputs.workbook.ledger()
         # Everything that takes long has a process of its own, from when there is what it needs.
         proving = running.enter_context(Background(lambda: _checked_plainly(ledger)))

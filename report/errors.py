@@ -17,6 +17,7 @@ __all__ = [
     "Diagnostic",
     "Entry",
     "Findings",
+    "ForeignCode",
     "InputError",
     "Location",
     "LoopsheetError",
@@ -117,6 +118,12 @@ CATALOGUE: dict[str, Entry] = {
         "{text} cannot be used: {reason}",
         "a Python file that declares WORKBOOK, a loopsheet.report.workbook.Workbook",
         "the shipped workbooks are examples to start from",
+    ),
+    "LS214": Entry(
+        "code of the folder",
+        "'{text}' is code that came with the folder, and nobody asked to run it",
+        "'loopsheet build' and 'check' of the folder, which run it",
+        "read it; then 'verify --run-workbook', or 'pytest --loopsheet-run-workbook', runs it too",
     ),
     # Tables
     "LS301": Entry(
@@ -445,3 +452,7 @@ class UnknownWorkbook(LookupError):
     def __init__(self, known: Iterable[str] = ()) -> None:
         self.known = tuple(known)
         super().__init__(self.known)
+
+
+class ForeignCode(Exception):
+    """The workbook is a file of the folder, which nobody asked to run."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .errors import Findings, Location, LoopsheetError, UnknownWorkbook, close, listing, suggest
+from .errors import Findings, ForeignCode, Location, LoopsheetError, UnknownWorkbook, close, listing, suggest
 from .measurements import MODES, Measurements, read_measurements
 from .number_text import NumberError, read_printed
 from .parameters import read_parameters, wrong_type
@@ -21,7 +21,10 @@ if TYPE_CHECKING:
     from .quantity import Printed
     from .workbook import Workbook
 
-__all__ = ["Inputs", "PublishedValue", "check_published", "load"]
+__all__ = ["Find", "Inputs", "PublishedValue", "check_published", "load"]
+
+Find = Callable[[str, Path, bytes | None], "Workbook"]
+"""Finds a workbook by its name in report.toml, the folder, and what the file of that name holds."""
 
 LARGEST_TOML = 250_000
 LARGEST_TABLE = 50_000_000
@@ -96,7 +99,7 @@ class Inputs:
         return (self.parameters[name],) if name in self.parameters else ()
 
 
-def load(folder: Path, find_workbook: Callable[[str, Path], Workbook]) -> Inputs:
+def load(folder: Path, find_workbook: Find) -> Inputs:
     """Read a report folder.
 
     Parameters
@@ -104,8 +107,8 @@ def load(folder: Path, find_workbook: Callable[[str, Path], Workbook]) -> Inputs
     folder : Path
         It holds report.toml and the files that report.toml names.
     find_workbook : callable
-        Takes the name in report.toml and the folder; returns the workbook, or raises
-        :class:`UnknownWorkbook`.
+        Takes the name in report.toml, the folder, and what the file of this name holds if the workbook is
+        the user's own; returns the workbook, or raises :class:`UnknownWorkbook` or :class:`ForeignCode`.
 
     Raises
     ------
@@ -118,7 +121,7 @@ def load(folder: Path, find_workbook: Callable[[str, Path], Workbook]) -> Inputs
 class _Reader:
     """One reading of a folder: what was found and what was read, so far."""
 
-    def __init__(self, folder: Path, find_workbook: Callable[[str, Path], Workbook]) -> None:
+    def __init__(self, folder: Path, find_workbook: Find) -> None:
         self.folder = folder
         self.find_workbook = find_workbook
         self.findings = Findings()
@@ -256,16 +259,19 @@ class _Reader:
         if name is None:
             return None
         at = self.toml.value("workbook")
+        data = None
         if name.endswith(".py"):  # the user's own code: it is part of what the report was made from
             data = read_bytes(self.folder, name, LARGEST_TOML, self.findings, at)
             if data is None:
                 return None
             self.files[Path(name).as_posix()] = data
         try:
-            return self.find_workbook(name, self.folder)
+            return self.find_workbook(name, self.folder, data if Path(name).name == name else None)
         except UnknownWorkbook as error:
             known = ", ".join([*error.known, "or the name of a .py file in the folder"])
             self.findings.add("LS207", at, text=name, known=known, suggestion=suggest(name, error.known))
+        except ForeignCode:
+            self.findings.add("LS214", at, text=name)
         except LoopsheetError as error:
             self.findings.found.extend(error.diagnostics)
         return None

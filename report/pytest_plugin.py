@@ -15,17 +15,33 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from _pytest.mark.expression import Expression
 
 if TYPE_CHECKING:
     from .build import Prepared
+    from .errors import Diagnostic
     from .findings import Check
     from .result import Report
 
-__all__ = ["CheckItem", "KindCollector", "ReportFile", "pytest_collect_file", "pytest_configure"]
+__all__ = [
+    "CheckItem",
+    "KindCollector",
+    "ReportFile",
+    "pytest_addoption",
+    "pytest_collect_file",
+    "pytest_configure",
+]
 
 _LARGEST = 250_000
 """Bytes. A report.toml of ours is smaller; another tool's larger one is left alone."""
 _LIKE_OURS = re.compile(r"^\s*workbook\s*=", re.M)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Take whether the workbook.py of a folder may be run, for one run or in the settings."""
+    what = "run the workbook.py of report folders that have one: it is code"
+    parser.getgroup("loopsheet").addoption("--loopsheet-run-workbook", action="store_true", help=what)
+    parser.addini("loopsheet_run_workbook", what, type="bool", default=False)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -55,17 +71,38 @@ def _is_ours(path: Path) -> bool:
     return "workbook" in data and ("measurements" in data or "parameters" in data)
 
 
+def _own_code_is_asked_for(config: pytest.Config) -> bool:
+    """Whether a workbook.py may be run: that was said, and ``-m`` does not leave its tests out anyway."""
+    if not (config.getoption("loopsheet_run_workbook") or config.getini("loopsheet_run_workbook")):
+        return False
+    chosen = config.getoption("markexpr", "")
+    try:
+        return not chosen or Expression.compile(chosen).evaluate(_is_our_marker)
+    except SyntaxError:
+        return False  # pytest tells of it
+
+
+def _is_our_marker(name: str, /, **_: object) -> bool:
+    return name == "loopsheet"
+
+
 class Campaign:
     """A report folder, computed once and only as far as its tests ask.
 
     Parameters
     ----------
     folder : Path
+    own_code : bool
+        Whether its workbook may be code of the folder.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, own_code: bool) -> None:
+        from . import build
+
         self._folder = folder
+        self._find = build.find_workbook if own_code else build.shipped_workbook
         self._engines: dict[str, Check] = {}
+        self._refused: Diagnostic | None = None
 
     @property
     def folder(self) -> Path:
@@ -82,9 +119,17 @@ class Campaign:
             The folder is not as it must be.
         """
         from . import build
+        from .errors import InputError
         from .findings import ENGINES, names_of, table_names
 
-        prepared = build.prepare(self.folder)
+        try:
+            prepared = build.prepare(self.folder, self._find)
+        except InputError as error:
+            (*others, last) = error.diagnostics
+            if others or last.code != "LS214":
+                raise
+            self._refused = last
+            return {"workbook": ["own code"]}
         _check_published(prepared)
         inputs = prepared.inputs
         return {
@@ -96,6 +141,8 @@ class Campaign:
 
     def check(self, kind: str, name: str, every_engine: bool = True) -> Check:
         """Do what is needed for one check, and whatever comes with it."""
+        if kind == "workbook":
+            return self._not_run(name)
         if kind == "engine":
             return self._engine(name, every_engine)
         return self._proofs[name] if kind == "proof" else self._refereed[kind, name]
@@ -104,7 +151,7 @@ class Campaign:
     def _report(self) -> Report:
         from . import build
 
-        return build.compute(self.folder, prove=False)
+        return build.compute(self.folder, prove=False, find=self._find)
 
     @cached_property
     def _refereed(self) -> dict[tuple[str, str], Check]:
@@ -120,6 +167,13 @@ class Campaign:
 
         found = prove(self._report.ledger)
         return {proof.equation.label: of_proof(proof, self._report.inputs) for proof in found}
+
+    def _not_run(self, name: str) -> Check:
+        from .findings import Check
+
+        assert self._refused is not None
+        said = f"{self._refused.message}; {self._refused.hint}"
+        return Check("workbook", name, True, said, self._refused.at, skipped=True)
 
     def _engine(self, name: str, every: bool) -> Check:
         from . import build
@@ -155,7 +209,7 @@ class ReportFile(pytest.File):
         """Read the folder and name its checks; a mistake in it is told with its line."""
         from .errors import LoopsheetError
 
-        campaign = Campaign(self.path.parent)
+        campaign = Campaign(self.path.parent, _own_code_is_asked_for(self.config))
         try:
             plan = campaign.plan()
         except LoopsheetError as error:

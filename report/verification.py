@@ -13,6 +13,7 @@ from .agreement import LIMIT
 from .differences import EPS, Differences, compare
 from .errors import InputError, UsageError, diagnose
 from .findings import Check
+from .inputs import Find
 from .result import Report
 from .results import Index, Manifest, read_manifest, read_result
 
@@ -47,7 +48,12 @@ class Verification:
     verdict: str
 
 
-def verify(out: Path, folder: Path | None, step: Callable[[str], None] = lambda _: None) -> Verification:
+def verify(
+    out: Path,
+    folder: Path | None,
+    step: Callable[[str], None] = lambda _: None,
+    find: Find = build.shipped_workbook,
+) -> Verification:
     """Build a report again in a temporary folder and compare it with what is there, which stays as it is.
 
     Parameters
@@ -59,6 +65,8 @@ def verify(out: Path, folder: Path | None, step: Callable[[str], None] = lambda 
         `out` was built from that.
     step : callable
         Told what is begun.
+    find : callable
+        As for :func:`loopsheet.report.build.prepare`: without it, code that came with the folder is not run.
 
     Raises
     ------
@@ -72,7 +80,7 @@ def verify(out: Path, folder: Path | None, step: Callable[[str], None] = lambda 
     with tempfile.TemporaryDirectory(prefix="loopsheet-") as name:
         again = Path(name)
         formats = [format for format in build.FORMATS if _FORMATS[format] in then.outputs]
-        report, _ = build.build(folder, again, formats, step, every_engine=len(then.engines) > 1)
+        report, _ = build.build(folder, again, formats, step, len(then.engines) > 1, find)
         now = read_manifest(again)
         differences = _numbers(out, again, report) if "values.json" in then.outputs else None
         checks = (

@@ -148,8 +148,17 @@ class Workbook:
 
     def __post_init__(self) -> None:
         """Every engine gets what the reader of a folder gets: bounds are declared once."""
+        from .sheet import Sheet
+
         lay_out, bounds = self.sheet, {name: each.bounds for name, each in self.declared.items()}
-        object.__setattr__(self, "sheet", lambda given: lay_out(given).bounded(bounds))
+
+        def bounded(given: frozenset[str]) -> Sheet:
+            sheet = lay_out(given)
+            if not isinstance(sheet, Sheet):  # a user's own code may return anything
+                raise TypeError("what sheet() returns is no Sheet")
+            return sheet.bounded(bounds)
+
+        object.__setattr__(self, "sheet", bounded)
 
     @property
     def declared(self) -> dict[str, Measured | Parameter]:

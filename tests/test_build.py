@@ -151,35 +151,6 @@ def test_an_output_that_cannot_be_written_is_refused_before_any_work(tmp_path: P
         build.build(build.PAPER, Path("/proc/loopsheet"))
 
 
-OWN = """
-from loopsheet.report.workbook import Workbook
-{body}
-"""
-
-
-@pytest.mark.parametrize(
-    ("body", "said"),
-    [
-        ("WORKBOOK = 1 / 0", "ZeroDivisionError"),
-        ("WORKBOOK = 7", "WORKBOOK is no Workbook"),
-        ("def (", "SyntaxError"),
-        ("", "AttributeError"),
-    ],
-)
-def test_a_workbook_of_ones_own_that_fails_is_told_with_its_line(
-    tmp_path: Path, body: str, said: str
-) -> None:
-    folder = copy_paper(tmp_path / "own")
-    toml = folder / "report.toml"
-    toml.write_text(toml.read_text().replace('"soft_impact"', '"workbook.py"'))
-    (folder / "workbook.py").write_text(OWN.format(body=body))
-    with pytest.raises(InputError, match=said) as refused:
-        build.compute(folder)
-    assert "workbook.py" in str(refused.value)
-    if said in ("ZeroDivisionError", "SyntaxError"):
-        assert "workbook.py:3" in str(refused.value)
-
-
 def test_a_workbook_whose_columns_go_in_a_circle_shows_the_path(tmp_path: Path) -> None:
     folder = copy_paper(tmp_path / "own")
     toml = folder / "report.toml"

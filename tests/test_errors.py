@@ -19,6 +19,7 @@ from loopsheet.report.crate import write as write_crate
 from loopsheet.report.errors import (
     CATALOGUE,
     Diagnostic,
+    ForeignCode,
     InputError,
     Location,
     LoopsheetError,
@@ -81,7 +82,7 @@ Table 2,alpha,1-2,1.234,1,differs,misprint
 CELLS = {"alpha": ("1", {(1, 2)}), "x_m": ("m", {(1,), (2,)})}
 
 
-def find_workbook(name: str, folder: Path) -> Workbook:
+def find_workbook(name: str, folder: Path, code: bytes | None) -> Workbook:
     if name != "impact":
         raise UnknownWorkbook(["impact"])
     return WORKBOOK
@@ -122,6 +123,15 @@ def replaced_read_only() -> None:
 
 def load_there(name: str) -> Callable[[], None]:
     return lambda: load(Path(name), find_workbook) and None
+
+
+def foreign_code() -> None:
+    def refuse(name: str, *_: object) -> Workbook:
+        raise ForeignCode(name)
+
+    for name, text in {"report.toml": TOML, "measurements.csv": CSV, "published.csv": PUBLISHED}.items():
+        Path(name).write_text(text)
+    load(Path(), refuse)
 
 
 def load_a_file() -> None:
@@ -223,6 +233,7 @@ CASES: dict[str, Callable[[], None]] = {
     "LS210": toml('"8.366 g"', '"8.366g"'),
     "LS211": toml('"8.366 g"', '"8.366"'),
     "LS213": raises(InputError, "LS213", text="workbook.py", reason="NameError: name 'Sheet' is not defined"),
+    "LS214": foreign_code,
     "LS301": lambda: campaign(csv="test,v [m/s],e [1]\n1,2.334,0.530\n2,2.940,0.512\n"),
     "LS302": lambda: campaign(csv=re.sub(r"(?m)^((.*?),.*)$", r"\1,\2", CSV)),
     "LS303": csv("x_p [um]", "x-p [um]"),

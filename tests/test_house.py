@@ -74,7 +74,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     **dict.fromkeys(PROVER, (PROVER, ALGEBRA)),
     "report": ({"derivations", "report"}, RUNTIME),
     "report.findings": (RESULT | {"report.inputs"}, set()),
-    "report.pytest_plugin": ({"derivations", "report"}, {"pytest"}),
+    "report.pytest_plugin": ({"derivations", "report"}, {"pytest", "_pytest"}),
     **{part: (WORDS, {"pint"} if part == "report.unit_text" else set()) for part in WORDS},
     "report.sheet": (SHEET, ALGEBRA),
     "report.units": (SHEET, ALGEBRA | {"pint"}),

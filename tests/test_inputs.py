@@ -59,7 +59,7 @@ PUBLISHED = "source,cell,index,value,unit,expect,reason\n"
 WITH_PUBLISHED = TOML + '[published]\nfile = "published.csv"\n'
 
 
-def find_workbook(name: str, folder: Path) -> Workbook:
+def find_workbook(name: str, folder: Path, code: bytes | None) -> Workbook:
     if name != "soft_impact":
         raise UnknownWorkbook(["soft_impact"])
     return WORKBOOK
@@ -306,8 +306,8 @@ def test_the_user_s_own_workbook_is_part_of_the_inputs(read: Reader) -> None:
     Path("report.toml").write_text(TOML.replace('"soft_impact"', '"own.py"'))
     Path("measurements.csv").write_text(CSV)
     seen = []
-    inputs = load(Path(), lambda name, folder: seen.append((name, folder)) or WORKBOOK)
-    assert seen == [("own.py", Path())]
+    inputs = load(Path(), lambda *found: seen.append(found) or WORKBOOK)
+    assert seen == [("own.py", Path(), b"# code")]
     assert inputs.files["own.py"] == b"# code"
 
 
@@ -501,7 +501,7 @@ def test_what_a_workbook_finds_is_shown_with_the_rest(read: Reader) -> None:
     read()
     error = InputError(diagnose("LS213", text="own.py", reason="it is broken"))
 
-    def fail(name: str, folder: Path) -> Workbook:
+    def fail(name: str, folder: Path, code: bytes | None) -> Workbook:
         raise error
 
     Path("measurements.csv").write_text("test\n1\n1\n")

@@ -102,7 +102,7 @@ WORKBOOK = replace(paper, ledger=ledger)
 def test_an_equation_that_does_not_hold_fails_and_says_which(campaign: Path) -> None:
     edit(campaign / "report.toml", '"soft_impact"', '"workbook.py"')
     (campaign / "workbook.py").write_text(WRONG_EQUATION)
-    done = run(campaign.parent, "-k", "proof")
+    done = run(campaign.parent, "-k", "proof", "--loopsheet-run-workbook")
     assert done.returncode == 1, done.stdout + done.stderr
     assert "steel/report.toml::proof::(7)" in failed(done.stdout)
     assert "(7) is refuted: at " in done.stdout

@@ -95,7 +95,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def workbook(folder: Path) -> Workbook:
-    return find_workbook("workbook.py", folder)
+    return find_workbook("workbook.py", folder, SOURCE.encode())
 
 
 @pytest.fixture(scope="module")

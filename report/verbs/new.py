@@ -25,11 +25,12 @@ def run(options: argparse.Namespace) -> int:
     """Write the folder and name its files."""
     from .. import build, scaffold
     from ..errors import UnknownWorkbook, UsageError, diagnose, listing, suggest
+    from ..workbooks import SHIPPED
 
     try:
         workbook = build.find_workbook(options.workbook, Path())
     except UnknownWorkbook as error:
-        known, hint = listing(error.known), suggest(options.workbook, error.known)
+        known, hint = listing(SHIPPED), suggest(options.workbook, SHIPPED)
         raise UsageError(
             diagnose("LS604", kind="workbook", text=options.workbook, known=known, suggestion=hint)
         ) from error

@@ -28,15 +28,20 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--most", metavar="N", type=count, default=20, help="how many are named of each kind (default: 20)"
     )
+    parser.add_argument(
+        "--run-workbook", action="store_true", help="run the workbook.py of FOLDER, if it has one: it is code"
+    )
     format_argument(parser, "text", "json", "junit", "github", "markdown")
 
 
 def run(options: argparse.Namespace) -> int:
     """Verify, and print what differs; exit code 1 if anything does."""
+    from .. import build
     from ..verification import verify
 
+    find = build.find_workbook if options.run_workbook else build.shipped_workbook
     with Progress(sys.stderr) as progress:
-        found = verify(options.out, options.folder, progress)
+        found = verify(options.out, options.folder, progress, find)
     if options.format == "text":
         _print(found, options.most)
     else:

@@ -32,7 +32,7 @@ CSV = "test,v [m/s],e [1]\n1,2.5,0.5\n2,3.5,0.4\n"
 PUBLISHED = "source,cell,index,value,unit,expect,recomputed,reason\nT,a,1,2,1,,,\n"
 
 
-def find_workbook(name: str, folder: Path) -> Workbook:
+def find_workbook(name: str, folder: Path, code: bytes | None) -> Workbook:
     if name != "w":
         raise UnknownWorkbook(["w"])
     return WORKBOOK

@@ -1,0 +1,157 @@
+"""A user's own workbook: what runs is what was read, only where one asked for it; its mistakes are told."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import py_compile
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from small_report import SOURCE, end_gauge
+from test_pytest_plugin import run
+
+from loopsheet.report import build
+from loopsheet.report.cli import main
+from loopsheet.report.errors import InputError
+from loopsheet.report.inputs import load
+from loopsheet.report.verification import verify
+
+RAN = "from pathlib import Path\nPath(__file__).with_name('ran').touch()\n"
+"""Leaves a file beside the workbook."""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A report folder with a workbook of its own, as a user in the folder above it would name it."""
+    monkeypatch.chdir(tmp_path)
+    Path("gauge").mkdir()
+    return end_gauge(Path("gauge"))
+
+
+def own(folder: Path, code: str) -> None:
+    (folder / "workbook.py").write_text(code, encoding="utf-8")
+
+
+def changed(old: str, new: str) -> str:
+    assert old in SOURCE
+    return SOURCE.replace(old, new)
+
+
+SHEET = "Sheet((d, *given.values(), l))"
+
+
+@pytest.mark.parametrize(
+    ("code", "line", "said"),
+    [
+        ("\nWORKBOOK = 1 / 0", "WORKBOOK", "ZeroDivisionError: division by zero"),
+        ("\ndef (", "def", "SyntaxError: "),
+        ("x = '\0'", "", "SyntaxError: "),
+        ("\n\nraise SystemExit(0)", "raise", "SystemExit: 0"),
+        ("import sys\nsys.exit()", "sys.exit", "cannot be used: SystemExit\n"),
+        ("raise BaseException", "raise", "cannot be used: BaseException\n"),
+        ("WORKBOOK = 7", "", "WORKBOOK is no Workbook"),
+        ("", "", "AttributeError: "),
+        (changed("Ledger((eq,))", "exit(0)"), "exit(0)", "SystemExit: 0"),
+        (changed("Ledger((eq,))", "eq"), "", "what ledger() returns is no Ledger"),
+        (changed("Ledger((eq,))", "Ledger((eq,), (lambda own: exit(1),))"), "exit(1)", "SystemExit: 1"),
+        (changed(SHEET, "1 / 0"), "1 / 0", "ZeroDivisionError"),
+        (changed(SHEET, "None"), "", "what sheet() returns is no Sheet"),
+        (changed("    sheet=", "    check_parameters=lambda x: 1 / 0,\n    sheet="), "1 / 0", "ZeroDivision"),
+        (changed("    sheet=", "    curves=lambda *_: exit(),\n    sheet="), "exit()", "SystemExit"),
+    ],
+)
+def test_what_it_raises_is_told_with_folder_and_line(
+    code: str, line: str, said: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own(folder, code)
+    assert main(["check", "gauge"]) == 2
+    told = capsys.readouterr().err
+    assert "LS213" in told
+    assert said in told
+    number = code[: code.index(line)].count("\n") + 1
+    assert f"--> gauge/workbook.py{f':{number}:' if line else ''}" in told
+
+
+def test_the_bytes_that_were_read_are_run_and_nothing_else(folder: Path) -> None:
+    """No cache that somebody planted, nor what the file holds by then; and no cache is left."""
+    own(folder, RAN)
+    file = folder / "workbook.py"
+    cache = Path(importlib.util.cache_from_source(str(file)))
+    py_compile.compile(str(file), str(cache))
+    found = file.stat()
+    file.write_text(SOURCE)
+    held = file.read_bytes()
+    os.utime(file, ns=(found.st_atime_ns, found.st_mtime_ns))
+    planted = cache.read_bytes()
+    cache.write_bytes(planted[:12] + len(held).to_bytes(4, "little") + planted[16:])
+
+    def swapped(name: str, place: Path, code: bytes | None) -> object:
+        own(place, RAN)
+        return build.find_workbook(name, place, code)
+
+    assert build.prepare(folder).inputs.workbook.name == "end_gauge"
+    inputs = load(folder, swapped)
+    assert inputs.workbook.name == "end_gauge"
+    assert inputs.files["workbook.py"] == held
+    assert not (folder / "ran").exists()
+    own(folder, SOURCE)
+    cache.unlink()
+    cache.parent.rmdir()
+    build.prepare(folder)
+    assert not cache.parent.exists()
+
+
+def test_verify_runs_it_if_it_is_told_to(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    own(folder, SOURCE + RAN)
+    build.build(folder, folder / "out", ("json",))
+    (folder / "ran").unlink()
+    for given in (None, folder):
+        with pytest.raises(InputError) as refused:
+            verify(folder / "out", given)
+        (finding,) = refused.value.diagnostics
+        assert (finding.code, str(finding.at)) == ("LS214", "gauge/report.toml:1:12")
+    assert not (folder / "ran").exists()
+    assert main(["verify", "gauge/out"]) == 2
+    assert "--run-workbook" in capsys.readouterr().err
+    assert main(["verify", "gauge/out", "--run-workbook"]) == 0
+    assert (folder / "ran").exists()
+
+
+def test_pytest_runs_it_if_it_is_told_to(folder: Path) -> None:
+    own(folder, SOURCE + RAN)
+    Path("pytest.ini").write_text("[pytest]\n")
+    Path("test_other.py").write_text("def test_other():\n    pass\n")
+    done = run(Path.cwd(), "-rs")
+    assert done.returncode == 0, done.stdout
+    assert "1 passed, 1 skipped" in done.stdout
+    assert "is code that came with the folder" in done.stdout
+    assert "--loopsheet-run-workbook" in done.stdout
+    Path("pytest.ini").write_text("[pytest]\nloopsheet_run_workbook = true\n")
+    done = run(Path.cwd(), "-m", "not loopsheet")
+    assert "1 passed, 1 deselected" in done.stdout
+    assert not (folder / "ran").exists()
+    done = run(Path.cwd(), "-k", "published or other", "-m", "loopsheet or not loopsheet")
+    assert done.returncode == 0, done.stdout
+    assert "2 passed" in done.stdout
+    assert (folder / "ran").exists()
+
+
+def test_one_that_asks_to_end_the_program_ends_no_run_of_pytest(folder: Path) -> None:
+    own(folder, "raise SystemExit(0)\n")
+    Path("pytest.ini").write_text("[pytest]\n")
+    Path("test_other.py").write_text("def test_other():\n    pass\n")
+    done = run(Path.cwd(), "--loopsheet-run-workbook", "--continue-on-collection-errors")
+    assert done.returncode == 1
+    assert "gauge/workbook.py:1:1" in done.stdout
+    assert "1 passed, 1 error" in done.stdout
+
+
+def test_a_module_in_the_folder_where_one_stands_is_not_taken_for_a_library(folder: Path) -> None:
+    (folder / "sympy.py").write_text(RAN)
+    command = [sys.executable, "-m", "loopsheet", "show", "l[1]", "."]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert not (folder / "ran").exists()
