@@ -30,7 +30,7 @@ help:
 	@echo 'WORKERS=4 make ... tests in four processes instead of two'
 
 report: $(VENV)/.runtime
-	$(BIN)/loopsheet build --out '$(OUT)'
+	$(BIN)/loopsheet build paper --out '$(OUT)'
 	@echo 'Look at $(abspath $(OUT))/report.html'
 
 test: $(VENV)/.test .mypy_root/loopsheet

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from .background import Background
 from .errors import ForeignCode, InputError, UnknownWorkbook, UsageError, close, diagnose, listing
+from .folders import PAPER
 from .inputs import Find, Inputs, check_published, load
 from .own_workbook import own_workbook
 from .provenance import sources
@@ -44,9 +45,6 @@ __all__ = [
     "shipped_workbook",
     "versions",
 ]
-
-PAPER = Path(__file__).resolve().parent.parent / "data" / "soft_steel"
-"""The shipped campaign."""
 
 FORMATS = ("html", "latex", "xlsx", "json", "pdf")
 DEFAULT_FORMATS = ("html", "latex", "xlsx", "json")
@@ -353,10 +351,10 @@ def parse_formats(words: str) -> tuple[str, ...]:
     Raises
     ------
     UsageError
-        A word is no format.
+        A word is no format, or there is none.
     """
     wanted = [word.strip() for word in words.split(",") if word.strip()]
-    for word in wanted:
+    for word in wanted or [words]:
         if word not in FORMATS:
             known = close(word, FORMATS)
             hint = f"did you mean '{known}'?" if known else ""
@@ -373,6 +371,7 @@ def build(
     step: Step = _silent,
     every_engine: bool = False,
     find: Find = find_workbook,
+    begun: Step = _silent,
 ) -> tuple[Report, list[Path]]:
     """Compute a report and write it.
 
@@ -393,6 +392,8 @@ def build(
         Whether JavaScript and the workbook are judged too, by the programs that are installed here.
     find : callable
         As for :func:`prepare`.
+    begun : callable
+        Told the title of the report once its folder was read and found right.
 
     Returns
     -------
@@ -403,6 +404,7 @@ def build(
     with staged(out) as stage, ExitStack() as running:
         step("reading the folder")
         inputs = load(folder, find)
+        begun(inputs.title)
         ledger = inputs.workbook.ledger()
         # Everything that takes long has a process of its own, from when there is what it needs.
         proving = running.enter_context(Background(lambda: _checked_plainly(ledger)))

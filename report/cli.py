@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, TextIO
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn, TextIO
 
 from .verbs import VERBS
 from .verbs.common import BUG, OK, print_checks
 
 if TYPE_CHECKING:
-    from .errors import LoopsheetError
+    from .errors import LoopsheetError, UsageError
 
 __all__ = ["main"]
 
@@ -20,7 +22,8 @@ _DESCRIPTION = (
     "Reports whose every number is traced to an equation, recomputed and compared with its publication."
 )
 _EPILOG = """\
-Without FOLDER, every command works on the shipped paper.
+FOLDER is a folder with a report.toml: without it the working directory, and the word 'paper' is the shipped
+paper. A report goes to FOLDER/out, that of the paper to out.
 
 exit codes:
   0  everything as expected
@@ -29,22 +32,39 @@ exit codes:
   3  a bug of loopsheet
 
 examples:
-  loopsheet build                      the report of the shipped paper, in out/
+  loopsheet build paper                the report of the shipped paper, in out/
   loopsheet new my-campaign            a folder to start your own from
   loopsheet build my-campaign --to html,pdf
+  loopsheet check my-campaign --format github
+and in such a folder, or with its name or 'paper' at the end:
+  loopsheet build                      the report, in out/
   loopsheet prove "(11)"               how equation (11) follows, step by step
   loopsheet show alpha                 all cells of a column, with all digits
   loopsheet why "alpha[1-2]"           one number: its equation, its proof, what it rests on
-  loopsheet check my-campaign --format github
-  loopsheet verify out                 the same report again? if not, which number and why
+  loopsheet verify                     the same report again? if not, which number and why
   loopsheet diff out other/out         two results, number by number
 """
+_FIRST = "'loopsheet new my-campaign' makes a folder to start from, 'loopsheet --help' tells more"
+
+
+class _Parser(argparse.ArgumentParser):
+    """Tells what is wrong as all else is told."""
+
+    def error(self, message: str) -> NoReturn:
+        raise _wrong(message, self.prog)
+
+
+def _wrong(reason: str, command: str) -> UsageError:
+    from .errors import UsageError, diagnose
+
+    hint = f"'{command} --help' tells what it takes"
+    return UsageError(diagnose("LS617", reason=reason, known="", suggestion=hint))
 
 
 def _parser() -> argparse.ArgumentParser:
     from .. import __version__
 
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="loopsheet",
         description=_DESCRIPTION,
         epilog=_EPILOG,
@@ -57,8 +77,34 @@ def _parser() -> argparse.ArgumentParser:
         text = verb.HELP
         sub = verbs.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
         verb.arguments(sub)
-        sub.set_defaults(run=verb.run)
+        sub.set_defaults(run=verb.run, options=re.findall(r"--[a-z]+", sub.format_usage()))
     return parser
+
+
+def _parse(arguments: Sequence[str]) -> argparse.Namespace:
+    """Read the command line; a word that is not known is answered with the nearest."""
+    from .errors import UsageError, diagnose, listing, suggest
+    from .folders import is_report, written
+
+    words = [word for word in arguments if not word.startswith("-")]  # no option before the verb takes a word
+    if words and words[0] not in VERBS:
+        hint = suggest(words[0], VERBS)
+        if is_report(folder := Path(words[0])):
+            hint = f"'loopsheet build {written(folder)}' builds that folder"
+        known = listing(VERBS)
+        raise UsageError(diagnose("LS604", kind="command", text=words[0], known=known, suggestion=hint))
+    if set(arguments) <= {"--traceback"}:
+        raise UsageError(
+            diagnose("LS617", reason="no command is named", known=listing(VERBS), suggestion=_FIRST)
+        )
+    options, left = _parser().parse_known_args(arguments)
+    if left and left[0].startswith("-"):
+        hint = suggest(left[0], options.options)
+        known = listing(options.options)
+        raise UsageError(diagnose("LS604", kind="option", text=left[0], known=known, suggestion=hint))
+    if left:
+        raise _wrong(f"'{left[0]}' is a word too many", f"loopsheet {options.verb}")
+    return options
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -67,7 +113,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     options = argparse.Namespace(traceback=False)
     try:
-        options = _parser().parse_args(arguments)
+        options = _parse(sys.argv[1:] if arguments is None else arguments)
         code: int = options.run(options)
         sys.stdout.flush()
     except LoopsheetError as error:

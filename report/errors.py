@@ -309,7 +309,7 @@ CATALOGUE: dict[str, Entry] = {
         "not a manifest",
         "'{text}' is no manifest: {reason}",
         "the manifest.json that 'loopsheet build' writes beside its outputs",
-        "name the folder that 'loopsheet build' wrote; the default of its --out is 'out'",
+        "name the folder that 'loopsheet build' wrote; the default of its --out is FOLDER/out",
     ),
     "LS609": Entry(
         "not known what it was built from",
@@ -336,6 +336,19 @@ CATALOGUE: dict[str, Entry] = {
         "nothing was written; check the permissions of both",
     ),
     "LS614": Entry("options that do not go together", "{reason}", hint="{known}"),
+    "LS615": Entry(
+        "no folder",
+        "no FOLDER is named, and the working directory holds no report.toml",
+        "a folder that holds a report.toml, or the word 'paper' for the shipped campaign",
+        "name {known}; 'loopsheet new FOLDER' makes a folder to start from",
+    ),
+    "LS616": Entry(
+        "two meanings",
+        "'{text}' is the word for the shipped campaign, and a folder here",
+        "./{text} for the folder",
+        "for the shipped campaign, go to another working directory",
+    ),
+    "LS617": Entry("wrong command line", "{reason}", "{known}", "{suggestion}"),
 }
 
 

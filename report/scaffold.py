@@ -122,7 +122,7 @@ def _report(workbook: Workbook) -> str:
 
 def _lines(workbook: Workbook) -> Iterator[str]:
     yield from (
-        "# A campaign of your own: put your numbers where the example's are, then 'loopsheet build FOLDER'.",
+        "# A campaign of your own: put your numbers where the example's are, then 'loopsheet build' here.",
         "# Numbers are written in quotes, as they were printed: the digits say how sure they are.",
         "",
         'title = "My campaign"',

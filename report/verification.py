@@ -11,8 +11,9 @@ from pathlib import Path
 from . import build
 from .agreement import LIMIT
 from .differences import EPS, Differences, compare
-from .errors import InputError, UsageError, diagnose
+from .errors import InputError
 from .findings import Check
+from .folders import built_from
 from .inputs import Find
 from .result import Report
 from .results import Index, Manifest, read_manifest, read_result
@@ -61,8 +62,7 @@ def verify(
     out : Path
         What ``build`` wrote.
     folder : Path, optional
-        The report folder. Without it, the folder that holds `out` if it is one, or the shipped paper if
-        `out` was built from that.
+        The report folder; without it, :func:`~loopsheet.report.folders.built_from` finds it.
     step : callable
         Told what is begun.
     find : callable
@@ -76,7 +76,7 @@ def verify(
         It is not known from which folder `out` was built.
     """
     then = read_manifest(out)
-    folder = folder or _folder_of(out, then)
+    folder = built_from(out, then.inputs) if folder is None else folder
     with tempfile.TemporaryDirectory(prefix="loopsheet-") as name:
         again = Path(name)
         formats = [format for format in build.FORMATS if _FORMATS[format] in then.outputs]
@@ -91,17 +91,6 @@ def verify(
             *_moves(differences),
         )
     return Verification(checks, differences, _verdict(checks, then, differences))
-
-
-def _folder_of(out: Path, then: Manifest) -> Path:
-    parent = out.resolve().parent
-    if (parent / "report.toml").is_file():
-        here = Path.cwd()
-        return parent.relative_to(here) if parent.is_relative_to(here) else parent
-    if then.inputs == {file.name: _sha256(file) for file in build.PAPER.iterdir() if file.is_file()}:
-        return build.PAPER
-    reason = "it is not inside a report folder, and is not the shipped paper's"
-    raise UsageError(diagnose("LS609", text=out, reason=reason))
 
 
 def _sha256(file: Path) -> str:

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from loopsheet.report import errors
+from loopsheet.report.cli import _parse
 from loopsheet.report.crate import write as write_crate
 from loopsheet.report.errors import (
     CATALOGUE,
@@ -32,6 +33,7 @@ from loopsheet.report.errors import (
     render_all,
     suggest,
 )
+from loopsheet.report.folders import built_from, report_folder
 from loopsheet.report.inputs import check_published, load
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.results import read_manifest, read_result
@@ -208,6 +210,12 @@ def crate_of_a_changed_output() -> None:
     crate("2026-03-31", "MIT", "00")
 
 
+def the_word_for_a_folder() -> None:
+    Path("paper").mkdir()
+    Path("paper/report.toml").write_text("")
+    report_folder("paper")
+
+
 CASES: dict[str, Callable[[], None]] = {
     "LS101": load_there("nowhere"),
     "LS102": load_a_file,
@@ -288,12 +296,15 @@ CASES: dict[str, Callable[[], None]] = {
     ),
     "LS607": result_without_cells,
     "LS608": lambda: read_manifest(Path("out")) and None,
-    "LS609": raises(UsageError, "LS609", text="out", reason="it is not inside a report folder"),
+    "LS609": lambda: built_from(Path("out"), {"d.csv": "0"}) and None,
     "LS610": crate_of_a_changed_output,
     "LS611": lambda: crate("31.3.2026", "MIT"),
     "LS612": lambda: crate("2026-03-31", "all mine"),
     "LS613": replaced_read_only,
-    "LS614": lambda: check.run(Namespace(accept=False, reason="a slip", folder=None)) and None,
+    "LS614": lambda: check.run(Namespace(accept=False, reason="a slip", folder="paper")) and None,
+    "LS615": lambda: report_folder() and None,
+    "LS616": the_word_for_a_folder,
+    "LS617": lambda: _parse(["build", "a", "b"]) and None,
 }
 
 

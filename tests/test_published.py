@@ -409,7 +409,7 @@ def test_accepting_needs_a_folder_and_a_reason_needs_accepting(
     tmp_path: Path, check: Check, capsys: pytest.CaptureFixture[str]
 ) -> None:
     published(tmp_path, *ROWS, header=HEADER)
-    assert main(["check", "--accept"]) == 2
+    assert main(["check", "--accept", "paper"]) == 2
     assert "LS614" in capsys.readouterr().err
     for arguments in (("--reason", "a slip"), ("--accept", "--reason", "a\x1bslip")):
         code, out = check(*arguments)

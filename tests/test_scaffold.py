@@ -32,7 +32,7 @@ WORKBOOK = Workbook(
     example_parameters={"ball_mass": "8.366 g"},
 )
 REPORT = """\
-# A campaign of your own: put your numbers where the example's are, then 'loopsheet build FOLDER'.
+# A campaign of your own: put your numbers where the example's are, then 'loopsheet build' here.
 # Numbers are written in quotes, as they were printed: the digits say how sure they are.
 
 title = "My campaign"
@@ -81,7 +81,7 @@ def test_the_folder_is_read_without_findings(
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
     Path("empty").mkdir() if where == "empty" else None
-    inputs = load(new(Path(where), WORKBOOK)[0].parent, lambda name, folder: WORKBOOK)
+    inputs = load(new(Path(where), WORKBOOK)[0].parent, lambda *_: WORKBOOK)
     assert inputs.tests == (1, 2)
     assert inputs.given == {"ball_mass"}
     assert inputs.title == "My campaign"
@@ -123,7 +123,7 @@ def test_a_workflow_for_github(used: bool, tmp_path: Path) -> None:
     commands = re.findall(r"run: loopsheet (.*)", text)
     assert commands == ["check . --format github", "build . --out out"]
     for command in commands:
-        assert cli._parser().parse_args(command.split()).folder == Path()
+        assert cli._parse(command.split()).folder == "."
     assert "contents: read" in text
     assert "{{ !cancelled() }}" in text
     assert "\t" not in text

@@ -147,7 +147,7 @@ def test_what_the_judge_of_the_engines_allows_is_rounding(
         assert found.verdict.startswith("different: nothing changed but the machine, which rounds 1 numbers")
 
 
-def test_the_folder_is_the_one_that_holds_the_report_or_the_paper(
+def test_the_folder_is_the_one_that_holds_the_report_or_where_one_stands_or_the_paper(
     issued: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked = []
@@ -162,7 +162,10 @@ def test_the_folder_is_the_one_that_holds_the_report_or_the_paper(
     for arguments in ((Path("out"), None), (elsewhere, None), (elsewhere, issued)):
         with pytest.raises(KeyboardInterrupt):
             verify(*arguments)
-    assert asked == [Path(), build.PAPER, issued]
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(KeyboardInterrupt):
+        verify(elsewhere, None)
+    assert asked == [Path(), Path(), issued, build.PAPER]
     manifest = json.loads((elsewhere / "manifest.json").read_text())
     manifest["inputs"]["report.toml"] = "00"
     (elsewhere / "manifest.json").write_text(json.dumps(manifest))

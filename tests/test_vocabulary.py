@@ -95,7 +95,7 @@ def test_the_terminal_says_the_words_of_the_workbook(
     made: tuple[Path, str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     place, words = made
-    assert main(["prove", "3", "--folder", str(place)]) == 0
+    assert main(["prove", "3", str(place)]) == 0
     assert main(["show", "F[1]", str(place)]) == 0
     assert main(["why", "F[1]", str(place)]) == 0
     said = capsys.readouterr().out

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .common import Progress, folder_argument, outcome
+from .common import Progress, folder_argument, named, outcome
 
 if TYPE_CHECKING:
     from ..result import Report
@@ -18,9 +18,8 @@ HELP = "compute a report and write it"
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     folder_argument(parser)
-    parser.add_argument(
-        "--out", metavar="DIR", type=Path, default=Path("out"), help="where it goes (default: out)"
-    )
+    where = "where it goes (default: FOLDER/out; for the shipped paper, out)"
+    parser.add_argument("--out", metavar="DIR", type=named, help=where)
     parser.add_argument(
         "--to",
         metavar="FORMATS",
@@ -37,13 +36,20 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Build, and tell the result and what is not as expected."""
     from .. import build
+    from ..diagnostics import visible
     from ..findings import checks
+    from ..folders import PAPER, output, report_folder
 
-    formats = build.parse_formats(options.to)
+    formats, folder = build.parse_formats(options.to), report_folder(options.folder)
+    out = Path(options.out) if options.out else output(folder)
+
+    source = "the shipped paper" if folder == PAPER else folder / "report.toml"
+
+    def begun(title: str) -> None:
+        print(visible(f"building '{title}' from {source} into {out}"), flush=True)
+
     with Progress(sys.stderr) as progress:
-        report, files = build.build(
-            options.folder or build.PAPER, options.out, formats, progress, options.engines
-        )
+        report, files = build.build(folder, out, formats, progress, options.engines, begun=begun)
     for name in report.workbook.headline:
         print(_line(report, name))
     for cell in report.values.errors():
@@ -58,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
         for n in ("report.html", "report.pdf", "report.tex", "report.xlsx", "values.json", "manifest.json")
         if n in names
     )
-    print(f"{len(files)} files in {options.out}; look at {first}")
+    print(f"{len(files)} files in {out}; look at {first}")
     return outcome(found)
 
 

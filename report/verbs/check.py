@@ -35,11 +35,12 @@ def run(options: argparse.Namespace) -> int:
     """Check everything and print it in the format that is asked for."""
     from .. import build
     from ..findings import checks
+    from ..folders import report_folder
 
     if options.accept or options.reason:
         return _accept(options)
     with Progress(sys.stderr) as progress:
-        report = build.compute(options.folder or build.PAPER, progress)
+        report = build.compute(report_folder(options.folder), progress)
         report = build.judged(report, step=progress)
         report = build.refereed(report, progress)
     found = checks(report)
@@ -56,15 +57,16 @@ def _accept(options: argparse.Namespace) -> int:
     from ..accepting import accepted
     from ..errors import UsageError, diagnose
     from ..findings import checks
+    from ..folders import PAPER, report_folder
     from ..staging import replaced
 
-    reason = " ".join(options.reason.split())
-    if not options.accept or options.folder is None or not reason.isprintable():
+    reason, folder = " ".join(options.reason.split()), report_folder(options.folder)
+    if not options.accept or folder == PAPER or not reason.isprintable():
         known = "loopsheet check --accept --reason 'a sentence' FOLDER"
-        said = "--accept needs a FOLDER, --reason a sentence and --accept"
+        said = "--accept needs a FOLDER of your own, --reason a sentence and --accept"
         raise UsageError(diagnose("LS614", reason=said, known=known))
     with Progress(sys.stderr) as progress:
-        report = build.refereed(build.compute(options.folder, progress, prove=False), progress)
+        report = build.refereed(build.compute(folder, progress, prove=False), progress)
     if report.comparisons:
         found = accepted(report, reason)
         if found.after != found.before:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Iterable, Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
+
+from ..folders import WORD
 
 if TYPE_CHECKING:
     from ..findings import Check
@@ -23,16 +24,32 @@ __all__ = [
     "find",
     "folder_argument",
     "format_argument",
+    "named",
     "outcome",
     "print_checks",
+    "result_argument",
 ]
 
 OK, FINDINGS, USAGE, BUG = 0, 1, 2, 3
 
 
 def folder_argument(parser: argparse.ArgumentParser) -> None:
-    """Take a FOLDER; without it, the verb works on the shipped paper."""
-    parser.add_argument("folder", metavar="FOLDER", nargs="?", type=Path, help="a folder with a report.toml")
+    """Take a FOLDER: a word for :func:`~loopsheet.report.folders.report_folder`."""
+    said = f"a folder with a report.toml (default: the working directory), or '{WORD}' for the shipped paper"
+    parser.add_argument("folder", metavar="FOLDER", nargs="?", type=named, help=said)
+
+
+def result_argument(parser: argparse.ArgumentParser, name: str = "out") -> None:
+    """Take what `build` wrote: a word for :func:`~loopsheet.report.folders.result`; without it, ``out``."""
+    said = "what 'build' wrote, or the FOLDER that it was built from (default: out)"
+    parser.add_argument(name, metavar=name.upper(), nargs="?", type=named, help=said)
+
+
+def named(text: str) -> str:
+    """Read the name of a folder, for argparse: an empty one is a mistake, not the working directory."""
+    if not text.strip():
+        raise argparse.ArgumentTypeError(f"the name of a folder is empty: '{text}'")
+    return text
 
 
 def format_argument(parser: argparse.ArgumentParser, *formats: str) -> None:

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
-from .common import OK
+from .common import OK, result_argument
 
 HELP = "make an output folder an RO-Crate, to be archived"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
-    parser.add_argument("out", metavar="OUT", type=Path, help="what 'build' wrote")
+    result_argument(parser)
     parser.add_argument("--date", metavar="YYYY-MM-DD", required=True, help="the day of publication")
     parser.add_argument(
         "--license",
@@ -28,6 +27,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Write ro-crate-metadata.json and name it."""
     from ..crate import write
+    from ..folders import result
 
-    print(write(options.out, options.date, options.license, options.author, options.organization))
+    print(write(result(options.out), options.date, options.license, options.author, options.organization))
     return OK

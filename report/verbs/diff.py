@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
-from .common import FINDINGS, OK, count, format_argument
+from .common import FINDINGS, OK, count, format_argument, named
 
 HELP = "compare two results number by number"
 
@@ -14,7 +13,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     for name in ("before", "after"):
         parser.add_argument(
-            name, metavar=name.upper(), type=Path, help="a folder that 'build' wrote, or a values.json"
+            name, metavar=name.upper(), type=named, help="what 'build' wrote, its values.json, or its FOLDER"
         )
     parser.add_argument(
         "--most", metavar="N", type=count, default=20, help="how many are named of each kind (default: 20)"
@@ -25,9 +24,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print what is different; exit code 1 if anything is, beyond rounding."""
     from ..differences import compare
+    from ..folders import result
     from ..results import read_result
     from ..views.differences import FORMATS
 
-    found = compare(read_result(options.before), read_result(options.after))
+    found = compare(read_result(result(options.before)), read_result(result(options.after)))
     print(FORMATS[options.format](found, options.most), end="")
     return FINDINGS if found.any else OK

@@ -5,14 +5,14 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from .common import OK
+from .common import OK, named
 
 HELP = "make a folder to start a campaign from"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
-    parser.add_argument("folder", metavar="FOLDER", type=Path)
+    parser.add_argument("folder", metavar="FOLDER", type=named)
     parser.add_argument(
         "--workbook", metavar="NAME", default="soft_impact", help="the method (default: soft_impact)"
     )
@@ -25,6 +25,7 @@ def run(options: argparse.Namespace) -> int:
     """Write the folder and name its files."""
     from .. import build, scaffold
     from ..errors import UnknownWorkbook, UsageError, diagnose, listing, suggest
+    from ..folders import written
     from ..workbooks import SHIPPED
 
     try:
@@ -37,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
     if options.ci and options.ci not in scaffold.CI:
         known, hint = listing(scaffold.CI), suggest(options.ci, scaffold.CI)
         raise UsageError(diagnose("LS604", kind="service", text=options.ci, known=known, suggestion=hint))
-    for path in scaffold.new(options.folder, workbook, options.ci):
+    for path in scaffold.new(Path(options.folder), workbook, options.ci):
         print(path)
-    print(f"edit them, then: loopsheet build {options.folder}")
+    print(f"edit them, then: loopsheet build {written(Path(options.folder))}")
     return OK

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .common import FINDINGS, OK, Progress
+from .common import FINDINGS, OK, Progress, folder_argument
 
 if TYPE_CHECKING:
     from ...derivations.proof import Proof
@@ -19,7 +19,7 @@ HELP = "prove the algebra of a workbook, or show the proof of one equation"
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     parser.add_argument("equation", metavar="EQUATION", nargs="?", help="its number, for example (11) or 12a")
-    parser.add_argument("--folder", metavar="FOLDER", type=Path, help="the folder whose workbook is meant")
+    folder_argument(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -27,14 +27,12 @@ def run(options: argparse.Namespace) -> int:
     from ...derivations.proof import prove
     from .. import build
     from ..errors import UsageError, diagnose, suggest
+    from ..folders import WORD, is_report, report_folder
 
-    folder = options.folder or build.PAPER
-    workbook = (
-        build.prepare(folder).inputs.workbook
-        if options.folder
-        else build.find_workbook("soft_impact", folder)
-    )
-    ledger = workbook.ledger()
+    word = options.equation
+    if word and options.folder is None and (word == WORD or is_report(Path(word))):
+        options.equation, options.folder = None, word  # no equation has such a name
+    ledger = build.prepare(report_folder(options.folder)).inputs.workbook.ledger()
     labels = [equation.label for equation in ledger.equations()]
     wanted: list[str] = labels
     if options.equation:

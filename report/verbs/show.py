@@ -19,8 +19,9 @@ def run(options: argparse.Namespace) -> int:
     """Print a column's equation, and the cells that are asked for."""
     from ...derivations.text import text_of_equation
     from .. import build
+    from ..folders import report_folder
 
-    report = build.compute(options.folder or build.PAPER, prove=False)
+    report = build.compute(report_folder(options.folder), prove=False)
     column, labels = find(report, options.cell)
     name = column.name
     print(f"{name}  {column.meaning}  [{report.shown[name].unit}]  {column.source}")

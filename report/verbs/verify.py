@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .common import Progress, count, format_argument, outcome, print_checks
+from .common import Progress, count, format_argument, named, outcome, print_checks, result_argument
 
 if TYPE_CHECKING:
     from ..verification import Verification
@@ -17,13 +16,9 @@ HELP = "build a report again and say what is not as it was, and why"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
-    parser.add_argument("out", metavar="OUT", type=Path, help="what 'build' wrote")
+    result_argument(parser)
     parser.add_argument(
-        "folder",
-        metavar="FOLDER",
-        nargs="?",
-        type=Path,
-        help="the report folder (default: the one that holds OUT, or the shipped paper if OUT is its report)",
+        "folder", metavar="FOLDER", nargs="?", type=named, help="the report folder, if OUT does not tell it"
     )
     parser.add_argument(
         "--most", metavar="N", type=count, default=20, help="how many are named of each kind (default: 20)"
@@ -37,11 +32,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Verify, and print what differs; exit code 1 if anything does."""
     from .. import build
+    from ..folders import report_folder, result
     from ..verification import verify
 
+    folder = report_folder(options.folder) if options.folder else None
     find = build.find_workbook if options.run_workbook else build.shipped_workbook
     with Progress(sys.stderr) as progress:
-        found = verify(options.out, options.folder, progress, find)
+        found = verify(result(options.out), folder, progress, find)
     if options.format == "text":
         _print(found, options.most)
     else:

@@ -20,10 +20,11 @@ def run(options: argparse.Namespace) -> int:
     """Print what the formula bar of the page tells of a cell."""
     from .. import build
     from ..errors import UsageError, diagnose, listing
+    from ..folders import report_folder
     from ..views.why import why
 
     with Progress(sys.stderr) as progress:
-        report = build.compute(options.folder or build.PAPER, progress)
+        report = build.compute(report_folder(options.folder), progress)
     column, labels = find(report, options.cell)
     if len(labels) != 1:
         known = listing(report.values.cell(column.name, label).address for label in labels)

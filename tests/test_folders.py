@@ -1,0 +1,206 @@
+"""FOLDER means the same in every verb: what is named, where one stands, or the shipped paper."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from small_report import end_gauge
+
+from loopsheet.report import folders
+from loopsheet.report.build import PAPER
+from loopsheet.report.cli import main
+from loopsheet.report.verbs import VERBS
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
+    """Give `run("build", "gauge", at=folder)`: the exit code, what was printed and what was complained."""
+
+    def run(*arguments: str, at: Path = tmp_path) -> tuple[int, str, str]:
+        with monkeypatch.context() as patch:
+            patch.chdir(at)
+            code = main(arguments)
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err
+
+    return run
+
+
+@pytest.fixture
+def gauge(tmp_path: Path) -> Path:
+    """A small report folder in an otherwise empty one."""
+    folder = tmp_path / "gauge"
+    folder.mkdir()
+    return end_gauge(folder)
+
+
+def files(folder: Path) -> list[str]:
+    return sorted(p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.suffix == ".json")
+
+
+def test_a_verb_works_where_one_stands_and_on_what_is_named(gauge: Path, run: Run) -> None:
+    for verb in (["show", "l"], ["why", "l[1]"], ["prove", "(H.1)"], ["check", "--accept"]):
+        here, there = run(*verb, at=gauge), run(*verb, "gauge")
+        assert here == (there[0], there[1].replace("gauge/", ""), there[2])
+        assert here[0] == 0
+
+
+@pytest.mark.parametrize(
+    "verb", [["build"], ["check"], ["prove"], ["prove", "11"], ["show", "l"], ["why", "l"]]
+)
+def test_where_there_is_no_report_both_ways_are_named(verb: list[str], gauge: Path, run: Run) -> None:
+    code, out, err = run(*verb)
+    assert (code, out) == (2, "")
+    assert err.startswith(
+        "error[LS615]: no FOLDER is named, and the working directory holds no report.toml\n"
+    )
+    assert "a folder that holds a report.toml, or the word 'paper' for the shipped campaign" in err
+    assert "name 'gauge' or 'paper'; 'loopsheet new FOLDER' makes" in err
+    assert files(gauge.parent) == []
+
+
+def test_the_report_goes_into_its_folder_and_the_first_line_says_so(gauge: Path, run: Run) -> None:
+    code, out, _ = run("build", "gauge", "--to", "json")
+    assert (code, out.splitlines()[0]) == (0, "building 'End gauge' from gauge/report.toml into gauge/out")
+    assert files(gauge.parent) == ["gauge/out/manifest.json", "gauge/out/values.json"]
+    code, out, _ = run("build", "--to", "json", at=gauge)
+    assert (code, out.splitlines()[0]) == (0, "building 'End gauge' from report.toml into out")
+    assert files(gauge.parent) == ["gauge/out/manifest.json", "gauge/out/values.json"]
+    code, out, _ = run("build", "gauge", "--to", "json", "--out", "site")
+    assert (code, out.splitlines()[0]) == (0, "building 'End gauge' from gauge/report.toml into site")
+    assert "site/values.json" in files(gauge.parent)
+
+
+def test_the_paper_is_a_word_and_its_report_goes_to_where_one_stands(
+    gauge: Path, tmp_path_factory: pytest.TempPathFactory, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With a small report in the place of the paper's, which takes longer."""
+    monkeypatch.setattr(folders, "PAPER", gauge)
+    here = tmp_path_factory.mktemp("here")
+    code, out, _ = run("build", "paper", "--to", "json", at=here)
+    assert (code, out.splitlines()[0]) == (0, "building 'End gauge' from the shipped paper into out")
+    assert files(here) == ["out/manifest.json", "out/values.json"]
+    assert files(gauge) == []
+    for words in ([], ["paper"], ["out"]):
+        assert run("verify", "--run-workbook", *words, at=here)[1].splitlines()[-1] == "the same report again"
+
+
+def test_a_folder_that_is_called_as_the_paper_is_not_taken_for_it(gauge: Path, run: Run) -> None:
+    gauge.rename(gauge.parent / "paper")
+    code, out, err = run("show", "l", "paper")
+    assert (code, out) == (2, "")
+    assert "error[LS616]: 'paper' is the word for the shipped campaign, and a folder here" in err
+    assert "allowed: ./paper for the folder" in err
+    assert run("show", "l", "./paper")[0] == 0
+    assert run("prove", "paper")[0] == 2
+
+
+def test_prove_takes_a_folder_alone(gauge: Path, run: Run) -> None:
+    assert run("prove", "gauge") == run("prove", at=gauge)
+    assert run("prove", "gauge")[1].startswith("(H.1)")
+
+
+@pytest.mark.parametrize("there", ["inside", "elsewhere"])
+def test_verify_needs_no_folder(there: str, gauge: Path, run: Run) -> None:
+    out = [] if there == "inside" else ["--out", "../site"]
+    assert run("build", "--to", "json", *out, at=gauge)[0] == 0
+    ways = [([], gauge), (["gauge"], gauge.parent), (["gauge/out"], gauge.parent)]
+    for words, at in ways if there == "inside" else [(["../site"], gauge)]:
+        code, said, err = run("verify", "--run-workbook", *words, at=at)
+        assert code == 0, said + err
+        assert said.splitlines()[-1] == "the same report again"
+
+
+def test_verify_of_another_folders_output_is_not_that_of_where_it_lies(gauge: Path, run: Run) -> None:
+    """What was built from one folder into another's `out` is compared with what it was built from."""
+    other = shutil.copytree(gauge, gauge.parent / "other")
+    (other / "d.csv").write_text("test,d [nm]\n1,216\n2,205\n")
+    assert run("build", "../gauge", "--to", "json", "--out", "out", at=other)[0] == 0
+    assert run("verify", "--run-workbook", "other/out", at=gauge.parent)[0] == 1
+    assert (
+        run("verify", "--run-workbook", "../other/out", at=gauge)[1].splitlines()[-1]
+        == "the same report again"
+    )
+
+
+def test_verify_names_the_input_that_changed_since(gauge: Path, run: Run) -> None:
+    assert run("build", "--to", "json", at=gauge)[0] == 0
+    (gauge / "d.csv").write_text("test,d [nm]\n1,216\n2,204\n")
+    code, said, _ = run("verify", "--run-workbook", "gauge")
+    assert (code, said.splitlines()[-1]) == (1, "different: the input (d.csv) changed")
+
+
+def test_two_results_are_named_by_their_folders(gauge: Path, run: Run) -> None:
+    shutil.copytree(gauge, gauge.parent / "other")
+    for name in ("gauge", "other"):
+        assert run("build", name, "--to", "json")[0] == 0
+    assert run("diff", "gauge", "other/out")[0] == 0
+
+
+@pytest.mark.parametrize("arguments", [["build", ""], ["build", "--out", ""], ["verify", " "], ["new", ""]])
+def test_an_empty_name_is_no_folder(arguments: list[str], gauge: Path, run: Run) -> None:
+    """A script's variable that was never set must not mean the working directory."""
+    code, out, err = run(*arguments, at=gauge)
+    assert (code, out) == (2, "")
+    assert "error[LS617]: argument " in err
+    assert "the name of a folder is empty" in err
+    assert files(gauge) == []
+
+
+@pytest.mark.parametrize("words", ["", ",", " , "])
+def test_no_format_is_not_a_format(words: str, gauge: Path, run: Run) -> None:
+    code, out, err = run("build", "--to", words, at=gauge)
+    assert (code, out) == (2, "")
+    assert f"error[LS604]: unknown format '{words}'" in err
+    assert files(gauge) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([], ["LS617]: no command is named", "allowed: build, check,", "'loopsheet new my-campaign'"]),
+        (["biuld"], ["LS604]: unknown command 'biuld'", "did you mean 'build'?"]),
+        (["--traceback", "xyz"], ["LS604]: unknown command 'xyz'", "allowed: build, check,"]),
+        (["gauge"], ["LS604]: unknown command 'gauge'", "'loopsheet build gauge' builds that folder"]),
+        (["build", "--otu", "x"], ["LS604]: unknown option '--otu'", "did you mean '--out'?"]),
+        (["build", "a", "b"], ["LS617]: 'b' is a word too many", "'loopsheet build --help'"]),
+        (["show"], ["LS617]: the following arguments are required: CELL", "'loopsheet show --help'"]),
+    ],
+)
+def test_a_wrong_command_line_is_answered_as_all_else_is(
+    arguments: list[str], said: list[str], gauge: Path, run: Run
+) -> None:
+    code, out, err = run(*arguments)
+    assert (code, out) == (2, "")
+    assert [words for words in said if words not in err] == [], err
+    assert not [line for line in err.splitlines() if line.startswith("usage:")]
+
+
+def test_new_says_how_its_folder_is_named(tmp_path: Path, run: Run) -> None:
+    last = {name: run("new", name)[1].splitlines()[-1] for name in ("mine", "paper", "my own")}
+    assert [line.removeprefix("edit them, then: loopsheet build ") for line in last.values()] == [
+        "mine",
+        "./paper",
+        "'my own'",
+    ]
+    assert (tmp_path / "paper" / "report.toml").is_file()
+
+
+def test_the_shipped_papers_differences_are_not_accepted(run: Run) -> None:
+    before = (PAPER / "published.csv").read_bytes()
+    code, _, err = run("check", "--accept", "paper")
+    assert (code, "LS614" in err) == (2, True)
+    assert (PAPER / "published.csv").read_bytes() == before
+
+
+def test_every_verb_says_what_its_folder_is(capsys: pytest.CaptureFixture[str]) -> None:
+    for verb in sorted(VERBS.keys() - {"new", "verify", "crate", "diff"}):
+        with pytest.raises(SystemExit):
+            main([verb, "--help"])
+        help = " ".join(capsys.readouterr().out.split())
+        assert "(default: the working directory), or 'paper' for the shipped paper" in help, verb
