@@ -1,7 +1,8 @@
 """An output folder as an RO-Crate 1.1: what is in it, by whom, from what, computed by what.
 
-All of it is read from manifest.json; the date and the licence are the user's words. There is no clock here:
-the same folder and the same words give the same bytes.
+All of it is read from manifest.json; the date and the licence are the user's words. The inputs are copied
+into the crate, which can be built again from itself then. There is no clock here: the same folder and the
+same words give the same bytes.
 """
 
 from __future__ import annotations
@@ -12,11 +13,13 @@ import json
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
 from .errors import OutputError, UsageError, diagnose
+from .folders import INPUTS, built_from
 from .results import Manifest, read_manifest
 
 __all__ = ["NAME", "crate", "write"]
@@ -32,6 +35,9 @@ _MEDIA = {
     ".json": "application/json",
     ".pdf": "application/pdf",
     ".svg": "image/svg+xml",
+    ".csv": "text/csv",
+    ".toml": "application/toml",
+    ".py": "text/x-python",
 }
 _WHAT = {
     "report.html": "The report as one page, which recalculates itself when a number is changed",
@@ -45,8 +51,15 @@ _WHAT = {
 Entity = dict[str, Any]
 
 
-def write(out: Path, date: str, licence: str, author: str = "", organization: str = "") -> Path:
-    """Write the metadata into an output folder.
+def write(
+    out: Path,
+    date: str,
+    licence: str,
+    author: str = "",
+    organization: str = "",
+    folder: Path | None = None,
+) -> Path:
+    """Write the metadata into an output folder, and what it was built from.
 
     Parameters
     ----------
@@ -59,39 +72,71 @@ def write(out: Path, date: str, licence: str, author: str = "", organization: st
     author, organization : str
         Whose it is, and who publishes it and employs the author, as ``NAME`` or ``NAME <https://...>``;
         both may be empty.
+    folder : Path, optional
+        The report folder; without it, :func:`~loopsheet.report.folders.built_from` finds it.
 
     Raises
     ------
     InputError
         There is no manifest.
     OutputError
-        An output is missing or was changed, or the file cannot be written.
+        An output or an input is missing or was changed, or a file cannot be written.
     UsageError
-        The date is none, or the licence.
+        The date is none, or the licence; it is not known from which folder `out` was built.
     """
     manifest = read_manifest(out)
-    sizes = {name: _size(out, name, digest) for name, digest in manifest.outputs.items()}
+    sizes = {name: len(_read(out, name, digest)) for name, digest in manifest.outputs.items()}
     sizes["manifest.json"] = (out / "manifest.json").stat().st_size
     people = tuple(_people(" ".join(author.split()), " ".join(organization.split())))
-    text = crate(manifest, sizes, _date(date), _licence(licence), people)
-    target, draft = out / NAME, out / f".{NAME}.{os.getpid()}.new"
-    try:
-        draft.write_text(text, encoding="utf-8", newline="\n")
-        draft.replace(target)
-    except OSError as error:
-        draft.unlink(missing_ok=True)
-        raise OutputError(diagnose("LS601", text=target, reason=error.strerror or error)) from error
-    return target
+    words = _date(date), _licence(licence)
+    source = built_from(out, manifest.inputs) if folder is None else folder
+    inputs = {f"{INPUTS}/{name}": _read(source, name, digest) for name, digest in manifest.inputs.items()}
+    _refuse_what_somebody_changed(out, inputs)
+    sizes |= {name: len(content) for name, content in inputs.items()}
+    for name, content in inputs.items():
+        _put(out / name, content)
+    _put(out / NAME, crate(manifest, sizes, *words, people).encode())
+    return out / NAME
 
 
-def _size(out: Path, name: str, digest: str) -> int:
-    file = out / name
-    if not file.resolve().is_relative_to(out.resolve()) or not file.is_file():
+def _read(folder: Path, name: str, digest: str) -> bytes:
+    """Return a file as the manifest has it."""
+    file = folder / name
+    if not file.resolve().is_relative_to(folder.resolve()) or not file.is_file():
         raise OutputError(diagnose("LS610", text=name, reason="is missing"))
     content = file.read_bytes()
     if hashlib.sha256(content).hexdigest() != digest:
         raise OutputError(diagnose("LS610", text=name, reason="was changed after it was built"))
-    return len(content)
+    return content
+
+
+def _refuse_what_somebody_changed(out: Path, inputs: Mapping[str, bytes]) -> None:
+    """Replace no file that is neither the one to write nor as the crate before has it."""
+    try:
+        entities = json.loads((out / NAME).read_text(encoding="utf-8"))["@graph"]
+        before = {entity["@id"]: entity.get("sha256") for entity in entities}
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        before = {}  # no crate, or none of ours
+    for name, content in inputs.items():
+        if not (out / name).resolve().is_relative_to(out.resolve()):
+            raise OutputError(diagnose("LS610", text=name, reason="leads out of the folder"))
+        if not (out / name).is_file():
+            continue
+        there = (out / name).read_bytes()
+        if there != content and hashlib.sha256(there).hexdigest() != before.get(quote(name)):
+            raise OutputError(diagnose("LS610", text=name, reason="was changed after it was put there"))
+
+
+def _put(target: Path, content: bytes) -> None:
+    draft = target.with_name(f".{target.name}.{os.getpid()}.new")
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        draft.write_bytes(content)
+        draft.replace(target)
+    except OSError as error:
+        with suppress(OSError):
+            draft.unlink(missing_ok=True)
+        raise OutputError(diagnose("LS601", text=target, reason=error.strerror or error)) from error
 
 
 def _date(text: str) -> str:
@@ -158,17 +203,9 @@ def crate(
     people : sequence of dict
         The entities of the author and the publisher, as far as there are any.
     """
-    files = list(_files(manifest, sizes))
-    inputs = [
-        {
-            "@id": f"#input-{quote(name)}",
-            "@type": "CreativeWork",
-            "name": name,
-            "description": "What the report was computed from; it is not part of this folder",
-            "sha256": digest,
-        }
-        for name, digest in sorted(manifest.inputs.items())
-    ]
+    given = {f"{INPUTS}/{name}": digest for name, digest in manifest.inputs.items()}
+    files = list(_files({name: size for name, size in sizes.items() if name not in given}, manifest.outputs))
+    inputs = list(_files({name: sizes[name] for name in given}, given))
     software = list(_software(manifest))
     action = {
         "@id": "#build",
@@ -187,7 +224,7 @@ def crate(
         "description": f"{title}: a report whose every number is traced to an equation and recomputed",
         "datePublished": date,
         "license": {"@id": licence["@id"]},
-        "hasPart": _refer(files),
+        "hasPart": _refer([*files, *inputs]),
         "mentions": {"@id": "#build"},
     }
     for entity in people:
@@ -208,14 +245,16 @@ def _refer(entities: list[Entity]) -> list[Entity]:
     return [{"@id": entity["@id"]} for entity in entities]
 
 
-def _files(manifest: Manifest, sizes: Mapping[str, int]) -> Iterator[Entity]:
+def _files(sizes: Mapping[str, int], hashes: Mapping[str, str]) -> Iterator[Entity]:
     for name, size in sorted(sizes.items()):
         entity: Entity = {"@id": quote(name), "@type": "File", "name": name}
-        entity["description"] = _WHAT.get(name, "A figure of the report")
+        is_input = name.startswith(f"{INPUTS}/")
+        other = "What the report was computed from" if is_input else "A figure of the report"
+        entity["description"] = _WHAT.get(name, other)
         entity["encodingFormat"] = _MEDIA.get(Path(name).suffix, "application/octet-stream")
         entity["contentSize"] = str(size)
-        if name in manifest.outputs:
-            entity["sha256"] = manifest.outputs[name]
+        if name in hashes:
+            entity["sha256"] = hashes[name]
         yield entity
 
 

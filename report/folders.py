@@ -9,7 +9,17 @@ from pathlib import Path
 
 from .errors import Location, UsageError, diagnose, listing
 
-__all__ = ["PAPER", "WORD", "built_from", "is_report", "output", "report_folder", "result", "written"]
+__all__ = [
+    "INPUTS",
+    "PAPER",
+    "WORD",
+    "built_from",
+    "is_report",
+    "output",
+    "report_folder",
+    "result",
+    "written",
+]
 
 PAPER = Path(__file__).resolve().parent.parent / "data" / "soft_steel"
 """The shipped campaign."""
@@ -17,6 +27,8 @@ WORD = "paper"
 """What a user calls it; a folder of that name is written ``./paper``."""
 OUT = "out"
 """Where a report goes, below its folder."""
+INPUTS = "inputs"
+"""Where a crate holds what it was built from: a report folder again."""
 
 
 def report_folder(word: str | None = None) -> Path:
@@ -89,8 +101,8 @@ def built_from(out: Path, inputs: Mapping[str, str]) -> Path:
     Returns
     -------
     Path
-        The folder above the output, the working directory or the shipped paper, whichever holds these inputs;
-        if none does, the folder above, if it is a report folder: its inputs were changed.
+        The folder above the output, its own :data:`INPUTS`, the working directory or the shipped paper,
+        whichever holds these inputs; if none does, one of the first two, whose inputs were changed then.
 
     Raises
     ------
@@ -99,12 +111,13 @@ def built_from(out: Path, inputs: Mapping[str, str]) -> Path:
     """
     here, above = Path.cwd(), out.resolve().parent
     above = above.relative_to(here) if above.is_relative_to(here) else above
-    found = [folder for folder in (above, Path(), PAPER) if is_report(folder)]
+    places = (above, out / INPUTS, Path(), PAPER)
+    found = [folder for folder in places if is_report(folder)]
     for folder in found:
         if holds(folder, inputs):
             return folder
-    if above in found:
-        return above
+    if changed := [folder for folder in places[:2] if folder in found]:
+        return changed[0]
     reason = f"it is not in a report folder, and is not that of the working directory or of '{WORD}'"
     raise UsageError(diagnose("LS609", text=out, reason=reason))
 

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
+from small_report import FILES, end_gauge
 
 from loopsheet.report.cli import main
 from loopsheet.report.crate import write
 from loopsheet.report.errors import InputError, LoopsheetError, OutputError, UsageError
 
-VALUES = b'{"a": 1}\n'
+VALUES, TOML = b'{"a": 1}\n', b"title = 'A title'\n"
 
 
 @pytest.fixture
@@ -27,13 +29,14 @@ def out(tmp_path: Path) -> Path:
     manifest = {
         "schema": 1,
         "title": "A title",
-        "inputs": {"report.toml": "00"},
+        "inputs": {"report.toml": hashlib.sha256(TOML).hexdigest()},
         "outputs": {name: hashlib.sha256(content).hexdigest() for name, content in files.items()},
         "sources": {"method": "11"},
         "versions": {"loopsheet": "9.9", "numpy": "2.0"},
         "engines": {"numpy": "", "JavaScript": "node 20.1"},
     }
     (folder / "manifest.json").write_text(json.dumps(manifest))
+    (tmp_path / "report.toml").write_bytes(TOML)
     return folder
 
 
@@ -55,11 +58,15 @@ def test_everything_is_named_and_every_reference_leads_somewhere(out: Path) -> N
     root = found["./"]
     assert root["datePublished"] == "2026-03-31"
     assert root["license"] == {"@id": "https://spdx.org/licenses/CC-BY-4.0"}
-    assert references(root["hasPart"]) == {"values.json", "figures/a%20b.svg", "manifest.json"}
+    files = {"values.json", "figures/a%20b.svg", "manifest.json", "inputs/report.toml"}
+    assert references(root["hasPart"]) == files
     assert found["values.json"]["sha256"] == hashlib.sha256(VALUES).hexdigest()
     assert found["values.json"]["contentSize"] == str(len(VALUES))
     action = found["#build"]
-    assert references(action["object"]) == {"#input-report.toml"}
+    assert references(action["object"]) == {"inputs/report.toml"}
+    assert found["inputs/report.toml"]["encodingFormat"] == "application/toml"
+    assert found["inputs/report.toml"]["sha256"] == hashlib.sha256(TOML).hexdigest()
+    assert references(action["result"]) == files - {"inputs/report.toml"}
     assert references(action["instrument"]) == {"#loopsheet-9.9"}
     assert references(found["#loopsheet-9.9"]["softwareRequirements"]) == {
         "#numpy-2.0",
@@ -102,6 +109,7 @@ def test_the_same_words_give_the_same_bytes(out: Path) -> None:
     assert str(out).encode() not in first
     assert sorted(p.name for p in out.iterdir()) == [
         "figures",
+        "inputs",
         "manifest.json",
         "ro-crate-metadata.json",
         "values.json",
@@ -144,6 +152,67 @@ def test_a_manifest_that_leads_out_of_the_folder_is_refused(out: Path) -> None:
     (out / "manifest.json").write_text(json.dumps(data))
     (out.parent / "secret").write_text("s")
     with pytest.raises(LoopsheetError, match="is missing"):
+        write(out, "2026-03-31", "MIT")
+
+
+def test_a_crate_is_built_again_from_itself(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Far from where it was made, with the workbook and all that its report.toml names."""
+    (tmp_path / "gauge").mkdir()
+    folder = end_gauge(tmp_path / "gauge")
+    monkeypatch.chdir(folder)
+    assert main(["build", "--to", "json"]) == 0
+    assert main(["crate", "--date", "2026-03-31", "--license", "MIT"]) == 0
+    archive = (folder / "out").rename(tmp_path / "archive")
+    shutil.rmtree(folder)
+    monkeypatch.chdir(archive)
+    inputs = {path.name: path.read_bytes() for path in (archive / "inputs").iterdir()}
+    assert inputs == {name: text.encode() for name, text in FILES.items()}
+    capsys.readouterr()
+    assert main(["verify", ".", "--run-workbook"]) == 0
+    assert capsys.readouterr().out.endswith("\nthe same report again\n")
+    assert main(["build", "inputs", "--to", "json"]) == 0
+    assert (archive / "inputs/out/values.json").read_bytes() == (archive / "values.json").read_bytes()
+
+
+def test_inputs_that_were_changed_are_no_part_of_a_crate(out: Path) -> None:
+    (out.parent / "report.toml").write_text("title = 'Another'")
+    with pytest.raises(OutputError, match=r"'report.toml' was changed after it was built"):
+        write(out, "2026-03-31", "MIT")
+    (out.parent / "report.toml").unlink()
+    with pytest.raises(UsageError, match="LS609"):
+        write(out, "2026-03-31", "MIT")
+    assert not (out / "inputs").exists()
+
+
+def test_the_inputs_of_an_earlier_crate_are_replaced_unless_somebody_changed_them(out: Path) -> None:
+    write(out, "2026-03-31", "MIT")
+    new = b"title = 'Another'"
+    (out.parent / "report.toml").write_bytes(new)
+    manifest = json.loads((out / "manifest.json").read_text())
+    manifest["inputs"]["report.toml"] = hashlib.sha256(new).hexdigest()
+    (out / "manifest.json").write_text(json.dumps(manifest))
+    write(out, "2026-03-31", "MIT")
+    assert (out / "inputs" / "report.toml").read_bytes() == new
+    (out / "inputs" / "report.toml").write_bytes(b"mine")
+    with pytest.raises(OutputError, match=r"'inputs/report.toml' was changed after it was put there"):
+        write(out, "2026-03-31", "MIT")
+    assert (out / "inputs" / "report.toml").read_bytes() == b"mine"
+
+
+@pytest.mark.parametrize("name", ["../secret", "/etc/hostname"])
+def test_no_input_leads_out_of_the_crate(name: str, out: Path) -> None:
+    (out.parent / "secret").write_text("s")
+    manifest = json.loads((out / "manifest.json").read_text())
+    manifest["inputs"][name] = "00"
+    (out / "manifest.json").write_text(json.dumps(manifest))
+    with pytest.raises(OutputError, match="is missing"):
+        write(out, "2026-03-31", "MIT")
+    (out / "inputs").symlink_to(out.parent)
+    del manifest["inputs"][name]
+    (out / "manifest.json").write_text(json.dumps(manifest))
+    with pytest.raises(OutputError, match="leads out of the folder"):
         write(out, "2026-03-31", "MIT")
 
 

@@ -28,6 +28,7 @@ __all__ = [
     "outcome",
     "print_checks",
     "result_argument",
+    "source_argument",
 ]
 
 OK, FINDINGS, USAGE, BUG = 0, 1, 2, 3
@@ -43,6 +44,12 @@ def result_argument(parser: argparse.ArgumentParser, name: str = "out") -> None:
     """Take what `build` wrote: a word for :func:`~loopsheet.report.folders.result`; without it, ``out``."""
     said = "what 'build' wrote, or the FOLDER that it was built from (default: out)"
     parser.add_argument(name, metavar=name.upper(), nargs="?", type=named, help=said)
+
+
+def source_argument(parser: argparse.ArgumentParser) -> None:
+    """Take the FOLDER of what `build` wrote, where that is not found by itself."""
+    said = "the report folder, if OUT does not tell it"
+    parser.add_argument("folder", metavar="FOLDER", nargs="?", type=named, help=said)
 
 
 def named(text: str) -> str:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import argparse
 
-from .common import OK, result_argument
+from .common import OK, result_argument, source_argument
 
-HELP = "make an output folder an RO-Crate, to be archived"
+HELP = "make an output folder an RO-Crate with its inputs, to be archived"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     result_argument(parser)
+    source_argument(parser)
     parser.add_argument("--date", metavar="YYYY-MM-DD", required=True, help="the day of publication")
     parser.add_argument(
         "--license",
@@ -27,7 +28,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Write ro-crate-metadata.json and name it."""
     from ..crate import write
-    from ..folders import result
+    from ..folders import report_folder, result
 
-    print(write(result(options.out), options.date, options.license, options.author, options.organization))
+    folder = report_folder(options.folder) if options.folder else None
+    whose = options.author, options.organization
+    print(write(result(options.out), options.date, options.license, *whose, folder))
     return OK

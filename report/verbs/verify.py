@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import TYPE_CHECKING
 
-from .common import Progress, count, format_argument, named, outcome, print_checks, result_argument
+from .common import Progress, count, format_argument, outcome, print_checks, result_argument, source_argument
 
 if TYPE_CHECKING:
     from ..verification import Verification
@@ -17,9 +17,7 @@ HELP = "build a report again and say what is not as it was, and why"
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     result_argument(parser)
-    parser.add_argument(
-        "folder", metavar="FOLDER", nargs="?", type=named, help="the report folder, if OUT does not tell it"
-    )
+    source_argument(parser)
     parser.add_argument(
         "--most", metavar="N", type=count, default=20, help="how many are named of each kind (default: 20)"
     )
