@@ -15,7 +15,7 @@ LOCK := .venv-lock/bin/uv pip compile --quiet --universal --python-version 3.11 
 PYTEST := $(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadfile $(if $(SEED),--seed $(SEED))
 
 .DEFAULT_GOAL := help
-.PHONY: help report test campaigns bench lock clean
+.PHONY: help report test campaigns bench wheel lock clean
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 
@@ -24,6 +24,7 @@ help:
 	@echo 'make test        ruff, mypy and all tests, with a few of the campaigns that are drawn at random'
 	@echo 'make campaigns   all of these campaigns, and what was found in them (SEED=7: others)'
 	@echo 'make bench       the benchmarks'
+	@echo 'make wheel       loopsheet as one file in dist/, to be installed without this folder'
 	@echo 'make lock        pin the dependencies of pyproject.toml again (UPGRADE=--upgrade: to the newest)'
 	@echo 'make clean       remove all that was made here'
 	@echo 'PYTHON=python3.12 make ... takes another interpreter (3.11 or later) for $(VENV)'
@@ -61,6 +62,11 @@ $(VENV)/.runtime $(VENV)/.test $(VENV)/.bench: $(VENV)/.%: requirements/%.txt py
 # mypy reads the working files through this link, under the package's own name (see pyproject.toml).
 .mypy_root/loopsheet:
 	@mkdir -p $(@D) && ln -sfn .. $@
+
+wheel: $(VENV)/.runtime
+	@mkdir -p dist
+	@$(BIN)/python -c 'from pathlib import Path; from loopsheet.report.wheel import wheel; \
+		name, content = wheel(); print(Path("dist", name)); Path("dist", name).write_bytes(content)'
 
 lock: .venv-lock/bin/uv
 	$(LOCK) pyproject.toml --group build -o requirements/runtime.txt

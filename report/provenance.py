@@ -5,9 +5,10 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-__all__ = ["PARTS", "sources"]
+__all__ = ["PARTS", "ROOT", "files", "sources"]
 
 ROOT = Path(__file__).resolve().parent.parent
+"""The folder of the package."""
 
 PARTS = {
     "method": ("derivations", "report/workbooks"),
@@ -31,17 +32,18 @@ def sources(root: Path = ROOT) -> dict[str, str]:
     counted: set[Path] = set()
     found = {}
     for part, places in PARTS.items():
-        files = {file for place in places for file in _files(root / place)} - counted
-        counted |= files
+        own = {file for place in places for file in files(root / place)} - counted
+        counted |= own
         total = hashlib.sha256()
-        for name, file in sorted((file.relative_to(root).as_posix(), file) for file in files):
+        for name, file in sorted((file.relative_to(root).as_posix(), file) for file in own):
             content = hashlib.sha256(file.read_bytes()).hexdigest()
             total.update(f"{content}  {name}\n".encode())
         found[part] = total.hexdigest()
     return found
 
 
-def _files(place: Path) -> set[Path]:
+def files(place: Path) -> set[Path]:
+    """The files of a part that a wheel holds, in a folder or the one that is named."""
     if place.is_file():
         return {place}
     found = place.rglob("*" if place.name == "templates" else "*.py")

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import shutil
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .errors import OutputError, diagnose
+from .errors import Location, OutputError, diagnose
 from .quantity import Bounds
+from .wheel import wheel
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from .workbook import Measured, Parameter, Workbook
 
-__all__ = ["CI", "new"]
-
-
-WORKFLOW = ".github/workflows/loopsheet.yml"
+__all__ = ["CI", "new", "repository"]
 
 
 def new(folder: Path, workbook: Workbook, ci: str = "") -> list[Path]:
@@ -28,7 +27,7 @@ def new(folder: Path, workbook: Workbook, ci: str = "") -> list[Path]:
     Parameters
     ----------
     folder : Path
-        A folder that does not exist yet, or an empty one.
+        A folder that does not exist yet, or an empty one; an empty repository is one too.
     workbook : Workbook
         The method; its example becomes the measurements, its parameters are listed with their meaning.
     ci : str
@@ -37,47 +36,85 @@ def new(folder: Path, workbook: Workbook, ci: str = "") -> list[Path]:
     Returns
     -------
     list of Path
-        The files that were written.
+        The files that were written. What a service reads is at the root of the repository that holds the
+        folder, or in the folder if none does yet.
 
     Raises
     ------
     OutputError
-        If the folder is not empty or cannot be written; nothing is left half-written then.
+        If the folder is not empty or cannot be written, or what a service reads is there already; nothing is
+        left half-written then.
     """
-    files = {"report.toml": _report(workbook), "measurements.csv": _measurements(workbook)}
-    if ci:
-        name, workflow = CI[ci]
-        files[name] = workflow()
+    files = {"report.toml": _report(workbook).encode(), "measurements.csv": _measurements(workbook).encode()}
     try:
-        if folder.is_symlink() or folder.exists():
-            if not folder.is_dir():
-                raise OutputError(diagnose("LS602", text=folder))
-            if any(folder.iterdir()):
-                raise OutputError(diagnose("LS603", text=folder))
-            _fill(folder, files)
-        else:
-            _create(folder, files)
+        beside = _for_service(folder, ci, files) if ci else {}
+        is_new = _is_new(folder)
+        for path in beside:
+            if path.exists() or path.is_symlink():
+                reason = "there is one; rename it, or the campaign"
+                raise OutputError(diagnose("LS601", Location(path.as_posix()), text=path.name, reason=reason))
+        with _written(beside):
+            if is_new:
+                _create(folder, files)
+            else:
+                with _written({folder / name: content for name, content in files.items()}):
+                    pass
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise OutputError(diagnose("LS601", text=folder, reason=reason)) from error
-    return [folder / name for name in files]
+    return [*(folder / name for name in files), *beside]
 
 
-def _create(folder: Path, files: dict[str, str]) -> None:
+def _is_new(folder: Path) -> bool:
+    """Whether there is no such folder yet; one that is there must be empty."""
+    if not (folder.is_symlink() or folder.exists()):
+        return True
+    if not folder.is_dir():
+        raise OutputError(diagnose("LS602", text=folder))
+    if any(path.name != ".git" for path in folder.iterdir()):
+        raise OutputError(diagnose("LS603", text=folder))
+    return False
+
+
+def _for_service(folder: Path, ci: str, files: dict[str, bytes]) -> dict[Path, bytes]:
+    """Add what a service installs to the folder's files; what it reads too, or return it by its place."""
+    name, content = wheel()
+    files[name] = content
+    root = repository(folder) or folder
+    inside = folder.resolve().relative_to(root.resolve()).as_posix()
+    place, workflow = CI[ci]
+    text = workflow(inside, name).encode()
+    if inside == ".":
+        files[place.format("")] = text
+        return {}
+    return {root / place.format(f"-{_slug(inside)}"): text}
+
+
+def _slug(folder: str) -> str:
+    """A folder's name as part of another name, whatever is in it."""
+    return re.sub(r"[^A-Za-z0-9.]+", "-", folder).strip("-.") or "campaign"
+
+
+def repository(folder: Path) -> Path | None:
+    """The root of the repository that a folder is in, as seen from where one stands; None without one."""
+    here, there = Path.cwd(), folder.resolve()
+    root = next((path for path in (there, *there.parents) if (path / ".git").exists()), None)
+    return root.relative_to(here) if root is not None and root.is_relative_to(here) else root
+
+
+def _create(folder: Path, files: dict[str, bytes]) -> None:
     """Write a folder beside its place and move it there whole."""
     made = _make_parents(folder.parent)
     draft = folder.with_name(f".{folder.name}.{os.getpid()}.new")
     try:
         draft.mkdir()
-        for name, text in files.items():
+        for name, content in files.items():
             (draft / name).parent.mkdir(parents=True, exist_ok=True)
-            (draft / name).write_text(text, encoding="utf-8", newline="\n")
+            (draft / name).write_bytes(content)
         draft.rename(folder)
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
-        for parent in reversed(made):
-            with suppress(OSError):
-                parent.rmdir()
+        _remove(made)
         raise
 
 
@@ -88,26 +125,32 @@ def _make_parents(parent: Path) -> list[Path]:
     return missing
 
 
-def _fill(folder: Path, files: dict[str, str]) -> None:
-    """Write into an empty folder, which stays the same folder: somebody may be working in it."""
-    drafts = {folder / name: folder / f".{Path(name).name}.{os.getpid()}.new" for name in files}
+def _remove(made: list[Path]) -> None:
+    for folder in reversed(made):
+        with suppress(OSError):
+            folder.rmdir()
+
+
+@contextmanager
+def _written(files: dict[Path, bytes]) -> Iterator[None]:
+    """Write files into folders that may be in use; if that or the block fails, they are taken away again."""
+    drafts = {path: path.with_name(f".{path.name}.{os.getpid()}.new") for path in files}
     done: list[Path] = []
     made: list[Path] = []
     try:
         for path in drafts:
             made += _make_parents(path.parent)
-        for draft, text in zip(drafts.values(), files.values(), strict=True):
-            draft.write_text(text, encoding="utf-8", newline="\n")
+        for draft, content in zip(drafts.values(), files.values(), strict=True):
+            draft.write_bytes(content)
         for path, draft in drafts.items():
             draft.replace(path)
             done.append(path)
+        yield
     except BaseException:
         for path in [*drafts.values(), *done]:
             with suppress(OSError):
                 path.unlink()
-        for parent in reversed(made):
-            with suppress(OSError):
-                parent.rmdir()
+        _remove(made)
         raise
 
 
@@ -178,13 +221,13 @@ def _quote(text: str) -> str:
     return f'"{escaped}"'
 
 
-def _github() -> str:
-    from .. import __version__
-
+def _github(folder: str, wheel: str) -> str:
+    """The workflow for a folder of a repository, ``.`` for its root."""
+    path = "." if folder == "." else f"./{folder}"
+    known = json.dumps(path, ensure_ascii=False)
+    known = known.replace("${{", "${{ '${{' }}")  # no expression of the service
     return f"""\
 # After every change: is the report as expected? What is not is marked in the pull request, at its line.
-# GitHub reads this file at the root of a repository. If this folder is not the root, move .github there and
-# write the folder's name instead of the point after 'check' and 'build'.
 name: report
 
 on:
@@ -196,6 +239,10 @@ on:
 permissions:
   contents: read
 
+env:
+  # The folder of the report, from the root of the repository, where GitHub reads this file.
+  FOLDER: {known}
+
 jobs:
   report:
     runs-on: ubuntu-latest
@@ -204,19 +251,19 @@ jobs:
       - uses: actions/setup-python@v6
         with:
           python-version: "3.12"
-      # The version that made this folder: the same numbers until you choose another.
-      - run: python -m pip install "loopsheet=={__version__}"
-      - run: loopsheet check . --format github
+      # The loopsheet that made this folder is kept beside it. To take another: put its wheel there.
+      - run: python -m pip install "$FOLDER"/{wheel}
+      - run: loopsheet check "$FOLDER" --format github
       - if: ${{{{ !cancelled() }}}}
-        run: loopsheet build . --out out
+        run: loopsheet build "$FOLDER" --out "$RUNNER_TEMP"/report
       - if: ${{{{ !cancelled() }}}}
         uses: actions/upload-artifact@v6
         with:
-          name: report
-          path: out
+          name: report{"" if folder == "." else f" of {_slug(folder)}"}
+          path: ${{{{ runner.temp }}}}/report
           if-no-files-found: error
 """
 
 
-CI = {"github": (WORKFLOW, _github)}
-"""By the name of a service, the file that it reads and what is written there."""
+CI = {"github": (".github/workflows/loopsheet{}.yml", _github)}
+"""By the name of a service, the file that it reads, with a place for the folder, and what is in it."""

@@ -3,6 +3,7 @@
 import ast
 import doctest
 import importlib
+import io
 import os
 import re
 import shutil
@@ -18,6 +19,7 @@ from typing import NamedTuple
 import pytest
 
 from loopsheet.report.provenance import sources
+from loopsheet.report.wheel import wheel as own_wheel
 
 ROOT = Path(__file__).resolve().parent.parent
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -344,7 +346,16 @@ def test_wheel_holds_the_package_and_nothing_else(tmp_path: Path) -> None:
     assert held == expected
     with zipfile.ZipFile(wheel) as opened:
         opened.extractall(tmp_path / "unpacked")
+        theirs = {name: opened.read(name) for name in opened.namelist()}
     assert sources(tmp_path / "unpacked" / "loopsheet") == sources(ROOT)
+    name, content = own_wheel()
+    assert name == wheel.name
+    with zipfile.ZipFile(io.BytesIO(content)) as ours:
+        assert {name for name in ours.namelist() if ".dist-info/" not in name} == held
+        assert not [name for name in held if ours.read(name) != theirs[name]]
+        told = {name for name in ours.namelist() if ".dist-info/" in name}
+    assert told == set(theirs) - held - {name for name in theirs if name.endswith("top_level.txt")}
+    assert own_wheel() == (name, content)
 
 
 # -------------------------------------------------------------------------------------------- locks

@@ -1,16 +1,20 @@
 """`new`: a folder that builds at once, or nothing at all."""
 
+import json
 import os
 import re
+import subprocess
+import sys
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from small_report import end_gauge
 
-from loopsheet import __version__
-from loopsheet.report import cli
 from loopsheet.report.errors import OutputError
 from loopsheet.report.inputs import load
+from loopsheet.report.provenance import sources
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.scaffold import new
 from loopsheet.report.workbook import Measured, Parameter, Workbook
@@ -105,29 +109,66 @@ def test_without_an_example_there_is_a_header(tmp_path: Path) -> None:
     assert new(tmp_path / "c", bare)[1].read_text() == "test,v [m/s],x_p [m]\n"
 
 
-@pytest.mark.parametrize("used", [True, False])
-def test_a_workflow_for_github(used: bool, tmp_path: Path) -> None:
-    """What it runs is what this program takes; all names are this program's and GitHub's own."""
-    folder = tmp_path / "campaign"
-    if used:
-        folder.mkdir()
-    path = new(folder, WORKBOOK, "github")[-1]
-    assert path == folder / ".github" / "workflows" / "loopsheet.yml"
-    text = path.read_text()
-    assert f'python -m pip install "loopsheet=={__version__}"' in text
+@pytest.mark.parametrize(
+    ("made", "name", "root"),
+    [("", "campaign", "campaign"), ("campaign", "campaign", "campaign"), (".git", "two words/paper", ".")],
+)
+def test_a_workflow_is_where_github_reads_it(
+    made: str, name: str, root: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    if made:
+        Path(made).mkdir()
+    written = new(Path(name), WORKBOOK, "github")
+    workflow = written[-1].resolve().relative_to((tmp_path / root).resolve()).as_posix()
+    assert workflow == f".github/workflows/loopsheet{'' if name == root else '-two-words-paper'}.yml"
+    assert all(path.is_file() for path in written)
+    assert not [path for path in tree(tmp_path) if path.endswith(".new")]
+
+
+def test_a_workflow_for_github_does_what_it_says(tmp_path: Path, require: Callable[..., str]) -> None:
+    """Its commands run as they stand, at the root of the repository, with the wheel that is kept there."""
+    (tmp_path / ".git").mkdir()
+    campaign = tmp_path / "two words" / "paper"
+    text = new(campaign, WORKBOOK, "github")[-1].read_text()
     assert re.findall(r"uses: (\S+)", text) == [
         "actions/checkout@v6",
         "actions/setup-python@v6",
         "actions/upload-artifact@v6",
     ]
-    commands = re.findall(r"run: loopsheet (.*)", text)
-    assert commands == ["check . --format github", "build . --out out"]
-    for command in commands:
-        assert cli._parse(command.split()).folder == "."
     assert "contents: read" in text
     assert "{{ !cancelled() }}" in text
     assert "\t" not in text
-    assert not [name for name in tree(tmp_path) if name.endswith(".new")]
+
+    end_gauge(campaign)
+    folder, there = json.loads(re.findall(r"FOLDER: (.*)", text)[0]), tmp_path / "there"
+    path = f"{there / 'bin'}:{Path(sys.executable).parent}"  # no other engines: they take their time
+    known = {"FOLDER": folder, "RUNNER_TEMP": str(tmp_path), "PATH": path, "PYTHONPATH": str(there)}
+    installing = {"PIP_TARGET": str(there), "PIP_NO_DEPS": "1", "PIP_NO_INDEX": "1", "PIP_NO_COMPILE": "1"}
+    done = subprocess.run(
+        [require("bash"), "-e", "-c", "\n".join(re.findall(r"run: (.*)", text))],
+        cwd=tmp_path, env={**os.environ, **known, **installing},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert f"from {Path(folder) / 'report.toml'} into" in done.stdout
+    manifest = json.loads((tmp_path / "report" / "manifest.json").read_text())
+    assert manifest["sources"] == sources(there / "loopsheet") == sources()
+
+
+def test_what_a_service_reads_already_is_not_written_over(tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    new(tmp_path / "a b", WORKBOOK, "github")
+    before = tree(tmp_path)
+    with pytest.raises(OutputError, match=r"loopsheet-a-b.yml' cannot be written: there is one"):
+        new(tmp_path / "a-b", WORKBOOK, "github")
+    assert tree(tmp_path) == before
+
+
+def test_a_folders_name_is_no_expression_of_the_service(tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    workflow = new(tmp_path / "x ${{ github.token }}", WORKBOOK, "github")[-1].read_text()
+    assert """FOLDER: "./x ${{ '${{' }} github.token }}"\n""" in workflow
 
 
 def test_without_a_service_there_is_no_workflow(tmp_path: Path) -> None:
@@ -152,6 +193,24 @@ def test_a_workflow_that_cannot_be_written_leaves_nothing(
     assert tree(tmp_path) == ["campaign"]
 
 
+@pytest.mark.parametrize("fails", ["loopsheet-campaign.yml", "report.toml"])
+def test_if_a_part_fails_nothing_is_left_in_the_repository(
+    fails: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / ".git").mkdir()
+    real = Path.write_bytes
+
+    def fail(path: Path, content: bytes) -> int:
+        if fails in path.name:
+            raise OSError(28, "No space left on device")
+        return real(path, content)
+
+    monkeypatch.setattr(Path, "write_bytes", fail)
+    with pytest.raises(OutputError):
+        new(tmp_path / "campaign", WORKBOOK, "github")
+    assert tree(tmp_path) == [".git"]
+
+
 @pytest.mark.parametrize("used", [True, False])
 def test_if_writing_fails_nothing_is_left(
     used: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -160,14 +219,14 @@ def test_if_writing_fails_nothing_is_left(
     if used:
         folder.mkdir(parents=True)
     before = tree(tmp_path)
-    real = Path.write_text
+    real = Path.write_bytes
 
-    def fail(path: Path, *args: str, **more: str) -> int:
+    def fail(path: Path, content: bytes) -> int:
         if "measurements" in path.name:
             raise OSError(28, "No space left on device")
-        return real(path, *args, **more)
+        return real(path, content)
 
-    monkeypatch.setattr(Path, "write_text", fail)
+    monkeypatch.setattr(Path, "write_bytes", fail)
     with pytest.raises(OutputError) as caught:
         new(folder, WORKBOOK)
     assert caught.value.diagnostics[0].code == "LS601"

@@ -38,7 +38,10 @@ def run(options: argparse.Namespace) -> int:
     if options.ci and options.ci not in scaffold.CI:
         known, hint = listing(scaffold.CI), suggest(options.ci, scaffold.CI)
         raise UsageError(diagnose("LS604", kind="service", text=options.ci, known=known, suggestion=hint))
-    for path in scaffold.new(Path(options.folder), workbook, options.ci):
+    folder = Path(options.folder)
+    for path in scaffold.new(folder, workbook, options.ci):
         print(path)
-    print(f"edit them, then: loopsheet build {written(Path(options.folder))}")
+    if options.ci and scaffold.repository(folder) is None:
+        print(f"{options.ci} reads the last one once {folder} is the root of a repository")
+    print(f"edit them, then: loopsheet build {written(folder)}")
     return OK
