@@ -28,6 +28,10 @@ from .intervals import Intervals, whole
 __all__ = ["Enclosure"]
 
 HALVINGS = 60
+SETTLED = 2.0**-50
+"""What a step may move a point, relatively, that is near enough to a root."""
+APART = 2.0**-26
+"""How far apart two points are that a slope is taken from, of what lies beside them."""
 
 
 class Enclosure:
@@ -161,38 +165,16 @@ class Enclosure:
 
     def _bracket(self, at: Any, low: Any, high: Any, after: Any) -> tuple[Any, Any]:
         """The largest point that is certainly before the root, and the smallest certainly behind it."""
-        left, right = low, high
-        for _ in range(HALVINGS):
-            middle = left + (right - left) / 2
-            found = at(middle)
-            # Which side the middle of its enclosure is on decides where the search goes, and proves nothing.
-            behind = (found.low + found.high) * after > 0
-            left, right = np.where(behind, left, middle), np.where(behind, middle, right)
-        centre = (left + right) / 2
-        return (
-            self._certain(at, centre, low, -after),
-            self._certain(at, centre, high, after),
+        centre, slope = _centre(lambda point: _middle(at(point)) * after, low, high)
+        here = at(centre)
+        # As far from the centre as its enclosure is wide, the sign may be certain.
+        near = np.maximum(np.abs(here.low), np.abs(here.high)) / np.abs(slope)
+        ends = np.stack([low, high])
+        share = np.nan_to_num(near / np.abs(ends - centre) / 2, nan=0.0, posinf=1.0)
+        left, right = _certain(
+            at, centre, ends, np.stack([-after, after]), np.clip(share, 2.0**-52, 2.0**-10)
         )
-
-    @staticmethod
-    def _certain(at: Any, centre: Any, end: Any, sign: Any) -> Any:
-        """The nearest point between the centre and an end where the equation certainly has a sign."""
-        # The distance is doubled until the sign is certain, then halved back.
-        near, far = np.zeros_like(centre), np.ones_like(centre)
-        share = np.full_like(centre, 2.0**-52)
-        found = np.zeros(centre.shape, dtype=bool)
-        for _ in range(52):
-            certain = at(centre + share * (end - centre)).sign == sign
-            far = np.where(certain & ~found, share, far)
-            near = np.where(certain | found, near, share)
-            found |= certain
-            share = np.minimum(2 * share, 1.0)
-        for _ in range(6):
-            middle = (near + far) / 2
-            certain = at(centre + middle * (end - centre)).sign == sign
-            near, far = np.where(certain, near, middle), np.where(certain, middle, far)
-        # Where it is never certain, the end itself bounds the root.
-        return np.where(found, centre + far * (end - centre), end)
+        return left, right
 
     # --- derivatives ----------------------------------------------------------------------------------
 
@@ -301,6 +283,61 @@ def _shares(terms: Intervals) -> Intervals:
         certain = may_be & (np.count_nonzero(may_be) == 1)
         total = total + Intervals(np.where(certain, 0.5, 0.0), np.where(may_be, 0.5, 0.0))
     return total[:, None]
+
+
+def _middle(found: Intervals) -> Any:
+    return (found.low + found.high) / 2
+
+
+def _centre(value: Any, low: Any, high: Any) -> tuple[Any, Any]:
+    """Where an increasing function is about zero, and about its slope there; it proves nothing.
+
+    Regula falsi, in which an end that stays counts for half (Illinois); where that leads nowhere, the middle.
+    """
+    left, right = low, high
+    at_left, at_right = np.full_like(low, np.nan), np.full_like(low, np.nan)
+    point, stayed = left + (right - left) / 2, np.zeros_like(low)
+    for _ in range(HALVINGS):
+        here = value(point)
+        behind = here > 0
+        at_left, at_right = (
+            np.where(behind, np.where(stayed < 0, at_left / 2, at_left), here),
+            np.where(behind, here, np.where(stayed > 0, at_right / 2, at_right)),
+        )
+        stayed = np.where(behind, -1.0, 1.0)
+        left, right = np.where(behind, left, point), np.where(behind, point, right)
+        before, middle = point, left + (right - left) / 2
+        point = right - at_right * (right - left) / (at_right - at_left)
+        point = np.where((point > left) & (point < right), point, middle)
+        if (np.abs(point - before) <= SETTLED * np.abs(point)).all():
+            break
+    ahead = point + APART * (np.where(high - point > point - low, high, low) - point)
+    return point, (value(ahead) - value(point)) / (ahead - point)
+
+
+def _certain(at: Any, centre: Any, ends: Any, sign: Any, share: Any) -> Any:
+    """The nearest points between the centre and each end where the equation certainly has a sign."""
+    # The distance is doubled until the sign is certain, then halved back.
+    near, far = np.zeros_like(share), np.ones_like(share)
+    found = np.zeros(share.shape, dtype=bool)
+
+    def certain(share: Any) -> Any:
+        return np.stack([at(point).sign for point in centre + share * (ends - centre)]) == sign
+
+    for _ in range(53):
+        held = certain(share)
+        far = np.where(held & ~found, share, far)
+        near = np.where(held | found, near, share)
+        found |= held
+        if (found | (share >= 1)).all():
+            break
+        share = np.minimum(2 * share, 1.0)
+    for _ in range(6):
+        middle = (near + far) / 2
+        held = certain(middle)
+        near, far = np.where(held, near, middle), np.where(held, middle, far)
+    # Where it is never certain, the end itself bounds the root.
+    return np.where(found, centre + far * (ends - centre), ends)
 
 
 def slope_kernels(made: Conditions) -> dict[str, Kernel]:
