@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from .agreement import Agreement
     from .inputs import Inputs, PublishedValue
     from .result import Comparison, Report
-    from .verdict import TableVerdict
 
 __all__ = [
     "ENGINES",
@@ -176,20 +175,19 @@ def of_referee(report: Report) -> tuple[Check, ...]:
     if found.joint is None:
         return ()
     at, known = _report_toml(report.inputs), {v.source for v in report.inputs.published if v.expect}
-    tables = [_of_table(table, table.source, table.source in known, at) for table in found.tables]
-    said = "; ".join((words.together(found.joint), *words.perhaps(found.explanations, found.joint)))
-    tables.append(Check("table", TOGETHER, bool(known) or found.joint.possible, said, at))
+    tables = [
+        Check("table", t.source, found.as_printed or t.possible or t.source in known, words.together(t), at)
+        for t in found.tables
+    ]
+    said = "; ".join((words.together(found.joint), *words.why(found)))
+    tables.append(Check("table", TOGETHER, bool(known) or found.as_printed, said, at))
     if found.amended is None:
         return tuple(tables)
     if found.joint.possible:
         nothing = "all values come out as it is; drop the known misprints"
         return (*tables, Check("table", MISPRINTS, False, nothing, at))
-    said = "; ".join((words.amended(found), *words.perhaps(found.misprints, found.amended)))
+    said = "; ".join((words.amended(found), *words.perhaps(found.misprints)))
     return (*tables, Check("table", MISPRINTS, found.amended.possible, said, at))
-
-
-def _of_table(table: TableVerdict, name: str, known: bool, at: Location) -> Check:
-    return Check("table", name, known or table.possible, words.together(table), at)
 
 
 def of_diagnostics(diagnostics: Iterable[Diagnostic]) -> tuple[Check, ...]:

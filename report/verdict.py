@@ -34,6 +34,7 @@ __all__ = [
     "Referee",
     "Relabelled",
     "TableVerdict",
+    "Tried",
     "Verdict",
     "Witness",
 ]
@@ -173,8 +174,10 @@ class Change:
     Parameters
     ----------
     kind : str
-        ``misprint`` (one cell), ``truncated`` (a column was cut, not rounded), ``label`` (two numbers stand
-        in each other's place, or a row holds another column) or ``order`` (a list stands in another order).
+        ``printed`` (computed from rounded, printed numbers), ``parameter`` (a convention is another),
+        ``misprint`` (one cell has other digits), ``truncated`` (a column was cut, not rounded), ``unit`` (off
+        by a power of ten), ``rows`` (a mean over other rows), ``label`` (two numbers stand in each other's
+        place, or a row holds another column) or ``order`` (a list stands in another order).
     cell : str
         The column.
     index : tuple of int
@@ -189,6 +192,10 @@ class Change:
         Other ways that it could stand.
     other : tuple of int
         The other row, of two that have changed places.
+    span : tuple of str
+        The first and the last way that it could stand, where not all of them are listed.
+    power : int
+        The power of ten that a unit is off by.
     count : int
         How many printed numbers change; a manner of printing that holds for a column counts as one.
     """
@@ -201,6 +208,8 @@ class Change:
     would_print: str
     also: tuple[str, ...] = ()
     other: tuple[int, ...] = ()
+    span: tuple[str, ...] = ()
+    power: int = 0
     count: int = 1
 
 
@@ -231,8 +240,32 @@ class Explanation:
 
     @property
     def count(self) -> int:
-        """How many printed numbers change."""
+        """How many printed numbers change; none, where only what is not printed is otherwise."""
         return sum(change.count for change in self.changes)
+
+    @property
+    def as_printed(self) -> bool:
+        """Whether everything stands as it is, and some of it was only computed from rounded numbers."""
+        return all(change.kind == "printed" for change in self.changes)
+
+
+@dataclass(frozen=True)
+class Tried:
+    """How many changes of the print were tried, and what became of them.
+
+    Parameters
+    ----------
+    explaining : int
+        With these everything published comes out.
+    excluded : int
+        It is certain that these explain nothing.
+    open : int
+        These were searched for in vain, and it is not certain that they explain nothing.
+    """
+
+    explaining: int
+    excluded: int
+    open: int
 
 
 @dataclass(frozen=True)
@@ -301,6 +334,8 @@ class Referee:
         All of them together; None where nothing is published.
     explanations : tuple of Explanation
         Those that change least come first; none where nothing needs one.
+    tried : Tried or None
+        Of what these were found; None where nothing needs one.
     labels : tuple of Relabelled
         Rows whose printed names cannot be right.
     fits : tuple of Fit
@@ -318,12 +353,20 @@ class Referee:
     tables: tuple[TableVerdict, ...] = ()
     joint: TableVerdict | None = None
     explanations: tuple[Explanation, ...] = ()
+    tried: Tried | None = None
     labels: tuple[Relabelled, ...] = ()
     fits: tuple[Fit, ...] = ()
     free: tuple[str, ...] = ()
     errata: tuple[Change, ...] = ()
     amended: TableVerdict | None = None
     misprints: tuple[Explanation, ...] = ()
+
+    @property
+    def as_printed(self) -> bool:
+        """Whether everything published comes out of what is printed, if by way of rounded numbers."""
+        if self.joint is None:
+            return False
+        return self.joint.possible or (bool(self.explanations) and self.explanations[0].as_printed)
 
     @property
     def asked_why(self) -> bool:

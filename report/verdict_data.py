@@ -47,6 +47,12 @@ def data(found: Referee) -> dict[str, Any]:
     return {
         "tables": [_table(table) for table in found.tables],
         "joint": found.joint and _table(found.joint),
+        "tried": found.tried
+        and {
+            "explaining": found.tried.explaining,
+            "excluded": found.tried.excluded,
+            "open": found.tried.open,
+        },
         "explanations": [*map(_explanation, found.explanations), *map(_relabelled, found.labels)],
         "fits": [_fit(fit) for fit in found.fits],
         "free": list(found.free),

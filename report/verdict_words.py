@@ -27,6 +27,7 @@ from .verdict import (
     Referee,
     Relabelled,
     TableVerdict,
+    Tried,
     Verdict,
 )
 
@@ -46,6 +47,7 @@ __all__ = [
     "explained",
     "fit",
     "follows",
+    "headline",
     "joined",
     "lines",
     "mismatch",
@@ -55,6 +57,8 @@ __all__ = [
     "suggested",
     "together",
     "told",
+    "tried",
+    "why",
 ]
 
 CALLED = {
@@ -72,12 +76,17 @@ POSSIBLE = {
     "truncated": "possible truncation",
     "label": "possible confusion",
     "order": "possible disorder",
+    "unit": "possible unit",
+    "rows": "possible rows",
+    "parameter": "possible convention",
+    "printed": "possible rounding",
 }
 """What a change would be, were it the right one."""
 
 NOTHING_EXPLAINS = (
     "no small change of what is printed was found with which everything published comes out: no misprinted "
-    "number, no truncated column, no exchanged or disordered rows"
+    "number or two, no truncated column, no unit off by a power of ten, no mean over other rows, nothing "
+    "exchanged or in another order, nothing computed from rounded numbers, no other convention"
 )
 
 _MOST_PLACES = 16
@@ -220,18 +229,50 @@ def explained(found: Explanation) -> str:
 
 def name(found: Explanation) -> str:
     """What a known difference that rests on it calls it: ``misprint x_p[2]``, ``order x_m (Table 3)``."""
-    return " and ".join(
-        f"{change.kind} {address(change.cell, change.index)}"
-        + ("" if change.source == INPUT else f" ({change.source})")
-        for change in found.changes
+    return " and ".join(map(_name, found.changes))
+
+
+def _name(change: Change) -> str:
+    where = "" if change.source == INPUT else f"({change.source})"
+    return " ".join(filter(None, (change.kind, address(change.cell, change.index), where)))
+
+
+def perhaps(explanations: Sequence[Explanation]) -> tuple[str, ...]:
+    """What would explain that values do not come out together, or that nothing does."""
+    return tuple(f"perhaps {explained(each)}" for each in explanations) or (NOTHING_EXPLAINS,)
+
+
+def why(found: Referee) -> tuple[str, ...]:
+    """The same for all published values, and how certain that is; nothing where none is asked for."""
+    if not found.asked_why:
+        return ()
+    return (*perhaps(found.explanations), *([tried(found.tried)] if found.tried is not None else []))
+
+
+def tried(found: Tried) -> str:
+    """How many changes were tried, and what became of them."""
+    number = found.explaining + found.excluded + found.open
+    return (
+        f"{number} changes were tried: {found.explaining} explain it, {found.excluded} certainly do not, "
+        f"{found.open} were searched for in vain, which is not certain"
     )
 
 
-def perhaps(explanations: Sequence[Explanation], of: TableVerdict) -> tuple[str, ...]:
-    """What would explain that values do not come out together, or that nothing does."""
-    if of.possible:
-        return ()
-    return tuple(f"perhaps {explained(each)}" for each in explanations) or (NOTHING_EXPLAINS,)
+def headline(explanations: Sequence[Explanation]) -> str:
+    """What is said above explanations."""
+    with_which = "that was found with which everything published comes out"
+    if explanations[0].as_printed:
+        first = "nothing that is printed needs to be otherwise: it matters only what it was computed from"
+    elif len(explanations) == 1:
+        first = f"this is the smallest change of what is printed {with_which}"
+    else:
+        first = f"these are the smallest changes of what is printed {with_which.replace('was', 'were')}"
+    several = (
+        " They are equally good: the digits alone cannot decide between them."
+        if len(explanations) > 1
+        else ""
+    )
+    return f"{first}.{several} Nobody is accused"
 
 
 def follows(found: Explanation) -> str:
@@ -244,19 +285,34 @@ def follows(found: Explanation) -> str:
 def claimed(change: Change) -> str:
     """What is claimed of something printed."""
     cell, of = address(change.cell, change.index), "" if change.source == INPUT else f" of {change.source}"
+    printed, would = change.printed, change.would_print
     match change.kind:
+        case "printed":
+            which = f"{cell}{of}" if change.cell else change.source
+            return f"{which} was computed from the printed, rounded {would}"
+        case "parameter":
+            return f"{cell} was {would}{_or(change)}, not {printed}"
         case "truncated":
-            return f"{cell}{of} was {change.would_print}, not {change.printed}"
+            return f"{cell}{of} was {would}, not {printed}"
+        case "unit" if not change.index:
+            return f"the numbers of {cell}{of} are to be multiplied by 1e{change.power}"
+        case "rows":
+            return f"{cell}{of} was taken {would}{_or(change)}"
         case "order":
-            return f"{cell}{of} stands in another order, {change.would_print}"
+            return f"{cell}{of} stands in another order, {would}"
         case "label" if change.index:
             other = address(change.cell, change.other)
-            texts = f"{change.printed} and {change.would_print}"
-            return f"{cell} and {other}{of} stand in each other's place ({texts})"
+            return f"{cell} and {other}{of} stand in each other's place ({printed} and {would})"
         case "label":
-            return f"{cell}{of} is {change.would_print}"
-    also = f" (or {', '.join(change.also)})" if change.also else ""
-    return f"{cell}{of} is printed {change.printed} for {change.would_print}{also}"
+            return f"{cell}{of} is {would}"
+    return f"{cell}{of} is printed {printed} for {would}{_or(change)}"
+
+
+def _or(change: Change) -> str:
+    """The other ways in which it could stand."""
+    if change.span:
+        return f" (or {', '.join(change.also)}; anything from {change.span[0]} to {change.span[1]})"
+    return f" (or {', '.join(change.also)})" if change.also else ""
 
 
 def suggested(found: Explanation) -> str:
@@ -266,17 +322,21 @@ def suggested(found: Explanation) -> str:
 
 
 def _suggested(change: Change) -> str:
-    would = " or ".join((change.would_print, *change.also))
+    printed, would = change.printed, " or ".join((change.would_print, *change.also))
     match change.kind:
-        case "truncated":
-            return f"may have been {would}, not {change.printed}"
+        case "truncated" | "parameter":
+            return f"may have been {would}, not {printed}"
+        case "unit" if not change.index:
+            return f"may have to be multiplied by 1e{change.power}"
+        case "rows":
+            return f"may have been taken {would}"
         case "order":
             return f"may belong in the order {would}"
         case "label" if change.index:
-            return f"{change.printed} and {would} may have changed places"
+            return f"{printed} and {would} may have changed places"
         case "label":
             return f"may be {would}"
-    return f"{change.printed} may have to read {would}"
+    return f"{printed} may have to read {would}"
 
 
 def relabelled(label: Relabelled) -> str:
@@ -318,7 +378,7 @@ def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
         return
     for table in (*found.tables, found.joint):
         yield f"referee    {together(table)}"
-    for said in perhaps(found.explanations, found.joint):
+    for said in why(found):
         yield f"  {said}"
     for label in found.labels:
         yield f"  label    {relabelled(label)}"
@@ -326,7 +386,7 @@ def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
         yield f"  fit      {fit(each, meaning)}"
     if found.amended is not None:
         yield f"  amended  {amended(found)}"
-        for said in perhaps(found.misprints, found.amended):
+        for said in () if found.amended.possible else perhaps(found.misprints):
             yield f"  {said}"
 
 

@@ -46,8 +46,8 @@ class Sizes:
 
 
 FEW = Sizes(
-    honest=10,
-    forged=3,
+    honest=6,
+    forged=1,
     engines={2: 50, 3: 30, 4: 16, 5: 8, 6: 4, 7: 3, 8: 3, 9: 3, 10: 3, 11: 3, 12: 3},
     of_each_code=100,
     broken=50,
@@ -55,8 +55,8 @@ FEW = Sizes(
     page_mutants=4,
 )
 ALL = Sizes(
-    honest=200,
-    forged=40,
+    honest=60,
+    forged=10,
     engines={2: 800, 3: 500, 4: 280, 5: 140, 6: 72, 7: 48, 8: 36, 9: 36, 10: 36, 11: 36, 12: 36},
     of_each_code=5000,
     broken=1000,

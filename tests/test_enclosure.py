@@ -15,9 +15,10 @@ from loopsheet.derivations.reductions import Median
 from loopsheet.report import build
 from loopsheet.report.analysis.enclosure import Enclosure, slope_kernels
 from loopsheet.report.analysis.intervals import Intervals
+from loopsheet.report.analysis.referee.campaign import Campaign
 from loopsheet.report.analysis.referee.certificate import Certificate
 from loopsheet.report.analysis.referee.minimax import best
-from loopsheet.report.analysis.referee.problem import Campaign, Problem
+from loopsheet.report.analysis.referee.problem import Problem
 from loopsheet.report.conditions import conditions
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
@@ -33,7 +34,7 @@ def campaign() -> Campaign:
 
 
 def table(campaign: Campaign, *sources: str, tied: tuple[str, ...] = ()) -> Problem:
-    return campaign.problem([p for p in campaign.inputs.published if p.source in sources], tied)
+    return Problem.of(campaign, [p for p in campaign.inputs.published if p.source in sources], tied)
 
 
 def samples(problem: Problem, number: int) -> np.ndarray:

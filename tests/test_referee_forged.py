@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 from itertools import count, islice
-from math import ceil
 
 import pytest
 from campaign_sizes import Sizes
-from forged_campaigns import FORGERS, accused, judged
+from forged_campaigns import FIRST, FORGERS, UNSEEN, accused, judged
 
 pytestmark = pytest.mark.campaigns
 
@@ -29,29 +28,30 @@ def said(sizes: Sizes) -> Callable[[int], list[tuple[int, str]]]:
     @cache
     def said(kind: int) -> list[tuple[int, str]]:
         every = ((number, judged(kind, sizes.seed, number)) for number in count())
-        return list(islice((each for each in every if each[1] != "reachable"), sizes.forged))
+        return list(islice((each for each in every if each[1] not in UNSEEN), sizes.forged))
 
     return said
 
 
-def missed(found: list[tuple[int, str]]) -> list[str]:
-    return [verdict for _, verdict in found if verdict != "named"]
-
-
 @pytest.mark.parametrize("kind", range(len(FORGERS)), ids=[forger.__name__ for forger in FORGERS])
-def test_nine_forgeries_of_ten_are_named(
+def test_four_forgeries_of_five_are_named(
     said: Callable[[int], list[tuple[int, str]]], sizes: Sizes, summary: Say, kind: int
 ) -> None:
+    """Of each kind, the first of those that explain it or another."""
     found = said(kind)
+    missed = [verdict for _, verdict in found if verdict.startswith("missed")]
+    first = sum(verdict == FIRST for _, verdict in found)
     summary(
-        f"forged papers, {FORGERS[kind].__name__}: {len(found) - len(missed(found))} of {len(found)} named, "
-        f"{found[-1][0] + 1 - len(found)} more that their digits allow"
+        f"forged papers, {FORGERS[kind].__name__}: {first} of {len(found)} named first, {len(missed)} "
+        f"missed, {found[-1][0] + 1 - len(found)} more that their digits allow"
     )
-    assert len(missed(found)) <= ceil(sizes.forged / 10), missed(found)
+    assert len(missed) <= sizes.forged // 5, missed
 
 
-def test_nineteen_forgeries_of_twenty_are_named(
-    said: Callable[[int], list[tuple[int, str]]], sizes: Sizes
+def test_nineteen_forgeries_of_twenty_are_named_first(
+    said: Callable[[int], list[tuple[int, str]]], sizes: Sizes, summary: Say
 ) -> None:
-    of_all = [each for kind in range(len(FORGERS)) for each in missed(said(kind))]
-    assert len(of_all) <= ceil(sizes.forged * len(FORGERS) / 20), of_all
+    every = [verdict for kind in range(len(FORGERS)) for _, verdict in said(kind)]
+    others = [verdict for verdict in every if verdict != FIRST]
+    summary(f"forged papers: {len(every) - len(others)} of {len(every)} named first")
+    assert len(others) <= len(every) // 20, others

@@ -286,6 +286,16 @@ class Refereed:
         return words.NOTHING_EXPLAINS
 
     @property
+    def headline(self) -> str:
+        """What is said above explanations."""
+        return words.headline(self.found.explanations)
+
+    @property
+    def tried(self) -> str:
+        """How many changes were tried; empty if none were."""
+        return "" if self.found.tried is None else words.tried(self.found.tried)
+
+    @property
     def explanations(self) -> tuple[str, ...]:
         """What would explain that not everything comes out."""
         return tuple(map(words.explained, self.found.explanations))
@@ -376,6 +386,8 @@ class Refereed:
     def _possible(self) -> Iterable[Finding]:
         for each in self.found.explanations:
             first, then = each.first, words.follows(each)
+            if each.as_printed:
+                continue  # nothing that is printed needs to be otherwise
             source = "" if first.source == INPUT else first.source
             kind, finding = words.POSSIBLE[first.kind], words.suggested(each)
             yield Finding("", kind, finding, then, source, first.cell, first.index)

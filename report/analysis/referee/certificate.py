@@ -2,108 +2,148 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...conditions import conditions
-from ...layout import Layout
 from ...sheet import SheetError
 from ..enclosure import Enclosure, slope_kernels
 from ..intervals import Intervals
-from .problem import Array, Problem
+from .campaign import Array
+from .problem import Box, Problem
 
-__all__ = ["Certificate"]
+__all__ = ["Certificate", "excluded"]
 
 MOST = 1 << 24
 """Derivatives that are kept at once; of a larger campaign nothing is made certain."""
 
 
-@dataclass(frozen=True)
-class Certificate:
-    """Bounds that hold for every input in a problem's box.
+class _Enclosed:
+    """The cells of a problem's sheet over a box, whatever was published.
 
     Parameters
     ----------
     problem : Problem
+    box : Box
+    """
+
+    def __init__(self, problem: Problem, box: Box) -> None:
+        self.problem, self.box = problem, box
+
+    @cached_property
+    def over_box(self) -> Enclosure:
+        return _enclosure(self.problem, self.box.low, self.box.high)
+
+    @cached_property
+    def point(self) -> Array:
+        """The middle of the box; what is free is best looked at where the others put it."""
+        box = self.box
+        with np.errstate(over="ignore"):
+            middle = np.clip(box.low / 2 + box.high / 2, box.low, box.high)
+        wide = np.array([unknown.printed is None for unknown in self.problem.unknowns], dtype=bool)
+        return np.where(wide, np.clip(box.start, box.low, box.high), middle)
+
+    @cached_property
+    def at_point(self) -> Enclosure:
+        return _enclosure(self.problem, self.point, self.point)
+
+    @cached_property
+    def offsets(self) -> Intervals:
+        middle = Intervals(self.point, self.point)
+        return Intervals.near(self.box.low, self.box.high) - middle  # type: ignore[no-any-return]
+
+    @cached_property
+    def slopes(self) -> dict[str, Intervals]:
+        """Derivatives (rows, unknowns) of every column over the box."""
+        problem = self.problem
+        if problem.size * len(problem.unknowns) > MOST:
+            raise _TooLarge
+        known, key = problem.campaign.made.derivatives, id(problem.program)  # the campaign keeps its programs
+        if key not in known:
+            made = conditions(problem.sheet)
+            known[key] = made, slope_kernels(made)
+        made, kernels = known[key]
+        sources = {name: np.array(rows) for name, rows in problem.rows.items()}
+        return self.over_box.derivatives(made, kernels, sources)
+
+
+def _enclosure(problem: Problem, low: Array, high: Array) -> Enclosure:
+    """The cells for given cells (..., unknowns) in intervals."""
+    data = {
+        name: Intervals.of(np.atleast_1d(np.asarray(value, dtype=np.float64)))
+        for name, value in problem.data(low).items()
+        if name not in problem.rows
+    }
+    data |= {name: Intervals.near(low[..., rows], high[..., rows]) for name, rows in problem.rows.items()}
+    return Enclosure(problem.sheet, problem.program, dict(problem.campaign.values.layouts), data)
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """Bounds that hold for every input in a box.
+
+    Parameters
+    ----------
+    problem : Problem
+    box : Box or None
+        That of the printed digits, if left out.
     """
 
     problem: Problem
+    box: Box | None = None
 
-    @property
-    def _layouts(self) -> dict[str, Layout]:
-        return dict(self.problem.campaign.values.layouts)
-
-    def _enclosed(self, low: Array, high: Array) -> Enclosure:
+    @cached_property
+    def _enclosed(self) -> _Enclosed:
+        """That of the printed digits is shared by all problems of a program, whatever was published."""
         problem = self.problem
-        data = {
-            name: Intervals.of(np.atleast_1d(np.asarray(value, dtype=np.float64)))
-            for name, value in problem.data(low).items()
-        }
-        data |= {name: Intervals.near(low[rows], high[rows]) for name, rows in problem.rows.items()}
-        return Enclosure(problem.sheet, problem.program, self._layouts, data)
+        if self.box is not None:
+            return _Enclosed(problem, self.box)
+        key, known = (id(problem.program), len(problem.unknowns)), problem.campaign.enclosed
+        if key not in known:
+            known[key] = _Enclosed(problem, problem.box)
+        return known[key]  # type: ignore[no-any-return]
 
     @cached_property
-    def _over_box(self) -> Enclosure:
-        return self._enclosed(self.problem.box.low, self.problem.box.high)
+    def _plain(self) -> NDArray[np.intp]:
+        """The published values that follow the sheet; of others nothing is known here."""
+        return np.flatnonzero([way is None for way in self.problem.ways])
 
-    @cached_property
-    def _middle(self) -> Array:
-        box = self.problem.box
-        with np.errstate(over="ignore"):
-            middle = np.clip(box.low / 2 + box.high / 2, box.low, box.high)
-        # What is free is best looked at where the others put it.
-        wide = np.array([unknown.printed is None for unknown in self.problem.unknowns], dtype=bool)
-        return np.where(wide, box.start, middle)
+    def _of_published(self, found: Any) -> Intervals:
+        """What holds of columns, for the published cells."""
+        places = [self.problem.places[n] for n in self._plain]
+        return Intervals(
+            *(np.array([getattr(found[name], end)[row] for name, row in places]) for end in ("low", "high"))
+        )
 
     @cached_property
     def _cells(self) -> tuple[Intervals, Intervals]:
-        """The published cells over the box, and in its middle."""
-        places = self.problem.places
-        return tuple(  # type: ignore[return-value]
-            Intervals(*(np.array([getattr(found.value[name], end)[row] for name, row in places])
-                        for end in ("low", "high")))
-            for found in (self._over_box, self._enclosed(self._middle, self._middle))
-        )  # fmt: skip
+        """The published cells over the box, and at a point of it."""
+        enclosed = self._enclosed
+        return self._of_published(enclosed.over_box.value), self._of_published(enclosed.at_point.value)
 
     @cached_property
     def _slopes(self) -> Intervals:
         """Derivatives (published, unknowns) over the box."""
-        problem = self.problem
-        if problem.size * len(problem.unknowns) > MOST:
-            raise _TooLarge
-        known = problem.campaign.derivatives
-        if id(problem.program) not in known:  # the campaign keeps its programs
-            made = conditions(problem.sheet)
-            known[id(problem.program)] = made, slope_kernels(made)
-        made, kernels = known[id(problem.program)]
-        sources = {name: np.array(rows) for name, rows in problem.rows.items()}
-        found = self._over_box.derivatives(made, kernels, sources)
-        ends = (
-            np.array([getattr(found[name], end)[row] for name, row in problem.places])
-            for end in ("low", "high")
-        )
-        return Intervals(*ends)
-
-    @cached_property
-    def _offsets(self) -> Intervals:
-        box = self.problem.box
-        middle = Intervals(self._middle, self._middle)
-        return Intervals.near(box.low, box.high) - middle  # type: ignore[no-any-return]
+        return self._of_published(self._enclosed.slopes)
 
     @cached_property
     def bounds(self) -> Intervals:
         """What no input in the box can leave, for each published cell in SI; infinite if not known."""
+        nothing = np.full(len(self.problem.published), np.inf)
+        low, high = -nothing, nothing.copy()
         try:
             over, middle = self._cells
-            mean_value = middle + (self._slopes * self._offsets).total(axis=1, keepdims=False)
-            found: Intervals = over.within(mean_value)
+            mean_value = middle + (self._slopes * self._enclosed.offsets).total(axis=1, keepdims=False)
+            found = over.within(mean_value)
+            low[self._plain], high[self._plain] = found.low, found.high
         except _NOT_POSSIBLE:
-            nothing = np.full(len(self.problem.published), np.inf)
-            return Intervals(-nothing, nothing)
-        return found
+            pass
+        return Intervals(low, high)
 
     def at_least(self, weights: Array) -> float:
         """What the worst mismatch is at least, for every input in the box.
@@ -116,23 +156,42 @@ class Certificate:
         weights : float array (published,)
             Best those of the linear program that could not do better.
         """
-        which = np.flatnonzero(np.abs(weights) > 1e-9)
+        own = weights[self._plain]
+        which = np.flatnonzero(np.abs(own) > 1e-9)
         if not which.size:
             return 0.0
         try:
             cells, slopes = self._cells[1][which], self._slopes[which]
         except _NOT_POSSIBLE:
             return 0.0
-        own = weights[which]
+        own = own[which]
         half, centre = (
-            Intervals.near(ends, ends)[which] for ends in (self.problem.half, self.problem.centre)
+            Intervals.near(ends, ends)[self._plain[which]]
+            for ends in (self.problem.half, self.problem.centre)
         )
         share = Intervals.of(own / np.abs(own).sum()) / half
         with np.errstate(all="ignore"):
             at_middle = (share * (cells - centre)).total(keepdims=False)
             along = (share[:, None] * slopes).total(axis=0, keepdims=False)
-            bound = at_middle + (along * self._offsets).total(keepdims=False)
+            bound = at_middle + (along * self._enclosed.offsets).total(keepdims=False)
         return max(0.0, float(bound.low), float(-bound.high))
+
+
+def excluded(problem: Problem, boxes: Sequence[Box]) -> NDArray[np.bool_]:
+    """In which boxes certainly no input yields every value, each looked at by itself."""
+    out = np.zeros(len(boxes), dtype=bool)
+    try:
+        low, high = (np.stack([getattr(box, end) for box in boxes]) for end in ("low", "high"))
+        found = _enclosure(problem, low, high).value
+    except _NOT_POSSIBLE:
+        return out
+    for value, (name, row), way in zip(problem.published, problem.places, problem.ways, strict=True):
+        if way is None:
+            least, largest = (float(end) for end in value.printed.interval)
+            least, largest = np.nextafter(least, -np.inf), np.nextafter(largest, np.inf)
+            cell = found[name][..., row].broadcast((len(boxes),))
+            out |= (cell.high < least) | (cell.low > largest)
+    return out
 
 
 class _TooLarge(Exception):

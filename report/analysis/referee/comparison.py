@@ -110,7 +110,8 @@ def _refereed(comparison: Comparison, verdict: Verdict, found: Referee) -> str:
     """What is not as expected: the referee excuses what is reachable, and knows what explains the rest."""
     published = comparison.published
     if not published.expect:
-        return "" if verdict.verdict in (EXACT, REACHABLE, WITHIN) else UNEXPECTED
+        possible = verdict.verdict in (EXACT, REACHABLE, WITHIN) or found.as_printed
+        return "" if possible else UNEXPECTED
     if comparison.finding:
         return comparison.finding
     own = (published.source, published.cell, published.index)

@@ -26,17 +26,22 @@ from ...verdict import (
     Referee,
     Relabelled,
     TableVerdict,
+    Tried,
     Verdict,
 )
+from .campaign import Campaign
 from .certificate import Certificate
 from .comparison import prints_same
 from .explain import Explained, explanations
 from .labels import fits, labels
-from .minimax import Best, best
-from .problem import Campaign, Problem
+from .minimax import Best, meet
+from .problem import Problem
 from .values import verdicts
 
 __all__ = ["referee"]
+
+MORE = 1.01
+"""How much more certain a table must make it than all tables together, to be named."""
 
 
 def referee(
@@ -70,7 +75,7 @@ def referee(
     ]
     if not checkable:
         return Referee(alone, free=inputs.free)
-    whole = campaign.problem(checkable)
+    whole = Problem.of(campaign, checkable)
     certificate = Certificate(whole)
     tables = []
     for source in dict.fromkeys(value.source for value in published):
@@ -85,25 +90,26 @@ def referee(
     if joint.mismatch is None:
         return Referee(alone, tuple(tables), joint, free=inputs.free)
     explained: tuple[Explained, ...] = ()
+    tried: Tried | None = None
     if len(checkable) < len(published):
         # What was published once had a value: a change must give it one.
-        whole = campaign.problem(published)
-        found = best(whole)
+        whole = Problem.of(campaign, published)
+        found = meet(whole)
     if found.mismatch > 1:
         step("refereeing what would explain the difference")
-        explained = explanations(whole, found)
+        explained, tried = explanations(whole)
     first = explained[0] if explained else None
     workbook = inputs.workbook
     fit: tuple[Fit, ...] = ()
     named: tuple[Relabelled, ...] = ()
     if first is not None or found.mismatch <= 1:
         step("refereeing names of rows and fits")
-        named = labels(campaign, whole, workbook.ledger(), first)
-        fit = fits(campaign, whole, workbook.fits, first)
+        named = labels(whole, workbook.ledger(), first)
+        fit = fits(whole, workbook.fits, first)
     amended, misprints = _amended(campaign, step) if inputs.errata else (None, ())
     return Referee(
-        alone, tuple(tables), joint, tuple(each.explanation for each in explained), named, fit, inputs.free,
-        _known(inputs), amended, misprints,
+        alone, tuple(tables), joint, tuple(each.explanation for each in explained), tried, named, fit,
+        inputs.free, _known(inputs), amended, misprints,
     )  # fmt: skip
 
 
@@ -119,10 +125,10 @@ def _amended(campaign: Campaign, step: Callable[[str], None]) -> tuple[TableVerd
     """Whether everything comes out once the known misprints are put right, and if not, what else is wrong."""
     step("refereeing with the known misprints put right")
     inputs = campaign.inputs.amended
-    problem = replace(campaign, inputs=inputs).problem(inputs.published)
+    problem = Problem.of(replace(campaign, inputs=inputs), inputs.published)
     which = list(range(len(problem.published)))
     verdict, found = _together(ALL, problem, which, Certificate(problem), (), ())
-    misprints = explanations(problem, found) if found.mismatch > 1 else ()
+    misprints = explanations(problem)[0] if found.mismatch > 1 else ()
     return verdict, tuple(each.explanation for each in misprints)
 
 
@@ -137,7 +143,7 @@ def _together(
 ) -> tuple[TableVerdict, Best]:
     """Whether some of the values come out of one input."""
     problem = whole.only(which)
-    found = best(problem)
+    found = meet(problem)
     if not np.isfinite(found.mismatch):
         return TableVerdict(source, len(which), NOT_CHECKABLE), found
     exact = all(
@@ -161,7 +167,7 @@ def _together(
         weights[list(which)] = found.weights
         at_least = certificate.at_least(weights)
         for part in parts:
-            if (part.at_least or 0) > at_least:
+            if (part.at_least or 0) > MORE * at_least:
                 at_least, because = part.at_least or 0, part.source
         word = UNREACHABLE if at_least > 1 or out else NOT_FOUND
     verdict = TableVerdict(

@@ -12,7 +12,7 @@ from ...verdict import Fit, Relabelled
 from ...verdict_words import mismatch as in_words
 from .explain import Explained
 from .minimax import best
-from .problem import Box, Campaign, Problem
+from .problem import Box, Problem
 
 __all__ = ["fits", "labels", "numbers_of"]
 
@@ -42,48 +42,44 @@ def numbers_of(column: Column, ledger: Ledger) -> set[str]:
     return {number for p in premises if not p.own for number in (p.number, p.label)}
 
 
-def labels(
-    campaign: Campaign, problem: Problem, ledger: Ledger, first: Explained | None
-) -> tuple[Relabelled, ...]:
+def labels(problem: Problem, ledger: Ledger, first: Explained | None) -> tuple[Relabelled, ...]:
     """Find rows that are printed under the number of an equation they cannot come from.
 
     Parameters
     ----------
-    campaign : Campaign
     problem : Problem
         All published values.
     ledger : Ledger
     first : Explained or None
         The change with which all values come out, if they need one.
     """
-    return tuple(_labels(campaign, problem, ledger, first))
+    return tuple(_labels(problem, ledger, first))
 
 
-def _labels(
-    campaign: Campaign, problem: Problem, ledger: Ledger, first: Explained | None
-) -> Iterator[Relabelled]:
+def _labels(problem: Problem, ledger: Ledger, first: Explained | None) -> Iterator[Relabelled]:
+    sheet = problem.campaign.sheet
     groups: dict[tuple[str, str, str], list[int]] = {}
     for n, value in enumerate(problem.published):
         found = _NUMBER.search(value.label)
         if found is not None:
             groups.setdefault((value.source, value.cell, f"({found[1]})"), []).append(n)
     for (source, cell, number), members in groups.items():
-        column = campaign.sheet[cell]
+        column = sheet[cell]
         own = numbers_of(column, ledger)
         if number in own or not own:
             continue
-        named = [other for other in campaign.sheet.columns if number in numbers_of(other, ledger)]
+        named = [other for other in sheet.columns if number in numbers_of(other, ledger)]
         fitting = [other for other in named if _alike(other, column)]
-        mismatch = {cell: _as(campaign, problem, members, cell, first)}
+        mismatch = {cell: _as(problem, members, cell, first)}
         rivals = [
-            other.name for other in campaign.sheet.columns
+            other.name for other in sheet.columns
             if other.name != cell and _alike(other, column) and numbers_of(other, ledger)
         ]  # fmt: skip
-        mismatch |= {name: _as(campaign, problem, members, name, first) for name in rivals}
+        mismatch |= {name: _as(problem, members, name, first) for name in rivals}
         would = min(mismatch, key=lambda name: mismatch[name])
         if mismatch[would] > 1 or (would in {f.name for f in fitting}):
             continue
-        right = next(iter(sorted(numbers_of(campaign.sheet[would], ledger))))
+        right = next(iter(sorted(numbers_of(sheet[would], ledger))))
         gives = tuple((other.name, other.unit) for other in named if not fitting)
         wanted = column.meaning.split(",")[0], column.unit
         others = {name: off for name, off in mismatch.items() if name != would}
@@ -94,14 +90,9 @@ def _alike(one: Column, other: Column) -> bool:
     return one.axis == other.axis and one.unit == other.unit
 
 
-def _as(
-    campaign: Campaign, problem: Problem, members: Sequence[int], cell: str, first: Explained | None
-) -> float:
+def _as(problem: Problem, members: Sequence[int], cell: str, first: Explained | None) -> float:
     """The worst mismatch of all values if some were those of another column."""
-    published = first.problem.published if first is not None else problem.published
-    asked = campaign.problem(
-        [replace(value, cell=cell) if n in members else value for n, value in enumerate(published)]
-    )
+    asked = (problem if first is None else first.problem).renamed(members, cell)
     return best(asked, _like(asked, first)).mismatch
 
 
@@ -118,16 +109,13 @@ def _like(problem: Problem, first: Explained | None) -> Box | None:
     return box
 
 
-def fits(
-    campaign: Campaign, problem: Problem, names: Sequence[str], first: Explained | None
-) -> tuple[Fit, ...]:
+def fits(problem: Problem, names: Sequence[str], first: Explained | None) -> tuple[Fit, ...]:
     """Tell which of the workbook's averages and fits each published one is.
 
     Each is asked for together with the published values that it is computed from.
 
     Parameters
     ----------
-    campaign : Campaign
     problem : Problem
         All published values.
     names : sequence of str
@@ -135,22 +123,20 @@ def fits(
     first : Explained or None
         The change with which all values come out, if they need one.
     """
-    found = []
-    sheet = campaign.sheet
+    found, whole = [], problem if first is None else first.problem
+    campaign, sheet = whole.campaign, whole.campaign.sheet
     for value in problem.published:
         if value.cell not in names:
             continue
         rivals = [name for name in names if sheet[name].unit == sheet[value.cell].unit]
         behind = {a.name for name in rivals for a in sheet.ancestors(sheet[name])}
-        asked = [
-            other for other in (first.problem if first is not None else problem).published
-            if other.cell in behind and other.cell not in names
-        ]  # fmt: skip
+        asked = [other for other in whole.published if other.cell in behind and other.cell not in names]
         if len(rivals) < 2 or not asked:
             continue
         mismatch = {}
         for name in rivals:
-            own = campaign.problem([*asked, replace(value, cell=name)], campaign.free)
+            those = [*asked, replace(value, cell=name)]
+            own = Problem.of(campaign, those, campaign.free, whole.conventions)
             mismatch[name] = best(own, _like(own, first), until=PLENTY).mismatch
         # Which of two that are shown alike comes first shall not depend on their last digits.
         ranked = sorted(mismatch.items(), key=lambda item: (float(in_words(item[1])), names.index(item[0])))

@@ -7,21 +7,28 @@ never that of a linearisation.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from .problem import Array, Box, Problem
+from .campaign import Array
+from .problem import Box, Problem
 
-__all__ = ["Best", "best"]
+__all__ = ["Best", "best", "meet"]
 
-STEPS = 40
+STEPS = 100
 PATIENCE = 5
 """After how many steps that gain next to nothing a search that only has to get somewhere gives up."""
 ENOUGH = 1e-6
 """What a step must gain, in half units of the last digit."""
+WIDE = 4.0
+"""How many times its low end the high end of an interval is from which on a search counts in logarithms."""
+STARTS = 3
+"""How many other points of a box a search begins at, if the first leads nowhere."""
+SAMPLES = 128
+"""From how many points these are taken: those that are least wrong."""
 
 
 @dataclass(frozen=True)
@@ -38,12 +45,15 @@ class Best:
     weights : float array (published,)
         How much each value presses against the bound, and to which side: the multipliers of the last
         linear program, whose sizes sum to 1.
+    promised : float
+        What that program promised.
     """
 
     point: Array
     cells: Array
     mismatch: float
     weights: Array
+    promised: float = 0.0
 
     @property
     def pressing(self) -> NDArray[np.intp]:
@@ -76,24 +86,26 @@ def best(
     point = np.clip(box.start, box.low, box.high)
     cells = problem.evaluate(point[None])[0]
     worst, trust, weights = _worst(problem, cells), 1.0, np.zeros(len(cells))
-    scale = _scale(box, point)
-    moving = np.flatnonzero(scale)
-    stale, slow = slopes is not None, 0
+    counted = _Counted.of(box, point)
+    low, high, moving = counted.to(box.low), counted.to(box.high), np.flatnonzero(counted.scale)
+    stale, slow, promised = slopes is not None, 0, worst
     for _ in range(STEPS):
         if not worst > until or not np.isfinite(worst) or not moving.size:
             break
         if slopes is None:
             slopes, stale = problem.slopes(point, box), False
-        if not np.isfinite(slopes[:, moving]).all():
+        here = counted.to(point)
+        scaled = (slopes * counted.slope(point))[:, moving] / problem.half[:, None]
+        scaled[list(problem.ignored)] = 0.0
+        if not np.isfinite(scaled).all():
             break
-        scaled = slopes[:, moving] * scale[moving] / problem.half[:, None]
-        low = np.maximum((box.low - point)[moving] / scale[moving], -trust)
-        high = np.minimum((box.high - point)[moving] / scale[moving], trust)
-        step, promised, weights = _linear(scaled, problem.mismatch(cells), low, high)
+        least, most = np.maximum(low - here, -trust)[moving], np.minimum(high - here, trust)[moving]
+        step, promised, weights = _linear(scaled, problem.mismatch(cells), least, most)
         if promised > unless:
             break
-        there = point.copy()
-        there[moving] = np.clip(point[moving] + step * scale[moving], box.low[moving], box.high[moving])
+        there = here.copy()
+        there[moving] += step
+        there = np.clip(counted.back(there), box.low, box.high)
         its = problem.evaluate(there[None])[0]
         new = _worst(problem, its)
         gain, hoped = worst - new, worst - promised
@@ -112,13 +124,95 @@ def best(
         slow += worst - until > 30 * gain
         if until and slow > PATIENCE:
             break  # it would take too long to get there
-    return Best(point, cells, worst, weights)
+    return Best(point, cells, worst, weights, promised)
 
 
-def _scale(box: Box, point: Array) -> Array:
-    """What each unknown is counted in: its interval, or, if that is wide, a share of itself."""
-    found: Array = np.minimum(box.width, 0.1 * np.maximum(np.abs(point), 1e-300))
-    return np.where(box.width > 0, np.maximum(found, 1e-300), 0.0)
+@dataclass(frozen=True)
+class _Counted:
+    """The unknowns as a search counts them: in their intervals; in logarithms where these are wide.
+
+    Parameters
+    ----------
+    log : boolean array (unknowns,)
+        Which may differ by orders of magnitude.
+    scale : float array (unknowns,)
+        What a unit of each is; none for what cannot move.
+    """
+
+    log: NDArray[np.bool_]
+    scale: Array
+
+    @classmethod
+    def of(cls, box: Box, point: Array) -> _Counted:
+        """Those of a box."""
+        log = (box.low > 0) & (box.high > WIDE * box.low)
+        scale = np.minimum(box.width, 0.1 * np.maximum(np.abs(point), 1e-300))
+        scale = np.where(box.width > 0, np.maximum(scale, 1e-300), 0.0)
+        return cls(log, np.where(log, 0.1, scale))
+
+    def to(self, points: Array) -> Array:
+        """What is counted; what cannot move is nothing."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found: Array = np.where(self.log, np.log(points), points) / self.scale
+        return np.where(self.scale > 0, found, 0.0)
+
+    def back(self, counted: Array) -> Array:
+        """What stands for it."""
+        with np.errstate(over="ignore"):
+            found: Array = np.where(self.log, np.exp(counted * self.scale), counted * self.scale)
+        return found
+
+    def slope(self, points: Array) -> Array:
+        """What a unit moves, at a point."""
+        found: Array = np.where(self.log, points, 1.0) * self.scale
+        return found
+
+
+def meet(problem: Problem, box: Box | None = None, found: Best | None = None, until: float = 0.0) -> Best:
+    """Search a box for a point that yields all published values, from several starts if need be.
+
+    Parameters
+    ----------
+    problem : Problem
+    box : Box, optional
+        That of the printed digits, if left out.
+    found : Best, optional
+        From its own start, if that was sought already.
+    until : float
+        As for :func:`best`.
+
+    Returns
+    -------
+    Best
+        With a mismatch of at most 1 if one was found, else the least that was found.
+    """
+    box = box or problem.box
+    found = found or best(problem, box, until)
+    if found.mismatch <= 1:
+        return found
+    for start in _starts(problem, box):
+        again = best(problem, replace(box, start=start), until, unless=found.mismatch)
+        if again.mismatch < found.mismatch:
+            found = again
+        if found.mismatch <= 1:
+            break
+    return found
+
+
+def _starts(problem: Problem, box: Box) -> Array:
+    """Points of the box that are least wrong among some that have no order; the same for the same problem."""
+    printed = np.array([unknown.printed is not None for unknown in problem.unknowns], dtype=bool)
+    # What is looked for in a wide range has a start of its own.
+    near = printed & (box.width <= 2 * problem.box.width)
+    share = np.random.default_rng(len(problem.unknowns)).random((SAMPLES, len(box.low)))
+    points = np.where(near, box.low + share * box.width, np.clip(box.start, box.low, box.high))
+    points = np.clip(problem.restarted(points), box.low, box.high)
+    off = np.abs(problem.mismatch(problem.evaluate(points)))
+    worst = np.nan_to_num(off, nan=np.inf).max(axis=1, initial=0.0)
+    # Of those without a value somewhere, the ones with most values.
+    order = np.lexsort((worst, np.isnan(off).sum(axis=1)))
+    found: Array = points[order[:STARTS]]
+    return found
 
 
 def _worst(problem: Problem, cells: Array) -> float:

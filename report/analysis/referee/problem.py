@@ -7,8 +7,8 @@ a point of that box whose every published cell lies within the interval of its p
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -16,59 +16,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...engines.numpy import Program, evaluate
-from ...inputs import Inputs
+from ...layout import precedents
 from ...published import PublishedValue
-from ...quantity import Bounds, Printed
+from ...quantity import Printed
 from ...sheet import Given, Sheet
-from ...values import Status, Values
+from ...values import Status
 from ...verdict import Witness
+from .campaign import Array, Campaign, Unknown
+from .ways import Way
 
-__all__ = ["Box", "Campaign", "Problem", "Unknown"]
-
-Array = NDArray[np.float64]
-
-FREE = 1e15
-"""What is not printed is looked for between its recomputed value over and times so much."""
-
-
-@dataclass(frozen=True)
-class Unknown:
-    """A given cell.
-
-    Parameters
-    ----------
-    column : str
-    row : int
-    index : tuple of int
-        How the row is called.
-    printed : Printed or None
-        None for what is not printed.
-    start : float
-        Its value in SI as printed, or as recomputed.
-    allowed : Bounds
-        What it may be, whatever is printed.
-    """
-
-    column: str
-    row: int
-    index: tuple[int, ...]
-    printed: Printed | None
-    start: float
-    allowed: Bounds = field(default_factory=Bounds)
-
-    def interval(self, mode: str = "") -> tuple[float, float]:
-        """Where it may lie, in SI; under another manner of printing than was declared."""
-        if self.printed is None:
-            ends = (self.start / FREE, self.start * FREE)
-            return self.allowed.clip(min(ends), max(ends))
-        printed = replace(self.printed, mode=mode) if mode else self.printed
-        low, high = printed.interval
-        return self.allowed.clip(float(low), float(high))
-
-    def witness(self, value: float) -> Witness:
-        """A value of it, in the unit that it is printed in."""
-        scale = float(self.printed.scale) if self.printed is not None else 1.0
-        return Witness(self.column, self.index, value / scale, self.printed)
+__all__ = ["Box", "Problem"]
 
 
 @dataclass(frozen=True)
@@ -101,96 +58,6 @@ class Box:
 
 
 @dataclass(frozen=True)
-class Campaign:
-    """A report's sheet and inputs, as the referee asks them.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    inputs : Inputs
-    values : Values
-        As recomputed from what is printed.
-    data : mapping of column name to float or sequence of float
-        The given columns in SI.
-    free : tuple of str
-        Columns that the publication does not print: given or computed, they may have any value.
-    """
-
-    sheet: Sheet
-    inputs: Inputs
-    values: Values
-    data: Mapping[str, Any]
-    free: tuple[str, ...] = ()
-
-    @cached_property
-    def labels(self) -> dict[str, tuple[int, ...]]:
-        """Row numbers of the axes that come with the data."""
-        return {axis.name: self.inputs.tests for axis in self.sheet.axes if not axis.parents}
-
-    def problem(self, published: Sequence[PublishedValue], tied: Sequence[str] = ()) -> Problem:
-        """Ask for published values together.
-
-        Parameters
-        ----------
-        published : sequence of PublishedValue
-        tied : sequence of str
-            Free columns that shall follow from the others all the same.
-        """
-        cut = tuple(name for name in self.free if name not in tied)
-        program = self.program({value.cell for value in published}, cut)
-        return Problem(self, program, tuple(self._unknowns(program.sheet, cut)), tuple(published))
-
-    def program(self, wanted: Collection[str], cut: tuple[str, ...] = ()) -> Program:
-        """The program of some columns and what they rest on, where some others are given."""
-        whole = self._with_free(cut)
-        needed = frozenset(wanted) | {a.name for name in wanted for a in whole.ancestors(whole[name])}
-        if (cut, needed) not in self._programs:
-            sheet = Sheet(tuple(column for column in whole.columns if column.name in needed))
-            self._programs[cut, needed] = Program.of(sheet)
-        return self._programs[cut, needed]
-
-    def _with_free(self, cut: tuple[str, ...]) -> Sheet:
-        """The sheet with some columns given that it would compute."""
-        if cut not in self._sheets:
-            self._sheets[cut] = Sheet(
-                tuple(
-                    replace(column, rule=Given("free"), requires=()) if column.name in cut else column
-                    for column in self.sheet.columns
-                )
-            )
-        return self._sheets[cut]
-
-    @cached_property
-    def derivatives(self) -> dict[int, Any]:
-        """What the certificates know of the derivatives of each program."""
-        return {}
-
-    # The same columns are asked for again and again; to print their program takes longer than to run it.
-    @cached_property
-    def _sheets(self) -> dict[tuple[str, ...], Sheet]:
-        return {}
-
-    @cached_property
-    def _programs(self) -> dict[tuple[tuple[str, ...], frozenset[str]], Program]:
-        return {}
-
-    def _unknowns(self, sheet: Sheet, cut: Sequence[str]) -> Iterator[Unknown]:
-        """The given cells that are not exact; free ones without their print."""
-        for column in sheet.columns:
-            if not isinstance(column.rule, Given) or column.exact:
-                continue
-            printed = self.inputs.printed(column.name)
-            values = np.broadcast_to(self.values.value[column.name], (len(self.values.labels(column)),))
-            for row, (index, value) in enumerate(
-                zip(self.values.labels(column), values.tolist(), strict=True)
-            ):
-                text = None if column.name in cut else printed[row]
-                start = value if np.isfinite(value) else 1.0
-                start = start if text is None else float(text.value)
-                yield Unknown(column.name, row, index, text, start, sheet.bounds[column.name])
-
-
-@dataclass(frozen=True)
 class Problem:
     """Published values that shall come out together.
 
@@ -201,12 +68,42 @@ class Problem:
         Of the columns that they rest on, what is free being given.
     unknowns : tuple of Unknown
     published : tuple of PublishedValue
+    ways : tuple of (Way or None)
+        How each of them is computed; None for what follows the sheet.
+    ignored : frozenset of int
+        Places of published values that need not come out.
     """
 
     campaign: Campaign
     program: Program
     unknowns: tuple[Unknown, ...]
     published: tuple[PublishedValue, ...]
+    ways: tuple[Way | None, ...]
+    ignored: frozenset[int] = frozenset()
+
+    @classmethod
+    def of(
+        cls,
+        campaign: Campaign,
+        published: Sequence[PublishedValue],
+        tied: Sequence[str] = (),
+        asked: Sequence[str] = (),
+    ) -> Problem:
+        """Ask for published values together.
+
+        Parameters
+        ----------
+        campaign : Campaign
+        published : sequence of PublishedValue
+        tied : sequence of str
+            Free columns that shall follow from the others all the same.
+        asked : sequence of str
+            Conventions of the workbook that are asked for too.
+        """
+        cut = tuple(name for name in campaign.free if name not in tied)
+        program = campaign.program({value.cell for value in published}, cut)
+        unknowns = tuple(campaign.unknowns(program.sheet, cut, asked))
+        return cls(campaign, program, unknowns, tuple(published), (None,) * len(published))
 
     @property
     def sheet(self) -> Sheet:
@@ -287,16 +184,24 @@ class Problem:
 
     def evaluate(self, points: Array) -> Array:
         """The published cells (points, published) in SI at points (points, unknowns); NaN for no value."""
-        values = evaluate(self.sheet, self.campaign.labels, self.data(points), self.program)
-        columns = [values.value[name][..., row] for name, row in self.places]
-        alive = [values.status[name][..., row] == Status.OK for name, row in self.places]
-        found = [np.where(ok, each, np.nan) for each, ok in zip(columns, alive, strict=True)]
+        data, columns = self.data(points), [np.empty(0)] * len(self.published)
+        plain = evaluate(self.sheet, self.campaign.labels, data, self.program)
+        for way in dict.fromkeys(self.ways):
+            values = plain if way is None else way.evaluate(self.campaign, data, plain)
+            for n, (name, row) in enumerate(self.places):
+                if self.ways[n] is way:
+                    alive = values.status[name][..., row] == Status.OK
+                    found = np.where(alive, values.value[name][..., row], np.nan)
+                    columns[n] = np.broadcast_to(found, points.shape[:1])
         empty = np.empty((len(points), 0))  # the others of a single value
-        return np.column_stack([empty, *(np.broadcast_to(each, points.shape[:1]) for each in found)])
+        return np.column_stack([empty, *columns])
 
     def mismatch(self, cells: Array) -> Array:
         """How far cells are from what was published, in half units of the last digit."""
-        return (cells - self.centre) / self.half
+        found: Array = (cells - self.centre) / self.half
+        if self.ignored:
+            found[..., list(self.ignored)] = 0.0
+        return found
 
     def slopes(self, point: Array, box: Box) -> Array:
         """Derivatives (published, unknowns) at a point, by central differences within the box's scale."""
@@ -318,8 +223,51 @@ class Problem:
 
     def only(self, which: Sequence[int]) -> Problem:
         """Fewer of the published values."""
-        return self.asking([self.published[n] for n in which])
+        published = tuple(self.published[n] for n in which)
+        return replace(self, published=published, ways=tuple(self.ways[n] for n in which))
 
-    def asking(self, published: Sequence[PublishedValue]) -> Problem:
-        """The same unknowns, asked for other published values of the same columns."""
+    @property
+    def conventions(self) -> tuple[str, ...]:
+        """The conventions that are asked for too."""
+        return tuple(name for name in self.rows if self.campaign.sheet[name].exact)
+
+    def renamed(self, which: Collection[int], cell: str) -> Problem:
+        """The same with some published values taken for those of another column."""
+        published = [
+            replace(value, cell=cell) if n in which else value for n, value in enumerate(self.published)
+        ]
+        ways = tuple(None if n in which else way for n, way in enumerate(self.ways))
+        asked = Problem.of(self.campaign, published, asked=self.conventions)
+        return replace(asked, ways=ways, ignored=self.ignored)
+
+    def ignoring(self, which: Collection[int]) -> Problem:
+        """The same, but some published values need not come out."""
+        return replace(self, ignored=self.ignored | frozenset(which))
+
+    def reprinted(self, changes: Mapping[int, Printed]) -> Problem:
+        """The same with other prints of some published values."""
+        published = [
+            replace(value, printed=changes.get(n, value.printed)) for n, value in enumerate(self.published)
+        ]
         return replace(self, published=tuple(published))
+
+    def computed(self, way: Way, members: Collection[int]) -> Problem:
+        """The same with some published values computed in another way."""
+        ways = [way if n in members else own for n, own in enumerate(self.ways)]
+        return replace(self, ways=tuple(ways))
+
+    @cached_property
+    def touched(self) -> NDArray[np.bool_]:
+        """Whether a published cell rests on an unknown (published, unknowns), by the sheet's own graph."""
+        number, layouts = len(self.unknowns), self.campaign.values.layouts
+        rests: dict[str, NDArray[np.bool_]] = {}
+        for column in self.sheet.order:
+            size = 1 if column.axis is None else layouts[column.axis.name].size
+            found = np.zeros((number, size), dtype=bool)
+            for row, n in enumerate(self.rows.get(column.name, ())):
+                found[n, row] = True
+            for precedent in precedents(self.sheet, layouts, column):
+                theirs = precedent.take(rests[precedent.column.name])
+                found |= theirs if precedent.over is None else theirs.any(axis=-1, keepdims=True)
+            rests[column.name] = found
+        return np.array([rests[name][:, row] for name, row in self.places]).reshape(-1, number)

@@ -9,10 +9,11 @@ import numpy as np
 
 from ...published import PublishedValue
 from ...verdict import EXACT, NOT_CHECKABLE, NOT_FOUND, REACHABLE, UNREACHABLE, WITHIN, Verdict
+from .campaign import Array, Campaign
 from .certificate import Certificate
 from .comparison import prints_same
 from .minimax import best
-from .problem import Array, Campaign, Problem
+from .problem import Problem
 
 __all__ = ["COVERAGE", "verdicts"]
 
@@ -43,7 +44,7 @@ def verdicts(campaign: Campaign, published: Sequence[PublishedValue]) -> tuple[V
             # What is free elsewhere follows from the inputs where it is the one that is asked for.
             groups.setdefault(value.cell if value.cell in campaign.free else "", []).append(n)
     for tied, members in groups.items():
-        problem = campaign.problem([published[n] for n in members], (tied,) if tied else ())
+        problem = Problem.of(campaign, [published[n] for n in members], (tied,) if tied else ())
         for n, verdict in zip(members, _Alone(problem).verdicts(), strict=True):
             found[n] = verdict
     return tuple(found[n] for n in range(len(published)))
