@@ -24,7 +24,7 @@ __all__ = [
     "x_top",
 ]
 
-XM, ALPHA, CC, XTOP = (VOCABULARY[name] for name in ("x_m", "alpha", "C", "x_top"))
+XM, ALPHA, CP, XTOP = (VOCABULARY[name] for name in ("x_m", "alpha", "Cprime", "x_top"))
 x, x_top, N, x_ref, F_ref, alpha_mean, alpha_median = VOCABULARY.plain(
     "x x_top N x_ref F_ref alpha_mean alpha_median"
 )
@@ -76,7 +76,7 @@ with evaluate(False):
 
     F_scale = Equation(
         "(L23)",
-        (F_ref, Sum(CC[p] * XTOP[p] ** ALPHA[p], (p, 1, n_pairs)) / n_pairs),
+        (F_ref, Sum(CP[p], (p, 1, n_pairs)) / n_pairs),
         "a typical force, so that logarithms are taken of pure numbers; any would do",
         Kind.DEFINITION,
         "reference force",

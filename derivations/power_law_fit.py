@@ -36,9 +36,11 @@ _all = (q, 1, size)
 # --- what a fit minimises -----------------------------------------------------------------------------
 
 _squares_log = Sum((Y[q] - a - b * X[q]) ** 2, _all)
-_squares_lin = Sum((F[q] - C * x[q] ** alpha) ** 2, _all)
+# (L13) and (L14) read from right to left: the points by their logarithms.
+_in_logs = {x[q]: x_ref * exp(X[q]), F[q]: F_ref * exp(Y[q])}
+_squares_lin = Sum((F[q] - C * x[q] ** alpha) ** 2, _all).xreplace(_in_logs)
 _F_0 = Symbol("F_0", positive=True)
-_squares_at_ref = Sum((F[q] - _F_0 * (x[q] / x_ref) ** alpha) ** 2, _all)
+_squares_at_ref = Sum((F[q] - _F_0 * (x[q] / x_ref) ** alpha) ** 2, _all).xreplace(_in_logs)
 """The same with the force at the reference approach: only of pure numbers has an exponent a logarithm."""
 
 
@@ -118,13 +120,12 @@ with evaluate(False):
         title="log-log fit: coefficient",
     )
 
-    # Least squares of the force.
-
-    _t = x[q] / x_ref
-    _moment = Sum(F[q] * _t**alpha, _all) / Sum(_t ** (2 * alpha), _all)
+    # Least squares of the force, in the logarithms of the points: no power of them leaves the numbers that a
+    # computer has.
+    _power, _product = exp(2 * alpha * X[q]), exp(Y[q] + alpha * X[q])
     lin_scale = Equation(
         "(L20)",
-        (C, _moment / x_ref**alpha),
+        (C, F_ref / x_ref**alpha * (Sum(_product, _all) / Sum(_power, _all))),
         "for a given exponent the best coefficient is a ratio of two sums",
         title="least squares of force: coefficient",
     )
@@ -132,8 +133,7 @@ with evaluate(False):
     alpha_lin = Equation(
         "(L21)",
         (
-            Sum(F[q] * _t**alpha * log(_t), _all) * Sum(_t ** (2 * alpha), _all)
-            - Sum(F[q] * _t**alpha, _all) * Sum(_t ** (2 * alpha) * log(_t), _all),
+            Sum(_product * X[q], _all) * Sum(_power, _all) - Sum(_product, _all) * Sum(_power * X[q], _all),
             Integer(0),
         ),
         "the best exponent, with the best coefficient already put in",
@@ -166,7 +166,7 @@ LIN_FIT = (
                 (_normal_C, _normal_alpha),
                 (C,),
                 "Put the best C in; what is left is a multiple of the equation.",
-                multiplier=-Sum((x[q] / x_ref) ** (2 * alpha), _all) / (2 * C * x_ref**alpha),
+                multiplier=-Sum(_power, _all) / (2 * C * x_ref**alpha * F_ref),
             ),
         )
     ),

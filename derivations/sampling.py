@@ -163,7 +163,7 @@ def examine(system: System, seed: str) -> Outcome:
     """
     with mpmath.workdps(DIGITS):
         trial = _Trial(system)
-        counted, worst = 0, mpmath.mpf(0)
+        counted, unlike, worst = 0, 0, mpmath.mpf(0)
         undefined: list[dict[str, str]] = []
         for point in trial.space.points(seed, _TRIES):
             try:
@@ -185,14 +185,19 @@ def examine(system: System, seed: str) -> Outcome:
             for a, b, residual in found:
                 if not residual <= AGREES:  # also where it is not a number
                     if trial.multiplied is not None:
-                        return _witness(trial, point, counted)
+                        unlike += 1
+                        if (witness := _witness(trial, point, counted)) is not None:
+                            return witness
+                        break
                     return Outcome(counted, float(residual), trial.describe(point), (short(a), short(b)))
                 if not (is_real(a) and is_real(b)):
                     raise Refused(f"its sides are not real at {said(trial.describe(point))}")
                 worst = max(worst, residual)
-            counted += 1
-            if counted == POINTS:
+            counted += not unlike
+            if POINTS in (counted, unlike):
                 break
+    if unlike:
+        raise Refused("the premise times the factor is not the claim")
     if undefined:
         raise Refused(f"it has no value at {said(undefined[0])}")
     if counted == POINTS:
@@ -204,7 +209,7 @@ def examine(system: System, seed: str) -> Outcome:
     )
 
 
-def _witness(trial: _Trial, point: list[Any], counted: int) -> Outcome:
+def _witness(trial: _Trial, point: list[Any], counted: int) -> Outcome | None:
     """Where a premise is not solved: move one value until it holds, and look at the claim there."""
     for place in range(len(trial.space.sizes), len(point)):
         moved = _solved_for(trial, point, place)
@@ -215,7 +220,7 @@ def _witness(trial: _Trial, point: list[Any], counted: int) -> Outcome:
             return Outcome(
                 counted, float(residual), trial.describe(moved), (short(sides[0]), short(sides[1]))
             )
-    raise Refused("the premise times the factor is not the claim")
+    return None
 
 
 def _solved_for(trial: _Trial, point: list[Any], place: int) -> list[Any] | None:

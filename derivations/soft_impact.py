@@ -10,7 +10,7 @@ from __future__ import annotations
 from sympy import And, Expr, Integer, Integral, Le, Piecewise, Rational, pi
 from sympy.core.parameters import evaluate
 
-from . import alpha_root, errata, generated_points, power_law_fit
+from . import alpha_root, errata, generated_points, pair_curve, power_law_fit
 from .alpha_root import Lambda, log_speeds, logarithm, reciprocal, root_form, starting_value, turning, u
 from .equation import Derivation, Equation, Kind, Ledger, Step
 from .generated_points import F_scale, N, abscissa, mean, n_pairs, top, x_scale, x_top
@@ -389,6 +389,7 @@ LEDGER = Ledger(
         *alpha_root.ENTRIES,
         *generated_points.ENTRIES,
         *power_law_fit.ENTRIES,
+        *pair_curve.entries(eq10a, eq10c, law_c),
     ),
     checks=(
         errata.check_overlap(eq2),

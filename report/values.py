@@ -28,6 +28,7 @@ class Status(IntEnum):
     DOMAIN = 2
     NOROOT = 3
     TWOROOTS = 4
+    OVERFLOW = 5
 
     @property
     def code(self) -> str:
@@ -41,8 +42,12 @@ CODES = {
     Status.DOMAIN: "#DOMAIN!",
     Status.NOROOT: "#NOROOT!",
     Status.TWOROOTS: "#TWOROOTS!",
+    Status.OVERFLOW: "#OVERFLOW!",
 }
 
+
+BEYOND = "it, or a step towards it, is above 1.8e308, or positive and below 2.2e-308"
+"""What ``#OVERFLOW!`` means, for the reader."""
 
 # --- how errors spread: the same for every engine ---------------------------------------------------------
 
@@ -275,6 +280,8 @@ class Values:
             return f"{column.source} has more than one root here: {found or rule.two}" + (
                 f" ({rule.two})" if found else ""
             )
+        if status is Status.OVERFLOW:
+            return f"{column.source} has a value here that no double holds: {BEYOND}"
         outside = f"outside the domain of {column.source}"
         broken = self.broken.get(column.name)
         if broken is not None and broken[row]:

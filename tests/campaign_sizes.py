@@ -28,6 +28,8 @@ class Sizes:
         take their time.
     of_each_code : int
         Cells of the campaigns for the engines that have a value, and that have each of the codes.
+    overflows : int
+        Those with a value that no double holds, which no dependent inherits.
     broken : int
         Cells of them that break a condition.
     workbook_mutants, page_mutants : int
@@ -39,6 +41,7 @@ class Sizes:
     forged: int
     engines: Mapping[int, int]
     of_each_code: int
+    overflows: int
     broken: int
     workbook_mutants: int
     page_mutants: int
@@ -50,6 +53,7 @@ FEW = Sizes(
     forged=1,
     engines={2: 50, 3: 30, 4: 16, 5: 8, 6: 4, 7: 3, 8: 3, 9: 3, 10: 3, 11: 3, 12: 3},
     of_each_code=100,
+    overflows=5,
     broken=50,
     workbook_mutants=30,
     page_mutants=4,
@@ -59,6 +63,7 @@ ALL = Sizes(
     forged=10,
     engines={2: 800, 3: 500, 4: 280, 5: 140, 6: 72, 7: 48, 8: 36, 9: 36, 10: 36, 11: 36, 12: 36},
     of_each_code=5000,
+    overflows=200,
     broken=1000,
     workbook_mutants=150,
     page_mutants=15,

@@ -79,7 +79,7 @@ def campaigns(draw: st.DrawFn, size: int, variants: Sequence[int] = (0, 1)) -> C
     v, e, x_p = ([float(f"{x:.{digits}g}") for x in column] for column in (v, e, x_p))
     row, other = draw(st.permutations(range(size)))[:2]
     exponent = [beta]
-    match draw(st.integers(0, 14)):
+    match draw(st.integers(0, 16)):
         case 7:
             v[row] = v[other]
         case 8:
@@ -96,6 +96,9 @@ def campaigns(draw: st.DrawFn, size: int, variants: Sequence[int] = (0, 1)) -> C
         case 14:
             for column in (v, e, x_p):
                 column.reverse()
+        case 15 | 16:  # an exponent of some hundreds: no double holds the coefficient
+            deeper = draw(st.sampled_from((1.0003, 1.001, 1.003)))
+            v[row], e[row], x_p[row] = 1.1 * v[other], e[other], deeper * x_p[other]
     variant = draw(st.sampled_from(variants))
     parameters = {name: [value * draw(st.floats(0.5, 2))] for name, value in VARIANTS[variant].items()}
     points = [float(draw(st.sampled_from((2, 3, 5) if size < 8 else (2, 3))))]

@@ -232,11 +232,16 @@ def first(grid: Grid, name: str) -> str:
     return grid[name].formulas[0]
 
 
+LEAST = "(2)^(0-1022)"
+"""The least positive number that has all its digits."""
+
+
 def test_a_row_names_the_cells_of_its_members() -> None:
     grid = made(a, column("b", PAIRS, a[i] / a[j], positive=False))
     assert first(grid, "b") == (
         "=IF(AND(ISNUMBER(items!$D$8),ISNUMBER(items!$D$9)),"
-        'IFERROR(items!$D$8/items!$D$9,"#DOMAIN!"),"#INPUT!")'
+        'IFERROR(items!$D$8/items!$D$9,IFERROR(IF(items!$D$9<>0,"#OVERFLOW!","#DOMAIN!"),"#DOMAIN!")),'
+        '"#INPUT!")'
     )
 
 
@@ -277,7 +282,7 @@ def test_an_error_is_carried_on_before_anything_is_computed() -> None:
     b = column("b", ITEMS, a[k] * 2)
     grid = made(a, w, b, column("c", ITEMS, b[k] + w.symbol, positive=False))
     assert first(grid, "c") == (
-        '=IF(ISNUMBER(report!$G$6),IF(ISNUMBER($D$8),IFERROR(report!$G$6+$D$8,"#DOMAIN!"),$D$8),"#INPUT!")'
+        '=IF(ISNUMBER(report!$G$6),IF(ISNUMBER($D$8),IFERROR(report!$G$6+$D$8,"#OVERFLOW!"),$D$8),"#INPUT!")'
     )
 
 
@@ -286,21 +291,24 @@ def test_a_positive_quantity_has_no_other_value() -> None:
         a, w, column("c", ITEMS, a[k] - w.symbol), column("d", ITEMS, a[k] - w.symbol, positive=False)
     )
     core = "$F$8-report!$G$6"
-    assert f'IFERROR(IF({core}>0,{core},"#DOMAIN!"),"#DOMAIN!")' in first(grid, "c")
-    assert f'IFERROR({core},"#DOMAIN!")' in first(grid, "d")
+    small = f'IF({core}>0,"#OVERFLOW!","#DOMAIN!")'
+    assert f'IFERROR(IF({core}>={LEAST},{core},{small}),"#OVERFLOW!")' in first(grid, "c")
+    assert f'IFERROR({core},"#OVERFLOW!")' in first(grid, "d")
 
 
 def test_what_is_typed_may_be_zero_although_its_symbol_is_positive() -> None:
     twice = column("b", ITEMS, a[k] * 2)
     grid = made(a, twice, column("c", ITEMS, twice[k] * 2))
-    assert 'IF(2*$F$8>0,2*$F$8,"#DOMAIN!")' in first(grid, "b")
-    assert ">0" not in first(grid, "c")  # its precedent was checked in its own cell
+    assert f'IF(2*$F$8>={LEAST},2*$F$8,IF(2*$F$8>0,"#OVERFLOW!","#DOMAIN!"))' in first(grid, "b")
+    # The precedent was checked in its own cell: what is zero here was positive.
+    assert f'IF(2*$D$8>={LEAST},2*$D$8,"#OVERFLOW!")' in first(grid, "c")
 
 
 def test_conditions_come_before_the_value() -> None:
     needs = ((a[k] > w.symbol, "for a test"), (Ne(a[k], 4), "for a test"))
     grid = made(a, w, column("c", ITEMS, a[k] + w.symbol, requires=needs, positive=False))
-    body = 'IFERROR(IF(AND($E$8>report!$G$6,$E$8<>4),report!$G$6+$E$8,"#DOMAIN!"),"#DOMAIN!")'
+    value = 'IFERROR(report!$G$6+$E$8,"#OVERFLOW!")'
+    body = f'IFERROR(IF(AND($E$8>report!$G$6,$E$8<>4),{value},"#DOMAIN!"),"#DOMAIN!")'
     assert body in first(grid, "c")
 
 
@@ -308,7 +316,7 @@ def test_cells_in_other_units_are_converted_where_they_are_named() -> None:
     length: dict[str, Any] = {"unit": "m", "positive": False}
     b = column("b", ITEMS, a[k] * 2, **length)
     grid = made(column("a", ITEMS, **length), b, units={"a": "mm", "b": "km"})
-    assert 'IFERROR(2*($E$8/1000)/1000,"#DOMAIN!")' in first(grid, "b")
+    assert 'IFERROR(2*($E$8/1000)/1000,"#OVERFLOW!")' in first(grid, "b")
     assert grid["b"].values == (0.006, 0.01)
     assert grid["a"].unit == "mm"
 
@@ -325,7 +333,7 @@ def test_a_sum_leaves_rows_without_values_out() -> None:
     assert first(grid, "c") == (
         f"=IF(AND(OR({rows}>0,ISNUMBER(items!$D$8)),ISNUMBER($G$6)),"
         f"IFERROR($G$6*SUM(IF(ISNUMBER({cells}),({cells})^(2),0))/"
-        f'{rows},"#DOMAIN!"),"#INPUT!")'
+        f'{rows},"#OVERFLOW!"),"#INPUT!")'
     )
     assert grid["c"].array
     assert grid["c"].kept == {"items": f"={rows}"}
@@ -409,7 +417,9 @@ def test_the_cells_of_a_root() -> None:
     step = f"3*{f}*(2*({g})^(2)-{f}*{h})/(({f})^(2)*{m}+6*({g})^(3)-6*{f}*{g}*{h})"
     assert first(grid, "root.step_1") == f'=IF({at["roots"]}=1,IFERROR({step},""),"")'
     last, before, value = (grid[f"root.{name}"].place.cell(0, "items") for name in ("u_3", "u_2", "f_3"))
-    settled = f'IF(10000000*ABS({before}-{last})<=ABS({last}),({last})^(2),"#STEPS!")'
+    square = f"({last})^(2)"
+    square = f'IFERROR(IF({square}>={LEAST},{square},IF({square}>0,"#OVERFLOW!","#DOMAIN!")),"#OVERFLOW!")'
+    settled = f'IF(10000000*ABS({before}-{last})<=ABS({last}),{square},"#STEPS!")'
     n, ready = at["roots"], at["check"]
     one = f'IF({n}=1,IF(ISNUMBER({value}),{settled},"#DOMAIN!"),IF({n}=0,"#NOROOT!","#TWOROOTS!"))'
     found = f'IFERROR(IF(ISNUMBER({n}),{one},"#DOMAIN!"),"#DOMAIN!")'

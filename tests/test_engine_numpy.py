@@ -193,14 +193,15 @@ def run(data: Mapping[str, Any]) -> Values:
 
 
 def noisy(shape: tuple[int, ...], seed: int, noise: float = 0.05) -> dict[str, Any]:
-    """Campaigns with noise, so large that pairs without a root and with two are among them, lost data, and
-    tests that were written down twice."""
+    """Campaigns with noise, so large that pairs without a root and with two are among them, lost data,
+    tests that were written down twice, and pairs with an exponent of 190."""
     rng = np.random.default_rng(seed)
     data = {name: values * rng.normal(1, noise, (*shape, 5)) for name, values in PAPER.items()}
     data["e"] = np.clip(data["e"], 0, 1)
-    twice = rng.random(shape) < 0.1
-    for values in data.values():
+    twice, steep = (np.arange(np.prod(shape)).reshape(shape) % 10 == n for n in (3, 7))
+    for name, values in data.items():
         values[twice, 1] = values[twice, 0]
+        values[steep, 1] = values[steep, 0] * {"v": 1.1, "e": 1, "x_p": 1.001}[name]
     data["x_p"][rng.random((*shape, 5)) < 0.02] = np.nan
     data["beta"] = rng.uniform(1, 2.5, (*shape, 1))
     return data

@@ -23,6 +23,14 @@ def points(seed: int, scatter: float) -> tuple[list[float], list[float]]:
     return depths, [3e7 * d**1.31 * math.exp(scatter * rng.gauss(0, 1)) for d in depths]
 
 
+def logarithms(depths: list[float], forces: list[float]) -> dict[str, list[mpmath.mpf]]:
+    """Of points, over an approach of 4e-5 m and a force of 300 N."""
+    return {
+        name: [mpmath.log(mpmath.mpf(value) / scale) for value in column]
+        for name, column, scale in (("X", depths, 4e-5), ("Y", forces, 300))
+    }
+
+
 def compute(equation: Equation, **values: object) -> mpmath.mpf:
     """The value of a formula; columns are lists that begin with row 1."""
     expression = evaluated(equation.members[-1] if equation.members[-1] != 0 else equation.members[0])
@@ -57,9 +65,10 @@ def test_the_log_fit_is_the_straight_line_through_the_logarithms(seed: int) -> N
 def test_the_linear_fit_is_least_in_force(seed: int) -> None:
     depths, forces = points(seed, 0.05)
     with mpmath.workdps(30):
+        logs = logarithms(depths, forces)
 
         def coefficient(exponent: object) -> mpmath.mpf:
-            return compute(fit.lin_scale, x=depths, F=forces, x_ref=4e-5, alpha=exponent, n_points=12)
+            return compute(fit.lin_scale, **logs, F_ref=300.0, x_ref=4e-5, alpha=exponent, n_points=12)
 
         def squares(exponent: object) -> mpmath.mpf:
             c = coefficient(exponent)
@@ -67,9 +76,7 @@ def test_the_linear_fit_is_least_in_force(seed: int) -> None:
                 (f - c * mpmath.mpf(d) ** exponent) ** 2 for d, f in zip(depths, forces, strict=True)
             )
 
-        exponent = mpmath.findroot(
-            lambda p: compute(fit.alpha_lin, x=depths, F=forces, x_ref=4e-5, alpha=p, n_points=12), (1.2, 1.4)
-        )
+        exponent = mpmath.findroot(lambda p: compute(fit.alpha_lin, **logs, alpha=p, n_points=12), (1.2, 1.4))
         least = squares(exponent)
         assert 1.1 < exponent < 1.5
         for off in (-0.01, -1e-4, 1e-4, 0.01):
@@ -83,12 +90,11 @@ def test_the_linear_fit_is_least_in_force(seed: int) -> None:
 
 
 def test_without_scatter_both_fits_give_the_law_back() -> None:
-    depths, forces = points(0, 0.0)
-    law = {"x": depths, "F": forces, "x_ref": 4e-5, "n_points": 12}
-    assert (
-        abs(compute(fit.alpha_lin, alpha=1.31, **law)) < 1e-6 * compute(fit.alpha_lin, alpha=1.32, **law) ** 0
-    )
-    assert float(compute(fit.lin_scale, alpha=1.31, **law)) == pytest.approx(3e7, rel=1e-10)
+    logs = {**logarithms(*points(0, 0.0)), "n_points": 12}
+    there, beside = (compute(fit.alpha_lin, alpha=exponent, **logs) for exponent in (1.31, 1.32))
+    assert abs(there) < 1e-12 * abs(beside)
+    scale = compute(fit.lin_scale, alpha=1.31, F_ref=300.0, x_ref=4e-5, **logs)
+    assert float(scale) == pytest.approx(3e7, rel=1e-10)
 
 
 @pytest.mark.parametrize("derivation", [*fit.LOG_FIT, *fit.LIN_FIT], ids=lambda d: d.claim.label)

@@ -38,7 +38,7 @@ def test_what_stands(proofs: dict[str, Proof]) -> None:
         Status.DEFINITION: "(1) (8) (L7) (L8) (L10) (L11) (L12) (L25) (L22) (L23) (L13) (L14) (L15) (L16)",
         Status.ASSUMPTION: "(2) (3) (4) (5)",
         Status.PROVED: "(6) (7) (9) (10a) (10b) (10c) (11) (12a) (12b) (12c) (12d) (L1) (L2) (L3) (L4) (L5) "
-        "(L24) (L6) (L9) (L17) (L18) (L19) (L20) (L21)",
+        "(L24) (L6) (L9) (L17) (L18) (L19) (L20) (L21) (L26) (L27) (L28)",
         Status.CORRECTED: "(12e)",
         Status.REFUTED: "",
         Status.REFUSED: "",

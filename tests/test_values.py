@@ -227,7 +227,14 @@ def test_cells_are_found_by_their_labels() -> None:
 
 def test_every_status_has_a_code() -> None:
     assert list(CODES) == list(Status)
-    assert [status.code for status in Status] == ["ok", "#INPUT!", "#DOMAIN!", "#NOROOT!", "#TWOROOTS!"]
+    assert [status.code for status in Status] == [
+        "ok",
+        "#INPUT!",
+        "#DOMAIN!",
+        "#NOROOT!",
+        "#TWOROOTS!",
+        "#OVERFLOW!",
+    ]
 
 
 def test_nineteen_thousand_cells_are_read_in_one_pass() -> None:

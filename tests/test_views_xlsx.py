@@ -140,7 +140,7 @@ def test_the_first_worksheet(book: Any, shown: Any, report: Report) -> None:
     assert cells["B6"].value == pytest.approx(1.30264345, abs=1e-8)
     assert [cells.cell(6, n).value for n in (3, 4, 5, 7)] == ["1", "mean exponent", "(L12)", "10 of 10 pairs"]
     text = "\n".join(str(c.value) for row in cells.iter_rows() for c in row if c.value)
-    for code in ("#INPUT!", "#DOMAIN!", "#NOROOT!", "#TWOROOTS!", "#STEPS!"):
+    for code in ("#INPUT!", "#DOMAIN!", "#NOROOT!", "#TWOROOTS!", "#OVERFLOW!", "#STEPS!"):
         assert code in text
     assert isinstance(book["report"]["G6"].value, ArrayFormula)
 

@@ -24,6 +24,7 @@ from ..layout import Layout, lay_out, precedents, rows_of
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, RepeatAxis, Root, Sheet, name_of
 from ..values import Status, inherited, rows_kept
+from .domain import LARGEST, SMALLEST
 
 __all__ = ["DIGITS", "ExactValues", "evaluate"]
 
@@ -64,11 +65,22 @@ def _rows(values: Any) -> Any:
 def _datum(value: Any, bounds: Bounds) -> Any:
     """A datum as mpf: fractions and texts exactly, a double as the double it is; NaN if it is not allowed."""
     value = Fraction(value) if isinstance(value, str) else value
+    if isinstance(value, Fraction) and abs(value) >= LARGEST:
+        return mpmath.nan  # no double holds it: it is no datum to the other engines either
     if value is None or not bounds.allow(value if isinstance(value, Fraction) else float(value)):
         return mpmath.nan
     if isinstance(value, Fraction):
         return mpmath.mpf(value.numerator) / value.denominator
     return mpmath.mpf(value)
+
+
+def _held(value: Any, positive: bool) -> Any:
+    """A value that a double can hold, be it rounded."""
+    if isinstance(value, mpmath.mpc) or not mpmath.isfinite(value) or (positive and not value > 0):
+        raise _Failed(Status.DOMAIN)
+    if abs(value) >= LARGEST or (positive and value < SMALLEST):
+        raise _Failed(Status.OVERFLOW)
+    return value
 
 
 def evaluate(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[str, Any]) -> ExactValues:
@@ -126,15 +138,11 @@ class _Exact:
         body = (
             scope.function(rule.expression) if isinstance(rule, Formula) else self._root(rule, column, scope)
         )
-        positive = isinstance(rule, Formula) and column.positive
 
         def compute(row: int) -> Any:
             if not all(condition(row) for condition in conditions):
                 raise _Failed(Status.DOMAIN)
-            value = body(row)
-            if isinstance(value, mpmath.mpc) or not mpmath.isfinite(value) or (positive and not value > 0):
-                raise _Failed(Status.DOMAIN)
-            return value
+            return _held(body(row), column.positive)
 
         return status, compute
 

@@ -19,6 +19,7 @@ from ..layout import Layout, rows_of
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, Reference, Root, Sheet, name_of, within
 from ..values import CODES, Status
+from .domain import defined, is_positive, typed
 from .excel import IfError, Printer
 from .excel_roots import READY, Auxiliary, Unrolled
 
@@ -28,6 +29,8 @@ _CODE = {status: f'"{code}"' for status, code in CODES.items()}
 _UNSETTLED = '"#STEPS!"'
 """Only a workbook has this code: its steps are columns and come to an end, other engines go on."""
 _NOT_AVAILABLE = "NA()"
+_SMALLEST = "(2)^(0-1022)"
+"""The least positive number with all its digits; spreadsheets hold none below."""
 
 
 @dataclass(frozen=True)
@@ -275,26 +278,37 @@ class _Writing:
         conditions = [str(self.printer.doprint(condition)) for condition, _ in self.column.requires]
         return f"IFERROR({f'IF({_all(conditions)},{text},{otherwise})' if conditions else text},{otherwise})"
 
-    def value(self, expression: Expr, otherwise: str) -> str:
-        """A formula's value; a quantity that is positive has none that is not."""
+    def value(self, expression: Expr, none: str) -> str:
+        """A value that a double holds, or the code of what stands for it; `none` where it is an error."""
+        domain, beyond = _CODE[Status.DOMAIN], _CODE[Status.OVERFLOW]
         text = self.number(expression)
-        # What is typed may be anything; what is computed was checked in its own cell.
-        typed = any(isinstance(c.rule, Given) for c in self.sheet.precedents(self.column))
-        if self.column.positive and (typed or not expression.is_positive):
-            text = f"IF({text}>0,{text},{otherwise})"
-        return self.where_it_holds(text, otherwise)
+        if self.column.positive:
+            # A unit of the cells could lift what is too small, so SI is asked.
+            si = self.printer.doprint(expression)
+            small = beyond if is_positive(typed(self.sheet, expression)) else f"IF({si}>0,{beyond},{domain})"
+            text = f"IF({si}>={_SMALLEST},{text},{small})"
+        return f"IFERROR({text},{none})"
+
+    def failure(self, expression: Expr) -> str:
+        """What a formula is that is an error: a value that no double holds, or none."""
+        domain, beyond = _CODE[Status.DOMAIN], _CODE[Status.OVERFLOW]
+        where = defined(typed(self.sheet, expression))
+        if where == True:  # noqa: E712 - sympy's true
+            return beyond
+        return f"IFERROR(IF({self.printer.doprint(where)},{beyond},{domain}),{domain})"
 
     def computed(self, unrolled: Unrolled | None) -> str:
         """A computed cell: an error of its precedents, its own, or its value."""
         rule, domain = self.column.rule, _CODE[Status.DOMAIN]
         if isinstance(rule, Formula):
-            return self.inherited(self.value(rule.expression, domain))
+            value = self.value(rule.expression, self.failure(rule.expression))
+            return self.inherited(self.where_it_holds(value, domain) if self.column.requires else value)
         assert isinstance(rule, Root)
         assert unrolled is not None
         check, number = self.own(unrolled.check), self.own(unrolled.number)
         none, two = _CODE[Status.NOROOT], _CODE[Status.TWOROOTS]
         known, settled = (self.printer.doprint(test) for test in (unrolled.known, unrolled.settled))
-        found = f"IF({settled},{self.number(unrolled.value)},{_UNSETTLED})"
+        found = f"IF({settled},{self.value(unrolled.value, _CODE[Status.OVERFLOW])},{_UNSETTLED})"
         found = f"IF({number}=1,IF({known},{found},{domain}),IF({number}=0,{none},{two}))"
         found = self.where_it_holds(f"IF(ISNUMBER({number}),{found},{domain})", domain)
         return f'IF({check}="{READY}",{found},{check})'

@@ -12,11 +12,12 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from sympy import Basic, Dummy, Indexed, Integer, Pow, Sum, Symbol, cse, diff, exp, log, numbered_symbols
+from sympy import Basic, Dummy, Indexed, Sum, Symbol, cse, diff, numbered_symbols
 from sympy.printing.jscode import JavascriptCodePrinter
 
 from ...derivations.reductions import Median
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet, name_of
+from .domain import defined, is_positive, typed
 from .roots import derivatives, householder, magnitude
 
 __all__ = ["RUNTIME", "program"]
@@ -47,6 +48,12 @@ class Printer(JavascriptCodePrinter):
     def _print_Unequality(self, expr: Any) -> str:
         return f"({self._print(expr.lhs)} !== {self._print(expr.rhs)})"
 
+    def _print_BooleanTrue(self, expr: Any) -> str:
+        return "true"
+
+    def _print_BooleanFalse(self, expr: Any) -> str:
+        return "false"
+
     def _print_Infinity(self, expr: Any) -> str:
         return "Infinity"
 
@@ -54,8 +61,8 @@ class Printer(JavascriptCodePrinter):
 class _Scope:
     """Prints the functions of one column and, before them, what they share.
 
-    That is the arrays of the cells by short names, with a dollar in them that no column's name has, the
-    totals, and logarithms of rows that the steps towards a root would take again and again.
+    That is the arrays of the cells by short names, with a dollar in them that no column's name has, and the
+    totals that do not move with the unknown.
     """
 
     def __init__(self, sheet: Sheet, column: Column, unknown: Symbol | None) -> None:
@@ -64,7 +71,6 @@ class _Scope:
         self.names: dict[str, str] = {}
         self.head: list[str] = []
         self.fixed: dict[Sum, Symbol] = {}
-        self.logs: dict[Any, Symbol] = {}
         self.numbers = count()
 
     def leaf(self, cell: Basic, axis: Axis | None, row: str) -> Symbol:
@@ -154,11 +160,7 @@ class _Scope:
             inner: dict[Sum, Symbol] = {}
             terms = [self.plain(total.function, axis, "q", inner) for total in mine]
             lines += self.totals(inner)
-            powers, terms = self.powers(terms, axis)
             common, texts = self.body(terms, " " * 10)
-            common = [
-                f"          const {name} = {self.printer.doprint(p)};" for p, name in powers.items()
-            ] + common
             parts = [f"s_{n}" for n in range(len(mine))]
             lines += [
                 f"      const [{', '.join(sums[total].name for total in mine)}] = "
@@ -173,35 +175,6 @@ class _Scope:
             ]
         return lines
 
-    def powers(self, terms: Sequence[Any], axis: Axis) -> tuple[dict[Any, Symbol], list[Any]]:
-        """Powers in terms by names, the square of one as its square: one pow or exp serves both."""
-        found: dict[Any, Symbol] = {}
-        u = Symbol("u", **(self.unknown.assumptions0 if self.unknown is not None else {}))
-
-        def log_of(base: Any) -> Any:
-            if base not in self.logs:
-                self.logs[base] = Symbol(f"L{len(self.logs)}", real=True)
-                text = self.printer.doprint(log(base))
-                self.head.append(f"      const {self.logs[base]} = each(k.{axis.name}, (q) => {text});")
-            return Symbol(f"{self.logs[base]}[q]", real=True)
-
-        def power(base: Any, exponent: Any) -> Any:
-            number, rest = exponent.as_coeff_Mul()
-            if rest.is_Number or not base.is_positive or base.has(u):
-                return base**exponent
-            times = number if number.is_Integer and number > 0 else Integer(1)
-            once = exponent / times
-            value = exp(once * log_of(base)) if once.has(u) else base**once
-            return found.setdefault(value, Symbol(f"E{len(found)}", positive=True)) ** times
-
-        named = [term.replace(Pow, power) for term in terms]
-        if self.unknown is not None:
-            named = [
-                term.replace(lambda e: isinstance(e, log) and not e.has(u), lambda e: log_of(e.args[0]))
-                for term in named
-            ]
-        return found, named
-
 
 def _kernels(sheet: Sheet, column: Column) -> str:
     """The functions of a column, by the names that the runtime calls them; nothing for a given one."""
@@ -209,7 +182,10 @@ def _kernels(sheet: Sheet, column: Column) -> str:
     scope = _Scope(sheet, column, rule.unknown if isinstance(rule, Root) else None)
     found: dict[str, str] = {}
     if isinstance(rule, Formula):
-        found["value"] = scope.function(rule.expression, alone=True)
+        value = scope.function(rule.expression, alone=True)
+        if (domain := defined(typed(sheet, rule.expression))) != True:  # noqa: E712 - sympy's true
+            found["defined"] = scope.function(domain, alone=True)
+        found["value"] = value
     elif isinstance(rule, Root):
         f, unknown = rule.expression, rule.unknown
         # An end whose sign is not given is evaluated as any other point.
@@ -274,9 +250,12 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
             "kind": kind,
             "refs": [] if kind == "given" else [_least(each) for each in _references(sheet, column)],
             "sums": [axis.name for axis in sheet.summed_axes(column)],
-            "positive": isinstance(column.rule, Formula) and column.positive,
+            "positive": kind != "given" and int(column.positive),
             "steps": column.rule.steps if isinstance(column.rule, Root) else None,
         }
+        if isinstance(column.rule, Formula) and column.positive:
+            # 2 is positive by what is assumed of the cells: then a zero is a value that no double holds.
+            entry["positive"] += is_positive(typed(sheet, column.rule.expression))
         parts = [f"{name}: {json.dumps(value)}" for name, value in entry.items() if value]
         if column.name in sheet.guards:
             datum, allowed = sheet.guards[column.name]

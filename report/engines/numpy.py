@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ..layout import Layout, lay_out, precedents, rows_of
 from ..sheet import Column, Formula, Given, Reference, RepeatAxis, Root, Sheet, name_of
 from ..values import Status, Values, inherited, rows_kept
+from .domain import SMALLEST, defined, is_positive, typed
 from .numpy_code import Array, Function, Kernel, kernel, write
 from .numpy_root import RootProgram
 from .numpy_rows import Kept
@@ -34,7 +35,8 @@ BLOCK = 1 << 13
 class Program:
     """The kernels of a sheet: of each column's formula, or of its root's parts, and of its conditions.
 
-    For a given column, that of what its values must satisfy.
+    For a given column, that of what its values must satisfy; for a formula that has no value somewhere, that
+    of where it has one. Of some formulas it is known that they are positive.
     """
 
     sheet: Sheet
@@ -42,6 +44,8 @@ class Program:
     roots: Mapping[str, RootProgram]
     conditions: Mapping[str, Kernel]
     guards: Mapping[str, Function]
+    domains: Mapping[str, Kernel]
+    positive: Collection[str]
 
     @classmethod
     def of(cls, sheet: Sheet, known: Collection[str] = ()) -> Program:
@@ -58,7 +62,7 @@ class Program:
         SheetError
             A formula has a part that NumPy cannot compute.
         """
-        formulas, roots, conditions, guards = {}, {}, {}, {}
+        formulas, roots, conditions, guards, domains, positive = {}, {}, {}, {}, {}, set()
         for column in sheet.order:
             if column.name in known:
                 continue
@@ -67,11 +71,16 @@ class Program:
                 _, guards[column.name] = write([datum], (), [allowed])
             if isinstance(column.rule, Formula):
                 formulas[column.name] = kernel([column.rule.expression], sheet.indices)
+                formula = typed(sheet, column.rule.expression)
+                if column.positive and is_positive(formula):
+                    positive.add(column.name)
+                if (domain := defined(formula)) != True:  # noqa: E712 - sympy's true
+                    domains[column.name] = kernel([domain], sheet.indices)
             elif isinstance(column.rule, Root):
                 roots[column.name] = RootProgram.of(column.rule, sheet.indices)
             if column.requires:
                 conditions[column.name] = kernel([c for c, _ in column.requires], sheet.indices)
-        return cls(sheet, formulas, roots, conditions, guards)
+        return cls(sheet, formulas, roots, conditions, guards, domains, positive)
 
     @property
     def source(self) -> str:
@@ -123,7 +132,6 @@ class _Run:
                     continue
                 given = isinstance(column.rule, Given)
                 value, status = self._given(column) if given else self._computed(column)
-                status = np.where((status == Status.OK) & ~np.isfinite(value), Status.DOMAIN, status)
                 self.value[column.name] = np.where(status == Status.OK, value, np.nan)
                 self.status[column.name] = status.astype(np.uint8)
         return Values(
@@ -149,14 +157,31 @@ class _Run:
         status = inherited(named, kept, self.status, self._size(column))
         if isinstance(column.rule, Root):
             value, found = self._root(column, kept, status)
+            beyond = np.isinf(value) | (column.positive & (value > 0) & (value < SMALLEST))
+            odd = [(found == Status.OK) & condition for condition in (np.isnan(value), beyond)]
+            found = np.select(odd, [Status.DOMAIN, Status.OVERFLOW], found).astype(np.uint8)
         else:
             (value,) = self._call(self.program.formulas[column.name], column, kept)
-            found = np.where(column.positive & ~(value > 0), Status.DOMAIN, Status.OK).astype(np.uint8)
+            found = self._found(column, value, kept)
         if column.requires:
             found = self._required(column, kept, status, found)
         shape = np.broadcast_shapes(value.shape, found.shape, status.shape)
         status = np.where(status == Status.OK, found, status)
         return np.broadcast_to(value, shape), np.broadcast_to(status, shape)
+
+    def _found(self, column: Column, value: Array, kept: Masks) -> Codes:
+        """What the values of a formula are: one that a double holds, one that none does, or none."""
+        held, beyond = np.isfinite(value), ~np.isfinite(value)
+        if column.positive:
+            nought = (value == 0) & (column.name in self.program.positive)
+            beyond = (beyond & (value != -np.inf)) | ((value > 0) & (value < SMALLEST)) | nought
+            held = held & (value >= SMALLEST)
+        if held.all():
+            return np.zeros(value.shape, dtype=np.uint8)
+        if column.name in self.program.domains:
+            beyond = beyond & self._call(self.program.domains[column.name], column, kept)[0].astype(bool)
+        found = np.select([held, beyond], [Status.OK, Status.OVERFLOW], Status.DOMAIN)
+        return found.astype(np.uint8)
 
     def _required(self, column: Column, kept: Masks, status: Codes, found: Codes) -> Codes:
         """What breaks a condition is outside the domain, whatever the rule made of it."""

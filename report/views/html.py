@@ -79,7 +79,7 @@ class HtmlWords(Words):
     def padding(self, item: Item) -> str:
         """The classes that put the decimal sign of a cell below those above it."""
         if item.figure is None or not item.pad:
-            return "p0"
+            return ""
         point = "" if item.figure.fraction else " nopoint"
         return f"p{min(item.pad, 8)}{point}"
 

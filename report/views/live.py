@@ -114,11 +114,7 @@ def data(report: Report, document: Document) -> str:
         "uncertainties": _uncertainties(inputs.tests, measured),
         "toml": list(_toml(report)),
         "equations": {
-            equation.label: {
-                "id": document.identifiers[equation.label],
-                "status": _status(document, equation.label),
-            }
-            for equation in document.equations
+            equation.label: document.identifiers[equation.label] for equation in document.equations
         },
         "headline": [name for name in report.workbook.headline if name in sheet],
         "figures": {
@@ -165,7 +161,8 @@ def _column(report: Report, document: Document, column: Column, grounds: list[Gr
     }
     if limits := report.marks.limiting(column.name):
         entry["limits"] = [
-            (each.column.name, each.limit.mark, each.limit.told, each.limit.rows("")) for each in limits
+            (each.column.name, each.limit.mark, each.limit.says if each.limit.source else "")
+            for each in limits
         ]
     if isinstance(column.rule, Given):
         entry["given"] = _given(report, column)
@@ -199,11 +196,6 @@ def _unit(report: Report, column: Column) -> str:
     """The unit in which a column is shown: a given one stays in the unit it was printed in."""
     printed = _printed(report, column.name) if isinstance(column.rule, Given) else None
     return report.shown[column.name].unit if printed is None else printed.unit
-
-
-def _status(document: Document, label: str) -> str:
-    proof = document.proof(document.equation(label))
-    return "not checked" if proof is None else proof.status.value
 
 
 def _given(report: Report, column: Column) -> dict[str, Any]:

@@ -101,7 +101,8 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
         "Names such as ls_" + (report.workbook.headline or ("alpha",))[0] + " stand for whole columns.",
         "A cell that cannot be computed shows a code: #INPUT! a datum is missing or is not what it may be "
         "(the column check says what is wrong, however it came into its cell), #DOMAIN! outside the "
-        "equation's domain, #NOROOT! no value satisfies it, #TWOROOTS! several do, #STEPS! the steps of "
+        "equation's domain, #NOROOT! no value satisfies it, #TWOROOTS! several do, #OVERFLOW! there is a "
+        "value, but it or a step towards it is too large or too small for any cell, #STEPS! the steps of "
         "this workbook do not reach the root (build the report again: it takes as many as are needed). "
         "What depends on such a cell shows its code; a sum leaves such rows out and says from how many it "
         "was made.",

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from sympy import Expr, Rational, Symbol
+from sympy import Expr, Integer, Rational, Symbol
 
 from ...derivations import generated_points as points
+from ...derivations import pair_curve as curve
 from ...derivations import power_law_fit as fit
 from ...derivations import soft_impact as model
 from ...derivations.equation import Equation
@@ -106,6 +108,7 @@ def _sheet(given: frozenset[str]) -> Sheet:
     """
     where = _pair_symbols()
     alpha = _column("alpha", PAIRS, alpha_rule(where), "alpha", requires=two_tests(where))
+    peak_1, peak_2 = (curve.peak.at({k: Integer(test)}) for test in (1, 2))
     on_pair = {
         name: _column(
             name, PAIRS, Formula(equation.at(where)), like, meaning=meaning, display=shown, latex=latex
@@ -114,12 +117,12 @@ def _sheet(given: frozenset[str]) -> Sheet:
             ("x_m2", model.eq12a, "x_m", "approach of the pair's second test", "like x_p", r"x_{m_2%s}"),
             ("x_m1", model.eq12b, "x_m", "approach of the pair's first test", "like x_p", r"x_{m_1%s}"),
             ("C", model.eq12c, "C", "coefficient of the compression law", "", "C%s"),
-            ("Cprime_1", model.eq12d, "Cprime", "maximum force of the pair's first test", "", "C'_{1%s}"),
-            ("Cprime_2", model.eq12e, "Cprime", "maximum force of the pair's second test", "", "C'_{2%s}"),
+            ("Cprime_1", peak_1, "Cprime", "maximum force of the pair's first test", "", "C'_{1%s}"),
+            ("Cprime_2", peak_2, "Cprime", "maximum force of the pair's second test", "", "C'_{2%s}"),
             ("x_top", points.top, "x_top", "largest approach of the pair", "like x_p", r"x_{\mathrm{top}%s}"),
         )
     }
-    x_top, C = on_pair["x_top"], on_pair["C"]
+    x_top = on_pair["x_top"]
     x = _column(
         "x", POINTS,
         Formula(points.abscissa.at({points.x_top: x_top[p], points.N: points_per_pair.symbol})), "x",
@@ -127,8 +130,7 @@ def _sheet(given: frozenset[str]) -> Sheet:
     )  # fmt: skip
     F = _column(
         "F", POINTS,
-        Formula(model.law_c.at({model.x: x[q], model.C: C[p], model.alpha: alpha[p], model.F: Symbol("F")})),
-        "F",
+        Formula(curve.on_curve.at({**where, model.x: x[q], model.F: Symbol("F")})), "F",
         meaning="force of a generated point",
     )  # fmt: skip
     columns = (
@@ -139,7 +141,7 @@ def _sheet(given: frozenset[str]) -> Sheet:
                 "alpha_median", None, Formula(points.middle),
                 meaning="median exponent", latex=r"\tilde{\alpha}",
             ),
-            x, F, *_log_fit(x, F), *_lin_fit(x, F), *_tests_after_fit(),
+            x, F, *_log_fit(x, where), *_lin_fit(), *_tests_after_fit(),
     )  # fmt: skip
     return Sheet(columns).limited(limits(columns, where))
 
@@ -173,11 +175,11 @@ def _mass(name: str, rule: Formula | Given, meaning: str, latex: str) -> Column:
     return Column(name, None, rule, "kg", meaning, latex, "g")
 
 
-def _log_fit(x: Column, F: Column) -> tuple[Column, ...]:
+def _log_fit(x: Column, pair: Mapping[Expr, Expr]) -> tuple[Column, ...]:
     """The straight line through the logarithms of the generated points."""
     ref = (
         _column("x_ref", None, Formula(points.x_scale), "x_ref", display="like x_p"),
-        _column("F_ref", None, Formula(points.F_scale), "F_ref"),
+        _column("F_ref", None, Formula(points.F_scale.at({CP[p]: pair[CP[2]]})), "F_ref"),
     )
     ln_x, ln_F = (Column(name, POINTS, Given(), positive=False) for name in ("ln_x", "ln_F"))
     mean_x, mean_F, line = (
@@ -185,8 +187,8 @@ def _log_fit(x: Column, F: Column) -> tuple[Column, ...]:
     )
     alpha_log = VOCABULARY["alpha"].symbol.func("alpha_log", positive=True)
     where = {
-        fit.X[q]: ln_x[q], fit.Y[q]: ln_F[q], fit.Xmean: mean_x.symbol, fit.Ymean: mean_F.symbol,
-        fit.a: line.symbol, fit.b: alpha_log,
+        **pair, fit.x[q]: x[q], fit.X[q]: ln_x[q], fit.Y[q]: ln_F[q],
+        fit.Xmean: mean_x.symbol, fit.Ymean: mean_F.symbol, fit.a: line.symbol, fit.b: alpha_log,
     }  # fmt: skip
 
     def own(name: str, equation: Equation, latex: str, meaning: str, **more: Any) -> Column:
@@ -196,7 +198,7 @@ def _log_fit(x: Column, F: Column) -> tuple[Column, ...]:
     return (
         *ref,
         own("ln_x", fit.log_x, "X%s", "logarithm of a point's approach over the reference", axis=POINTS),
-        own("ln_F", fit.log_F, "Y%s", "logarithm of a point's force over the reference", axis=POINTS),
+        own("ln_F", curve.log_force, "Y%s", "logarithm of a point's force over the reference", axis=POINTS),
         own("mean_ln_x", fit.mean_X, r"\bar{X}", "mean of X"),
         own("mean_ln_F", fit.mean_Y, r"\bar{Y}", "mean of Y"),
         own("alpha_log", fit.alpha_log, r"\alpha_{\log}", "exponent of the log-log fit", positive=True),
@@ -208,10 +210,12 @@ def _log_fit(x: Column, F: Column) -> tuple[Column, ...]:
     )  # fmt: skip
 
 
-def _lin_fit(x: Column, F: Column) -> tuple[Column, ...]:
+def _lin_fit() -> tuple[Column, ...]:
     """Least squares of the force: one equation for the exponent, then the coefficient."""
     alpha = Column("alpha_lin", None, Given()).symbol
-    equation = fit.alpha_lin.at({fit.alpha: alpha})
+    ln_x, ln_F = (Column(name, POINTS, Given(), positive=False) for name in ("ln_x", "ln_F"))
+    where = {fit.alpha: alpha, fit.X[q]: ln_x[q], fit.Y[q]: ln_F[q]}
+    equation = fit.alpha_lin.at(where)
     root = Root(
         equation=equation,
         form=equation,
@@ -229,7 +233,7 @@ def _lin_fit(x: Column, F: Column) -> tuple[Column, ...]:
             r"\alpha_{\mathrm{lin}}",
         ),
         Column(
-            "C_lin", None, Formula(fit.lin_scale.at({fit.alpha: alpha})), "N/m^alpha_lin",
+            "C_lin", None, Formula(fit.lin_scale.at(where)), "N/m^alpha_lin",
             "coefficient of the least squares of force", r"C_{\mathrm{lin}}",
         ),
     )  # fmt: skip

@@ -2,10 +2,11 @@
 // Evaluates a sheet in plain JavaScript. `program` is generated from the declaration that every other engine
 // is generated from: its index sets and, for each column, functions of a row. Nothing here knows a model.
 
-const STATUS = { OK: 0, INPUT: 1, DOMAIN: 2, NOROOT: 3, TWOROOTS: 4 };
+const STATUS = { OK: 0, INPUT: 1, DOMAIN: 2, NOROOT: 3, TWOROOTS: 4, OVERFLOW: 5 };
 const NOISE = 16 * Number.EPSILON; // the share of its terms below which rounding hides a form
 const BLOCK = 16; // rows that a sum adds as they come
-const CODES = ["ok", "#INPUT!", "#DOMAIN!", "#NOROOT!", "#TWOROOTS!"];
+const CODES = ["ok", "#INPUT!", "#DOMAIN!", "#NOROOT!", "#TWOROOTS!", "#OVERFLOW!"];
+const SMALLEST = 2 ** -1022; // the least positive number with all its digits
 
 // The rows of an index set, and for each index that formulas use the rows that it names.
 function layOut(axis, layouts, labels, data) {
@@ -39,12 +40,6 @@ function layOut(axis, layouts, labels, data) {
   return { size, rows, ordinals, get labels() { return (named ??= Array.from(own, label)); } };
 }
 
-function each(kept, value) {
-  const out = new Float64Array(kept.length);
-  for (let row = 0; row < out.length; row++) out[row] = value(row);
-  return out;
-}
-
 // Sums of several terms over the rows that are kept. Of a few rows `terms` adds them as they come, then every
 // addition is compensated (Neumaier): no engine may lose digits to the order of its additions.
 function total(kept, count, terms) {
@@ -62,7 +57,7 @@ function total(kept, count, terms) {
 
 // The middle of the terms of the rows that are kept; of an even number, the mean of the two there.
 function median(kept, term) {
-  const all = each(kept, term).filter((_, row) => kept[row]).sort(), { length } = all;
+  const all = new Float64Array(kept).map((_, row) => term(row)).filter((_, row) => kept[row]).sort(), { length } = all;
   return (all[(length - 1) >> 1] + all[length >> 1]) / 2;
 }
 
@@ -128,7 +123,7 @@ function evaluateSheet(program, labels, inputs) {
     const out = (value[name] = new Float64Array(size)), codes = (status[name] = new Uint8Array(size));
     const note = (list, row, what) => ((sheet[list][name] ??= {})[row] = what);
     if (kind === "given") {
-      faulty[name] = fill(out, codes, (row) => data[name][row], false, STATUS.INPUT);
+      faulty[name] = fill(out, codes, (row) => data[name][row], 0, () => STATUS.INPUT);
       continue;
     }
     // Only what names a cell in error, or sums over no rows, can inherit an error.
@@ -140,7 +135,7 @@ function evaluateSheet(program, labels, inputs) {
       const lost = leaveOut(keep[summed], doubtful, summed, layouts, status);
       if (lost) note("counted", summed, (sizes[summed] -= lost));
     }
-    const kernels = column.kernels(value, layouts, sizes, keep), { requires } = kernels;
+    const kernels = column.kernels(value, layouts, sizes, keep), { requires } = kernels, { positive } = column;
     for (let row = 0; doubtful.length && row < size; row++) codes[row] = inherited(doubtful, axis, row, layouts, status, sizes);
     for (let row = 0; requires && row < size; row++) {
       // What breaks a condition is outside the domain, whatever the rule would make of it.
@@ -159,20 +154,26 @@ function evaluateSheet(program, labels, inputs) {
       }
       return found?.length === 1 ? found[0] : NaN;
     };
-    faulty[name] = fill(out, codes, kind === "root" ? only : kernels.value, column.positive, STATUS.DOMAIN);
+    // Where there is a value all the same, no double holds it, or a step towards it: 0 is one that was positive.
+    const defined = kind === "root" ? (row, number) => !Number.isNaN(number) : kernels.defined ?? (() => true);
+    const fault = (row, number) => {
+      const beyond = Number.isFinite(number) ? number > 0 || (number === 0 && positive > 1) : !positive || number !== -Infinity;
+      return beyond && defined(row, number) ? STATUS.OVERFLOW : STATUS.DOMAIN;
+    };
+    faulty[name] = fill(out, codes, kind === "root" ? only : kernels.value, positive, fault);
   }
   return sheet;
 }
 
-// Computes the rows that have no error yet; what is no number gets a code. Says whether there is any error.
-function fill(out, codes, compute, positive, code) {
+// Computes the rows that have no error yet; what no cell can hold gets a code. Says whether there is any error.
+function fill(out, codes, compute, positive, fault) {
   let faulty = false;
   for (let row = 0; row < out.length; row++) {
     const number = codes[row] ? NaN : compute(row);
-    if (Number.isFinite(number) && (number > 0 || !positive)) out[row] = number;
+    if (Number.isFinite(number) && (number >= SMALLEST || !positive)) out[row] = number;
     else {
       out[row] = NaN;
-      codes[row] ||= code;
+      codes[row] ||= fault(row, number);
       faulty = true;
     }
   }

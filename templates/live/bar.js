@@ -65,16 +65,14 @@ function sourceLine(column) {
   const equations = equationsOf(column);
   if (!equations.length) return [`from ${column.source}`];
   return equations.flatMap((label, place) => {
-    const { id, status } = LIVE.equations[label];
-    const kind = status.startsWith("proved") ? "holds" : /refuted|refused|undecided/.test(status) ? "fails" : "stated";
-    const link = make("a", { href: `#${id}`, class: "eqref" }, label);
-    return [place ? ", solved as " : "from ", link, " ", make("span", { class: `status ${kind}` }, status)];
+    const id = LIVE.equations[label], link = make("a", { href: `#${id}`, class: "eqref" }, label);
+    return [place ? ", solved as " : "from ", link, " ", byId(id).querySelector(".status").cloneNode(true)];
   });
 }
 
 // The equation as the report prints it: a copy from its place there.
 function publishedMath(column, name) {
-  const [label] = equationsOf(column), found = label && byId(LIVE.equations[label].id)?.querySelector(".eq math");
+  const [label] = equationsOf(column), found = label && byId(LIVE.equations[label])?.querySelector(".eq math");
   if (!found) return [];
   const copy = found.cloneNode(true);
   const rows = LIVE.columns[name].put ? "" : summedRows(name);

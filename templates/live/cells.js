@@ -53,7 +53,7 @@ class Look {
       name, row, index, code, ok: code === "ok", printed: texts?.[row] ?? null,
       text: code !== "ok" ? code : figure ? figureText(figure) : texts[row],
       data: repr(this.trace.sheet.value[name][row]),
-      pad: missing > 0 ? `p${Math.min(missing, 8)}${figure.fraction ? "" : " nopoint"}` : "p0",
+      pad: missing > 0 ? `p${Math.min(missing, 8)}${figure.fraction ? "" : " nopoint"}` : "",
       beyond: code === "ok" ? this.trace.outsideOf(name, row).map(([, mark]) => mark).join("; ") : "",
       mark: !this.issued || same ? "" : before >= 0 ? "changed" : "added",
       before: this.issued && before >= 0 && !same ? this.issued.shownText(name, before) : "",

@@ -98,7 +98,7 @@ function writeLeftOut(element, text) {
   element.classList.remove("changed", "added");
   if (element.tagName === "INPUT") {
     element.value = text;
-    element.parentElement.className = "p0";
+    element.parentElement.className = "";
     element.parentElement.querySelector("a.code")?.remove();
   } else {
     element.textContent = "";
@@ -143,9 +143,9 @@ function writeCounted(look) {
     }
     const behind = look.trace.ancestors(element.dataset.cell);
     for (const { name, axis } of look.trace.order.filter(({ name, axis }) => axis && behind.has(name))) {
-      for (const [margin, , , rows] of LIVE.columns[name].limits ?? []) {
-        const [outside, size] = howMany(look, margin);
-        if (outside) box.append(" ", make("span", { class: "counted" }, `${outside} of ${size} ${axis}${rows}`));
+      for (const [margin, mark, says] of LIVE.columns[name].limits ?? []) {
+        const [outside, size] = howMany(look, margin), text = `${outside} of ${size} ${axis}${says ? "" : ":"} ${mark}`;
+        if (outside) box.append(" ", make("span", { class: "counted" }, text));
       }
     }
   }
@@ -156,7 +156,8 @@ function writeMissing(look) {
   const { errors, order, sheet } = look.trace;
   const remarks = errors.map(({ name, row }) => [name, row, CODES[sheet.status[name][row]], look.trace.why(name, row)]);
   for (const { name } of order) {
-    for (const [margin, , told] of LIVE.columns[name].limits ?? []) {
+    for (const [margin, mark, says] of LIVE.columns[name].limits ?? []) {
+      const told = says ? `${mark}, ${says}` : mark;
       sheet.value[margin].forEach((room, row) => room < 0 && remarks.push([name, row, "†", told]));
     }
   }

@@ -1,5 +1,7 @@
 // What a cell rests on, what rests on it, and where an error began. Nothing in this file knows the page.
 
+const BEYOND = "it, or a step towards it, is above 1.8e308, or positive and below 2.2e-308";
+
 class Trace {
   constructor(program, columns, sheet) {
     this.columns = columns;
@@ -98,6 +100,7 @@ class Trace {
       const roots = Array.from(this.sheet.roots[name]?.[row] ?? [], brief).join(" and ");
       return `${source} has more than one root here: ${roots ? `${roots} (${two})` : two}`;
     }
+    if (status === STATUS.OVERFLOW) return `${source} has a value here that no double holds: ${BEYOND}`;
     return `outside the domain of ${source}: ${this.outside(name, row, requires ?? [])}`;
   }
 

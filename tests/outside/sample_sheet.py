@@ -70,8 +70,30 @@ def _columns() -> tuple[Column, ...]:
         "last", None, _formula(Sum(solved.symbol + many[k], (k, 1, n_items)) / n_items), positive=False
     )
     middle = Column("middle", None, _formula(Median(strict[p], (p, 1, n_pairs)) / w.symbol))
+    # Of g, 2.5 has a value, -3 one that is too small, 12 and 5 one that is too large; 5 has no quotient.
+    huge = Column("huge", ITEMS, _formula(exp(240 * g[k])))
+    quotient = Column("quotient", ITEMS, _formula(a[k] / (g[k] - 5)), positive=False)
     carried = Column("carried", None, _formula(Median(strict[p], (q, 1, n_points))), "mm")
-    return a, g, w, per, far, ratio, strict, cases, wave, total, mixed, solved, many, last, middle, carried
+    return (
+        a,
+        g,
+        w,
+        per,
+        far,
+        ratio,
+        strict,
+        cases,
+        wave,
+        total,
+        mixed,
+        solved,
+        many,
+        last,
+        middle,
+        carried,
+        huge,
+        quotient,
+    )
 
 
 def _root_of_cubic(g: Any, z: Symbol) -> Root:

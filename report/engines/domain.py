@@ -1,0 +1,142 @@
+"""Where an expression has a value at all, by algebra: what tells a value that no double holds from none.
+
+A number that is infinite, or not one, may come of a division by zero or of an intermediate result beyond the
+largest double. The operations that have no value somewhere are few; if none of them is where it has none, the
+expression has a value, and doubles are to blame.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sympy import (
+    Abs,
+    Add,
+    And,
+    Dummy,
+    Eq,
+    Expr,
+    Integer,
+    Max,
+    Min,
+    Mul,
+    Ne,
+    Not,
+    Or,
+    Piecewise,
+    Pow,
+    S,
+    Sum,
+    Symbol,
+    atan,
+    ceiling,
+    cos,
+    cosh,
+    exp,
+    floor,
+    log,
+    sign,
+    sin,
+    sinh,
+    tanh,
+)
+from sympy.core.relational import Relational
+from sympy.functions.elementary.piecewise import ExprCondPair
+from sympy.logic.boolalg import Boolean
+
+from ...derivations.reductions import REDUCTIONS
+from ..sheet import Sheet
+
+__all__ = ["LARGEST", "SMALLEST", "defined", "is_positive", "typed"]
+
+LARGEST = 2**1024 - 2**970
+"""What is no smaller than this rounds to no finite double."""
+SMALLEST = 2.0**-1022
+"""Below, doubles lose digits, and some programs hold zero: a positive quantity has no value there."""
+
+_EVERYWHERE = (
+    Abs, Add, And, ExprCondPair, Max, Min, Mul, Not, Or, Relational,
+    atan, ceiling, cos, cosh, exp, floor, sign, sin, sinh, tanh,
+)  # fmt: skip
+"""What has a value wherever its arguments have."""
+
+
+def typed(sheet: Sheet, expression: Expr) -> Expr:
+    """The expression in cells of which is assumed what they may be: a given one that is allowed to be 0 is.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    expression : Expr
+        A formula of the sheet. What is made of it names the same cells.
+    """
+    assumed = {}
+    for name, bounds in sheet.bounds.items():
+        least = -1 if bounds.low is None else bounds.low
+        sign = "positive" if least > 0 or (least == 0 and bounds.low_open) else "nonnegative"
+        assumed[sheet[name].symbol] = Symbol(name, real=True) if least < 0 else Symbol(name, **{sign: True})
+    found: Expr = expression.xreplace(assumed)
+    return found
+
+
+def defined(expression: Any) -> Boolean:
+    """Say where an expression has a value, as a condition that every engine can print.
+
+    Parameters
+    ----------
+    expression : Basic
+        A formula of a sheet, from :func:`typed`.
+
+    Returns
+    -------
+    Boolean
+        True if it has one everywhere; false also for a function of which that is not known.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x, y = symbols("x y", positive=True)
+    >>> defined(x * y**-2.5 / (x - y))
+    Ne(x - y, 0)
+    >>> defined(log(x / y))
+    True
+    """
+    if not expression.args or expression.is_Atom or expression.is_Indexed:
+        return S.true
+    if isinstance(expression, REDUCTIONS):
+        outside = Piecewise((Integer(0), defined(expression.function)), (Integer(1), True))
+        return S.true if outside == 0 else Eq(Sum(outside, *expression.limits), 0)
+    if isinstance(expression, Piecewise):
+        chosen = [Or(Not(condition), defined(value)) for value, condition in expression.args]
+        conditions = [condition for _, condition in expression.args]
+        return And(*chosen, *map(defined, conditions), Or(*conditions))
+    return And(_itself(expression), *map(defined, expression.args))
+
+
+def _itself(expression: Any) -> Boolean:
+    """Where an operation has a value if its arguments have."""
+    if isinstance(expression, Pow):
+        base, exponent = expression.args
+        whole = S.true if exponent.is_integer else base >= 0
+        if not exponent.is_number:
+            whole = Or(whole, Eq(exponent, floor(exponent)))
+        some = S.true if exponent.is_nonnegative else Ne(base, 0)
+        return And(whole, some if exponent.is_negative else Or(some, exponent > 0))
+    if isinstance(expression, log):
+        return expression.args[0] > 0
+    return S.true if isinstance(expression, _EVERYWHERE) else S.false
+
+
+def is_positive(expression: Expr) -> bool:
+    """Whether an expression is positive by what is assumed of its cells; a sum of such has some terms.
+
+    Examples
+    --------
+    >>> from sympy import IndexedBase, Symbol, symbols
+    >>> q, n = symbols("q n", integer=True, positive=True)
+    >>> F = IndexedBase(Symbol("F", positive=True))
+    >>> is_positive(Sum(F[q], (q, 1, n)) / n), is_positive(F[q] - 1)
+    (True, False)
+    """
+    known = {total: Dummy(positive=True) for total in expression.atoms(Sum) if is_positive(total.function)}
+    return bool(expression.xreplace(known).is_positive)
