@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import errno
 import gc
 import multiprocessing
+import os
 import warnings
 from collections.abc import Callable
+from multiprocessing.connection import Connection
 from typing import Generic, TypeVar
+
+from .stopping import Stopped, stoppable_worker, unstoppable
 
 __all__ = ["Background"]
 
 T = TypeVar("T")
+_PATIENCE = 5.0
+"""Seconds in which a process that is told to end takes back what it has begun."""
 
 
 class Background(Generic[T]):
@@ -29,8 +36,8 @@ class Background(Generic[T]):
             return
         context = multiprocessing.get_context("fork")
         self._receiver, sender = context.Pipe(duplex=False)
-        self._process = context.Process(target=_run, args=(work, sender), daemon=True)
-        with warnings.catch_warnings():
+        self._process = context.Process(target=_run, args=(work, sender, os.getpid()), daemon=True)
+        with warnings.catch_warnings(), unstoppable():
             # Forking beside NumPy's idle threads is what the warning is about; the child does not use them.
             warnings.simplefilter("ignore", DeprecationWarning)
             self._process.start()
@@ -49,7 +56,9 @@ class Background(Generic[T]):
         try:
             outcome, error = self._receiver.recv()
         except EOFError:
-            outcome, error = None, RuntimeError("the background process died")
+            self._process.join()
+            reason = f"a process of ours was ended by somebody else (code {self._process.exitcode})"
+            outcome, error = None, OSError(errno.ENOMEM, reason)  # the system does so when memory is short
         self._process.join()
         self._process = None
         if error is not None:
@@ -60,14 +69,21 @@ class Background(Generic[T]):
     def cancel(self) -> None:
         """Stop it, if it still runs."""
         if self._process is not None:
-            self._process.terminate()
-            self._process.join()
+            with unstoppable():
+                self._process.terminate()
+                self._process.join(_PATIENCE)
+                self._process.kill()
+                self._process.join()
 
 
-def _run(work: Callable[[], T], sender: object) -> None:
+def _run(work: Callable[[], T], sender: Connection, parent: int) -> None:
+    stoppable_worker(parent)
     gc.freeze()  # what was inherited is no garbage, and looking at it would copy it
     try:
-        outcome: tuple[object, Exception | None] = (work(), None)
-    except Exception as error:
-        outcome = (None, error)
-    sender.send(outcome)  # type: ignore[attr-defined]
+        try:
+            outcome: tuple[object, Exception | None] = (work(), None)
+        except Exception as error:
+            outcome = (None, error)
+        sender.send(outcome)
+    except (Stopped, BrokenPipeError):
+        pass  # nobody waits for it

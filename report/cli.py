@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import re
+import signal
 import sys
 from collections.abc import Sequence
+from contextlib import redirect_stdout
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn, TextIO
+from typing import TYPE_CHECKING, NoReturn, TextIO, cast
 
+from .diagnostics import VisibleStream
+from .stopping import stoppable
 from .verbs import VERBS
 from .verbs.common import BUG, OK, print_checks
 
 if TYPE_CHECKING:
     from .errors import LoopsheetError, UsageError
+    from .findings import Check
 
 __all__ = ["main"]
 
@@ -109,7 +115,20 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; return its exit code."""
-    from .errors import LoopsheetError, render_all
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # a terminal of another encoding still gets all
+    try:
+        with stoppable(), redirect_stdout(cast(TextIO, VisibleStream(sys.stdout))):
+            return _run(arguments)
+    except KeyboardInterrupt as error:
+        print("\nstopped; nothing was half-written", file=sys.stderr)
+        return 128 + getattr(error, "number", signal.SIGINT)
+
+
+def _run(arguments: Sequence[str] | None) -> int:
+    from .diagnostics import visible
+    from .errors import LoopsheetError, UsageError, diagnose
+    from .findings import Check
 
     options = argparse.Namespace(traceback=False)
     try:
@@ -117,20 +136,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code: int = options.run(options)
         sys.stdout.flush()
     except LoopsheetError as error:
-        _tell_machines(error, options)
-        print(render_all(error.diagnostics, color=_colored(sys.stderr)), file=sys.stderr)
-        return error.exit_code
+        return _refuse(error, options)
     except BrokenPipeError:
-        # Whoever read us has seen enough; Python would complain once more while closing.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()  # whoever read us has seen enough
         return OK
-    except KeyboardInterrupt:
-        print("\nstopped; nothing was half-written", file=sys.stderr)
-        return 130
     except Exception as error:
+        if (reason := _exhausted(error)) is not None:
+            return _refuse(UsageError(diagnose("LS622", reason=reason)), options)
         if options.traceback:
             raise
-        print(f"bug: {type(error).__name__}: {error}", file=sys.stderr)
+        said = f"{type(error).__name__}: {error}"
+        _tell_machines((Check("bug", type(error).__name__, False, said),), "A fault of loopsheet", options)
+        print(f"bug: {visible(said)}", file=sys.stderr)
         print(
             "This is a fault of loopsheet, not of your input. 'loopsheet --traceback ...' shows where.",
             file=sys.stderr,
@@ -139,14 +156,43 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return code
 
 
-def _tell_machines(error: LoopsheetError, options: argparse.Namespace) -> None:
-    """Where findings are printed for a machine, it hears of wrong input too."""
-    form = getattr(options, "format", "text")
-    if form == "text":
-        return
+def _refuse(error: LoopsheetError, options: argparse.Namespace) -> int:
+    """Tell what the user can put right, machines too, as far as anything can be written still."""
+    from .errors import render_all
     from .findings import of_diagnostics
 
-    print_checks(of_diagnostics(error.diagnostics), form, "The input is wrong", {})
+    _tell_machines(of_diagnostics(error.diagnostics), "The input is wrong", options)
+    print(render_all(error.diagnostics, color=_colored(sys.stderr)), file=sys.stderr)
+    return error.exit_code
+
+
+def _drop_output() -> None:
+    """Python would write once more, and complain, while it closes."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _exhausted(error: Exception) -> str | None:
+    """What the machine has no more of, if that is what happened."""
+    from .errors import EXHAUSTED
+
+    if isinstance(error, MemoryError):
+        return "no memory is left"
+    if isinstance(error, OSError) and error.errno in EXHAUSTED:
+        return f"{error.strerror}: {error.filename}" if error.filename else error.strerror
+    # A library that cannot be opened is told by a sentence alone.
+    words = map(os.strerror, sorted(EXHAUSTED))
+    return next((word for word in words if isinstance(error, ImportError) and word in str(error)), None)
+
+
+def _tell_machines(found: tuple[Check, ...], title: str, options: argparse.Namespace) -> None:
+    """Where findings are printed for a machine it hears of the end too, as far as it can be told."""
+    form = getattr(options, "format", "text")
+    try:
+        if form != "text":
+            print_checks(found, form, title, {})
+        sys.stdout.flush()
+    except OSError:
+        _drop_output()
 
 
 def _colored(stream: TextIO) -> bool:

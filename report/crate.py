@@ -10,10 +10,8 @@ from __future__ import annotations
 import datetime
 import hashlib
 import json
-import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -21,6 +19,9 @@ from urllib.parse import quote
 from .errors import OutputError, UsageError, diagnose
 from .folders import INPUTS, built_from
 from .results import Manifest, read_manifest
+from .scratch import scratch
+from .staging import put
+from .stopping import unstoppable
 
 __all__ = ["NAME", "crate", "write"]
 
@@ -93,9 +94,16 @@ def write(
     inputs = {f"{INPUTS}/{name}": _read(source, name, digest) for name, digest in manifest.inputs.items()}
     _refuse_what_somebody_changed(out, inputs)
     sizes |= {name: len(content) for name, content in inputs.items()}
-    for name, content in inputs.items():
-        _put(out / name, content)
-    _put(out / NAME, crate(manifest, sizes, *words, people).encode())
+    made = inputs | {NAME: crate(manifest, sizes, *words, people).encode()}
+    try:
+        with scratch(out) as stage, unstoppable():
+            for name, content in made.items():
+                put(stage / name, content)
+            for name in made:
+                (out / name).parent.mkdir(parents=True, exist_ok=True)
+                (stage / name).replace(out / name)
+    except OSError as error:
+        raise OutputError(diagnose("LS601", text=out / NAME, reason=error.strerror or error)) from error
     return out / NAME
 
 
@@ -125,18 +133,6 @@ def _refuse_what_somebody_changed(out: Path, inputs: Mapping[str, bytes]) -> Non
         there = (out / name).read_bytes()
         if there != content and hashlib.sha256(there).hexdigest() != before.get(quote(name)):
             raise OutputError(diagnose("LS610", text=name, reason="was changed after it was put there"))
-
-
-def _put(target: Path, content: bytes) -> None:
-    draft = target.with_name(f".{target.name}.{os.getpid()}.new")
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        draft.write_bytes(content)
-        draft.replace(target)
-    except OSError as error:
-        with suppress(OSError):
-            draft.unlink(missing_ok=True)
-        raise OutputError(diagnose("LS601", text=target, reason=error.strerror or error)) from error
 
 
 def _date(text: str) -> str:

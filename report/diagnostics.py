@@ -5,8 +5,9 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Any, TextIO
 
-__all__ = ["Diagnostic", "Location", "render", "render_all", "visible"]
+__all__ = ["Diagnostic", "Location", "VisibleStream", "render", "render_all", "visible"]
 
 _TAB = 4
 _BEFORE = 40
@@ -86,6 +87,26 @@ def _visible_character(character: str) -> str:
         return character
     code = ord(character)
     return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+
+
+class VisibleStream:
+    """A stream that writes what :func:`visible` makes of each line: all that is printed goes through one.
+
+    Parameters
+    ----------
+    stream : TextIO
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        """Write text, and tell how much of it was taken: all."""
+        self._stream.write("\n".join(map(visible, text.split("\n"))))
+        return len(text)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
 
 
 def render(diagnostic: Diagnostic, color: bool = False) -> str:

@@ -7,6 +7,7 @@ outputs. To add one: a line in :data:`CATALOGUE`, and a case in tests/test_error
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -14,6 +15,7 @@ from .diagnostics import Diagnostic, Location, render, render_all, visible
 
 __all__ = [
     "CATALOGUE",
+    "EXHAUSTED",
     "Diagnostic",
     "Entry",
     "Findings",
@@ -349,7 +351,27 @@ CATALOGUE: dict[str, Entry] = {
         "for the shipped campaign, go to another working directory",
     ),
     "LS617": Entry("wrong command line", "{reason}", "{known}", "{suggestion}"),
+    "LS621": Entry(
+        "another build",
+        "another build writes into '{text}', still after {seconds} s",
+        "one build at a time into a folder",
+        "wait for it, or choose another folder with --out",
+    ),
+    "LS622": Entry(
+        "the machine has no more",
+        "the machine refuses: {reason}",
+        "free space on the disk, memory, and files that may be open at once",
+        "nothing was half-written; 'df', 'free' and 'ulimit -a' tell what is short",
+    ),
 }
+
+
+EXHAUSTED = frozenset(
+    getattr(errno, name)
+    for name in ("ENOSPC", "EDQUOT", "EFBIG", "EMFILE", "ENFILE", "ENOMEM", "EAGAIN", "EROFS", "EIO")
+    if hasattr(errno, name)
+)
+"""What the system says when the machine, or what somebody allowed us of it, is used up: no bug of ours."""
 
 
 def diagnose(code: str, at: Location | None = None, **fields: object) -> Diagnostic:

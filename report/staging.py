@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
-import tempfile
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from .errors import Location, OutputError, diagnose
+from .errors import EXHAUSTED, Location, OutputError, diagnose
+from .scratch import left_over, locked, scratch
+from .stopping import unstoppable
 
-__all__ = ["put", "replaced", "staged"]
+__all__ = ["half_moved", "put", "replaced", "staged"]
+
+PATIENCE = 60.0
+"""Seconds to wait for somebody else who builds into the same folder."""
 
 
 def put(path: Path, content: str | bytes) -> None:
@@ -24,7 +29,11 @@ def put(path: Path, content: str | bytes) -> None:
         Text is written as UTF-8.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content.encode() if isinstance(content, str) else content)
+    try:
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+    except OSError as error:
+        error.filename = error.filename or str(path)  # a full disk does not say which file
+        raise
 
 
 def replaced(path: Path, before: bytes, after: bytes) -> None:
@@ -43,21 +52,19 @@ def replaced(path: Path, before: bytes, after: bytes) -> None:
     OutputError
         It cannot be written; it is as it was then.
     """
-    target, stage = path.resolve(), None
+    target = path.resolve()
     try:
         # An administrator may write anything: what counts is what the owner has said.
         if not target.stat().st_mode & 0o222 or not os.access(target, os.W_OK):
             raise PermissionError("it is read-only")
-        if target.read_bytes() != before:
-            raise PermissionError("somebody has changed it meanwhile")
-        handle, stage = tempfile.mkstemp(prefix=".loopsheet-", dir=target.parent)
-        with os.fdopen(handle, "wb") as file:
-            file.write(after)
-        shutil.copymode(target, stage)
-        os.replace(stage, target)
+        with scratch(target.parent) as stage, unstoppable():
+            draft = stage / target.name
+            draft.write_bytes(after)
+            shutil.copymode(target, draft)
+            if target.read_bytes() != before:
+                raise PermissionError("somebody has changed it meanwhile")
+            os.replace(draft, target)
     except OSError as error:
-        if stage is not None:
-            Path(stage).unlink(missing_ok=True)
         reason = error.strerror or str(error)
         raise OutputError(
             diagnose("LS613", Location(path.as_posix()), text=path.name, reason=reason)
@@ -67,6 +74,8 @@ def replaced(path: Path, before: bytes, after: bytes) -> None:
 @contextmanager
 def staged(out: Path) -> Iterator[Path]:
     """Give a temporary folder beside the output, moved in whole when the block ends well.
+
+    Who builds into the same folder meanwhile waits for some time, and is told then.
 
     Parameters
     ----------
@@ -78,24 +87,53 @@ def staged(out: Path) -> Iterator[Path]:
     OutputError
         It cannot be written, or something stands in the way; all is left as it was then.
     """
-    made: list[Path] = []
+    if out.exists() and not out.is_dir():
+        raise OutputError(diagnose("LS602", text=str(out)))
+    made = [p for p in (out, *out.parents) if not p.exists()]
+    stage = out
     try:
-        if out.exists() and not out.is_dir():
-            raise OutputError(diagnose("LS602", text=str(out)))
-        made = [p for p in (out, *out.parents) if not p.exists()]
         out.mkdir(parents=True, exist_ok=True)
-        stage = Path(tempfile.mkdtemp(prefix=".loopsheet-", dir=out))
+        with _alone(out), scratch(out) as stage:
+            yield stage
+            with unstoppable():
+                _move_in(stage, out)
     except OSError as error:
         _remove(made)
-        raise OutputError(diagnose("LS601", text=str(out), reason=error.strerror or str(error))) from error
-    try:
-        yield stage
-        _move_in(stage, out)
+        file, place = Path(error.filename or ""), out
+        if stage != out:
+            if error.errno not in EXHAUSTED or not file.is_relative_to(stage):
+                raise  # not about what we write
+            place = out / file.relative_to(stage)
+        reason = error.strerror or str(error)
+        raise OutputError(diagnose("LS601", text=place.as_posix(), reason=reason)) from error
     except BaseException:
-        shutil.rmtree(stage, ignore_errors=True)
         _remove(made)
         raise
-    shutil.rmtree(stage, ignore_errors=True)
+
+
+@contextmanager
+def _alone(out: Path) -> Iterator[None]:
+    try:
+        lock = locked(out, PATIENCE)
+    except BlockingIOError as error:
+        raise OutputError(diagnose("LS621", text=out, seconds=f"{PATIENCE:g}")) from error
+    try:
+        yield
+    finally:
+        if lock is not None:
+            os.close(lock)
+
+
+def half_moved(out: Path) -> bool:
+    """Whether a build was killed while it put its files in place: what is there is of two builds then."""
+    for stage in left_over(out):
+        try:
+            listed = json.loads((stage / "manifest.json").read_text(encoding="utf-8"))["outputs"]
+            if any(not (stage / name).exists() for name in listed):
+                return True  # the manifest goes last
+        except (OSError, ValueError, LookupError, TypeError):
+            continue  # it was killed before it had all its files, or when all were in place
+    return False
 
 
 def _remove(made: list[Path]) -> None:
@@ -124,24 +162,33 @@ def _move_in(stage: Path, out: Path) -> None:
     try:
         for name in (*_stale(out, names), *names):
             target = out / name
-            kept = None
-            if target.exists():
-                kept = before / name
-                kept.parent.mkdir(parents=True, exist_ok=True)
-                os.replace(target, kept)
+            kept = _kept(target, before / name)
             done.append((target, kept))
             if name in names:
                 target.parent.mkdir(parents=True, exist_ok=True)
                 os.replace(stage / name, target)
-    except BaseException as error:
+            else:
+                target.unlink()
+    except OSError as error:
         for target, kept in reversed(done):
-            target.unlink(missing_ok=True)
-            if kept is not None:
+            if kept is None:
+                target.unlink(missing_ok=True)
+            else:
                 os.replace(kept, target)
-        if isinstance(error, OSError):
-            reason = error.strerror or str(error)
-            raise OutputError(diagnose("LS601", text=str(out), reason=reason)) from error
-        raise
+        reason = error.strerror or str(error)
+        raise OutputError(diagnose("LS601", text=str(out), reason=reason)) from error
+
+
+def _kept(target: Path, place: Path) -> Path | None:
+    """Give a file that is there another name too: a reader finds the old one or the new, never none."""
+    if not os.path.lexists(target):
+        return None
+    place.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        os.link(target, place, follow_symlinks=False)
+    except OSError:  # not every file system has such names
+        shutil.copy2(target, place, follow_symlinks=False)
+    return place
 
 
 def _refuse_what_is_in_the_way(out: Path, name: Path) -> None:
@@ -156,7 +203,6 @@ def _refuse_what_is_in_the_way(out: Path, name: Path) -> None:
 def _stale(out: Path, names: Collection[Path]) -> list[Path]:
     """What the manifest of an earlier build lists, unchanged since, and this build does not make."""
     import hashlib
-    import json
 
     try:
         listed = json.loads((out / "manifest.json").read_text(encoding="utf-8"))["outputs"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,8 @@ from .folders import built_from
 from .inputs import Find
 from .result import Report
 from .results import Index, Manifest, read_manifest, read_result
+from .scratch import scratch
+from .staging import half_moved
 
 __all__ = ["Verification", "verify"]
 
@@ -28,6 +29,9 @@ _FORMATS = {
     "pdf": "report.pdf",
 }
 """Each format by the file that only it writes."""
+
+
+_HALF = "a build was killed while it put its files in place: some are of it, some are older"
 
 
 @dataclass(frozen=True)
@@ -77,8 +81,8 @@ def verify(
     """
     then = read_manifest(out)
     folder = built_from(out, then.inputs) if folder is None else folder
-    with tempfile.TemporaryDirectory(prefix="loopsheet-") as name:
-        again = Path(name)
+    with scratch() as place:
+        again = place / "out"
         formats = [format for format in build.FORMATS if _FORMATS[format] in then.outputs]
         report, _ = build.build(folder, again, formats, step, len(then.engines) > 1, find)
         now = read_manifest(again)
@@ -119,6 +123,8 @@ def _same(kind: str, then: Mapping[str, str], now: Mapping[str, str], what: str)
 
 def _outputs(out: Path, then: Manifest, now: Manifest) -> Iterator[Check]:
     """Each file as it was built, as it is there, as it is built again."""
+    if half_moved(out):
+        yield Check("output", "all", False, _HALF)
     for name in sorted({*then.outputs, *now.outputs}):
         was, again = then.outputs.get(name), now.outputs.get(name)
         file = out / name
@@ -196,6 +202,8 @@ def _verdict(checks: tuple[Check, ...], then: Manifest, found: Differences | Non
     changed = [f"{words[kind]} ({', '.join(names)})" for kind, names in by_kind.items() if names]
     if changed:
         return f"different: {' and '.join(changed)} changed"
+    if any(check.message == _HALF for check in failed):
+        return f"different: {_HALF}; build it again"
     if all(c.message.endswith(("after it was built", "is missing")) for c in failed if c.kind == "output"):
         return "different: the outputs were changed after they were built, and nothing else was"
     if not then.sources:

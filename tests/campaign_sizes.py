@@ -34,6 +34,10 @@ class Sizes:
         Cells of them that break a condition.
     workbook_mutants, page_mutants : int
         Changed characters in the formulas of the workbook and in the program of the page.
+    stopped : int
+        Builds that are ended at a random moment by each signal.
+    stride : int
+        At every how many steps of a move of outputs it is ended.
     seed : int
     """
 
@@ -45,6 +49,8 @@ class Sizes:
     broken: int
     workbook_mutants: int
     page_mutants: int
+    stopped: int
+    stride: int
     seed: int = SEED
 
 
@@ -57,6 +63,8 @@ FEW = Sizes(
     broken=50,
     workbook_mutants=30,
     page_mutants=4,
+    stopped=1,
+    stride=4,
 )
 ALL = Sizes(
     honest=60,
@@ -67,6 +75,8 @@ ALL = Sizes(
     broken=1000,
     workbook_mutants=150,
     page_mutants=15,
+    stopped=100,
+    stride=1,
 )
 assert sum(ALL.engines.values()) > 2000
 

@@ -237,7 +237,7 @@ def test_a_move_that_fails_half_way_is_taken_back(tmp_path: Path, monkeypatch: p
     toml = folder / "report.toml"
     toml.write_text(toml.read_text().replace("Soft steel", "Other steel"))
     real = system.replace
-    for fatal in range(4):
+    for fatal in range(2):
         calls = iter(range(100))
 
         def breaks(source: object, target: object, calls: object = calls, fatal: int = fatal) -> None:

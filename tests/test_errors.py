@@ -305,6 +305,8 @@ CASES: dict[str, Callable[[], None]] = {
     "LS615": lambda: report_folder() and None,
     "LS616": the_word_for_a_folder,
     "LS617": lambda: _parse(["build", "a", "b"]) and None,
+    "LS621": raises(OutputError, "LS621", text="out", seconds="60"),
+    "LS622": raises(UsageError, "LS622", reason="Too many open files"),
 }
 
 

@@ -85,10 +85,12 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.workbooks": (RESULT | {"derivations", "report.workbooks", "report.analysis"}, ALGEBRA),
     "report.engines": (VALUES | {"report.engines"}, RUNTIME - {"jinja2", "matplotlib"}),
     "report.analysis": (
-        RESULT | {"derivations", "report.conditions", "report.engines", "report.inputs", "report.analysis"},
+        RESULT
+        | {"derivations", "report.conditions", "report.engines", "report.inputs", "report.analysis"}
+        | {"report.programs", "report.scratch"},
         RUNTIME - {"jinja2", "matplotlib"},
     ),
-    "report.views": (RESULT | {"report.views"}, RUNTIME - {"scipy", "mpmath"}),
+    "report.views": (RESULT | {"report.views", "report.programs"}, RUNTIME - {"scipy", "mpmath"}),
 }
 # Parts that only these modules may import, whatever the table says.
 BUILDERS = {"report.pytest_plugin", "report.verbs", "report.verification"}

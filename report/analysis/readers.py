@@ -10,12 +10,8 @@ import html
 import io
 import json
 import math
-import os
 import re
 import shutil
-import signal
-import subprocess
-import tempfile
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -26,6 +22,8 @@ from xml.etree import ElementTree
 
 from ..engines import javascript as printed
 from ..grid import Grid, checked
+from ..programs import ProgramFailed, run
+from ..scratch import scratch
 from ..sheet import Given, Sheet
 from ..values import CODES, Status, Values
 
@@ -106,52 +104,6 @@ def of_values(values: Values, engine: str = "numpy") -> Reading:
     return Reading(engine, "", numbers, codes)
 
 
-class _Failed(Exception):
-    """A program that was found did not do its work."""
-
-
-def _run(command: Sequence[str], seconds: float, text: str | None = None) -> str:
-    """The output of a program; it and all that it starts end within the time.
-
-    Raises
-    ------
-    _Failed
-        It cannot be started, takes too long, or ends with an error.
-    """
-    try:
-        process = subprocess.Popen(
-            list(command),
-            stdin=subprocess.DEVNULL if text is None else subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            encoding="utf-8",
-            errors="replace",
-            start_new_session=True,
-        )
-    except OSError as error:
-        raise _Failed(str(error)) from error
-    try:
-        out, said = process.communicate(text, timeout=seconds)
-    except subprocess.TimeoutExpired as error:
-        raise _Failed(f"took more than {seconds:g} s") from error
-    finally:
-        if process.poll() is None:
-            _end(process)
-    if process.returncode:
-        message = " ".join(said.split()) or "no message"
-        raise _Failed(f"ended with code {process.returncode}: {message[:_SHOWN]}")
-    return out
-
-
-def _end(process: subprocess.Popen[str]) -> None:
-    """End a program and what it started: soffice is a script, and the office its child."""
-    if hasattr(os, "killpg"):
-        os.killpg(process.pid, signal.SIGKILL)
-    else:
-        process.kill()
-    process.communicate()
-
-
 def _find(*names: str) -> tuple[str, str] | None:
     """The first of these programs that is installed: its name and its path."""
     return next(((name, path) for name in names if (path := shutil.which(name))), None)
@@ -160,8 +112,8 @@ def _find(*names: str) -> tuple[str, str] | None:
 def _version(path: str, name: str) -> str:
     """A program's name and the first two parts of its version."""
     try:
-        found = re.search(r"\d+(\.\d+)?", _run([path, "--version"], SCRIPT_SECONDS))
-    except _Failed:
+        found = re.search(r"\d+(\.\d+)?", run([path, "--version"], SCRIPT_SECONDS))
+    except ProgramFailed:
         found = None
     return f"{name} {found[0]}" if found else name
 
@@ -210,13 +162,12 @@ def run_javascript(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapp
     runtime = printed.RUNTIME.read_text(encoding="utf-8")
     body = f"{runtime}\nconst program = {printed.program(sheet)};\n"
     try:
-        with tempfile.TemporaryDirectory(prefix="loopsheet-") as folder:
-            here = Path(folder)
+        with scratch() as here:
             out = _in_node(found[1], here, body, text) if node else _in_page(found[1], here, body, text)
         columns = json.loads(out)
         value = {name: columns[name][0] for name in sheet.by_name}
         status = {name: [CODES[Status(code)] for code in columns[name][1]] for name in sheet.by_name}
-    except _Failed as failed:
+    except ProgramFailed as failed:
         return Reading("JavaScript", program, failure=str(failed))
     except (ValueError, LookupError, TypeError) as error:
         return Reading("JavaScript", program, failure=f"its answer cannot be read: {error!r}"[:_SHOWN])
@@ -226,7 +177,7 @@ def run_javascript(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapp
 def _in_node(path: str, folder: Path, body: str, text: str) -> str:
     script = folder / "sheet.js"
     script.write_text(f"{body}{_NODE}{_EVALUATE}", encoding="utf-8")
-    return _run([path, str(script)], SCRIPT_SECONDS, text)
+    return run([path, str(script)], SCRIPT_SECONDS, text)
 
 
 def _in_page(path: str, folder: Path, body: str, text: str) -> str:
@@ -243,10 +194,12 @@ def _in_page(path: str, folder: Path, body: str, text: str) -> str:
         encoding="utf-8",
     )
     switches = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder / 'profile'}"]
-    out = _run([path, *switches, "--dump-dom", page.as_uri()], SCRIPT_SECONDS)
+    out = run([path, *switches, "--dump-dom", page.as_uri()], SCRIPT_SECONDS)
     found, failed = (re.search(rf'<pre id="{name}">([^<]*)</pre>', out) for name in ("found", "failed"))
     if found is None or not found[1]:
-        raise _Failed(html.unescape(failed[1])[:_SHOWN] if failed and failed[1] else "the page stayed empty")
+        raise ProgramFailed(
+            html.unescape(failed[1])[:_SHOWN] if failed and failed[1] else "the page stayed empty"
+        )
     return html.unescape(found[1])
 
 
@@ -282,7 +235,7 @@ def run_workbook(sheet: Sheet, book: Book) -> Reading:
     try:
         cells = _recalculated(found[1], book.content)
         value, status, rounded = _columns(sheet, book.grid, cells)
-    except _Failed as failed:
+    except ProgramFailed as failed:
         return Reading("xlsx", program, failure=str(failed))
     except (OSError, KeyError, ValueError, zipfile.BadZipFile, ElementTree.ParseError) as error:
         return Reading("xlsx", program, failure=f"its file cannot be read: {error!r}"[:_SHOWN])
@@ -291,17 +244,17 @@ def run_workbook(sheet: Sheet, book: Book) -> Reading:
 
 def _recalculated(soffice: str, content: bytes) -> dict[str, dict[str, float | str]]:
     """Every cell of the workbook after LibreOffice computed it."""
-    with tempfile.TemporaryDirectory(prefix="loopsheet-", ignore_cleanup_errors=True) as folder:
-        profile, made = Path(folder) / "profile", Path(folder) / "made"
+    with scratch() as folder:
+        profile, made = folder / "profile", folder / "made"
         (profile / "user").mkdir(parents=True)
         # Without this LibreOffice would believe the values of a file that says where it comes from.
         (profile / "user" / "registrymodifications.xcu").write_text(ALWAYS_RECALCULATE, encoding="utf-8")
-        given = Path(folder) / "report.xlsx"
+        given = folder / "report.xlsx"
         given.write_bytes(without_results(content))
         command = [soffice, f"-env:UserInstallation={profile.as_uri()}", "--headless", "--convert-to", "xlsx"]
-        _run([*command, "--outdir", str(made), str(given)], BOOK_SECONDS)
+        run([*command, "--outdir", str(made), str(given)], BOOK_SECONDS)
         if not (made / "report.xlsx").is_file():
-            raise _Failed("made no file")  # and ended as if all were well
+            raise ProgramFailed("made no file")  # and ended as if all were well
         return read_cells((made / "report.xlsx").read_bytes())
 
 

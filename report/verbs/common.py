@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, TextIO
 
+from ..diagnostics import visible
 from ..folders import WORD
 
 if TYPE_CHECKING:
@@ -110,6 +111,7 @@ class Progress:
         """Tell what is begun."""
         if time.monotonic() - self.begun < 1:
             return
+        text = visible(text)
         if self.stream.isatty():
             self.stream.write("\r" + text.ljust(len(self.shown)))
             self.shown = text

@@ -61,7 +61,9 @@ def as_json(checks: Checks, title: str, more: Details) -> str:
         ],
         **more,
     }
-    return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
+    # A character that steers a terminal is escaped as JSON does it; all others are as they were written.
+    return "".join(c if c == "\n" or visible(c) == c else json.dumps(c)[1:-1] for c in text) + "\n"
 
 
 def as_junit(checks: Checks, title: str, more: Details) -> str:

@@ -9,13 +9,13 @@ from __future__ import annotations
 import os
 import re
 import shutil
-import subprocess
 from collections.abc import Collection
 from functools import cached_property
 from pathlib import Path
 
 from ...derivations.equation import Equation
 from ..errors import LoopsheetError, diagnose
+from ..programs import ProgramFailed, run
 from ..result import Report
 from .document import Document
 from .escape import Markup, tex, tex_finalize
@@ -32,6 +32,8 @@ DAGGER = r"\textsuperscript{\textdagger}"
 """What stands behind a number that lies outside of what is expected."""
 _PATIENCE = 300
 """Seconds that TeX may take."""
+_ROOM = 2_000_000
+"""Bytes that a report.pdf may need."""
 _MARKED = 0.82
 """From this part of the line's width on, an equation is shrunk where it turns out to be too wide."""
 
@@ -199,16 +201,9 @@ def compile(folder: Path) -> None:
     options = ["-pdf", "-norc", "-interaction=nonstopmode", "-halt-on-error", "-file-line-error"]
     command = ["latexmk", *options, "-pdflatex=pdflatex -no-shell-escape %O %S", "report.tex"]
     try:
-        run = subprocess.run(
-            command,
-            cwd=folder,
-            env={**os.environ, **safe},
-            capture_output=True,
-            timeout=_PATIENCE,
-            check=False,
-        )
-        failed = run.returncode != 0 or not (folder / "report.pdf").is_file()
-    except subprocess.TimeoutExpired:
+        run(command, _PATIENCE, folder=folder, environment={**os.environ, **safe})
+        failed = not (folder / "report.pdf").is_file()
+    except ProgramFailed:
         failed = True
     log = folder / "report.log"
     said = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
@@ -216,6 +211,8 @@ def compile(folder: Path) -> None:
         if path.name != "report.pdf" and path.is_file():
             path.unlink()
     if failed:
+        (folder / "report.log").write_bytes(b" " * _ROOM)  # TeX does not say that the disk is full: this does
+        (folder / "report.log").unlink()
         raise TexFailed(f"TeX could not print report.tex: {_complaint(said)}")
 
 

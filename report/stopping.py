@@ -1,0 +1,118 @@
+"""How a run is stopped: SIGINT, SIGTERM and SIGHUP unwind it once, so that everything begun is taken back."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any, NoReturn
+
+__all__ = ["Stopped", "stoppable", "stoppable_worker", "unstoppable"]
+
+_SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+_PATIENCE = 10.0
+"""Seconds in which a second signal does not disturb what the first one made us take back."""
+
+
+class Stopped(KeyboardInterrupt):
+    """Somebody asked us to end.
+
+    Parameters
+    ----------
+    number : int
+        The signal.
+    """
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
+
+
+class _Stop:
+    """The signals of this process: what came, and whether it has to wait."""
+
+    def __init__(self) -> None:
+        self.shields, self.waiting, self.raised = 0, 0, -_PATIENCE
+
+    def __call__(self, number: int, _: FrameType | None = None) -> None:
+        if self.shields:
+            self.waiting = number
+        elif time.monotonic() - self.raised > _PATIENCE:
+            self.throw(number)
+
+    def throw(self, number: int) -> NoReturn:
+        self.raised, self.waiting = time.monotonic(), 0
+        raise Stopped(number)
+
+    def lost(self, found: Any) -> None:
+        """Raise again what was raised in a destructor, of which Python only tells."""
+        if not isinstance(found.exc_value, Stopped):
+            sys.__unraisablehook__(found)
+            return
+        self.raised, number = -_PATIENCE, found.exc_value.number
+        threading.Timer(0.01, os.kill, (os.getpid(), number)).start()
+
+
+_stop = _Stop()
+
+
+@contextmanager
+def stoppable() -> Iterator[None]:
+    """Raise :class:`Stopped` in the block when the process is told to end; only the main thread can."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.signal(number, _stop) for number in _SIGNALS if _heeded(number)}
+    hook, sys.unraisablehook = sys.unraisablehook, _stop.lost
+    _stop.raised = -_PATIENCE
+    try:
+        yield
+    finally:
+        sys.unraisablehook = hook
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _heeded(number: int) -> bool:
+    """Whether a signal is not ignored: ``nohup`` and shells that start us in the background say so."""
+    return signal.getsignal(number) not in (signal.SIG_IGN, None)
+
+
+@contextmanager
+def unstoppable() -> Iterator[None]:
+    """Do the block as a whole: who is told to end in it ends after it."""
+    _stop.shields += 1
+    try:
+        yield
+    finally:
+        _stop.shields -= 1
+    if _stop.waiting and not _stop.shields:
+        _stop.throw(_stop.waiting)
+
+
+def stoppable_worker(parent: int) -> None:
+    """Let a process that was just forked, in an unstoppable block, end with its parent and not before.
+
+    What a terminal sends to all is for the parent, which ends its workers by SIGTERM. If the parent is
+    killed, nobody does: then the worker tells itself.
+
+    Parameters
+    ----------
+    parent : int
+        Its process number.
+    """
+    for number in _SIGNALS:
+        signal.signal(number, _stop if number == signal.SIGTERM else signal.SIG_IGN)
+    _stop.shields = _stop.waiting = 0
+    threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+def _end_with(parent: int) -> None:
+    while os.getppid() == parent:
+        time.sleep(0.2)
+    os.kill(os.getpid(), signal.SIGTERM)
