@@ -27,6 +27,8 @@ class Kind(Enum):
 
     DEFINITION = "definition"
     ASSUMPTION = "assumption"
+    LIMIT = "limit"
+    """An assumption that is approached from above and never reached: a quantity is zero."""
     CLAIM = "claim"
 
 

@@ -4,8 +4,8 @@ Neither half is trusted alone. A computer algebra system may simplify on assumpt
 numbers may agree by chance. A claim is proved when both say so, refuted when the numbers show a point of
 the domain where its premises hold and it does not, and undecided otherwise. Undecided is a failure.
 
-What is proved step by step may still say nothing: an equation that rests on itself, or that equates what is
-of different dimension, is refused.
+What is proved step by step may still say nothing: an equation that rests on itself, that equates what is of
+different dimension, or that cannot hold together with the others is refused.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import lru_cache
 
+from sympy import Expr, Indexed, Symbol
+
 from .dimensions import mixed
 from .equation import Derivation, Equation, Kind, Ledger, Step
 from .evaluation import NotEvaluable
@@ -23,6 +25,7 @@ from .sampling import DIGITS, POINTS, examine
 from .space import said
 from .system import Refused, prepare
 from .text import text
+from .together import conflict
 from .vocabulary import NO_WORDS, Vocabulary
 
 __all__ = [
@@ -46,6 +49,7 @@ class Status(Enum):
 
     DEFINITION = "definition"
     ASSUMPTION = "assumption"
+    LIMIT = "limit"
     PROVED = "proved"
     CORRECTED = "proved with a correction of the print"
     REFUTED = "refuted"
@@ -195,7 +199,7 @@ def _prove_entry(entry: Equation | Derivation, known: Grounds, ledger: Ledger) -
     if isinstance(entry, Equation):
         if entry.kind is Kind.CLAIM:
             return Proof(entry, Status.UNDECIDED, remark="a claim without a derivation"), known
-        if problem := mixed(entry, words):
+        if problem := _misstated(entry, words):
             return Proof(entry, Status.REFUSED, remark=problem), known
         return Proof(entry, Status(entry.kind.value)), {**known, entry: (entry,)}
     steps: list[StepProof] = []
@@ -213,6 +217,17 @@ def _prove_entry(entry: Equation | Derivation, known: Grounds, ledger: Ledger) -
     return proof, {**known, entry.claim: reached[entry.claim]} if status.passes else known
 
 
+def _goes_to_zero(quantity: Expr, *others: Expr) -> bool:
+    return isinstance(quantity, (Symbol, Indexed)) and others == (0,)
+
+
+def _misstated(equation: Equation, vocabulary: Vocabulary) -> str:
+    """Say why an equation says nothing that could hold; empty where nothing was found."""
+    if equation.kind is Kind.LIMIT and not _goes_to_zero(*equation.sides):
+        return "a limit says of a quantity that it is zero"
+    return mixed(equation, vocabulary)
+
+
 def _verdict(entry: Derivation, steps: list[StepProof], ledger: Ledger) -> tuple[Status, str]:
     """What the steps, what they rest on and the print make of a claim, with a remark."""
     verdicts = {found.status for found in steps}
@@ -221,7 +236,7 @@ def _verdict(entry: Derivation, steps: list[StepProof], ledger: Ledger) -> tuple
     if path := circle(entry, ledger):
         return Status.REFUSED, f"{entry.claim.label} rests on itself: {path}"
     for equation in (each for step in entry.steps for each in (*step.premises, step.claim)):
-        if problem := mixed(equation, ledger.vocabulary):
+        if problem := _misstated(equation, ledger.vocabulary):
             return Status.REFUSED, f"{equation.label}: {problem}" if equation != entry.claim else problem
     if Status.UNDECIDED in verdicts:
         return Status.UNDECIDED, ""
@@ -246,4 +261,26 @@ def prove(ledger: Ledger, begin: Callable[[Equation], None] | None = None) -> tu
             begin(entry.claim if isinstance(entry, Derivation) else entry)
         proof, known = _prove_entry(entry, known, ledger)
         proofs.append(proof)
-    return tuple(proofs)
+    return tuple(_refuse_conflicts(ledger, proofs, known))
+
+
+def _refuse_conflicts(ledger: Ledger, proofs: list[Proof], known: Grounds) -> list[Proof]:
+    """Let nothing stand that was not seen to hold together with what is before it, nor what rests on it."""
+    standing = frozenset(proof.equation for proof in proofs if proof.status.passes)
+    claims = frozenset(
+        proof.equation
+        for proof in proofs
+        if proof.equation in standing
+        and proof.steps
+        and not any(ground.kind is Kind.LIMIT for ground in known[proof.equation])
+    )
+    found = conflict(ledger, standing, claims)
+    if found is None:
+        return proofs
+    culprit, status = found.culprit.origin, Status.REFUSED if found.certain else Status.UNDECIDED
+    return [
+        replace(proof, status=status, remark=found.sentence, rests_on=())
+        if culprit in (proof.equation, *known.get(proof.equation, ()))
+        else proof
+        for proof in proofs
+    ]

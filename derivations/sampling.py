@@ -15,7 +15,7 @@ from .reductions import Median
 from .space import Rows, Space, said, short
 from .system import Refused, System
 
-__all__ = ["DIGITS", "POINTS", "Outcome", "examine"]
+__all__ = ["AGREES", "DIGITS", "POINTS", "Outcome", "examine", "magnitude"]
 
 DIGITS = 50
 POINTS = 20

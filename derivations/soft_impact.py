@@ -261,7 +261,7 @@ with evaluate(False):
         "",
         (mu, Integer(0)),
         "the target does not move: its mass is beyond all bounds",
-        Kind.ASSUMPTION,
+        Kind.LIMIT,
         "immobile target",
     )
 

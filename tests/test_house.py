@@ -41,8 +41,9 @@ WORDS = {
 PROVER = {
     f"derivations.{name}"
     for name in (
-        *("algebra", "cells", "dimensions", "equation", "errata", "evaluation", "facts", "grounds"),
-        *("proof", "reductions", "sampling", "space", "sums", "system", "text", "vocabulary"),
+        *("algebra", "arranged", "cells", "dimensions", "equation", "errata", "evaluation", "facts"),
+        *("few_rows", "grounds", "proof", "reductions", "sampling", "search", "space", "sums", "system"),
+        *("text", "together", "vocabulary"),
     )
 }
 SHEET = (

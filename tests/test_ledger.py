@@ -3,14 +3,28 @@
 from dataclasses import replace
 
 import pytest
-from proving import X, a, b, c, n, q, y
-from sympy import Expr, Function, Integer, Integral, Min, Piecewise, Rational, Sum, Symbol, exp, log, sqrt
+from proving import X, a, b, c, n, q, w, y
+from sympy import (
+    Expr,
+    Function,
+    Integer,
+    Integral,
+    Min,
+    Piecewise,
+    Rational,
+    Sum,
+    Symbol,
+    exp,
+    log,
+    sqrt,
+)
 
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step
 from loopsheet.derivations.proof import Proof, Status, prove, prove_equation
 from loopsheet.derivations.vocabulary import Quantity, Vocabulary
 
+m = Symbol("m", integer=True, positive=True)
 FIRST = Equation("(1)", (a, b + c), "", Kind.DEFINITION)
 SECOND = Equation("(2)", (b * (a - c), b**2), "")
 THIRD = Equation("(3)", (a**2 - (b + c) ** 2, Integer(0)), "")
@@ -181,6 +195,7 @@ SAID = Equation("(2)", (a, b + c), "")
         assumed(y, a, b + c),
         assumed(sqrt(2) * a, sqrt(2) * (b + c)),
         replace(assumed(a, b + c), kind=Kind.DEFINITION),
+        replace(assumed(a, b + c), kind=Kind.LIMIT),
         assumed(y, b + c).at({y: a}),
         replace(assumed(y, b), members=(a, b + c), parent=assumed(y, b)),
     ],
@@ -340,6 +355,196 @@ def test_a_mass_is_no_coefficient() -> None:
     found = prove(replace(model.LEDGER, entries=(*model.LEDGER.entries, wrong)))
     assert found[-1].status is Status.REFUSED
     assert found[-1].remark == "m_red is in kg, C is in kg m^(1 - alpha) s^-2"
+    assert all(proof.status.passes for proof in found[:-1])
+
+
+# --- all of it together -------------------------------------------------------------------------------------
+
+
+def said(number: str, *members: Expr, kind: Kind = Kind.DEFINITION) -> Equation:
+    return Equation(number, members, "", kind)
+
+
+@pytest.mark.parametrize(
+    ("entries", "remarks"),
+    [
+        ((said("(1)", a, b + c), said("(2)", a, b + c + 1)), ["", "(2) cannot hold together with (1)"]),
+        ((said("(1)", a, Integer(1)), said("(2)", a, Integer(2))), ["", "(2) cannot hold together with (1)"]),
+        ((said("(1)", a, -b),), ["(1) cannot hold"]),
+        (
+            (said("(1)", a, b + c), said("(2)", a, b + c + c / 10**30)),
+            ["", "(2) cannot hold together with (1)"],
+        ),
+        ((said("(1)", a, 1 + b), said("(2)", b, 1 + a)), ["", "(2) cannot hold together with (1)"]),
+        (
+            (said("(1)", a, 2 * b), said("(3)", y, c), said("(2)", b, 2 * c), said("(4)", c, 2 * a)),
+            ["", "", "", "(4) cannot hold together with (1) and (2)"],
+        ),
+        (
+            (said("(1)", a**2 + b**2, Integer(1)), said("(2)", a + b, Integer(3))),
+            ["", "no point was found where (2) holds together with (1)"],
+        ),
+        (
+            (said("(1)", a > b), said("(2)", b > a)),
+            ["", "(2) cannot hold together with (1)"],
+        ),
+        (
+            (said("(1)", a, b + 1), replace(said("(2)", c, 2 * b), conditions=(a < b,))),
+            ["", "(2) cannot hold together with (1)"],
+        ),
+        ((said("(1)", X[q], b * q), said("(2)", X[2], b * 3)), ["", "(2) cannot hold together with (1)"]),
+        (
+            (said("(1)", X[q], b), said("(2)", Sum(X[q], (q, 1, n)), n * b + 1)),
+            ["", "no point was found where (2) holds together with (1)"],
+        ),
+    ],
+)
+def test_assumptions_that_cannot_hold_together_are_refused(
+    entries: tuple[Equation, ...], remarks: list[str]
+) -> None:
+    found = prove(Ledger(entries))
+    assert [proof.remark for proof in found] == remarks
+    meant = {"": Status.DEFINITION, "no": Status.UNDECIDED, "(": Status.REFUSED}
+    assert [proof.status for proof in found] == [
+        meant[remark[:2] if remark[:1] == "n" else remark[:1]] for remark in remarks
+    ]
+
+
+@pytest.mark.parametrize(
+    "entries",
+    [
+        (said("(1)", a + b, Integer(3)), said("(2)", a - b, Integer(1))),
+        (said("(1)", a**2 + b**2, Integer(1)), said("(2)", a + b, Rational(5, 4))),
+        (said("(1)", a * exp(b), c), said("(2)", b * exp(a), c / 2), said("(3)", a + b + c, Integer(4))),
+        (said("(1)", a, b + c), said("(2)", b, a - c), said("(3)", 2 * a, 2 * b + 2 * c)),
+        (said("(1)", y, b - a), said("(2)", a > 2 * b), said("(3)", b > c), said("(4)", c > Rational(6, 10))),
+        (said("(1)", X[q], b * q), said("(2)", Sum(X[q], (q, 1, n)), c), said("(3)", a, X[3] - X[1])),
+        (said("(1)", n, Integer(50)), said("(2)", a, b * n)),
+        (said("(1)", a, Sum(X[q], (q, 1, n)) / n), said("(2)", Sum((X[q] - a) ** 2, (q, 1, n)), b**2)),
+        (said("(1)", Function("f")(y), a * y), said("(2)", b, Integral(Function("f")(y), (y, 0, c)))),
+        (said("(1)", a, Integral(exp(-(y**2)), (y, 0, b))), said("(2)", a, Rational(1, 2))),
+        (said("(1)", Symbol("gap"), abs(X[q] - X[n])),),
+        (said("(1)", a, 2 * a * y), said("(2)", b * c, b * a)),
+        (said("(1)", a * (b - 1), c - 2), said("(2)", c, Integer(2))),
+        (said("(1)", y, Integer(0)), said("(2)", a * y, b * y)),
+        (said("(1)", a > 100), said("(2)", b > a), said("(3)", c > b)),  # far from where they are drawn
+        (said("(1)", Sum(X[q], (q, 1, n)), Integer(1)), said("(2)", a, Sum(q * X[q], (q, 1, n)))),
+        (said("(1)", n**2 + n, Integer(56)), said("(2)", a, b**n)),
+    ],
+)
+def test_assumptions_that_can_hold_together_are_left_alone(entries: tuple[Equation, ...]) -> None:
+    assert [proof.status for proof in prove(Ledger(entries))] == [Status.DEFINITION] * len(entries)
+
+
+MEAN = said("(1)", a, Sum(X[q], (q, 1, n)) / n)
+
+
+@pytest.mark.parametrize(
+    ("entries", "holds"),
+    [
+        ((MEAN, said("(2)", n, Integer(5)), said("(3)", Sum(X[q], (q, 1, n)), 5 * a)), True),
+        ((MEAN, said("(2)", n, Integer(5)), said("(3)", Sum(X[q], (q, 1, n)), 6 * a)), False),
+        ((MEAN, said("(2)", n, Integer(5)), said("(3)", n, Integer(6))), False),
+        (
+            (MEAN, said("(2)", n, Integer(5)), said("(3)", n, m + 1), said("(4)", b, Sum(X[q], (q, 1, m)))),
+            True,
+        ),
+        (
+            (
+                MEAN,
+                said("(2)", n, Integer(5)),
+                said("(3)", m, n + 1),
+                said("(4)", a, Sum(X[q] / m, (q, 1, m))),
+            ),
+            True,
+        ),
+        ((MEAN, said("(2)", n, Integer(5)), said("(3)", X[4], 5 * a), said("(4)", n > 4)), False),
+        ((MEAN, said("(2)", n * a, b + Sum(X[q], (q, 1, 4)))), True),  # n is 5 or more
+        ((MEAN, said("(2)", n, Integer(1000)), said("(3)", b, 1000 * c / n)), True),
+        ((MEAN, said("(2)", n, Integer(1000)), said("(3)", b, 2 * c), said("(4)", c * n, 1000 * b)), False),
+        ((MEAN, said("(2)", a, Sum(X[q], (q, 1, m)) / m), said("(3)", m, n * (n - 1) / 2)), True),
+    ],
+)
+def test_sizes_are_chosen_so_that_what_is_said_of_them_holds(
+    entries: tuple[Equation, ...], holds: bool
+) -> None:
+    assert all(proof.status.passes for proof in prove(Ledger(entries))) is holds
+
+
+def test_a_definition_may_not_contradict_what_was_proved() -> None:
+    wrong = said("(4)", a, 2 * b + c)
+    found = prove(Ledger((FIRST, SECOND_HOLDS, wrong, said("(5)", y, a))))
+    assert [proof.status for proof in found] == [
+        Status.DEFINITION, Status.PROVED, Status.REFUSED, Status.DEFINITION,
+    ]  # fmt: skip
+    assert found[2].remark == "(4) cannot hold together with (1)"
+
+
+def test_a_premise_may_not_contradict_what_stands() -> None:
+    twice = assumed(a, 3 * b + c, title="twice")
+    after = Equation("(3)", (a**2, (3 * b + c) ** 2), "")
+    found = by_label(FIRST, SECOND_HOLDS, Derivation.of(after, (twice,), (a,), ""))
+    assert found["(2)"].status is Status.PROVED
+    assert found["(3)"].status is Status.REFUSED
+    assert found["(3)"].remark == "twice cannot hold together with (1)"
+
+
+def limit(*members: Expr) -> Equation:
+    return Equation("", members, "", Kind.LIMIT, "none")
+
+
+def test_a_limit_is_approached_and_not_reached() -> None:
+    ratio = said("(1)", y, a / b)
+    claims = (
+        Derivation.of(Equation("(2)", (c + a, c + b * y), ""), (ratio,), (a,), ""),
+        Derivation.of(Equation("(3)", (c * (1 + y), c), ""), (limit(y, Integer(0)),), (y,), ""),
+    )
+    found = by_label(ratio, *claims)
+    assert {proof.status for proof in found.values()} == {Status.DEFINITION, Status.PROVED}
+    assert found["(3)"].rests_on == ("none",)
+    reached = replace(limit(y, Integer(0)), kind=Kind.ASSUMPTION)
+    found = by_label(ratio, claims[0], Derivation.of(claims[1].claim, (reached,), (y,), ""))
+    assert found["(3)"].remark == "none cannot hold together with (1)"
+    # What has a value of its own does not go to zero.
+    found = by_label(ratio, said("(4)", a, 2 * b), claims[1])
+    assert found["(3)"].remark == "none cannot hold together with (1) and (4)"
+
+
+@pytest.mark.parametrize("members", [(a, 2 * b), (y, Integer(1)), (y + w, Integer(0))])
+def test_a_limit_is_a_quantity_that_goes_to_zero(members: tuple[Expr, ...]) -> None:
+    claim = Equation("(2)", (c * members[0], c * members[1]), "")
+    unknown = max(members[0].free_symbols, key=str)
+    found = by_label(said("(1)", a, b), Derivation.of(claim, (limit(*members),), (unknown,), ""))
+    assert found["(2)"].status is Status.REFUSED
+    assert found["(2)"].remark == "none: a limit says of a quantity that it is zero"
+
+
+def test_claims_for_different_domains_need_not_hold_at_one_point() -> None:
+    root = said("(1)", y, a - b)
+    sides = [
+        Derivation.of(Equation(number, (sqrt(y**2), side), "", conditions=(condition,)), (root,), (y,), "")
+        for number, side, condition in (("(2)", a - b, a > b), ("(3)", b - a, b > a))
+    ]
+    assert all(proof.status.passes for proof in prove(Ledger((root, *sides))))
+    never = Equation("(4)", (sqrt(y**2) + c, a - b + c), "", conditions=(a > b,))
+    small = said("(0)", a, b / 2)
+    found = by_label(small, root, *sides, Derivation.of(never, (root,), (y,), ""))
+    assert found["(2)"].remark == "(2) cannot hold together with (0)"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "others"),
+    [
+        ((model.XM[1], 2 * model.XM[2] * (model.V[1] / model.V[2]) ** (2 / (model.alpha + 1))), "(12b)"),
+        ((model.m_red, 2 * model.m_1), "(8)"),
+        ((model.beta, Integer(2)), "(5)"),
+    ],
+)
+def test_the_ledger_of_the_paper_refuses_what_contradicts_it(wrong: tuple[Expr, ...], others: str) -> None:
+    added = Equation("(20)", wrong, "", Kind.DEFINITION)
+    found = prove(replace(model.LEDGER, entries=(*model.LEDGER.entries, added)))
+    assert found[-1].status is Status.REFUSED
+    assert found[-1].remark == f"(20) cannot hold together with {others}"
     assert all(proof.status.passes for proof in found[:-1])
 
 

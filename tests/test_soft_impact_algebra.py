@@ -40,6 +40,7 @@ def test_what_stands(proofs: dict[str, Proof]) -> None:
         Status.PROVED: "(6) (7) (9) (10a) (10b) (10c) (11) (12a) (12b) (12c) (12d) (L1) (L2) (L3) (L4) (L5) "
         "(L24) (L6) (L9) (L17) (L18) (L19) (L20) (L21) (L26) (L27) (L28)",
         Status.CORRECTED: "(12e)",
+        Status.LIMIT: "",
         Status.REFUTED: "",
         Status.REFUSED: "",
         Status.UNDECIDED: "",

@@ -87,6 +87,7 @@ def proof_statuses(report: Report) -> dict[str, str]:
         "undecided",
         "proved with a correction of the print",
         "proved",
+        "limit",
         "assumption",
         "definition",
     ]

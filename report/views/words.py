@@ -196,7 +196,7 @@ class Words(ABC):
 
     def kind(self, proof: Proof | None) -> str:
         """The kind of a status, for its colour."""
-        if proof is None or proof.status in (Status.DEFINITION, Status.ASSUMPTION):
+        if proof is None or proof.status in (Status.DEFINITION, Status.ASSUMPTION, Status.LIMIT):
             return "stated"
         return "holds" if proof.status.passes else "fails"
 
