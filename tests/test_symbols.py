@@ -30,6 +30,7 @@ from loopsheet.derivations.reductions import Median
 from loopsheet.derivations.soft_impact import LEDGER
 from loopsheet.derivations.symbols import VOCABULARY, k
 from loopsheet.derivations.text import text, text_of_equation
+from loopsheet.report.unit_text import parse_unit
 
 # --- the vocabulary ---------------------------------------------------------------------------------------
 
@@ -127,6 +128,19 @@ def test_what_has_no_dimension(expression: Expr, problem: str) -> None:
 def test_units_that_cannot_be_read(unit: str, problem: str) -> None:
     with pytest.raises(DimensionError, match=problem):
         dimension_of_unit(unit)
+
+
+NAMED_UNITS = [
+    "kg", "m", "s", "K", "A", "mol", "cd", "N", "J", "Pa", "W", "Hz", "C", "V", "ohm", "S", "F", "Wb", "T",
+    "H",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMED_UNITS)
+def test_named_units_are_those_of_the_data(name: str) -> None:
+    unit = parse_unit(name)
+    assert unit.scale == 1
+    assert dict(dimension_of_unit(name)) == dict(unit.dimension)
 
 
 def test_units() -> None:
