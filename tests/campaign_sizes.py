@@ -67,8 +67,8 @@ FEW = Sizes(
     stride=4,
 )
 ALL = Sizes(
-    honest=60,
-    forged=10,
+    honest=40,
+    forged=7,
     engines={2: 800, 3: 500, 4: 280, 5: 140, 6: 72, 7: 48, 8: 36, 9: 36, 10: 36, 11: 36, 12: 36},
     of_each_code=5000,
     overflows=200,

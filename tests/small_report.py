@@ -16,6 +16,7 @@ from loopsheet.report.quantity import Printed
 from loopsheet.report.result import Comparison
 from loopsheet.report.sheet import Sheet
 from loopsheet.report.values import Values
+from loopsheet.report.verdict import Referee
 from loopsheet.report.workbook import Workbook
 
 SOURCE = """\
@@ -102,6 +103,23 @@ def judged(
     publish : callable
         Takes the values of the sheet; returns what is published of them.
     """
+    values, published, found = _asked(sheet, measured, parameters, publish)
+    return refereed(compare(published, values), found)
+
+
+def found(
+    sheet: Sheet, measured: Mapping[str, Sequence[Printed]], published: Sequence[PublishedValue]
+) -> Referee:
+    """Everything that the referee says of what is published of such a sheet."""
+    return _asked(sheet, measured, {}, lambda _: published)[2]
+
+
+def _asked(
+    sheet: Sheet,
+    measured: Mapping[str, Sequence[Printed]],
+    parameters: Mapping[str, Printed],
+    publish: Callable[[Values], Sequence[PublishedValue]],
+) -> tuple[Values, tuple[PublishedValue, ...], Referee]:
     rows = tuple(range(1, 1 + len(next(iter(measured.values())))))
     data: dict[str, Any] = {name: [float(p.value) for p in column] for name, column in measured.items()}
     data |= {name: float(p.value) for name, p in parameters.items()}
@@ -113,4 +131,4 @@ def judged(
         dict(parameters), frozenset(parameters), rows,
         {name: tuple(column) for name, column in measured.items()}, {}, published, {},
     )  # fmt: skip
-    return refereed(compare(published, values), referee(sheet, inputs, values, data))
+    return values, published, referee(sheet, inputs, values, data)

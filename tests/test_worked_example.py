@@ -6,9 +6,12 @@ import csv
 import io
 
 import mpmath
+import numpy as np
 import pytest
 
 from loopsheet.report import build
+from loopsheet.report.analysis.referee.campaign import Campaign
+from loopsheet.report.analysis.referee.problem import Problem
 from loopsheet.report.engines import exact
 from loopsheet.report.findings import checks
 from loopsheet.report.result import Report
@@ -69,6 +72,23 @@ def test_every_published_value_prints_the_same(example: Report) -> None:
     assert {c.verdict for c in example.comparisons} == {"same"}
     assert {c.word for c in example.comparisons} == {EXACT}
     assert not any(c.published.expect for c in example.comparisons)
+
+
+def test_every_column_behind_it_is_held(example: Report) -> None:
+    """A hundredth more in every other cell of any column shows, but for the units of the fits."""
+    sheet = example.sheet
+    behind = {a.name for c in example.comparisons for a in sheet.ancestors(sheet[c.cell.name]) if not a.exact}
+    data, held = build.Prepared(example.inputs, sheet).data, set()
+    for name in behind:
+        campaign = Campaign(sheet, example.inputs, example.values, data, (name,))
+        problem = Problem.of(campaign, example.inputs.published)
+        points = np.stack([problem.box.start] * 2)
+        size = np.abs(points[0, problem.rows[name]]).max()
+        points[1, problem.rows[name][::2]] += 0.01 * (max(size, 1.0) if sheet[name].unit == "1" else size)
+        as_it_is, otherwise = np.abs(problem.mismatch(problem.evaluate(points))).max(axis=1)
+        assert as_it_is < 2.001  # half units; what is truncated may be two off its middle
+        held |= {name} if otherwise > 3 else set()
+    assert behind - held == {"F_ref", "x_ref"}
 
 
 def test_nothing_is_found_in_it(example: Report) -> None:

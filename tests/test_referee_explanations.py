@@ -1,0 +1,130 @@
+"""Each thing that may explain what was published, alone, on a sheet of squares; and what is certain."""
+
+from __future__ import annotations
+
+import pytest
+from small_report import found, pure
+from sympy import Sum, Symbol
+
+from loopsheet.derivations.equation import Equation, Kind
+from loopsheet.report import verdict_words as words
+from loopsheet.report.analysis.referee import certificate, search
+from loopsheet.report.published import PublishedValue
+from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
+from loopsheet.report.verdict import REACHABLE, Change, Referee
+
+k, n = (Symbol(name, integer=True, positive=True) for name in "kn")
+ROWS = Axis("rows", k, n)
+
+
+def formula(name: str, expression: object) -> Formula:
+    return Formula(Equation("", (Symbol(name), expression), "for a test", Kind.DEFINITION))
+
+
+X = Column("x", ROWS, Given(), positive=False)
+SQUARE = Column("square", ROWS, formula("square", X[k] ** 2), positive=False)
+TENFOLD = Column("tenfold", ROWS, formula("tenfold", 10 * SQUARE[k]), positive=False)
+MEAN = Column("mean", None, formula("mean", Sum(SQUARE[k], (k, 1, n)) / n), positive=False)
+SHEET = Sheet((X, SQUARE, TENFOLD, MEAN))
+
+
+def said(x: str, **published: str) -> Referee:
+    """Of the squares of some printed numbers; each published column is printed in a line."""
+    cells = [
+        PublishedValue("Table", name, () if SHEET[name].axis is None else (row,), pure(text))
+        for name, line in published.items()
+        for row, text in enumerate(line.split(), 1)
+    ]
+    return found(SHEET, {"x": [pure(text) for text in x.split()]}, cells)
+
+
+def changes(of: Referee) -> list[list[tuple[str, str, tuple[int, ...], str]]]:
+    return [
+        [(one.kind, one.cell, one.index, one.would_print) for one in each.changes] for each in of.explanations
+    ]
+
+
+def first(of: Referee) -> Change:
+    return of.explanations[0].first
+
+
+def test_a_search_that_begins_where_nothing_leads_on_begins_elsewhere_too() -> None:
+    """In the middle of what prints as 0, the square does not change with it."""
+    of = said("0 0", square="0.16 0.04", tenfold="1.6 0.4")
+    assert of.joint is not None
+    assert of.joint.verdict == REACHABLE
+
+
+def test_computed_from_what_is_printed_accuses_nobody() -> None:
+    of = said("1.2340 2.3120", square="1.5 5.3", tenfold="15.00 53.00")
+    assert changes(of) == [[("printed", "tenfold", (), "square")]]
+    assert of.explanations[0].count == 0
+    assert of.as_printed
+    assert words.claimed(first(of)) == "tenfold of Table was computed from the printed, rounded square"
+
+
+@pytest.mark.parametrize(
+    ("mean", "rows"),
+    [("6.333", "without 4"), ("24.600", "with 4 twice"), ("22.333", "without 2")],
+)
+def test_a_mean_over_other_rows(mean: str, rows: str) -> None:
+    """The mean of 1, 4, 14 and 52 is 17.75."""
+    of = said("1.00000 2.00000 3.74166 7.21110", square="1.000 4.000 14.000 52.000", mean=mean)
+    assert changes(of)[0] == [("rows", "mean", (), rows)]
+
+
+@pytest.mark.parametrize(
+    ("x", "square", "cell"),
+    [
+        ("1.200 2.300 3.100", "1440 5290 9610", "square"),
+        ("1200 2300 3100", "1.440 5.290 9.610", "x"),
+    ],
+)
+def test_a_unit_off_by_a_power_of_ten(x: str, square: str, cell: str) -> None:
+    of = said(x, square=square)
+    assert changes(of)[0] == [("unit", cell, (), "")]
+    assert first(of).power == -3
+
+
+def test_transposed_digits_come_first_and_all_that_are_possible_are_listed() -> None:
+    """What prints as 1.77 has a square from 3.115 to 3.151."""
+    of = said("1.31 1.77 2.83", square="1.72 3.41 8.01")
+    assert changes(of)[0] == [("misprint", "square", (2,), "3.14")]
+    assert sorted(first(of).also) == ["3.12", "3.13", "3.15"]
+    assert any(one[0][:3] == ("misprint", "x", (2,)) for one in changes(of)[1:])
+
+
+def test_transposed_digits_of_an_input_come_first() -> None:
+    of = said("1.31 7.17 2.83", square="1.72 3.1 8.01")
+    assert changes(of)[0] == [("misprint", "x", (2,), "1.77")]
+    assert sorted(first(of).also) == ["1.75", "1.76"]
+
+
+def test_two_misprints_are_the_smallest_set_without_which_the_rest_comes_out() -> None:
+    of = said("1.310 1.770 2.830 3.370", square="1.716 3.331 8.009 11.537")
+    assert {one[1] for each in changes(of) for one in each} == {"square", "x"}
+    assert [one[:3] for one in changes(of)[0]] == [("misprint", "square", (2,)), ("misprint", "square", (4,))]
+    assert all(len(each.changes) == 2 == each.count for each in of.explanations)
+
+
+def test_nothing_explains_it_and_how_much_was_tried_is_said() -> None:
+    of = said("1.310 1.770 2.830 3.370", square="1.916 3.531 8.909 11.937")
+    assert of.explanations == ()
+    assert of.tried is not None
+    told = list(words.lines(of, str))
+    assert f"  {words.NOTHING_EXPLAINS}" in told
+    assert f"  {words.tried(of.tried)}" in told
+    assert of.tried.explaining == 0 < of.tried.excluded
+
+
+def test_nothing_is_excluded_without_a_certificate(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where nothing is certain, everything stays open, and the same is found."""
+    asked = "1.31 1.77 2.83", "1.72 3.41 8.01"
+    certain = said(asked[0], square=asked[1])
+    monkeypatch.setattr(certificate.Certificate, "at_least", lambda *_: 0.0)
+    monkeypatch.setattr(search, "excluded", lambda _, boxes: certificate.np.zeros(len(boxes), dtype=bool))
+    uncertain = said(asked[0], square=asked[1])
+    assert certain.tried is not None
+    assert uncertain.tried is not None
+    assert certain.tried.excluded > 0 == uncertain.tried.excluded
+    assert changes(certain) == changes(uncertain)
