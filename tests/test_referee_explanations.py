@@ -107,6 +107,13 @@ def test_two_misprints_are_the_smallest_set_without_which_the_rest_comes_out() -
     assert all(len(each.changes) == 2 == each.count for each in of.explanations)
 
 
+def test_a_misprinted_input_and_another_in_a_table_of_the_same_columns_are_found() -> None:
+    """Whatever was misprinted in the table must not exclude what the input may be."""
+    of = said("1.310 7.170 2.830", square="1.916 3.133 8.009", tenfold="17.16 31.33 80.09")
+    expected = [("misprint", "x", (2,), "1.770"), ("misprint", "square", (1,), "1.716")]
+    assert expected in changes(of)
+
+
 def test_nothing_explains_it_and_how_much_was_tried_is_said() -> None:
     of = said("1.310 1.770 2.830 3.370", square="1.916 3.531 8.909 11.937")
     assert of.explanations == ()

@@ -185,8 +185,9 @@ def excluded(problem: Problem, boxes: Sequence[Box]) -> NDArray[np.bool_]:
         found = _enclosure(problem, low, high).value
     except _NOT_POSSIBLE:
         return out
-    for value, (name, row), way in zip(problem.published, problem.places, problem.ways, strict=True):
-        if way is None:
+    asked = zip(problem.published, problem.places, problem.ways, strict=True)
+    for n, (value, (name, row), way) in enumerate(asked):
+        if way is None and n not in problem.ignored:
             least, largest = (float(end) for end in value.printed.interval)
             least, largest = np.nextafter(least, -np.inf), np.nextafter(largest, np.inf)
             cell = found[name][..., row].broadcast((len(boxes),))
