@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from .background import Background
 from .errors import ForeignCode, InputError, UnknownWorkbook, UsageError, close, diagnose, listing
 from .folders import PAPER
-from .inputs import Find, Inputs, check_published, load
+from .inputs import Find, Inputs, check_cells, load
 from .own_workbook import own_workbook
 from .provenance import sources
 from .staging import put, staged
@@ -195,6 +195,7 @@ def compute(folder: Path, step: Step = _silent, prove: bool = True, find: Find =
 def _evaluated(prepared: Prepared, ledger: Ledger, step: Step) -> Report:
     """Everything but the proofs."""
     inputs, sheet = prepared.inputs, prepared.sheet
+    from .analysis.oddities import oddities
     from .analysis.referee import compare
     from .engines import numpy as engine
     from .marks import Marks, margins
@@ -202,9 +203,9 @@ def _evaluated(prepared: Prepared, ledger: Ledger, step: Step) -> Report:
 
     step("computing the sheet")
     values = engine.evaluate(sheet, prepared.labels, prepared.data)
-    check_published(inputs, {c.name: (c.unit, set(values.labels(c))) for c in sheet.columns})
+    check_cells(inputs, {c.name: (c.unit, set(values.labels(c))) for c in sheet.columns})
     workbook, limits = inputs.workbook, margins(sheet)
-    return Report(
+    report = Report(
         title=inputs.title,
         workbook=workbook,
         inputs=inputs,
@@ -219,6 +220,7 @@ def _evaluated(prepared: Prepared, ledger: Ledger, step: Step) -> Report:
         curves=workbook.curves(sheet, values) if workbook.curves is not None else (),
         versions=versions(),
     )
+    return replace(report, oddities=oddities(report))
 
 
 def _checked(ledger: Ledger, step: Step = _silent) -> tuple[tuple[Proof, ...], tuple[Erratum, ...]]:

@@ -244,11 +244,14 @@ class Limit:
         What is odd outside, in a few words.
     source : str
         The number of the statement that says so, ``(4)``; empty if it is the workbook's own.
+    silent : bool
+        Whether a row outside tells nothing of what it rests on, so that no test is suspected because of it.
     """
 
     inside: Boolean | Bounds
     says: str
     source: str = ""
+    silent: bool = False
 
     @classmethod
     def of(cls, equation: Equation) -> Limit:

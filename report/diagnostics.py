@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, TextIO
 
-__all__ = ["Diagnostic", "Location", "VisibleStream", "render", "render_all", "visible"]
+__all__ = ["Check", "Diagnostic", "Location", "VisibleStream", "render", "render_all", "visible"]
 
 _TAB = 4
 _BEFORE = 40
@@ -71,6 +71,47 @@ class Diagnostic:
     def order(self) -> tuple[str, int, int, str]:
         """The sorting key: file, line, column, code."""
         return (self.at.path, self.at.line or 0, self.at.column or 0, self.code)
+
+
+@dataclass(frozen=True)
+class Check:
+    """One thing that is as expected, or is not.
+
+    Parameters
+    ----------
+    kind : str
+        ``proof``, ``engine``, ``published``, ...: what is checked.
+    name : str
+        What it is about: ``(11)``, ``numpy``, ``alpha[1-2]``; no two of a kind have the same.
+    passed : bool
+        Whether it is as expected.
+    message : str
+        What was found, in a sentence that names it.
+    at : Location
+        Where the user wrote what was checked; the report.toml if it was nowhere written.
+    skipped : bool
+        It could not be checked, and nothing is wrong: a program is not installed.
+    note : str
+        As what it is told although it passed: ``warning``, ``expected``; nothing fails because of it.
+    """
+
+    kind: str
+    name: str
+    passed: bool
+    message: str
+    at: Location = Location()
+    skipped: bool = False
+    note: str = ""
+
+    @property
+    def word(self) -> str:
+        """As what it is told: ``finding``, ``warning``, ``expected``; nothing if there is nothing to tell."""
+        return self.note if self.passed else "finding"
+
+    @property
+    def sentence(self) -> str:
+        """The message after its place, if that is a line of a file."""
+        return visible(self.message if self.at.line is None else f"{self.at}: {self.message}")
 
 
 def visible(text: str) -> str:

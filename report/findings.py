@@ -8,12 +8,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from . import verdict_words as words
-from .diagnostics import Diagnostic, Location, visible
+from .diagnostics import Check, Diagnostic, Location
 from .verdict import OTHERWISE, UNAMENDED, UNEXPLAINED, UNPINNED, UNREASONED
 
 if TYPE_CHECKING:
@@ -43,41 +41,6 @@ ENGINES = ("numpy", "JavaScript", "xlsx")
 MOST_NAMED = 5
 """Of the findings about an engine; one wrong formula spoils many cells."""
 
-_NOWHERE = Location()
-
-
-@dataclass(frozen=True)
-class Check:
-    """One thing that is as expected, or is not.
-
-    Parameters
-    ----------
-    kind : str
-        ``proof``, ``engine``, ``published``, ...: what is checked.
-    name : str
-        What it is about: ``(11)``, ``numpy``, ``alpha[1-2]``; no two of a kind have the same.
-    passed : bool
-        Whether it is as expected.
-    message : str
-        What was found, in a sentence that names it.
-    at : Location
-        Where the user wrote what was checked; the report.toml if it was nowhere written.
-    skipped : bool
-        It could not be checked, and nothing is wrong: a program is not installed.
-    """
-
-    kind: str
-    name: str
-    passed: bool
-    message: str
-    at: Location = _NOWHERE
-    skipped: bool = False
-
-    @property
-    def sentence(self) -> str:
-        """The message after its place, if that is a line of a file."""
-        return visible(self.message if self.at.line is None else f"{self.at}: {self.message}")
-
 
 def checks(report: Report) -> tuple[Check, ...]:
     """Everything that was checked of a report, in the order in which it is told."""
@@ -86,6 +49,7 @@ def checks(report: Report) -> tuple[Check, ...]:
         *(of_proof(proof, report.inputs) for proof in report.proofs),
         *map(of_comparison, report.comparisons, names_of(c.published for c in report.comparisons)),
         *of_referee(report),
+        *report.oddities,
     )
 
 
@@ -95,12 +59,12 @@ def of_proof(proof: Proof, inputs: Inputs) -> Check:
     said = f"{label} is {status.value}"
     if not status.passes:
         said += f": {next((s.sentence for s in proof.steps if not s.status.passes), proof.remark)}"
-    return Check("proof", label, status.passes, said, _report_toml(inputs))
+    return Check("proof", label, status.passes, said, inputs.place)
 
 
 def of_engine(agreement: Agreement, inputs: Inputs) -> Check:
     """Whether an engine agrees with 50 digits."""
-    at = _report_toml(inputs)
+    at = inputs.place
     if agreement.missing:
         said = f"{agreement.engine} was not compared: {agreement.missing} not found"
         return Check("engine", agreement.engine, True, said, at, skipped=True)
@@ -132,7 +96,7 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
         said += f": {published.reason}" if published.reason else ""
     field = {UNPINNED: "recomputed", UNREASONED: "reason", UNEXPLAINED: "explained"}
     places = published.places
-    at = places.get(field.get(comparison.finding, ""), places.get("value", _NOWHERE))
+    at = places.get(field.get(comparison.finding, ""), places.get("value", Location()))
     return Check("published", name, comparison.as_expected, said, at)
 
 
@@ -174,7 +138,7 @@ def of_referee(report: Report) -> tuple[Check, ...]:
     found = report.referee
     if found.joint is None:
         return ()
-    at, known = _report_toml(report.inputs), {v.source for v in report.inputs.published if v.expect}
+    at, known = report.inputs.place, {v.source for v in report.inputs.published if v.expect}
     tables = [
         Check("table", t.source, found.as_printed or t.possible or t.source in known, words.together(t), at)
         for t in found.tables
@@ -207,7 +171,3 @@ def names_of(published: Iterable[PublishedValue]) -> list[str]:
         cell if times[cell] == 1 else f"{cell} ({value.source})"
         for cell, value in zip(cells, values, strict=True)
     ]
-
-
-def _report_toml(inputs: Inputs) -> Location:
-    return Location(Path(inputs.folder, "report.toml").as_posix())

@@ -3,12 +3,23 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .errors import Findings, ForeignCode, Location, LoopsheetError, UnknownWorkbook, close, listing, suggest
+from .errors import (
+    Findings,
+    ForeignCode,
+    InputError,
+    Location,
+    LoopsheetError,
+    UnknownWorkbook,
+    close,
+    listing,
+    suggest,
+)
+from .expected import EXAMPLE, Expectation, check_expected
 from .measurements import MODES, Measurements, read_measurements
 from .number_text import NumberError, read_printed
 from .parameters import read_parameters, wrong_type
@@ -21,7 +32,7 @@ if TYPE_CHECKING:
     from .quantity import Printed
     from .workbook import Workbook
 
-__all__ = ["Find", "Inputs", "PublishedValue", "check_published", "load"]
+__all__ = ["Find", "Inputs", "PublishedValue", "check_cells", "check_published", "load"]
 
 Find = Callable[[str, Path, bytes | None], "Workbook"]
 """Finds a workbook by its name in report.toml, the folder, and what the file of that name holds."""
@@ -60,6 +71,8 @@ class Inputs:
         The bytes of every file that was read, by its name relative to the folder.
     free_at : dict of str to Location
         The columns that the publication does not print, with the place that says so.
+    expected : tuple of Expectation
+        Cells and tests that are expected to be without a value or out of the ordinary, each with its reason.
     errata : dict of (str, int) to Printed
         Measured cells that are known to be misprinted, by column and row, as they would have to be printed.
         Only the referee asks what would come out of them.
@@ -76,6 +89,7 @@ class Inputs:
     published: tuple[PublishedValue, ...]
     files: dict[str, bytes]
     free_at: dict[str, Location] = field(default_factory=dict)
+    expected: tuple[Expectation, ...] = ()
     errata: dict[tuple[str, int], Printed] = field(default_factory=dict)
 
     @property
@@ -91,6 +105,11 @@ class Inputs:
             for name, column in self.measured.items()
         }
         return replace(self, measured=measured, errata={})
+
+    @property
+    def place(self) -> Location:
+        """The file that says what is to be reported."""
+        return Location((self.folder / "report.toml").as_posix())
 
     def printed(self, name: str) -> tuple[Printed, ...]:
         """The numbers of a given column as they were printed, one a row; none if the folder has none."""
@@ -118,6 +137,17 @@ def load(folder: Path, find_workbook: Find) -> Inputs:
     return _Reader(folder, find_workbook).read()
 
 
+def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]]) -> None:
+    """Check all that was read of cells against those of the sheet; as :func:`check_published`."""
+    findings = Findings()
+    for check in (check_expected, check_published):
+        try:
+            check(inputs, cells)
+        except InputError as error:
+            findings.found += error.diagnostics
+    findings.check()
+
+
 class _Reader:
     """One reading of a folder: what was found and what was read, so far."""
 
@@ -136,12 +166,13 @@ class _Reader:
             self.findings.check()
             raise AssertionError("a folder was refused without a finding")
         self.toml = toml
-        self.keys((), ("title", "workbook", "parameters", "measurements", "published"))
+        self.keys((), ("title", "workbook", "parameters", "measurements", "expected", "published"))
         self.workbook = self.open_workbook()
         title = self.title()
         parameters, given = self.parameters()
         measurements = self.measurements()
         published = self.published()
+        expected = self.expected()
         self.findings.check()
         if self.workbook is None or measurements is None:
             raise AssertionError("a folder was refused without a finding")
@@ -157,6 +188,7 @@ class _Reader:
             published,
             self.files,
             self.free,
+            expected,
             self.errata(measurements),
         )
 
@@ -220,7 +252,8 @@ class _Reader:
             data = data.get(name, {})
             if not isinstance(data, dict):
                 return None  # keys() has reported it
-        line = f'{key} = "{example}"'
+        name = key if re.fullmatch(r"[\w-]+", key, re.ASCII) else f'"{key}"'
+        line = f'{name} = "{example}"'
         if key not in data:
             # A misspelt key is one problem, not two.
             if required and not any(close(word, [key]) for word in data):
@@ -371,6 +404,20 @@ class _Reader:
         else:
             return name, tests.index(index)
         return None
+
+    def expected(self) -> tuple[Expectation, ...]:
+        """Read what is expected to be out of the ordinary, and why: ``"test 3" = "double bounce heard"``."""
+        path = "expected"
+        table = self.toml.data.get(path, {})
+        if not isinstance(table, dict):
+            wrong_type(self.toml, self.findings, (path,), "a table [expected]", EXAMPLE)
+            return ()
+        reasons = {address: self.text((path,), address, "double bounce heard") for address in table}
+        return tuple(
+            Expectation(address, reason, self.toml.key(path, address))
+            for address, reason in reasons.items()
+            if reason is not None
+        )
 
     def published(self) -> tuple[PublishedValue, ...]:
         if "published" not in self.toml.data:

@@ -119,6 +119,7 @@ class Campaign:
             The folder is not as it must be.
         """
         from . import build
+        from .analysis import oddities
         from .errors import InputError
         from .findings import ENGINES, names_of, table_names
 
@@ -130,13 +131,14 @@ class Campaign:
                 raise
             self._refused = last
             return {"workbook": ["own code"]}
-        _check_published(prepared)
+        _check_cells(prepared)
         inputs = prepared.inputs
         return {
             "engine": list(ENGINES),
             "proof": [equation.label for equation in inputs.workbook.ledger().equations()],
             "published": names_of(inputs.published),
             "table": table_names(inputs),
+            **oddities.names(prepared.sheet, inputs),
         }
 
     def check(self, kind: str, name: str, every_engine: bool = True) -> Check:
@@ -145,7 +147,10 @@ class Campaign:
             return self._not_run(name)
         if kind == "engine":
             return self._engine(name, every_engine)
-        return self._proofs[name] if kind == "proof" else self._refereed[kind, name]
+        if kind == "proof":
+            return self._proofs[name]
+        own = (check for check in self._report.oddities if (check.kind, check.name) == (kind, name))
+        return next(own, None) or self._refereed[kind, name]
 
     @cached_property
     def _report(self) -> Report:
@@ -188,10 +193,10 @@ class Campaign:
         return self._engines.setdefault(name, nothing)
 
 
-def _check_published(prepared: Prepared) -> None:
-    """Refuse published values of cells that there are not, before there is a test for each of them."""
+def _check_cells(prepared: Prepared) -> None:
+    """Refuse what is said of cells that there are not, before there is a test for each of them."""
     from .column import RepeatAxis
-    from .inputs import check_published
+    from .inputs import check_cells
     from .layout import lay_out
 
     sheet, data = prepared.sheet, prepared.data
@@ -199,7 +204,7 @@ def _check_published(prepared: Prepared) -> None:
     labels = {name: layout.labels for name, layout in lay_out(sheet, prepared.labels, counts).items()}
     rows = {name: {tuple(row) for row in found.tolist()} for name, found in labels.items()}
     cells = {c.name: (c.unit, {()} if c.axis is None else rows[c.axis.name]) for c in sheet.columns}
-    check_published(prepared.inputs, cells)
+    check_cells(prepared.inputs, cells)
 
 
 class ReportFile(pytest.File):
@@ -264,6 +269,8 @@ class CheckItem(pytest.Item):
             check = self.campaign.check(self.kind, self.name, self._with_programs())
         except LoopsheetError as error:
             pytest.fail(str(error), pytrace=False)
+        if check.note == "warning":
+            self.warn(pytest.PytestWarning(check.sentence))
         if check.skipped:
             pytest.skip(check.message)
         if not check.passed:

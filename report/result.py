@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..derivations.equation import Erratum, Ledger
 from ..derivations.proof import Proof
 from .agreement import Agreement
+from .diagnostics import Check
 from .inputs import Inputs, PublishedValue
 from .marks import Marks
 from .sheet import Sheet
@@ -158,6 +159,8 @@ class Report:
         For the figures.
     engines : tuple of Agreement
         What the judge of the engines found, NumPy first; empty if it was not asked.
+    oddities : tuple of Check
+        Whether the data of the campaign itself are as expected.
     referee : Referee
         What the referee found; empty if it was not asked.
     versions : mapping of str to str
@@ -177,6 +180,7 @@ class Report:
     comparisons: tuple[Comparison, ...]
     curves: tuple[Curve, ...] = ()
     engines: tuple[Agreement, ...] = ()
+    oddities: tuple[Check, ...] = ()
     referee: Referee = field(default_factory=Referee)
     versions: Mapping[str, str] = field(default_factory=dict)
 

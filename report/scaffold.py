@@ -190,6 +190,9 @@ def _lines(workbook: Workbook) -> Iterator[str]:
         "# [measurements.printed]",
         f'# {last} = "truncated"                    # if digits were cut off; without this, "rounded"',
         "",
+        "# [expected]                             # cells and tests that are odd, and why",
+        '# "test 3" = "double bounce heard"',
+        "",
         "# [published]                            # values to compare with, if there are any",
         '# file = "published.csv"                 # source,cell,index,value,unit,expect,recomputed,reason',
     )

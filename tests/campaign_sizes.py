@@ -38,6 +38,8 @@ class Sizes:
         Builds that are ended at a random moment by each signal.
     stride : int
         At every how many steps of a move of outputs it is ended.
+    slips : int
+        Campaigns with one decimal sign in the wrong place.
     seed : int
     """
 
@@ -51,6 +53,7 @@ class Sizes:
     page_mutants: int
     stopped: int
     stride: int
+    slips: int
     seed: int = SEED
 
 
@@ -65,6 +68,7 @@ FEW = Sizes(
     page_mutants=4,
     stopped=1,
     stride=4,
+    slips=8,
 )
 ALL = Sizes(
     honest=40,
@@ -77,6 +81,7 @@ ALL = Sizes(
     page_mutants=15,
     stopped=100,
     stride=1,
+    slips=500,
 )
 assert sum(ALL.engines.values()) > 2000
 

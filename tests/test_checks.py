@@ -45,6 +45,7 @@ def test_json() -> None:
         "name": "(1)",
         "passed": True,
         "skipped": False,
+        "note": None,
         "message": "(1) is proved",
         "file": "f/report.toml",
         "line": None,
@@ -96,11 +97,11 @@ def test_github_names_files_from_where_the_command_runs(
 
 def test_markdown() -> None:
     text = as_markdown(CHECKS, "t", {})
-    assert "| published | 0 | 2 | 0 |" in text
-    assert "| `published alpha[1-2]` | `f/p.csv:2:19` | prints 1, recomputed 2 |" in text
+    assert "| published | 0 | 2 | 0 | 0 |" in text
+    assert "| finding | `published alpha[1-2]` | `f/p.csv:2:19` | prints 1, recomputed 2 |" in text
     rows = [line for line in text.splitlines() if line.startswith("|")]
     assert len(rows) == 2 + 3 + 2 + 2
-    assert all(row.replace("\\|", "").count("|") == 4 + (n < 5) for n, row in enumerate(rows))
+    assert all(row.replace("\\|", "").count("|") == 5 + (n < 5) for n, row in enumerate(rows))
     assert "finding" not in as_markdown(CHECKS[:1], "t", {}).partition("\n| ")[2].partition("proof")[2]
 
 

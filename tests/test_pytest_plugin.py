@@ -55,7 +55,7 @@ def test_every_check_is_a_test(campaign: Path) -> None:
     assert "steel/report.toml::proof::(11)" in ids
     assert "steel/report.toml::published::alpha[1-2]" in ids
     assert "steel/report.toml::table::Table 2" in ids
-    assert len(ids) == len(set(ids)) == 3 + 43 + 27 + 5
+    assert len(ids) == len(set(ids)) == 3 + 46 + 27 + 5 + 3 + 10
 
 
 def test_a_test_is_selected_by_its_id_and_passes(campaign: Path) -> None:

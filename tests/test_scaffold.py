@@ -59,6 +59,9 @@ file = "measurements.csv"
 # [measurements.printed]
 # x_p = "truncated"                    # if digits were cut off; without this, "rounded"
 
+# [expected]                             # cells and tests that are odd, and why
+# "test 3" = "double bounce heard"
+
 # [published]                            # values to compare with, if there are any
 # file = "published.csv"                 # source,cell,index,value,unit,expect,recomputed,reason
 """

@@ -78,7 +78,8 @@ WORKBOOK = Workbook(
 FILES = {
     "workbook.py": SOURCE,
     "report.toml": 'title = "Mars"\nworkbook = "workbook.py"\n[parameters]\nT = "687 d"\na = "227.9 Gm"\n'
-    'ecc = "0.0934"\n[measurements]\nfile = "seen.csv"\n[published]\nfile = "published.csv"\n',
+    'ecc = "0.0934"\n[measurements]\nfile = "seen.csv"\n[published]\nfile = "published.csv"\n'
+    '[expected]\n"M[1]" = "the planet is at its perihelion then, and zero is not positive"\n',
     "seen.csv": "test,t [d]\n1,0\n2,100\n3,250\n4,343.5\n",
     "published.csv": "source,cell,index,value,unit,expect,reason\nTables,r,4,249.2,Gm,,\n",
 }

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .common import Progress, folder_argument, named, outcome
+from .common import Progress, folder_argument, named, outcome, tell
 
 if TYPE_CHECKING:
     from ..result import Report
@@ -52,12 +52,8 @@ def run(options: argparse.Namespace) -> int:
         report, files = build.build(folder, out, formats, progress, options.engines, begun=begun)
     for name in report.workbook.headline:
         print(_line(report, name))
-    for cell in report.values.errors():
-        print(cell.reason)
     found = checks(report)
-    for check in found:
-        if not check.passed:
-            print(f"finding: {check.sentence}")
+    tell(found)
     names = {path.name: path for path in files}
     first = next(
         names[n]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from .common import Progress, folder_argument, format_argument, outcome, print_checks
+from .common import Progress, folder_argument, format_argument, outcome, print_checks, tell
 
 if TYPE_CHECKING:
     from ..accepting import Accepted
@@ -78,9 +78,7 @@ def _accept(options: argparse.Namespace) -> int:
     if options.format != "text":
         print_checks(left, options.format, report.title, {})
         return outcome(left)
-    for check in left:
-        if not check.passed:
-            print(f"finding: {check.sentence}")
+    tell(left)
     return outcome(left)
 
 
@@ -98,7 +96,7 @@ def _show(found: Accepted) -> None:
         print(f"  {found.others} more got an empty field")
 
 
-def _print(report: Report, found: Iterable[Check]) -> None:
+def _print(report: Report, found: Sequence[Check]) -> None:
     from ..verdict_words import lines
 
     passed = sum(p.status.passes for p in report.proofs)
@@ -117,10 +115,9 @@ def _print(report: Report, found: Iterable[Check]) -> None:
             print(f"  {where:28} {printed:>8} -> {comparison.again:>8}  {comparison.word:13} {reason}")
     for line in lines(report.referee, lambda name: report.sheet[name].meaning):
         print(line)
-    failed = [check for check in found if not check.passed]
-    for check in failed:
-        print(f"finding: {check.sentence}")
-    print(f"{len(failed)} findings" if failed else "everything as expected")
+    tell(found)
+    failed = sum(not check.passed for check in found)
+    print(f"{failed} finding{'s' * (failed != 1)}" if failed else "everything as expected")
 
 
 def _details(report: Report) -> dict[str, Any]:

@@ -30,6 +30,7 @@ __all__ = [
     "print_checks",
     "result_argument",
     "source_argument",
+    "tell",
 ]
 
 OK, FINDINGS, USAGE, BUG = 0, 1, 2, 3
@@ -94,6 +95,13 @@ def print_checks(checks: tuple[Check, ...], form: str, title: str, more: Mapping
     from ..views.checks import FORMATS
 
     print(FORMATS[form](checks, title, more), end="")
+
+
+def tell(checks: Iterable[Check]) -> None:
+    """Print what there is to tell of checks, a line each; findings last."""
+    told = [check for check in checks if check.word]
+    for check in sorted(told, key=lambda check: not check.passed):
+        print(f"{check.word}: {check.sentence}")
 
 
 class Progress:

@@ -36,5 +36,6 @@ def run(options: argparse.Namespace) -> int:
             value = cell.reason if cell.value is None else repr(cell.value / scale)
             print(f"  {cell.address:16} {value}{mark and f'  {mark}'}")
     for count in report.marks.behind(column):
-        print(f"  {count.said}")
+        if count.number or count.margin.limit.source:
+            print(f"  {count.said}")
     return OK

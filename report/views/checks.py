@@ -24,15 +24,21 @@ def summary(checks: Checks) -> str:
     >>> summary([Check("proof", "(1)", True, "(1) is proved"), Check("engine", "x", True, "", skipped=True)])
     '2 checks: 1 as expected, 0 findings, 1 not checked'
     """
-    failed = sum(not check.passed for check in checks)
-    skipped = sum(check.skipped for check in checks)
-    passed = len(checks) - failed - skipped
+    passed, failed, warned, skipped = _tally(checks)
     parts = [
         f"{passed} as expected",
         _count(failed, "finding"),
+        *([_count(warned, "warning")] * bool(warned)),
         *([f"{skipped} not checked"] * bool(skipped)),
     ]
     return f"{_count(len(checks), 'check')}: {', '.join(parts)}"
+
+
+def _tally(checks: Checks) -> tuple[int, int, int, int]:
+    """How many are as expected, findings, warnings, not checked."""
+    failed, skipped = sum(not check.passed for check in checks), sum(check.skipped for check in checks)
+    warned = sum(check.word == "warning" for check in checks)
+    return len(checks) - failed - warned - skipped, failed, warned, skipped
 
 
 def _count(number: int, word: str) -> str:
@@ -52,6 +58,7 @@ def as_json(checks: Checks, title: str, more: Details) -> str:
                 "name": check.name,
                 "passed": check.passed,
                 "skipped": check.skipped,
+                "note": check.note or None,
                 "message": check.message,
                 "file": check.at.path or None,
                 "line": check.at.line,
@@ -83,6 +90,8 @@ def as_junit(checks: Checks, title: str, more: Details) -> str:
             elif not check.passed:
                 failure = ET.SubElement(case, "failure", type=kind, message=visible(check.message))
                 failure.text = visible(check.sentence)
+            elif check.note:
+                ET.SubElement(case, "system-out").text = visible(f"{check.word}: {check.sentence}")
     ET.indent(root, " ")
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
 
@@ -100,7 +109,7 @@ def as_github(checks: Checks, title: str, more: Details) -> str:
     """GitHub's workflow commands: an annotation at the place of each finding, then a line for the log."""
     lines = []
     for check in checks:
-        if check.passed and not check.skipped:
+        if not check.word and not check.skipped:
             continue
         at = check.at
         where = {"file": _from_here(at.path)} if at.path else {}
@@ -110,7 +119,7 @@ def as_github(checks: Checks, title: str, more: Details) -> str:
                 where |= {"col": str(at.column), "endColumn": str(at.column + at.length)}
         where["title"] = f"{check.kind} {check.name}"
         properties = ",".join(f"{name}={_property(text)}" for name, text in where.items())
-        word = "notice" if check.skipped else "error"
+        word = {"finding": "error", "warning": "warning"}.get(check.word, "notice")
         lines.append(f"::{word} {properties}::{_data(check.message)}")
     return "".join(f"{line}\n" for line in (*lines, summary(checks)))
 
@@ -132,20 +141,24 @@ def _property(text: str) -> str:
 
 
 def as_markdown(checks: Checks, title: str, more: Details) -> str:
-    """A heading, how many of each kind are as expected, and a table of the findings."""
+    """A heading, how many of each kind are as expected, and a table of the findings and warnings."""
     kinds = []
     for kind in dict.fromkeys(check.kind for check in checks):
         own = [check for check in checks if check.kind == kind]
-        failed, skipped = (sum(not c.passed for c in own), sum(c.skipped for c in own))
-        kinds.append([md.cell(kind), str(len(own) - failed - skipped), str(failed), str(skipped)])
+        kinds.append([md.cell(kind), *map(str, _tally(own))])
     text = f"### {md.cell(title)}\n\n{summary(checks)}\n\n"
-    text += md.table(["checked", "as expected", "findings", "not checked"], kinds)
+    text += md.table(["checked", "as expected", "findings", "warnings", "not checked"], kinds)
     found = [
-        [md.code(f"{c.kind} {c.name}"), md.code(str(c.at) if c.at.path else ""), md.cell(c.message)]
+        [
+            md.cell(c.word),
+            md.code(f"{c.kind} {c.name}"),
+            md.code(str(c.at) if c.at.path else ""),
+            md.cell(c.message),
+        ]
         for c in checks
-        if not c.passed
+        if c.word
     ]
-    return text + ("\n" + md.table(["finding", "where", "what"], found) if found else "")
+    return text + ("\n" + md.table(["", "check", "where", "what"], found) if found else "")
 
 
 FORMATS: dict[str, Callable[[Checks, str, Details], str]] = {

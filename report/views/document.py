@@ -11,6 +11,7 @@ from functools import cached_property
 
 from ...derivations.equation import Derivation, Equation
 from ...derivations.proof import Proof
+from ..diagnostics import Check
 from ..marks import Count
 from ..result import Report
 from ..sheet import Axis, Column, Given, RepeatAxis, Root
@@ -273,6 +274,11 @@ class Document:
         """The cells where an error begins, then those that lie outside of what is expected."""
         errors = (Remark(cell, cell.status.code, cell.why) for cell in self.report.values.errors())
         return (*errors, *self._marks())
+
+    @cached_property
+    def oddities(self) -> tuple[Check, ...]:
+        """What there is to tell of the data of the campaign itself."""
+        return tuple(check for check in self.report.oddities if check.word)
 
     def _marks(self) -> Iterator[Remark]:
         marks = self.report.marks

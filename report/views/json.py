@@ -28,6 +28,11 @@ def values(report: Report) -> str:
             "workbook": report.workbook.name,
             "title": report.title,
             "cells": {column.name: _column(report, column) for column in report.sheet.columns},
+            "oddities": [
+                {"kind": check.kind, "name": check.name, "word": check.word, "sentence": check.message}
+                for check in report.oddities
+                if check.word
+            ],
             "proofs": proof_statuses(report),
             "rests_on": proof_grounds(report),
             "errata": [{"about": e.about, "kind": e.kind, "sentence": e.sentence} for e in report.errata],

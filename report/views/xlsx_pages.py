@@ -94,6 +94,7 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
     counts = sorted(
         {axis.count for axis in grid.axes.values() if isinstance(axis, RepeatAxis)} & set(report.shown)
     )
+    odd = [f"{check.word.capitalize()}: {check.message}." for check in report.oddities if check.word]
     notes = [
         f"Inputs are the yellow cells, on {' and '.join(given)}. Type over them: every other number follows, "
         "in any spreadsheet program that recalculates.",
@@ -113,14 +114,21 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
         f"Source: {report.workbook.source}.",
         "Computed with " + ", ".join(f"{name} {version}" for name, version in report.versions.items()) + ".",
     ]
-    style.text(sheet, row, 0, "How to use it", "section")
-    for at in range(1, 7):
-        style.text(sheet, row, at, "", "section")
-    for note in notes:
+    for title, lines in (("The data as they were given", odd), ("How to use it", notes)):
+        if lines:
+            row = _write_lines(sheet, style, row, title, lines) + 2
+
+
+def _write_lines(sheet: Any, style: Style, row: int, title: str, lines: Sequence[str]) -> int:
+    """Write sentences below a title; return the row of the last one."""
+    for at in range(7):
+        style.text(sheet, row, at, "" if at else title, "section")
+    for line in lines:
         row += 1
         sheet.merge_range(row, 0, row, 6, "", style("wrapped"))
-        style.text(sheet, row, 0, note, "wrapped")
-        sheet.set_row(row, height([(note, 155)]))
+        style.text(sheet, row, 0, line, "wrapped")
+        sheet.set_row(row, height([(line, 155)]))
+    return row
 
 
 # --- the published values ----------------------------------------------------------------------------------

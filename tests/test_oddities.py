@@ -1,0 +1,317 @@
+"""What is odd about a campaign's own data: found, located, told everywhere, until somebody expects it."""
+
+import json
+import random
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from xml.etree import ElementTree
+
+import openpyxl
+import pytest
+from campaign_sizes import Sizes
+from slipped_campaigns import PAPER, Slip, Texts, campaign, slips, write
+
+from loopsheet.report import build
+from loopsheet.report.cli import main
+from loopsheet.report.diagnostics import Check
+from loopsheet.report.errors import InputError
+from loopsheet.report.views import html, latex
+from loopsheet.report.views.checks import FORMATS
+
+SLIPPED = Slip("x_p", 2, up=False).of(PAPER)
+TWO = {name: column[:2] for name, column in PAPER.items()}
+BACKWARDS = {**TWO, "x_p": ("29.7", "23.5")}
+
+
+def checks(folder: Path) -> dict[str, Check]:
+    """What was checked, by kind and name."""
+    found = build.compute(folder, prove=False).oddities
+    assert len({(check.kind, check.name) for check in found}) == len(found)
+    return {f"{check.kind} {check.name}": check for check in found}
+
+
+def told(folder: Path) -> list[str]:
+    """What there is to tell, in words."""
+    return [f"{check.word}: {check.message}" for check in checks(folder).values() if check.word]
+
+
+def named(folder: Path) -> list[int]:
+    """The tests that are named: as the one to look at, or because a cell of theirs is odd."""
+    tests = re.findall(r"look at test (\d+)|\b(?:v|e|x_p)\[(\d+)\] =", "\n".join(told(folder)))
+    return list(dict.fromkeys(int(test) for found in tests for test in found if test))
+
+
+# --- what is found
+
+
+def test_of_sound_data_there_is_nothing_to_tell(tmp_path: Path) -> None:
+    assert told(write(tmp_path, PAPER)) == []
+    assert all(check.passed for check in checks(tmp_path).values())
+
+
+@pytest.mark.parametrize("up", [True, False])
+def test_one_slipped_decimal_names_its_test(tmp_path: Path, up: bool) -> None:
+    found = checks(write(tmp_path, Slip("x_p", 2, up).of(PAPER)))
+    cells, rows = found["data cells"], found["data rows"]
+    assert cells.word == rows.word == "finding"
+    assert cells.message.startswith("alpha: 4 of 10 pairs have no value: ")
+    assert (
+        "alpha[1-2], alpha[2-3], alpha[2-4] and alpha[2-5] #NOROOT!: (11) has no root here" in cells.message
+    )
+    assert cells.message.endswith("; look at test 2 first: every odd pair rests on it")
+    assert (cells.at.path, cells.at.line) == ((tmp_path / "measurements.csv").as_posix(), 3)
+    assert rows.message.startswith("alpha_mean, alpha_median, x_ref and F_ref are over 6 of 10 pairs; ")
+    assert "are over 12 of 20 points" in rows.message
+    assert found["data result"].passed
+
+
+@pytest.mark.parametrize("slip", [slip for slip in slips(PAPER) if slip.column != "v"], ids=str)
+def test_every_slip_of_the_paper_names_its_test_and_no_other(tmp_path: Path, slip: Slip) -> None:
+    assert named(write(tmp_path, slip.of(PAPER))) == [slip.test]
+
+
+def test_a_result_without_a_value_is_a_finding(tmp_path: Path) -> None:
+    found = checks(write(tmp_path, BACKWARDS))
+    assert "look at" not in found["data cells"].message, "either test may be wrong"
+    assert found["data result"].message == (
+        "alpha_mean, alpha_median, alpha_log, C_log, alpha_lin and C_lin of the result have no value, "
+        "for want of alpha[1-2]"
+    )
+
+
+def changed(column: str, test: int, text: str, texts: Texts = PAPER) -> Texts:
+    """The campaign with another number."""
+    return {**texts, column: [text if n == test else old for n, old in enumerate(texts[column], 1)]}
+
+
+NEAR = changed("v", 4, "4.092")
+IMPLAUSIBLE = {
+    "x_p[5] = 6400 um": (changed("x_p", 5, "6400"), "deeper than the radius of the ball", 6),
+    "v[1] = 0.0235 m/s": (changed("v", 1, "0.0235"), "a speed of no drop test", 2),
+    "alpha[1-2] = ": (changed("x_p", 2, "27.5", TWO), "1 of 1 pairs outside (4): ", None),
+    "alpha[4-5] = ": (changed("e", 5, "0.469"), "1 of 10 pairs: e rises with the speed", 6),
+    "alpha[3-4] = ": (changed("x_p", 4, "41.7", NEAR), "1 of 10 pairs: speeds within 4 %: too near", None),
+}
+
+
+def test_of_several_tests_that_may_be_wrong_the_one_that_moves_the_result_most(tmp_path: Path) -> None:
+    """Only the pair of tests 4 and 5 is odd: both may be the cause."""
+    texts = changed("e", 5, "0.469")
+    both = told(write(tmp_path, texts))
+    assert [said.partition(": alpha[4-5] = ")[0] for said in both] == [
+        "warning: alpha: 1 of 10 pairs outside (4)",
+        "warning: alpha: 1 of 10 pairs: e rises with the speed",
+    ]
+    whole, means = build.compute(tmp_path, prove=False).values.scalar("alpha_mean"), {}
+    for test in (4, 5):
+        left = {name: [n for at, n in enumerate(column, 1) if at != test] for name, column in texts.items()}
+        report = build.compute(write(tmp_path / str(test), left), prove=False)
+        means[test] = report.values.scalar("alpha_mean")
+    worst = max(means, key=lambda test: abs(means[test] - whole))
+    goes = f"without it alpha_mean goes from {whole:.4g} to {means[worst]:.4g}, further than without another"
+    assert all(said.endswith(f"look at test {worst} first: {goes}") for said in both)
+
+
+@pytest.mark.parametrize("cell", IMPLAUSIBLE)
+def test_what_is_implausible_is_a_warning_with_its_place(tmp_path: Path, cell: str) -> None:
+    texts, says, line = IMPLAUSIBLE[cell]
+    found = [
+        check for check in checks(write(tmp_path, texts)).values() if check.kind == "limit" and check.word
+    ]
+    (check,) = [check for check in found if says in check.message]
+    assert cell in check.message
+    assert (check.word, check.passed, check.at.line) == ("warning", True, line)
+    assert check.at.path == (tmp_path / ("report.toml" if line is None else "measurements.csv")).as_posix()
+
+
+def test_a_pair_that_says_nothing_accuses_nobody(tmp_path: Path) -> None:
+    found = told(write(tmp_path, changed("x_p", 4, "41.5", NEAR)))
+    assert any("alpha: 1 of 10 pairs have no value: alpha[3-4]" in said for said in found)
+    assert not any("look at test" in said for said in found)
+
+
+@pytest.mark.campaigns
+def test_slips_at_random(tmp_path: Path, sizes: Sizes, summary: Callable[[str], None]) -> None:
+    dice, missed, others = random.Random(sizes.seed), [], 0
+    for _ in range(sizes.slips):
+        texts = campaign(dice, dice.randint(3, 8), noise=0.002)
+        slip = dice.choice(list(slips(texts)))
+        found = named(write(tmp_path, slip.of(texts)))
+        missed += [(slip, texts)] * (slip.test not in found)
+        others += found != [slip.test]
+    summary(f"{sizes.slips} slipped decimals: {len(missed)} not named, {others} not alone")
+    assert missed == []
+
+
+# --- what is expected
+
+
+def expecting(folder: Path, texts: Texts, *lines: str) -> Path:
+    return write(folder, texts, "\n".join(["[expected]", *lines, ""]))
+
+
+def test_what_is_expected_of_a_test_is_no_finding_and_the_reason_is_told(tmp_path: Path) -> None:
+    found = checks(expecting(tmp_path, SLIPPED, '"test 2" = "the dial was read in cm"'))
+    assert all(check.passed for check in found.values())
+    (said,) = told(tmp_path)
+    assert said.startswith(
+        "expected: test 2, the dial was read in cm: alpha[1-2] has no value (#NOROOT!), alpha[2-3] has no"
+    )
+    assert found["data cells"].message.endswith(", as is expected")
+    assert found["data rows"].message == "rows are left out as is expected"
+
+
+def test_what_is_expected_of_a_cell_is_of_no_other(tmp_path: Path) -> None:
+    pairs = ("1-2", "2-3", "2-4")
+    found = checks(expecting(tmp_path, SLIPPED, *(f'"alpha[{pair}]" = "known"' for pair in pairs)))
+    assert found["data cells"].message.startswith("alpha: 1 of 10 pairs have no value: alpha[2-5] #NOROOT!")
+    assert not found["data cells"].passed
+    assert not found["data rows"].passed
+    assert all(found[f"expected alpha[{pair}]"].passed for pair in pairs)
+    every = checks(expecting(tmp_path, SLIPPED, *(f'"alpha[{p}]" = "known"' for p in (*pairs, "2-5"))))
+    assert all(check.passed for check in every.values())
+
+
+def test_a_sum_may_be_expected_to_leave_rows_out_by_its_own_name(tmp_path: Path) -> None:
+    found = checks(expecting(tmp_path, SLIPPED, 'alpha_mean = "test 2 is looked into"'))
+    assert found["data rows"].message.startswith("alpha_median, x_ref and F_ref are over 6 of 10 pairs")
+    assert (
+        found["expected alpha_mean"].message
+        == "alpha_mean, test 2 is looked into: alpha_mean is over 6 of 10 pairs"
+    )
+    assert not found["data cells"].passed
+
+
+def test_a_result_may_be_expected_to_have_no_value(tmp_path: Path) -> None:
+    assert not told(write(tmp_path, BACKWARDS))[-1].startswith("expected")
+    found = checks(expecting(tmp_path, BACKWARDS, '"alpha[1-2]" = "swapped, as a demonstration"'))
+    assert all(check.passed for check in found.values())
+
+
+def test_an_implausible_cell_may_be_expected(tmp_path: Path) -> None:
+    slow = changed("v", 1, "0.0235")
+    line = '"v[1]" = "rolled down a ramp"'
+    assert any("a speed of no drop test" in said for said in told(write(tmp_path, slow)))
+    found = checks(expecting(tmp_path, slow, line))
+    assert found["expected v[1]"].passed
+    (speeds,) = [check for name, check in found.items() if name.startswith("limit v:")]
+    assert (speeds.word, speeds.message[-16:]) == ("", ", as is expected")
+
+
+@pytest.mark.parametrize("address", ["test 3", "alpha[1-3]", "alpha_mean", "x_p[1]"])
+def test_to_expect_what_does_not_happen_is_a_finding(tmp_path: Path, address: str) -> None:
+    found = checks(expecting(tmp_path, PAPER, f'"{address}" = "heard twice"'))[f"expected {address}"]
+    assert found.word == "finding"
+    assert found.message == f"{address} is expected to be odd (heard twice), and is not: drop it"
+    line = (tmp_path / "report.toml").read_text().splitlines()[(found.at.line or 0) - 1]
+    assert line == f'"{address}" = "heard twice"'
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "says"),
+    [
+        ('"test 9" = "x"', "LS506", "test has no index '9'"),
+        ('test = "x"', "LS505", "the sheet has no cell 'test'"),
+        ('"test2" = "x"', "LS505", "did you mean 'test 2'?"),
+        ('"alpha[1]" = "x"', "LS506", "alpha has no index '1'"),
+        ('"alpha[2-1]" = "x"', "LS506", "alpha has no index '2-1'"),
+        ('alpha = "x"', "LS506", "alpha has no index ''"),
+        ('"alpha_mean[1]" = "x"', "LS506", "alpha_mean has no index '1'"),
+        ('"alhpa[1-2]" = "x"', "LS505", "did you mean 'alpha'?"),
+        ('"alpha[1-2" = "x"', "LS505", "the sheet has no cell 'alpha[1-2'"),
+        ('"" = "x"', "LS505", "the sheet has no cell ''"),
+        ('"alpha[1-2]" = ""', "LS403", "is empty"),
+        ('"alpha[1-2]" = 3', "LS205", "text in quotes"),
+    ],
+)
+def test_a_wrong_expectation_is_told_with_its_line(tmp_path: Path, line: str, code: str, says: str) -> None:
+    with pytest.raises(InputError) as refused:
+        build.compute(expecting(tmp_path, PAPER, line), prove=False)
+    (finding,) = refused.value.diagnostics
+    assert finding.code == code
+    assert says in str(refused.value)
+    assert finding.at.line == 9
+    assert finding.at.path == (tmp_path / "report.toml").as_posix()
+
+
+def test_what_is_expected_stands_in_a_table(tmp_path: Path) -> None:
+    folder = write(tmp_path, PAPER)
+    (folder / "report.toml").write_text('expected = "test 2"\n' + (folder / "report.toml").read_text())
+    with pytest.raises(InputError, match=r"LS205.*\n(.*\n)*.*a table \[expected\]"):
+        build.compute(folder, prove=False)
+
+
+# --- where it is told
+
+
+def test_build_tells_it_last(tmp_path: Path, unjudged: None, capsys: pytest.CaptureFixture[str]) -> None:
+    folder, out = write(tmp_path / "in", SLIPPED), tmp_path / "out"
+    assert main(["build", str(folder), "--out", str(out), "--to", "json"]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.partition(": ")[0] for line in lines[-3:-1]] == ["finding", "finding"]
+    assert (
+        f"finding: {folder.as_posix()}/measurements.csv:3:3: alpha: 4 of 10 pairs have no value" in lines[-3]
+    )
+    assert lines[-1].startswith("2 files in ")
+
+
+def test_build_tells_what_is_expected_and_ends_well(
+    tmp_path: Path, unjudged: None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = expecting(tmp_path / "in", SLIPPED, '"test 2" = "read in cm"')
+    assert main(["build", str(folder), "--out", str(tmp_path / "out"), "--to", "json"]) == 0
+    assert "expected: " in capsys.readouterr().out.splitlines()[-2]
+    values = json.loads((tmp_path / "out" / "values.json").read_text())
+    (odd,) = values["oddities"]
+    assert (odd["kind"], odd["name"], odd["word"]) == ("expected", "test 2", "expected")
+    assert "read in cm" in odd["sentence"]
+
+
+@pytest.mark.parametrize("form", ["text", *FORMATS])
+def test_every_format_of_check_tells_it(
+    tmp_path: Path, form: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(build, "judged", lambda report, step: report)
+    monkeypatch.setattr(build, "compute", partial(build.compute, prove=False))
+    folder = write(tmp_path, changed("v", 1, "0.0235", SLIPPED))
+    assert main(["check", str(folder), "--format", form]) == 1
+    out = capsys.readouterr().out
+    assert "look at test 2 first" in out
+    assert "a speed of no drop test" in out
+    if form == "json":
+        noted = {check["name"]: check["note"] for check in json.loads(out)["checks"]}
+        assert noted["cells"] is None
+        assert [name for name, note in noted.items() if note == "warning" and name.startswith("v: ")]
+    if form == "junit":
+        assert int(ElementTree.fromstring(out).get("failures", "")) == 2
+    if form == "github":
+        assert re.search(r"^::error file=.*measurements\.csv,line=3,col=3,.*title=data cells::", out, re.M)
+        assert re.search(r"^::warning file=.*measurements\.csv,line=2,", out, re.M)
+
+
+def test_the_report_tells_findings_and_reasons(tmp_path: Path) -> None:
+    for texts, lines, says in (
+        (SLIPPED, (), "look at test 2 first"),
+        (SLIPPED, ('"test 2" = "the dial was read in <cm>"',), "the dial was read in "),
+    ):
+        report = build.compute(expecting(tmp_path, texts, *lines), prove=False)
+        assert says in html.render(report, {}, "")
+        assert says in latex.render(report, [])
+        content = build._workbook(report)[1]
+        (tmp_path / "report.xlsx").write_bytes(content)
+        sheet = openpyxl.load_workbook(tmp_path / "report.xlsx").worksheets[0]
+        cells = [str(cell.value) for row in sheet.iter_rows() for cell in row if cell.value]
+        assert any(says in text for text in cells)
+        assert "The data as they were given" in cells
+    assert "in &lt;cm&gt;" in html.render(report, {}, "")
+
+
+def test_a_report_without_oddities_says_nothing_of_them(tmp_path: Path) -> None:
+    report = build.compute(write(tmp_path, PAPER), prove=False)
+    shown = html.render(report, {}, "")
+    other = replace(report, oddities=(Check("data", "x", False, "something odd"),))
+    assert "something odd" not in shown
+    assert "<strong>Finding</strong>: something odd." in html.render(other, {}, "")
