@@ -35,6 +35,7 @@ __all__ = [
     "PAPER",
     "Step",
     "build",
+    "checked",
     "compared",
     "compute",
     "find_workbook",
@@ -188,7 +189,7 @@ def compute(folder: Path, step: Step = _silent, prove: bool = True, find: Find =
     report = _evaluated(prepared, prepared.inputs.workbook.ledger(), step)
     if not prove:
         return report
-    proofs, errata = _checked(report.ledger, step)
+    proofs, errata = checked(report.inputs, report.ledger, step)
     return replace(report, proofs=proofs, errata=errata)
 
 
@@ -223,17 +224,20 @@ def _evaluated(prepared: Prepared, ledger: Ledger, step: Step) -> Report:
     return replace(report, oddities=oddities(report))
 
 
-def _checked(ledger: Ledger, step: Step = _silent) -> tuple[tuple[Proof, ...], tuple[Erratum, ...]]:
-    """What is known of the algebra: a proof of each equation, and the errata of the print."""
+def checked(
+    inputs: Inputs, ledger: Ledger, step: Step = _silent
+) -> tuple[tuple[Proof, ...], tuple[Erratum, ...]]:
+    """What is known of the algebra: a proof of each equation, and the errata of the print it is about."""
     from ..derivations.proof import prove
 
     proofs = prove(ledger, lambda equation: step(f"proving {equation.label}"))
-    return proofs, tuple(found for check in ledger.checks if (found := check(ledger)) is not None)
+    checks = ledger.checks if inputs.about_source else ()
+    return proofs, tuple(found for check in checks if (found := check(ledger)) is not None)
 
 
-def _checked_plainly(ledger: Ledger) -> tuple[list[_Found], tuple[Erratum, ...]]:
+def _checked_plainly(inputs: Inputs, ledger: Ledger) -> tuple[list[_Found], tuple[Erratum, ...]]:
     """The same without equations, for another process: an expression that is sent arrives evaluated."""
-    proofs, errata = _checked(ledger)
+    proofs, errata = checked(inputs, ledger)
     return [(_but(p, "equation", "steps"), [_but(s, "step") for s in p.steps]) for p in proofs], errata
 
 
@@ -409,7 +413,7 @@ def build(
         begun(inputs.title)
         ledger = inputs.workbook.ledger()
         # Everything that takes long has a process of its own, from when there is what it needs.
-        proving = running.enter_context(Background(lambda: _checked_plainly(ledger)))
+        proving = running.enter_context(Background(lambda: _checked_plainly(inputs, ledger)))
         report = _evaluated(_prepared(inputs), ledger, step)
         if "xlsx" in formats:
             _refuse_too_many_rows(report)

@@ -56,6 +56,11 @@ class Axis:
     size: Symbol
 
     @property
+    def row(self) -> str:
+        """What one of its rows is called: ``test`` of ``tests``."""
+        return self.name.removesuffix("s") or self.name
+
+    @property
     def maps(self) -> dict[Symbol, Axis]:
         """For every index that may be used in a formula on this axis, the axis whose rows it names."""
         return {self.index: self}

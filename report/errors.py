@@ -127,6 +127,12 @@ CATALOGUE: dict[str, Entry] = {
         "'loopsheet build' and 'check' of the folder, which run it",
         "read it; then 'verify --run-workbook', or 'pytest --loopsheet-run-workbook', runs it too",
     ),
+    "LS215": Entry(
+        "unknown publisher",
+        "by is '{text}'",
+        "'source', if the published values are those of the workbook's own source",
+        "leave it out if somebody else published them",
+    ),
     # Tables
     "LS301": Entry(
         "missing column", "the column '{text}' is missing", hint="add '{example}' to the first line"

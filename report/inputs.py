@@ -42,6 +42,8 @@ LARGEST_TABLE = 50_000_000
 LARGEST_PUBLISHED = 5_000_000
 """Bytes. Anything larger is a mistake, and would be held in memory several times over."""
 
+_SOURCE = "source"
+
 
 @dataclass(frozen=True)
 class Inputs:
@@ -76,6 +78,8 @@ class Inputs:
     errata : dict of (str, int) to Printed
         Measured cells that are known to be misprinted, by column and row, as they would have to be printed.
         Only the referee asks what would come out of them.
+    by_source : bool
+        Whether the published values are those of the workbook's own source.
     """
 
     folder: Path
@@ -91,6 +95,15 @@ class Inputs:
     free_at: dict[str, Location] = field(default_factory=dict)
     expected: tuple[Expectation, ...] = ()
     errata: dict[tuple[str, int], Printed] = field(default_factory=dict)
+    by_source: bool = False
+
+    @property
+    def about_source(self) -> bool:
+        """Whether the report is about its workbook's source, so that the errata of that are its matter.
+
+        It is if it compares with the source, or brought the workbook along.
+        """
+        return self.by_source or any(name.endswith(".py") for name in self.files)
 
     @property
     def free(self) -> tuple[str, ...]:
@@ -159,6 +172,7 @@ class _Reader:
         self.toml: TomlFile
         self.workbook: Workbook | None = None
         self.free: dict[str, Location] = {}
+        self.by_source = False
 
     def read(self) -> Inputs:
         toml = self.open_toml()
@@ -190,6 +204,7 @@ class _Reader:
             self.free,
             expected,
             self.errata(measurements),
+            self.by_source,
         )
 
     def open_toml(self) -> TomlFile | None:
@@ -422,12 +437,17 @@ class _Reader:
     def published(self) -> tuple[PublishedValue, ...]:
         if "published" not in self.toml.data:
             return ()
-        table = self.keys(("published",), ("file", "free", "printed", "errata"))
+        table = self.keys(("published",), ("file", "by", "free", "printed", "errata"))
         is_table = isinstance(self.toml.data["published"], dict)
         name = self.text(("published",), "file", "published.csv", required=is_table)
         if name is None or not table:
             return ()
         self.free = self.names("published", "free")
+        if by := self.text(("published",), "by", _SOURCE):
+            self.by_source = by == _SOURCE
+            if not self.by_source:
+                at = self.toml.value("published", "by")
+                self.findings.add("LS215", at, text=by)
         at = self.toml.value("published", "file")
         source = self.source(name, LARGEST_PUBLISHED, "a first line with the names of the columns", at)
         if source is None:

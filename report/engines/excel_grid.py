@@ -332,4 +332,4 @@ def _parts(axis: Axis) -> tuple[tuple[str, str], ...]:
             (str(axis.first), f"first of {axis.of.name}"),
             (str(axis.second), f"second of {axis.of.name}"),
         )
-    return ((axis.name.removesuffix("s") or axis.name, "number"),)
+    return ((axis.row, "number"),)

@@ -24,7 +24,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Prove, and print one line an equation, or all steps of one."""
-    from ...derivations.proof import prove
     from .. import build
     from ..errors import UsageError, diagnose, suggest
     from ..folders import WORD, is_report, report_folder
@@ -32,7 +31,8 @@ def run(options: argparse.Namespace) -> int:
     word = options.equation
     if word and options.folder is None and (word == WORD or is_report(Path(word))):
         options.equation, options.folder = None, word  # no equation has such a name
-    ledger = build.prepare(report_folder(options.folder)).inputs.workbook.ledger()
+    inputs = build.prepare(report_folder(options.folder)).inputs
+    ledger = inputs.workbook.ledger()
     labels = [equation.label for equation in ledger.equations()]
     wanted: list[str] = labels
     if options.equation:
@@ -44,12 +44,12 @@ def run(options: argparse.Namespace) -> int:
                 diagnose("LS604", kind="equation", text=options.equation, known=known, suggestion=hint)
             )
     with Progress(sys.stderr) as progress:
-        proofs = prove(ledger, lambda equation: progress(f"proving {equation.label}"))
+        proofs, errata = build.checked(inputs, ledger, progress)
     shown = [proof for proof in proofs if proof.equation.label in wanted]
     for proof in shown:
         _print(proof, ledger.vocabulary, steps=bool(options.equation))
     if not options.equation:
-        for erratum in (found for check in ledger.checks if (found := check(ledger)) is not None):
+        for erratum in errata:
             print(f"erratum: {erratum.sentence}")
             if erratum.evidence:
                 print(f"         {erratum.evidence}")

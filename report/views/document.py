@@ -151,6 +151,11 @@ class Document:
         """The axes whose rows are shown; generated points are too many."""
         return tuple(axis for axis in self.report.sheet.axes if not isinstance(axis, RepeatAxis))
 
+    @property
+    def untold(self) -> tuple[str, ...]:
+        """The names of the axes whose rows are not shown."""
+        return tuple(axis.name for axis in self.report.sheet.axes if isinstance(axis, RepeatAxis))
+
     def _table(self, spec: TableSpec, names: tuple[str, ...]) -> Table:
         axis = self.report.sheet[names[0]].axis
         columns = [self.items(name) for name in names]
@@ -159,7 +164,7 @@ class Document:
             return Table(spec, "", heads, (Row((), tuple(items[0] for _, items in columns)),))
         labels = self.report.values.labels(self.report.sheet[names[0]])
         rows = zip(labels, zip(*(items for _, items in columns), strict=True), strict=True)
-        return Table(spec, _row_name(axis), heads, tuple(Row(label, items) for label, items in rows))
+        return Table(spec, axis.row, heads, tuple(Row(label, items) for label, items in rows))
 
     # --- figures
 
@@ -223,12 +228,12 @@ class Document:
         for comparison in self.report.comparisons:
             column, printed = self.report.sheet[comparison.published.cell], comparison.published.printed
             distance = None if comparison.distance is None else decimals(comparison.distance, 1)
-            axis = "" if column.axis is None else _row_name(column.axis)
+            axis = "" if column.axis is None else column.axis.row
             pair = Pair(
                 comparison, self.head(column), read(printed.text), read(comparison.again), distance, axis
             )
             found.setdefault(comparison.published.source, []).append(pair)
-        titles = self.report.workbook.published_as
+        titles = self.report.workbook.published_as if self.report.inputs.about_source else {}
         return tuple(Group(source, titles.get(source, ""), tuple(pairs)) for source, pairs in found.items())
 
     def published(self, cell: str, index: tuple[int, ...] = ()) -> Pair | None:
@@ -287,8 +292,3 @@ class Document:
             for cell, outside in zip(cells, marks.outside(margin).tolist(), strict=True):
                 if outside:
                     yield Remark(cell, MARK, margin.limit.told)
-
-
-def _row_name(axis: Axis) -> str:
-    """What a row of an axis is called: ``test`` of ``tests``."""
-    return axis.name.removesuffix("s")

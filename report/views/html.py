@@ -185,7 +185,7 @@ def render(report: Report, figures: Mapping[str, str], program: str | None = Non
     words = HtmlWords(document)
     # Both are hashed as they stand in the page, where there are no empty lines.
     style = short_style(_text("html/style.css") + (_text("html/live.css") if program is not None else ""))
-    script = "" if program is None else _squeezed(live.script(program, _text("engines/runtime.js")))
+    script = "" if program is None else _squeezed(_script(report, program))
     jinja = environment(finalize)
     pictures = {
         figure.name: picture(figures[figure.name], figure.alt or figure.caption)
@@ -205,6 +205,10 @@ def render(report: Report, figures: Mapping[str, str], program: str | None = Non
     page = jinja.get_template("html/page.j2")
     whole = page.render(context, body=body, style=Markup(style), csp=Markup(csp(style, script)))
     return _squeezed(short_markup(short_mathml(whole)))
+
+
+def _script(report: Report, program: str) -> str:
+    return live.script(program, _text("engines/runtime.js"), bool(live.drawn(report)))
 
 
 _BETWEEN = re.compile(

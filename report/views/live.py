@@ -29,7 +29,7 @@ from .math import Printer
 from .parts import index_text
 from .words import TEMPLATES
 
-__all__ = ["FIGURES", "SCRIPTS", "Part", "data", "parts", "script"]
+__all__ = ["FIGURES", "SCRIPTS", "Part", "data", "drawn", "parts", "script"]
 
 SCRIPTS = (
     "page.js",
@@ -50,12 +50,14 @@ SCRIPTS = (
 
 FIGURES = ("loops", "alpha_pairs")
 """The drawings that the page can draw again."""
+DRAWING = frozenset({"drawing.js", "figures.js"})
+"""The scripts that only a page with such a drawing has."""
 
 
 # --- the script ------------------------------------------------------------------------------------------
 
 
-def script(program: str, runtime: str) -> str:
+def script(program: str, runtime: str, drawings: bool = True) -> str:
     """The script of the page, with the generated program in it.
 
     Parameters
@@ -64,13 +66,16 @@ def script(program: str, runtime: str) -> str:
         The sheet as a JavaScript object literal.
     runtime : str
         What evaluates it.
+    drawings : bool
+        Whether one of :data:`FIGURES` is in the page.
 
     Raises
     ------
     ValueError
         The text would end the element that it stands in.
     """
-    own = [(TEMPLATES / "live" / name).read_text(encoding="utf-8") for name in SCRIPTS]
+    names = (name for name in SCRIPTS if drawings or name not in DRAWING)
+    own = [(TEMPLATES / "live" / name).read_text(encoding="utf-8") for name in names]
     whole = "\n".join(["(() => {", runtime, f"const PROGRAM = {program};", *own, "})();", ""])
     text = short_script(whole)
     if re.search(r"</script|<!--|<script", text, re.IGNORECASE):
@@ -116,12 +121,9 @@ def data(report: Report, document: Document) -> str:
         "equations": {
             equation.label: document.identifiers[equation.label] for equation in document.equations
         },
+        "rows": next(([axis.name, axis.row] for axis in sheet.axes if not axis.parents), ["rows", "row"]),
         "headline": [name for name in report.workbook.headline if name in sheet],
-        "figures": {
-            figure.name: {"draw": figure.draw, "alt": figure.alt or figure.caption}
-            for figure in report.workbook.figures
-            if figure.draw in FIGURES
-        },
+        "figures": drawn(report),
         "findings": {"unexpected": UNEXPECTED, "otherwise": OTHERWISE},
         "published": [
             {
@@ -144,6 +146,15 @@ def data(report: Report, document: Document) -> str:
     }
     # In an element of its own only these could be taken for its end or for a comment.
     return json.dumps(known, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
+
+
+def drawn(report: Report) -> dict[str, dict[str, str]]:
+    """The figures that the page draws again, by name: which drawing, and what it shows."""
+    return {
+        figure.name: {"draw": figure.draw, "alt": figure.alt or figure.caption}
+        for figure in report.workbook.figures
+        if figure.draw in FIGURES
+    }
 
 
 def _fraction(value: Fraction) -> list[str]:

@@ -91,15 +91,19 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
     given = list(
         dict.fromkeys(b.place.worksheet for b in grid.blocks if b.kind == "given" and b.name in report.sheet)
     )
+    columns = report.sheet.columns
     counts = sorted(
         {axis.count for axis in grid.axes.values() if isinstance(axis, RepeatAxis)} & set(report.shown)
     )
     odd = [f"{check.word.capitalize()}: {check.message}." for check in report.oddities if check.word]
+    (example, *_) = *(name for name in report.workbook.headline if name in report.sheet), columns[-1].name
+    rows = next((axis.row for axis in report.sheet.axes if not axis.parents), "row")
+    rows = f"an {rows}" if rows[0].lower() in "aeiou" else f"a {rows}"
     notes = [
         f"Inputs are the yellow cells, on {' and '.join(given)}. Type over them: every other number follows, "
         "in any spreadsheet program that recalculates.",
         "Every computed cell is a formula made from the proved equation that its row or header names. "
-        "Names such as ls_" + (report.workbook.headline or ("alpha",))[0] + " stand for whole columns.",
+        f"Names such as ls_{example} stand for whole columns.",
         "A cell that cannot be computed shows a code: #INPUT! a datum is missing or is not what it may be "
         "(the column check says what is wrong, however it came into its cell), #DOMAIN! outside the "
         "equation's domain, #NOROOT! no value satisfies it, #TWOROOTS! several do, #OVERFLOW! there is a "
@@ -108,9 +112,9 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
         "What depends on such a cell shows its code; a sum leaves such rows out and says from how many it "
         "was made.",
         "Numbers are stored in full; only what is shown is rounded, to the digits that the inputs warrant.",
-        "How many rows there are is fixed in this workbook: to add a test"
+        f"How many rows there are is fixed in this workbook: to add {rows}"
         + (f" or change {' or '.join(counts)}" if counts else "")
-        + ", build the report again. To leave a test out, empty one of its cells.",
+        + f", build the report again. To leave {rows} out, empty one of its cells.",
         f"Source: {report.workbook.source}.",
         "Computed with " + ", ".join(f"{name} {version}" for name, version in report.versions.items()) + ".",
     ]

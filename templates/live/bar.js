@@ -22,7 +22,7 @@ function writeBar(look) {
   byId("bar-hint").hidden = row >= 0;
   byId("bar-cell").hidden = row < 0;
   for (const id of ["reason", "source", "put", "precedents", "dependents"]) byId(`bar-${id}`).hidden = true;
-  if (name !== null && row < 0) byId("bar-hint").textContent = `${name}[${index}] has no place in the sheet now: its test is left out or removed.`;
+  if (name !== null && row < 0) byId("bar-hint").textContent = `${name}[${index}] has no place in the sheet now: its ${ROW} is left out or removed.`;
   if (row >= 0) fillBar(look, name, row, index);
   markCells(look, name, row, index);
 }
@@ -36,7 +36,7 @@ function fillBar(look, name, row, index) {
     const origin = trace.culprit(name, row), itself = origin.name === name && origin.row === row;
     fillLine("bar-reason", itself ? "" : "needs ", ...(itself ? [] : [cellButton(look, origin.name, origin.row), ": "]), trace.why(origin.name, origin.row));
   }
-  if (column.given) fillLine("bar-source", `given, ${here.axis === null ? "in report.toml" : `in measurements.csv, test ${index}`}`);
+  if (column.given) fillLine("bar-source", `given, ${here.axis === null ? "in report.toml" : `in measurements.csv, ${ROW} ${index}`}`);
   else fillLine("bar-source", ...sourceLine(column), ...publishedMath(column, name));
   if (column.put && trace.isOk(name, row)) fillLine("bar-put", ...putIn(look, name, row));
   fillCells(look, "bar-precedents", "rests on", trace.precedents(name, row));

@@ -135,13 +135,3 @@ function margins(low, high, share) {
 }
 
 const DRAWINGS = { loops: drawLoops, alpha_pairs: drawAlphaPairs };
-
-function writeFigures(look) {
-  for (const [name, { draw: drawing, alt }] of Object.entries(LIVE.figures)) {
-    const card = document.querySelector(`#figure-${CSS.escape(name)} .card`);
-    if (!card) continue;
-    const made = DRAWINGS[drawing](look);
-    if (made) made.svg.setAttribute("aria-label", `${alt} Redrawn after an edit: ${made.says}`);
-    card.replaceChildren(made?.svg ?? make("p", { class: "nothing" }, "Nothing to draw: the cells that it shows have no value."));
-  }
-}

@@ -30,7 +30,7 @@ function useTest(label, used) {
   change((state) => {
     state.tests.find((test) => test.label === label).used = used;
     if (enough(state)) return true;
-    say("Two tests are the least that a report needs.");
+    say(`Two ${ROWS} are the least that a report needs.`);
     return false;
   });
   for (const box of all("[data-use]")) box.checked = page.history.now.tests.find((test) => String(test.label) === box.dataset.use).used;
@@ -40,7 +40,7 @@ function removeTest(label) {
   change((state) => {
     state.tests = state.tests.filter((test) => test.label !== label);
     if (enough(state)) return true;
-    say("Two tests are the least that a report needs.");
+    say(`Two ${ROWS} are the least that a report needs.`);
     return false;
   });
 }
@@ -140,10 +140,21 @@ function refocus(element) {
   if (same) enter(same);
 }
 
+// Where nothing is to be drawn, the page has no DRAWINGS.
+function writeFigures(look) {
+  for (const [name, { draw: drawing, alt }] of Object.entries(LIVE.figures)) {
+    const card = document.querySelector(`#figure-${CSS.escape(name)} .card`);
+    if (!card) continue;
+    const made = DRAWINGS[drawing](look);
+    if (made) made.svg.setAttribute("aria-label", `${alt} Redrawn after an edit: ${made.says}`);
+    card.replaceChildren(made?.svg ?? make("p", { class: "nothing" }, "Nothing to draw: the cells that it shows have no value."));
+  }
+}
+
 function writeToolbar(edited) {
   const { history } = page, count = differences(history.now, history.issued);
   const differ = count === 1 ? "1 input differs" : `${count} inputs differ`;
-  byId("live-banner").textContent = edited ? `Edited: ${count ? differ : "the order of the tests differs"} from the report as issued.` : "";
+  byId("live-banner").textContent = edited ? `Edited: ${count ? differ : `the order of the ${ROWS} differs`} from the report as issued.` : "";
   byId("live-reset").disabled = !edited;
   byId("live-undo").disabled = history.place === 0;
   byId("live-redo").disabled = history.place === history.states.length - 1;

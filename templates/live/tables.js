@@ -19,18 +19,18 @@ class Table {
     this.editable = true;
     this.element.tHead.rows[0].append(make("td", { class: "tools" }));
     for (const row of this.body.rows) this.addTools(row);
-    const add = make("button", { type: "button", id: "live-add" }, "Add a test");
+    const add = make("button", { type: "button", id: "live-add" }, `Add ${/^[aeiou]/i.test(ROW) ? "an" : "a"} ${ROW}`);
     this.element.closest(".scroll").after(make("p", { class: "add" }, add));
   }
 
   addTools(row) {
     const label = row.dataset.label, head = row.cells[0];
     const use = make("input", {
-      type: "checkbox", checked: true, "data-use": label, tabindex: "-1", "aria-label": `use test ${label}`,
+      type: "checkbox", checked: true, "data-use": label, tabindex: "-1", "aria-label": `use ${ROW} ${label}`,
     });
     head.replaceChildren(make("label", {}, use, ` ${label}`));
     const remove = make("button", {
-      type: "button", "data-remove": label, tabindex: "-1", "aria-label": `remove test ${label}`, title: `remove test ${label}`,
+      type: "button", "data-remove": label, tabindex: "-1", "aria-label": `remove ${ROW} ${label}`, title: `remove ${ROW} ${label}`,
     }, "×");
     row.append(make("td", { class: "tools" }, remove));
   }
