@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from .background import Background
 from .errors import ForeignCode, InputError, UnknownWorkbook, UsageError, close, diagnose, listing
-from .folders import PAPER
+from .folders import PAPER, told
 from .inputs import Find, Inputs, check_cells, load
 from .own_workbook import own_workbook
 from .provenance import sources
@@ -377,7 +377,7 @@ def build(
     step: Step = _silent,
     every_engine: bool = False,
     find: Find = find_workbook,
-    begun: Step = _silent,
+    tell: Step = _silent,
 ) -> tuple[Report, list[Path]]:
     """Compute a report and write it.
 
@@ -398,8 +398,9 @@ def build(
         Whether JavaScript and the workbook are judged too, by the programs that are installed here.
     find : callable
         As for :func:`prepare`.
-    begun : callable
-        Told the title of the report once its folder was read and found right.
+    tell : callable
+        Told what is built from where once the folder was read and found right, and which files that somebody
+        had changed are kept.
 
     Returns
     -------
@@ -407,10 +408,10 @@ def build(
     list of Path
         The files that were written.
     """
-    with staged(out) as stage, ExitStack() as running:
+    with staged(out, tell) as stage, ExitStack() as running:
         step("reading the folder")
         inputs = load(folder, find)
-        begun(inputs.title)
+        tell(f"building '{inputs.title}' from {told(folder)} into {out}")
         ledger = inputs.workbook.ledger()
         # Everything that takes long has a process of its own, from when there is what it needs.
         proving = running.enter_context(Background(lambda: _checked_plainly(inputs, ledger)))

@@ -18,6 +18,7 @@ __all__ = [
     "output",
     "report_folder",
     "result",
+    "told",
     "written",
 ]
 
@@ -72,6 +73,11 @@ def written(folder: Path) -> str:
         return WORD
     text = folder.as_posix()
     return f"./{text}" if text == WORD or text.startswith("-") else shlex.quote(text)
+
+
+def told(folder: Path) -> str:
+    """A report folder in a sentence, by the file that makes it one."""
+    return "the shipped paper" if folder == PAPER else (folder / "report.toml").as_posix()
 
 
 def output(folder: Path) -> Path:

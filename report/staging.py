@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
+from itertools import count
 from pathlib import Path
 
 from .errors import EXHAUSTED, Location, OutputError, diagnose
@@ -72,15 +74,18 @@ def replaced(path: Path, before: bytes, after: bytes) -> None:
 
 
 @contextmanager
-def staged(out: Path) -> Iterator[Path]:
+def staged(out: Path, tell: Callable[[str], None] = lambda _: None) -> Iterator[Path]:
     """Give a temporary folder beside the output, moved in whole when the block ends well.
 
-    Who builds into the same folder meanwhile waits for some time, and is told then.
+    A file that is in its way, and that no build made as it is there, is kept under another name. Who builds
+    into the same folder meanwhile waits for some time, and is told then.
 
     Parameters
     ----------
     out : Path
         The output; made if it does not exist.
+    tell : callable
+        Told which files are kept, and under which name.
 
     Raises
     ------
@@ -93,10 +98,14 @@ def staged(out: Path) -> Iterator[Path]:
     stage = out
     try:
         out.mkdir(parents=True, exist_ok=True)
-        with _alone(out), scratch(out) as stage:
-            yield stage
-            with unstoppable():
-                _move_in(stage, out)
+        with _alone(out):
+            killed = [_listed(stage) or {} for stage in left_over(out)]  # the next line removes them
+            with scratch(out) as stage:
+                yield stage
+                with unstoppable():
+                    kept = _move_in(stage, out, killed)
+        for name, free in kept.items():
+            tell(f"{name.as_posix()} was not as built: it is kept as {free.as_posix()}")
     except OSError as error:
         _remove(made)
         file, place = Path(error.filename or ""), out
@@ -126,14 +135,8 @@ def _alone(out: Path) -> Iterator[None]:
 
 def half_moved(out: Path) -> bool:
     """Whether a build was killed while it put its files in place: what is there is of two builds then."""
-    for stage in left_over(out):
-        try:
-            listed = json.loads((stage / "manifest.json").read_text(encoding="utf-8"))["outputs"]
-            if any(not (stage / name).exists() for name in listed):
-                return True  # the manifest goes last
-        except (OSError, ValueError, LookupError, TypeError):
-            continue  # it was killed before it had all its files, or when all were in place
-    return False
+    # The manifest goes last: without one, it was killed before it had all files, or when all were in place.
+    return any(not (stage / name).exists() for stage in left_over(out) for name in _listed(stage) or ())
 
 
 def _remove(made: list[Path]) -> None:
@@ -145,11 +148,11 @@ def _remove(made: list[Path]) -> None:
             return
 
 
-def _move_in(stage: Path, out: Path) -> None:
-    """Put the staged files in place: all of them, or none if one cannot be.
+def _move_in(stage: Path, out: Path, killed: list[dict[Path, str]]) -> dict[Path, Path]:
+    """Put the staged files in place, all or none; return what was kept, and as what.
 
     The manifest comes last and never speaks of half an output. What an earlier build made and this one does
-    not is taken away, unless somebody changed it.
+    not is taken away, unless somebody changed it. `killed` is what other builds were about to put here.
     """
     names = sorted(
         (p.relative_to(stage) for p in stage.rglob("*") if p.is_file()),
@@ -157,10 +160,15 @@ def _move_in(stage: Path, out: Path) -> None:
     )
     for name in names:
         _refuse_what_is_in_the_way(out, name)
-    before = stage / ".before"
+    before, built = stage / ".before", _listed(out)
     done: list[tuple[Path, Path | None]] = []
+    kept_as: dict[Path, Path] = {}
     try:
-        for name in (*_stale(out, names), *names):
+        for name in _changed(stage, out, names, built, killed):
+            kept_as[name] = _free(name, out)
+            done.append((out / kept_as[name], None))
+            shutil.copy2(out / name, out / kept_as[name])
+        for name in (*_stale(out, names, built or {}), *names):
             target = out / name
             kept = _kept(target, before / name)
             done.append((target, kept))
@@ -177,6 +185,7 @@ def _move_in(stage: Path, out: Path) -> None:
                 os.replace(kept, target)
         reason = error.strerror or str(error)
         raise OutputError(diagnose("LS601", text=str(out), reason=reason)) from error
+    return kept_as
 
 
 def _kept(target: Path, place: Path) -> Path | None:
@@ -200,26 +209,50 @@ def _refuse_what_is_in_the_way(out: Path, name: Path) -> None:
             raise OutputError(diagnose("LS601", text=name.as_posix(), reason=f"{parent} is a file"))
 
 
-def _stale(out: Path, names: Collection[Path]) -> list[Path]:
-    """What the manifest of an earlier build lists, unchanged since, and this build does not make."""
-    import hashlib
-
+def _listed(folder: Path) -> dict[Path, str] | None:
+    """The sha256 of what a build made, as its manifest says; None if there is none of ours."""
     try:
-        listed = json.loads((out / "manifest.json").read_text(encoding="utf-8"))["outputs"]
-        known = {Path(name): str(digest) for name, digest in listed.items()}
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return []  # no earlier build, or a manifest that is not ours
-    found = []
-    for name, digest in sorted(known.items()):
+        listed = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))["outputs"]
+        return {Path(name): str(digest) for name, digest in listed.items()}
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        return None
+
+
+def _changed(
+    stage: Path,
+    out: Path,
+    names: Collection[Path],
+    built: dict[Path, str] | None,
+    killed: list[dict[Path, str]],
+) -> Iterator[Path]:
+    """What is about to be replaced, and is neither as a build made it nor as it is built now."""
+    for name in names:
         path = out / name
-        if (
-            name in names
-            or name.is_absolute()
-            or ".." in name.parts
-            or path.is_symlink()
-            or not path.is_file()
-        ):
+        if path.is_symlink() or not path.is_file() or (name.name == "manifest.json" and built is not None):
             continue
-        if hashlib.sha256(path.read_bytes()).hexdigest() == digest:
-            found.append(name)
-    return found
+        ours = {listed.get(name) for listed in (built or {}, *killed)}
+        if _sha256(path) not in {*ours, _sha256(stage / name)}:
+            yield name
+
+
+def _free(name: Path, out: Path) -> Path:
+    """A name that no file has: ``report.edited.tex``, ``report.edited-2.tex``."""
+    marks = ("edited" if number == 1 else f"edited-{number}" for number in count(1))
+    names = (name.with_name(f"{name.stem}.{mark}{name.suffix}") for mark in marks)
+    return next(free for free in names if not os.path.lexists(out / free))
+
+
+def _stale(out: Path, names: Collection[Path], built: dict[Path, str]) -> list[Path]:
+    """What an earlier build made, unchanged since, and this build does not make."""
+    return [
+        name
+        for name, digest in sorted(built.items())
+        if not (name in names or name.is_absolute() or ".." in name.parts)
+        and not (out / name).is_symlink()
+        and (out / name).is_file()
+        and _sha256(out / name) == digest
+    ]
+
+
+def _sha256(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

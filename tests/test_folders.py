@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -204,3 +205,71 @@ def test_every_verb_says_what_its_folder_is(capsys: pytest.CaptureFixture[str]) 
             main([verb, "--help"])
         help = " ".join(capsys.readouterr().out.split())
         assert "(default: the working directory), or 'paper' for the shipped paper" in help, verb
+
+
+# --- what is there already --------------------------------------------------------------------------------
+
+
+def test_an_output_that_somebody_changed_is_kept_and_told(gauge: Path, run: Run) -> None:
+    assert run("build", "gauge", "--to", "json,latex")[0] == 0
+    tex = gauge / "out" / "report.tex"
+    built = tex.read_bytes()
+    for number, kept in enumerate(("report.edited.tex", "report.edited-2.tex")):
+        tex.write_text(f"mine {number}")
+        code, out, _ = run("build", "gauge", "--to", "json,latex")
+        assert (code, tex.read_bytes()) == (0, built)
+        assert (gauge / "out" / kept).read_text() == f"mine {number}"
+        assert out.splitlines()[1] == f"report.tex was not as built: it is kept as {kept}"
+    before = sorted((gauge / "out").iterdir())
+    assert "kept" not in run("build", "gauge", "--to", "json,latex")[1]
+    assert sorted((gauge / "out").iterdir()) == before
+
+
+def test_what_no_build_made_is_kept_as_well(gauge: Path, run: Run) -> None:
+    (gauge / "site").mkdir()
+    for name in ("values.json", "manifest.json"):
+        (gauge / "site" / name).write_text('{"name": "my site"}')
+    assert run("build", "gauge", "--to", "json", "--out", "gauge/site")[1].count("it is kept as") == 2
+    for name in ("values.edited.json", "manifest.edited.json"):
+        assert (gauge / "site" / name).read_text() == '{"name": "my site"}'
+
+
+def test_a_build_of_other_inputs_keeps_nothing_of_what_was_built(gauge: Path, run: Run) -> None:
+    assert run("build", "gauge", "--to", "json")[0] == 0
+    (gauge / "d.csv").write_text("test,d [nm]\n1,216\n2,204\n")
+    assert "kept" not in run("build", "gauge", "--to", "json")[1]
+    assert files(gauge) == ["out/manifest.json", "out/values.json"]
+
+
+def test_if_the_move_fails_no_copy_is_left(gauge: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert run("build", "gauge", "--to", "json")[0] == 0
+    (gauge / "out" / "values.json").write_text("mine")
+    before = {path: path.read_bytes() for path in (gauge / "out").iterdir()}
+    real, failed = os.replace, []
+
+    def fail(source: Path, target: Path) -> None:
+        if Path(target) == Path("gauge/out/manifest.json") and not failed:
+            failed.append(target)
+            raise OSError(28, "No space left on device")
+        real(source, target)
+
+    monkeypatch.setattr(os, "replace", fail)
+    code, out, err = run("build", "gauge", "--to", "json")
+    monkeypatch.undo()
+    assert (code, "LS601" in err, "kept" in out) == (2, True, False)
+    assert {path: path.read_bytes() for path in (gauge / "out").iterdir()} == before
+
+
+def test_what_a_killed_build_had_put_in_place_is_nobodys_edit(gauge: Path, run: Run) -> None:
+    """It had moved values.json, and its manifest not yet."""
+    assert run("build", "gauge", "--to", "json")[0] == 0
+    old = (gauge / "out" / "manifest.json").read_bytes()
+    (gauge / "d.csv").write_text("test,d [nm]\n1,216\n2,204\n")
+    assert run("build", "gauge", "--to", "json")[0] == 0
+    (gauge / "out" / ".loopsheet-abcd1234").mkdir()
+    (gauge / "out" / "manifest.json").rename(gauge / "out" / ".loopsheet-abcd1234" / "manifest.json")
+    (gauge / "out" / "manifest.json").write_bytes(old)
+    (gauge / "d.csv").write_text("test,d [nm]\n1,217\n2,204\n")
+    code, out, _ = run("build", "gauge", "--to", "json")
+    assert (code, "kept" in out) == (0, False)
+    assert sorted(path.name for path in (gauge / "out").iterdir()) == ["manifest.json", "values.json"]

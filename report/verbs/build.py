@@ -38,18 +38,16 @@ def run(options: argparse.Namespace) -> int:
     from .. import build
     from ..diagnostics import visible
     from ..findings import checks
-    from ..folders import PAPER, output, report_folder
+    from ..folders import output, report_folder
 
     formats, folder = build.parse_formats(options.to), report_folder(options.folder)
     out = Path(options.out) if options.out else output(folder)
 
-    source = "the shipped paper" if folder == PAPER else folder / "report.toml"
-
-    def begun(title: str) -> None:
-        print(visible(f"building '{title}' from {source} into {out}"), flush=True)
+    def say(sentence: str) -> None:
+        print(visible(sentence), flush=True)
 
     with Progress(sys.stderr) as progress:
-        report, files = build.build(folder, out, formats, progress, options.engines, begun=begun)
+        report, files = build.build(folder, out, formats, progress, options.engines, tell=say)
     for name in report.workbook.headline:
         print(_line(report, name))
     found = checks(report)
