@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+import warnings
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
@@ -270,7 +271,8 @@ class CheckItem(pytest.Item):
         except LoopsheetError as error:
             pytest.fail(str(error), pytrace=False)
         if check.note == "warning":
-            self.warn(pytest.PytestWarning(check.sentence))
+            told = pytest.PytestWarning(check.message)
+            warnings.warn_explicit(told, None, check.at.path, check.at.line or 1)
         if check.skipped:
             pytest.skip(check.message)
         if not check.passed:

@@ -151,7 +151,11 @@ def test_marks_in_the_terminal(slipped: Path, capsys: pytest.CaptureFixture[str]
     lines = capsys.readouterr().out.splitlines()
     assert [line.rpartition("  ")[2] for line in lines if "alpha[" in line][::2] == ["outside (4)"] * 2
     assert main(["show", "alpha_mean", str(slipped)]) == 0
-    assert "\n  2 of 3 pairs outside (4)\n" in capsys.readouterr().out
+    shown = capsys.readouterr().out
+    assert "\n  2 of 3 pairs outside (4)\n" in shown
+    assert "a speed of no drop test" not in shown, "none is"
+    assert main(["show", "alpha_mean", "paper"]) == 0
+    assert "\n  0 of 10 pairs outside (4)\n" in capsys.readouterr().out
     assert main(["why", "alpha[1-2]", str(slipped)]) == 0
     assert "\n  marked    outside (4)\n" in capsys.readouterr().out
     assert main(["why", "alpha_mean", str(slipped)]) == 0
