@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .background import Background
-from .errors import ForeignCode, InputError, UnknownWorkbook, UsageError, close, diagnose, listing
+from .errors import ForeignCode, InputError, Location, UnknownWorkbook, UsageError, close, diagnose, listing
 from .folders import PAPER, told
 from .inputs import Find, Inputs, check_cells, load
 from .own_workbook import own_workbook
@@ -167,7 +167,22 @@ def _prepared(inputs: Inputs) -> Prepared:
         if inputs.workbook.name in SHIPPED:
             raise  # ours, and our bug
         raise InputError(diagnose("LS213", text=inputs.workbook.name, reason=str(error))) from error
+    _refuse_what_is_missing(sheet, inputs)
     return Prepared(inputs, sheet)
+
+
+def _refuse_what_is_missing(sheet: Sheet, inputs: Inputs) -> None:
+    """A workbook need not say which parameters go together: what its sheet wants must be there."""
+    from .sheet import Given
+
+    place = Location((inputs.folder / "report.toml").as_posix())
+    missing = [c for c in sheet.columns if isinstance(c.rule, Given) and not inputs.printed(c.name)]
+    found = [
+        diagnose("LS204", place, text=c.name, table="[parameters]", example=f'{c.name} = "1.0 {c.unit}"')
+        for c in missing
+    ]
+    if found:
+        raise InputError(*found)
 
 
 def compute(folder: Path, step: Step = _silent, prove: bool = True, find: Find = find_workbook) -> Report:

@@ -86,7 +86,7 @@ def read_measurements(
         head, unit = _unit(table, heads, places.get(name), column, findings)
         _, unit_of_u = _unit(table, heads, places.get(f"u({name})"), column, findings)
         if head is not None and head.unit is not None:
-            units[name] = head.unit.strip()
+            units[name] = head.unit.strip() or "1"  # empty brackets: a pure number
         if name in places:
             mode = modes.get(name, "rounded")
             read = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +17,10 @@ __all__ = ["Column", "Manifest", "Result", "read_manifest", "read_result"]
 LARGEST = 500_000_000
 """Bytes."""
 SCHEMA = 1
+_LONGEST = 1000
+"""Characters of a file's name, with its folders."""
+_NO_TEXT = re.compile("[\0\ud800-\udfff]")
+"""What JSON can write and no file can hold: NUL, and halves of characters."""
 
 Index = tuple[int, ...]
 
@@ -139,8 +144,8 @@ def read_manifest(folder: Path) -> Manifest:
         programs = {engine: program for engine, program in engines.items() if program}
         return Manifest(
             _word(data, "title") if "title" in data else "",
-            _words(data, "inputs"),
-            _words(data, "outputs"),
+            _files(data, "inputs"),
+            _files(data, "outputs"),
             _words(data, "sources") if "sources" in data else {},
             _words(data, "versions") | programs,
             tuple(engines),
@@ -176,6 +181,9 @@ def _get(data: Mapping[str, Any], key: str, kind: type) -> Any:
     found = data.get(key)
     if not isinstance(found, kind):
         raise _Wrong(f"'{key}' is missing, or not what it should be")
+    for text in (key, *(found if isinstance(found, dict) else [found])):
+        if isinstance(text, str) and _NO_TEXT.search(text):
+            raise _Wrong(f"'{text}' is no text")
     return found
 
 
@@ -196,6 +204,15 @@ def _word(data: Mapping[str, Any], key: str) -> str:
 def _words(data: Mapping[str, Any], key: str) -> dict[str, str]:
     found = _table(data, key)
     return {name: _word(found, name) for name in found}
+
+
+def _files(data: Mapping[str, Any], key: str) -> dict[str, str]:
+    """The sha256 of files by their names, which may lead anywhere but can be names."""
+    found = _words(data, key)
+    for name in found:
+        if len(name) > _LONGEST or any(len(part.encode()) > 255 for part in name.split("/")):
+            raise _Wrong(f"'{key}' names what can be no file")
+    return found
 
 
 def _column(name: str, cells: Mapping[str, Any]) -> Column:

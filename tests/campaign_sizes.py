@@ -36,6 +36,8 @@ class Sizes:
         Changed characters in the formulas of the workbook and in the program of the page.
     stopped : int
         Builds that are ended at a random moment by each signal.
+    malformed : int
+        Report folders that are nearly right; half as many results.
     stride : int
         At every how many steps of a move of outputs it is ended.
     slips : int
@@ -54,6 +56,7 @@ class Sizes:
     stopped: int
     stride: int
     slips: int
+    malformed: int
     seed: int = SEED
 
 
@@ -69,6 +72,7 @@ FEW = Sizes(
     stopped=1,
     stride=4,
     slips=8,
+    malformed=30,
 )
 ALL = Sizes(
     honest=40,
@@ -82,6 +86,7 @@ ALL = Sizes(
     stopped=100,
     stride=1,
     slips=500,
+    malformed=10_000,
 )
 assert sum(ALL.engines.values()) > 2000
 

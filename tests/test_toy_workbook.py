@@ -135,6 +135,16 @@ def test_both_engines_solve_keplers_equation(sheet: Sheet, ecc: float) -> None:
     assert exact.evaluate(sheet, labels, data(ecc)).status["gap"] == [0] * 6
 
 
+def test_a_batch_of_one_has_the_same_roots(sheet: Sheet) -> None:
+    """Also where the steps do not settle, and brackets are halved."""
+    labels, alone = {"sightings": [1, 2, 3, 4]}, data(93400)
+    batch = {name: np.reshape(value, (1, -1)) for name, value in alone.items()}
+    expected, found = (engine.evaluate(sheet, labels, given) for given in (alone, batch))
+    for name in ("M", "E"):
+        np.testing.assert_array_equal(found.value[name], expected.value[name][None])
+        np.testing.assert_array_equal(found.status[name], expected.status[name][None])
+
+
 def test_an_open_orbit_is_an_error_with_its_culprit(sheet: Sheet) -> None:
     values = engine.evaluate(sheet, {"sightings": [1, 2, 3, 4]}, data(1.2))
     assert values.cell("r_mean").reason == (

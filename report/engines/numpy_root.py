@@ -209,7 +209,10 @@ class _Rows:
 
     def only(self, which: NDArray[np.intp], shape: tuple[int, ...]) -> _Rows:
         """Fewer rows, by their positions in the flattened shape."""
-        fewer = [c if c.size == 1 else np.broadcast_to(c, shape).reshape(-1)[which] for c in self.constants]
+        fewer = [
+            c.reshape(()) if c.size == 1 else np.broadcast_to(c, shape).reshape(-1)[which]
+            for c in self.constants
+        ]
         return _Rows(self.program, fewer, self.totals)
 
     def narrow(

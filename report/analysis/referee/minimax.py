@@ -152,7 +152,7 @@ class _Counted:
 
     def to(self, points: Array) -> Array:
         """What is counted; what cannot move is nothing."""
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             found: Array = np.where(self.log, np.log(points), points) / self.scale
         return np.where(self.scale > 0, found, 0.0)
 

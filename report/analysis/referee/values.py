@@ -161,7 +161,8 @@ class _Alone:
         if not any(p is not None and p.given_u is not None for p in printed):
             return None
         own = np.array([0.0 if p is None else p.u for p in printed])
-        return float(np.sqrt(np.sum((self.slopes[n] * own) ** 2)))
+        with np.errstate(over="ignore", invalid="ignore"):
+            return _number(np.sqrt(np.sum((self.slopes[n] * own) ** 2)))
 
 
 def _number(value: Any) -> float | None:
