@@ -25,7 +25,9 @@ class Sizes:
         Papers of each forger that were changed so that somebody could see it.
     engines : mapping of int to int
         For each number of tests, campaigns for NumPy, JavaScript and 50 digits; the 66 pairs of twelve tests
-        take their time.
+        take their time. Half of them are spoiled.
+    workbooks : mapping of int to int
+        The same for campaigns that also go through the workbook, which has two tests at least.
     of_each_code : int
         Cells of the campaigns for the engines that have a value, and that have each of the codes.
     overflows : int
@@ -48,6 +50,7 @@ class Sizes:
     honest: int
     forged: int
     engines: Mapping[int, int]
+    workbooks: Mapping[int, int]
     of_each_code: int
     overflows: int
     broken: int
@@ -63,7 +66,8 @@ class Sizes:
 FEW = Sizes(
     honest=6,
     forged=1,
-    engines={2: 50, 3: 30, 4: 16, 5: 8, 6: 4, 7: 3, 8: 3, 9: 3, 10: 3, 11: 3, 12: 3},
+    engines={1: 6, 2: 50, 3: 30, 4: 16, 5: 8, 6: 4, 7: 4, 8: 4, 9: 4, 10: 4, 11: 4, 12: 4},
+    workbooks={2: 10, 4: 8},
     of_each_code=100,
     overflows=5,
     broken=50,
@@ -77,7 +81,8 @@ FEW = Sizes(
 ALL = Sizes(
     honest=40,
     forged=7,
-    engines={2: 800, 3: 500, 4: 280, 5: 140, 6: 72, 7: 48, 8: 36, 9: 36, 10: 36, 11: 36, 12: 36},
+    engines={1: 40, 2: 800, 3: 500, 4: 280, 5: 140, 6: 72, 7: 48, 8: 36, 9: 36, 10: 36, 11: 36, 12: 36},
+    workbooks={2: 900, 3: 600, 4: 300, 5: 120, 6: 40, 7: 16, 8: 10, 9: 8, 10: 6, 11: 4, 12: 4},
     of_each_code=5000,
     overflows=200,
     broken=1000,
@@ -88,6 +93,6 @@ ALL = Sizes(
     slips=500,
     malformed=10_000,
 )
-assert sum(ALL.engines.values()) > 2000
+assert min(sum(ALL.engines.values()), sum(ALL.workbooks.values())) > 2000
 
 SIZES = {"few": FEW, "all": ALL}

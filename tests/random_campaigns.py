@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import seed as seeded
 from hypothesis import strategies as st
 from hypothesis.internal.conjecture import providers
@@ -28,6 +28,7 @@ from loopsheet.report.engines.numpy import Program
 from loopsheet.report.layout import Layout, lay_out
 from loopsheet.report.marks import with_margins
 from loopsheet.report.values import CODES, Status
+from loopsheet.report.views import live
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 VARIANTS = (
@@ -54,7 +55,9 @@ class Campaign:
 
 
 @st.composite
-def campaigns(draw: st.DrawFn, size: int, variants: Sequence[int] = (0, 1)) -> Campaign:
+def campaigns(
+    draw: st.DrawFn, size: int, variants: Sequence[int] = (0, 1), points: Sequence[int] = (2, 3, 5)
+) -> Campaign:
     """One campaign: from the model with some noise, or anything at all, then perhaps spoiled."""
     digits = draw(st.sampled_from((2, 3, 17)))  # as few as people write, so that some are the same
 
@@ -101,11 +104,84 @@ def campaigns(draw: st.DrawFn, size: int, variants: Sequence[int] = (0, 1)) -> C
             v[row], e[row], x_p[row] = 1.1 * v[other], e[other], deeper * x_p[other]
     variant = draw(st.sampled_from(variants))
     parameters = {name: [value * draw(st.floats(0.5, 2))] for name, value in VARIANTS[variant].items()}
-    points = [float(draw(st.sampled_from((2, 3, 5) if size < 8 else (2, 3))))]
+    number = [float(draw(st.sampled_from(points if size < 8 else points[:2])))]
     # The rows that were left out leave gaps in the numbers of the others.
     tests = sorted(draw(st.permutations(range(1, 16)))[:size])
-    data = {"v": v, "e": e, "x_p": x_p, "beta": exponent, **parameters, "points_per_pair": points}
+    data = {"v": v, "e": e, "x_p": x_p, "beta": exponent, **parameters, "points_per_pair": number}
     return Campaign(variant, tests, data)
+
+
+NO_DATUM = (math.nan, math.inf, -math.inf)
+PARAMETERS = tuple(sorted({name for each in VARIANTS for name in each}))
+REFUSED = {
+    "v": (0.0, -0.0, -2.5, -1e-9, -1e200, *NO_DATUM),
+    "e": (-0.2, 1.2, 1.0001, 53.0, -1e-200, 1e200, *NO_DATUM),
+    "x_p": (0.0, -3e-5, -1e-200, *NO_DATUM),
+    "beta": (0.0, -0.0, -1.0, -1.5, -2.5, -1e100, *NO_DATUM),
+    "points_per_pair": (0.0, 1.0, -2.0, 2.5, 10001.0, 1e300, *NO_DATUM),
+    **dict.fromkeys(PARAMETERS, (0.0, -0.008, -1e100, *NO_DATUM)),
+}
+"""What no column of that name allows."""
+MEASURED = ("v", "e", "x_p")
+
+
+def _refused(draw: st.DrawFn, data: dict[str, list[float]]) -> None:
+    """One to three data that are not allowed, a whole column of them, or all but one or two tests."""
+    if draw(st.integers(0, 9)) == 9:
+        name, kept = draw(st.sampled_from(MEASURED)), draw(st.sampled_from((1, 2)))
+        data[name][kept:] = [math.nan] * len(data[name][kept:])
+    for name in draw(st.lists(st.sampled_from(sorted(data)), min_size=1, max_size=3)):
+        rows, every = range(len(data[name])), draw(st.integers(0, 7)) == 7
+        for row in rows if every or not rows else [draw(st.sampled_from(rows))]:
+            data[name][row] = draw(st.sampled_from(REFUSED[name]))
+
+
+def _degenerate(draw: st.DrawFn, data: dict[str, list[float]]) -> None:
+    """What is allowed and says little: all equal, the wrong way round, at a limit, of absurd size."""
+    match draw(st.integers(0, 7)):
+        case 0:
+            for name in draw(st.sampled_from((("v",), ("e",), ("x_p",), ("v", "e"), MEASURED))):
+                data[name][:] = [data[name][0]] * len(data[name])
+        case 1:
+            data["e"].sort()
+            data["v"].sort()
+        case 2:
+            data["x_p"].sort(reverse=True)
+            data["v"].sort()
+        case 3:
+            data["e"][:] = [draw(st.sampled_from((0.0, 1.0, 1e-300, 1e-9, 1 - 1e-9))) for _ in data["e"]]
+        case 4:
+            name, row = draw(st.sampled_from(("v", "x_p"))), draw(st.sampled_from(range(len(data["v"]))))
+            data[name][row] *= 10.0 ** draw(st.sampled_from((-3, -1, 1, 3)))
+        case 5 | 6:
+            name = draw(st.sampled_from(("v", "x_p", *sorted(data.keys() & set(PARAMETERS)))))
+            power = draw(st.sampled_from((-250, -120, -30, 30, 120, 250)))
+            data[name][:] = [x * 10.0**power for x in data[name]]
+        case 7:
+            data["beta"] = [draw(st.sampled_from((1e-9, 0.01, 30.0, 1e4)))]
+
+
+@st.composite
+def spoiled(draw: st.DrawFn, size: int, **how: Any) -> Campaign:
+    """One campaign with input that is refused, or that is allowed and says little; a single test does."""
+    campaign = draw(campaigns(max(size, 2), **how))
+    data = {name: list(column) for name, column in campaign.data.items()}
+    for name in MEASURED:
+        data[name] = data[name][:size]
+    which = draw(st.sampled_from(("refused", "degenerate", "both")))
+    if which != "refused" and size:
+        _degenerate(draw, data)
+    if which != "degenerate":
+        _refused(draw, data)
+    return Campaign(campaign.variant, campaign.tests[:size], data)
+
+
+KINDS = {"any": campaigns, "spoiled": spoiled}
+
+
+def shares(size: int, number: int) -> dict[str, int]:
+    """How many campaigns of each kind: half of all are spoiled, and whatever has but one test."""
+    return {"spoiled": number} if size < 2 else {"any": number // 2, "spoiled": number - number // 2}
 
 
 def for_each(
@@ -131,26 +207,65 @@ def for_each(
 
 
 def drawn(strategy: st.SearchStrategy[Campaign], number: int, seed: int) -> list[Campaign]:
-    """So many campaigns of a seed."""
-    found: list[Campaign] = []
-    for_each(strategy, number, seed, found.append)
-    return found
+    """So many different campaigns of a seed."""
+    found: dict[str, Campaign] = {}
+
+    def keep(campaign: Campaign) -> None:
+        assume(repr(campaign) not in found)  # hypothesis likes to repeat itself
+        found[repr(campaign)] = campaign
+
+    for_each(strategy, number, seed, keep)
+    return list(found.values())
 
 
 # --- what the engines find ---
 
 
+NO_NUMBERS = ("", "fast", "29.7 um", "2,94", "1e", "NaN", "#N/A", "true")
+"""What may be typed where there is no datum."""
+
+
+def texts(column: Sequence[float]) -> list[str]:
+    """What somebody types into the page for these data, in SI."""
+    return [
+        repr(x) if math.isfinite(x) else NO_NUMBERS[place % len(NO_NUMBERS)] for place, x in enumerate(column)
+    ]
+
+
+def on_the_page(campaign: Campaign) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What the page knows of the given columns, and what somebody has typed into it."""
+    sheet, typed = SHEETS[campaign.variant], {name: texts(each) for name, each in campaign.data.items()}
+    bounds = {name: live.limits(own) for name, own in sheet.bounds.items()}
+    given = {name: {"given": {"scale": ["1", "1"], "bounds": bounds[name], "allowed": ""}} for name in bounds}
+    tests = [
+        {"label": label, "used": True, "cells": {name: typed[name][row] for name in MEASURED}}
+        for row, label in enumerate(campaign.tests)
+    ]
+    parameters = {name: column[0] for name, column in typed.items() if name not in MEASURED}
+    return given, {"tests": tests, "parameters": parameters}
+
+
 class Node:
-    """One process of node that has the programs of several sheets and answers a line for every campaign."""
+    """One process of node that has the programs of several sheets and answers a line for every campaign.
+
+    It computes each twice: from numbers, as every engine does, and from texts, as the page does; both must be
+    the same, bit by bit.
+    """
 
     SCRIPT = """
+    const differing = (one, other) => {
+      const text = (columns, name) => String(Array.from(columns[name], (x) => x + 0));
+      return Object.keys(one).filter((name) => text(one, name) !== text(other, name));
+    };
     require("readline").createInterface({ input: process.stdin }).on("line", (line) => {
-      const [which, labels, data] = JSON.parse(line, (key, value) => (value === null ? NaN : value));
+      const [which, labels, given, columns, state] = JSON.parse(line), data = {}, out = {};
+      for (const name in given) data[name] = given[name].map(Number);
       try {
         const { value, status, broken } = evaluateSheet(programs[which], labels, data);
-        const out = {};
+        const page = computeSheet(programs[which], columns, state);
         for (const name in value) out[name] = [Array.from(value[name]), Array.from(status[name])];
-        console.log(JSON.stringify([out, broken, ""]));
+        const differ = [...differing(status, page.status), ...differing(value, page.value)];
+        console.log(JSON.stringify([out, broken, differ.length ? `the page differs in ${differ}` : ""]));
       } catch (error) {
         console.log(JSON.stringify([{}, {}, String(error)]));
       }
@@ -159,8 +274,9 @@ class Node:
 
     def __init__(self, path: str, folder: Path, programs: Sequence[str]) -> None:
         script = folder / "random.js"
-        runtime = RUNTIME.read_text(encoding="utf-8")
-        script.write_text(f"{runtime}\nconst programs = [{', '.join(programs)}];\n{self.SCRIPT}", "utf-8")
+        page = [RUNTIME.parents[1] / "live" / name for name in ("numbers.js", "inputs.js")]
+        own = "\n".join(each.read_text(encoding="utf-8") for each in (RUNTIME, *page))
+        script.write_text(f"{own}\nconst programs = [{', '.join(programs)}];\n{self.SCRIPT}", "utf-8")
         self.process = subprocess.Popen(
             [path, str(script)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, encoding="utf-8"
         )
@@ -174,8 +290,11 @@ class Node:
     def read(self, campaign: Campaign, which: int) -> tuple[Reading, Broken]:
         assert self.process.stdin is not None
         assert self.process.stdout is not None
-        line = json.dumps([which, campaign.labels, campaign.data])
-        line = line.replace("NaN", "null").replace("Infinity", "1e999")
+        numbers = {
+            name: [repr(x).replace("inf", "Infinity") for x in column]
+            for name, column in campaign.data.items()
+        }
+        line = json.dumps([which, campaign.labels, numbers, *on_the_page(campaign)])
         self.process.stdin.write(f"{line}\n")
         self.process.stdin.flush()
         columns, broken, failure = json.loads(self.process.stdout.readline())
@@ -198,8 +317,9 @@ def numpy_reads(campaign: Campaign, program: Program) -> tuple[Reading, Broken]:
 
 
 def laid_out(campaign: Campaign) -> dict[str, Layout]:
-    counts = {"points_per_pair": int(campaign.data["points_per_pair"][0])}
-    return lay_out(SHEETS[campaign.variant], campaign.labels, counts)
+    sheet, points = SHEETS[campaign.variant], campaign.data["points_per_pair"][0]
+    allowed = sheet.bounds["points_per_pair"].allow(points)
+    return lay_out(sheet, campaign.labels, {"points_per_pair": int(points) if allowed else 0})
 
 
 def judge_of(campaign: Campaign) -> Judge:

@@ -5,14 +5,15 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import pytest
+from campaign_judging import Tally, compare
 from random_campaigns import SHEETS, Campaign, Node, numpy_reads, printed_once
 
-from loopsheet.report.engines import exact, javascript
+from loopsheet.report.engines import javascript
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.errors import Findings, Location
 from loopsheet.report.number_text import read_value
 from loopsheet.report.unit_text import parse_unit
-from loopsheet.report.values import CODES, Status
+from loopsheet.report.values import Status
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 SHEET, GIVEN = SHEETS[1], ("v", "e", "x_p", "beta", "points_per_pair", "ball_diameter", "target_mass")
@@ -26,21 +27,8 @@ PAPER = Campaign(
     },
 )  # fmt: skip
 NUMBERS = (
-    -1e300,
-    -1.0,
-    -1e-9,
-    -0.0,
-    0.0,
-    1e-300,
-    0.5,
-    1.0,
-    1 + 2**-52,
-    1.2,
-    2.0,
-    2.5,
-    10000.0,
-    10001.0,
-    1e300,
+    *(-1e300, -1.0, -1e-9, -0.0, 0.0, 1e-300, 1e-100, 0.5, 1.0, 1 + 2**-52, 1.2),
+    *(2.0, 2.5, 30.0, 10000.0, 10001.0, 1e300),
 )
 NOT_FINITE = (math.nan, math.inf, -math.inf)
 
@@ -66,21 +54,20 @@ def reader_allows(name: str, value: float) -> bool:
 
 @pytest.mark.parametrize("name", GIVEN)
 def test_engines_refuse_what_the_reader_refuses(node: Node, name: str) -> None:
-    """And say so in the same cells, whatever becomes of the others."""
-    row, refused = len(PAPER.data[name]) - 1, 0
+    """And whatever becomes of the other cells, they say of each what 50 digits say."""
+    row, refused, tally = len(PAPER.data[name]) - 1, 0, Tally()
     for value in (*NUMBERS, *NOT_FINITE):
         campaign = edited(name, row, value)
         ours, _ = numpy_reads(campaign, engine.Program.of(SHEET))
         theirs, _ = node.read(campaign, 1)
-        judged = exact.evaluate(SHEET, campaign.labels, campaign.data)
         allowed = reader_allows(name, value)
         refused += not allowed
-        assert (ours.status[name][row] == "ok") == allowed, value
-        for column in SHEET.by_name:
-            exactly = [CODES[code] == "#INPUT!" for code in judged.status[column]]
-            for reading in (ours, theirs):
-                assert [code == "#INPUT!" for code in reading.status[column]] == exactly, (column, value)
+        assert (ours.status[name][row] == "ok") == (theirs.status[name][row] == "ok") == allowed, value
+        if campaign.data["points_per_pair"][0] < 1e4 or not allowed:  # so many take 50 digits their time
+            compare(campaign, node, tally)
     assert 3 < refused < len(NUMBERS) + len(NOT_FINITE)
+    # Without a rebound to speak of, roundings decide whether x_m is above x_p.
+    assert tally.excused.total() <= 2 * (name == "e")
 
 
 def test_what_is_refused_says_what_is_allowed() -> None:

@@ -45,6 +45,7 @@ SHEET = Sheet(
         column("quotient", A / (B - 1)),
         column("quotient_of_any_sign", A / (B - 1), positive=False),
         column("product_of_any_sign", B * A**80, positive=False),
+        column("factors", (B - 1) ** 2 * (B + 2) * A**80),
         column("power", (B - 1) ** A),
         column("logarithm", log(B), positive=False),
         column("difference", A - B),
@@ -70,6 +71,10 @@ CASES: list[tuple[float, float, dict[str, Status]]] = [  # a, b, and the codes o
     (3e-308, 2.9e-308, {"difference": OVERFLOW}),
     (1e300, -1.7e308, {"difference": OK}),
     (1e308, -1.7e308, {"difference": OVERFLOW}),
+    (1e-5, 4.0, {"factors": OVERFLOW, "power": OK}),
+    (1e-5, 1.0, {"factors": DOMAIN}),
+    (1e-5, -1.5, {"factors": OVERFLOW}),
+    (1e-5, -3.0, {"factors": DOMAIN}),
 ]  # fmt: skip
 LABELS = {"items": range(1, len(CASES) + 1)}
 DATA = {"a": [case[0] for case in CASES], "b": [case[1] for case in CASES]}

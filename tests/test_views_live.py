@@ -422,11 +422,7 @@ def test_printed_digits_are_counted_as_python_does(
 def test_bounds_hold_in_the_page_too(
     in_js: Callable[[list[list[Any]]], list[Any]], text: str, bounds: Bounds, allowed: bool
 ) -> None:
-    known = {
-        name: repr(value) if name in ("low", "high") else True
-        for name in ("low", "high", "low_open", "high_open", "integer")
-        if (value := getattr(bounds, name)) is not None and value is not False
-    }
+    known = live.limits(bounds)
     (found,) = in_js([["read", {"scale": ["1", "1"], "bounds": known, "allowed": ""}, text]])
     assert (found is not None) == allowed == bounds.allow(Fraction(text))
 

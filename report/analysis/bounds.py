@@ -92,12 +92,14 @@ class _Spread:
         return 1 if node.axis is None else self.found.layouts[node.axis.name].size
 
     def bounds(self) -> dict[str, Array]:
-        for node in self.made.nodes:
-            self.spread(node)
-        of_scalars, found = self.weighed(self.whole), {}
-        for name in self.sheet.by_name:
-            own, total = np.abs(self.found.value[name]), self.total(name, of_scalars)
-            found[name] = np.where(np.isnan(own), np.nan, np.maximum(total, own))
+        found = {}
+        with np.errstate(all="ignore"):  # a derivative beyond all doubles leaves nothing known of the cell
+            for node in self.made.nodes:
+                self.spread(node)
+            of_scalars = self.weighed(self.whole)
+            for name in self.sheet.by_name:
+                own, total = np.abs(self.found.value[name]), self.total(name, of_scalars)
+                found[name] = np.where(np.isnan(own), np.nan, np.maximum(total, own))
         return found
 
     def total(self, name: str, of_scalars: Array) -> Array:
@@ -178,6 +180,5 @@ class _Spread:
 def _weighed(derivatives: Any, errors: Array) -> Array:
     """The sizes of derivatives times errors; an infinite error counts only where something rests on it."""
     sizes, known = abs(derivatives), np.isfinite(errors)
-    with np.errstate(all="ignore"):
-        total: Array = sizes @ np.where(known, errors, 0.0)
-        return np.where((sizes @ (~known).astype(float) > 0) | ~np.isfinite(total), np.inf, total)
+    total: Array = sizes @ np.where(known, errors, 0.0)
+    return np.where((sizes @ (~known).astype(float) > 0) | ~np.isfinite(total), np.inf, total)

@@ -47,7 +47,7 @@ from sympy.logic.boolalg import Boolean
 from ...derivations.reductions import REDUCTIONS
 from ..sheet import Sheet
 
-__all__ = ["LARGEST", "SMALLEST", "defined", "is_positive", "typed"]
+__all__ = ["LARGEST", "SMALLEST", "defined", "is_positive", "positive", "typed"]
 
 LARGEST = 2**1024 - 2**970
 """What is no smaller than this rounds to no finite double."""
@@ -140,3 +140,35 @@ def is_positive(expression: Expr) -> bool:
     """
     known = {total: Dummy(positive=True) for total in expression.atoms(Sum) if is_positive(total.function)}
     return bool(expression.xreplace(known).is_positive)
+
+
+def positive(expression: Expr) -> Boolean:
+    """Say where an expression is positive, by the signs of its factors: no double may hold their product.
+
+    Parameters
+    ----------
+    expression : Expr
+        A formula of a sheet, from :func:`typed`.
+
+    Returns
+    -------
+    Boolean
+        True if it is everywhere; false if its value alone says it.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x, y, e = Symbol("x", positive=True), Symbol("y", positive=True), Symbol("e", nonnegative=True)
+    >>> positive(x**2 / y), positive(x - y)
+    (True, False)
+    >>> positive(e**2 * x / (x - y))
+    sign(e)**2*sign(x - y) > 0
+    """
+    factors = [factor for factor in Mul.make_args(expression) if not is_positive(factor)]
+    if not factors:
+        return S.true
+    signs = [
+        sign(base) ** (2 if power.is_even else 1)
+        for base, power in (factor.as_base_exp() for factor in factors)
+    ]
+    return S.false if factors == [expression] and not expression.is_Pow else Mul(*signs) > 0

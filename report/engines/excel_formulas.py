@@ -19,7 +19,7 @@ from ..layout import Layout, rows_of
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, Reference, Root, Sheet, name_of, within
 from ..values import CODES, Status
-from .domain import defined, is_positive, typed
+from .domain import defined, is_positive, positive, typed
 from .excel import IfError, Printer
 from .excel_roots import READY, Auxiliary, Unrolled
 
@@ -284,8 +284,11 @@ class _Writing:
         text = self.number(expression)
         if self.column.positive:
             # A unit of the cells could lift what is too small, so SI is asked.
-            si = self.printer.doprint(expression)
-            small = beyond if is_positive(typed(self.sheet, expression)) else f"IF({si}>0,{beyond},{domain})"
+            si, formula = self.printer.doprint(expression), typed(self.sheet, expression)
+            # What is made of a root is one of several values that are sought: no signs are asked of it.
+            sign = is_positive(formula) if isinstance(self.column.rule, Root) else positive(formula)
+            above = f"{si}>0" if sign in (True, False) else f"OR({si}>0,{self.printer.doprint(sign)})"
+            small = beyond if sign == True else f"IF({above},{beyond},{domain})"  # noqa: E712 - sympy's true
             text = f"IF({si}>={_SMALLEST},{text},{small})"
         return f"IFERROR({text},{none})"
 

@@ -114,6 +114,8 @@ class _Unrolling:
         # Newton's step where a derivative is a sum: three more passes over all points cost more than steps.
         summed = self.form.has(Sum)
         self.slopes = (diff(self.form, self.unknown),) if summed else derivatives(self.form, self.unknown)[1:]
+        # Other engines go on where their steps do not settle; here they end.
+        self.steps = 2 * self.rule.steps
         self.now, self.alone = 0, False
 
     def run(self) -> Unrolled:
@@ -123,10 +125,10 @@ class _Unrolling:
         inside = And(IsNumber(start), start > left, start < right)
         says = "the guess; the middle of the bracket if it lies outside"
         here = self.place("u_0", self.lowered(0), says, Piecewise((start, inside), (middle, True)))
-        for step in range(1, self.rule.steps + 1):
+        for step in range(1, self.steps + 1):
             self.now = step
             left, right, here = self.step(step, left, right, rising, here)
-        form, before = self.known(f"f_{self.rule.steps}"), self.known(f"u_{self.rule.steps - 1}")
+        form, before = self.known(f"f_{self.steps}"), self.known(f"u_{self.steps - 1}")
         known, settled = IsNumber(form), Abs(here - before) * _SETTLED <= Abs(here)
         value = self.rule.value.xreplace({self.unknown: here})
         return Unrolled(self.column, self.real("check"), tuple(self.cells), number, known, settled, value)
@@ -217,7 +219,7 @@ class _Unrolling:
             told = self.add(
                 f"form_{name}", "form", f"value of the form {where}", self.at(place), residual=True
             )
-        return self.add(f"sign_{name}", "sign", f"sign of the form {where}", sign(told))
+        return self.add(f"sign_{name}", "sign", f"sign of the form {where}", _sign_of(told))
 
     def bracket(
         self, places: Sequence[Symbol], signs: Sequence[Symbol]
@@ -266,3 +268,10 @@ class _Unrolling:
         moved = Piecewise((here, Eq(f, 0)), (there, inside), (middle, True))
         says = "the unknown after the step; a step out of the bracket is replaced by its middle"
         return left, right, self.place(f"u_{n}", self.lowered(n), says, IfError(moved, middle))
+
+
+def _sign_of(form: Expr) -> Expr:
+    """The sign of an expression by that of each of its cases: of a difference, no digit is lost to it."""
+    if isinstance(form, Piecewise):
+        return Piecewise(*((_sign_of(case), condition) for case, condition in form.args))
+    return sign(form)

@@ -17,7 +17,7 @@ from sympy.printing.jscode import JavascriptCodePrinter
 
 from ...derivations.reductions import Median
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet, name_of
-from .domain import defined, is_positive, typed
+from .domain import defined, positive, typed
 from .roots import derivatives, householder, magnitude
 
 __all__ = ["RUNTIME", "program"]
@@ -182,9 +182,11 @@ def _kernels(sheet: Sheet, column: Column) -> str:
     scope = _Scope(sheet, column, rule.unknown if isinstance(rule, Root) else None)
     found: dict[str, str] = {}
     if isinstance(rule, Formula):
-        value = scope.function(rule.expression, alone=True)
-        if (domain := defined(typed(sheet, rule.expression))) != True:  # noqa: E712 - sympy's true
+        value, formula = scope.function(rule.expression, alone=True), typed(sheet, rule.expression)
+        if (domain := defined(formula)) != True:  # noqa: E712 - sympy's true
             found["defined"] = scope.function(domain, alone=True)
+        if column.positive and (sign := positive(formula)) not in (True, False):
+            found["positive"] = scope.function(sign, alone=True)
         found["value"] = value
     elif isinstance(rule, Root):
         f, unknown = rule.expression, rule.unknown
@@ -255,7 +257,7 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
         }
         if isinstance(column.rule, Formula) and column.positive:
             # 2 is positive by what is assumed of the cells: then a zero is a value that no double holds.
-            entry["positive"] += is_positive(typed(sheet, column.rule.expression))
+            entry["positive"] += positive(typed(sheet, column.rule.expression)) == True  # noqa: E712
         parts = [f"{name}: {json.dumps(value)}" for name, value in entry.items() if value]
         if column.name in sheet.guards:
             datum, allowed = sheet.guards[column.name]

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..layout import Layout, lay_out, precedents, rows_of
 from ..sheet import Column, Formula, Given, Reference, RepeatAxis, Root, Sheet, name_of
 from ..values import Status, Values, inherited, rows_kept
-from .domain import SMALLEST, defined, is_positive, typed
+from .domain import SMALLEST, defined, positive, typed
 from .numpy_code import Array, Function, Kernel, kernel, write
 from .numpy_root import RootProgram
 from .numpy_rows import Kept
@@ -36,7 +36,7 @@ class Program:
     """The kernels of a sheet: of each column's formula, or of its root's parts, and of its conditions.
 
     For a given column, that of what its values must satisfy; for a formula that has no value somewhere, that
-    of where it has one. Of some formulas it is known that they are positive.
+    of where it has one, and for one of which more than its value says so, that of where it is positive.
     """
 
     sheet: Sheet
@@ -45,7 +45,7 @@ class Program:
     conditions: Mapping[str, Kernel]
     guards: Mapping[str, Function]
     domains: Mapping[str, Kernel]
-    positive: Collection[str]
+    positive: Mapping[str, Kernel]
 
     @classmethod
     def of(cls, sheet: Sheet, known: Collection[str] = ()) -> Program:
@@ -62,7 +62,7 @@ class Program:
         SheetError
             A formula has a part that NumPy cannot compute.
         """
-        formulas, roots, conditions, guards, domains, positive = {}, {}, {}, {}, {}, set()
+        formulas, roots, conditions, guards, domains, signs = {}, {}, {}, {}, {}, {}
         for column in sheet.order:
             if column.name in known:
                 continue
@@ -72,15 +72,15 @@ class Program:
             if isinstance(column.rule, Formula):
                 formulas[column.name] = kernel([column.rule.expression], sheet.indices)
                 formula = typed(sheet, column.rule.expression)
-                if column.positive and is_positive(formula):
-                    positive.add(column.name)
+                if column.positive and (sign := positive(formula)) != False:  # noqa: E712 - sympy's false
+                    signs[column.name] = kernel([sign], sheet.indices)
                 if (domain := defined(formula)) != True:  # noqa: E712 - sympy's true
                     domains[column.name] = kernel([domain], sheet.indices)
             elif isinstance(column.rule, Root):
                 roots[column.name] = RootProgram.of(column.rule, sheet.indices)
             if column.requires:
                 conditions[column.name] = kernel([c for c, _ in column.requires], sheet.indices)
-        return cls(sheet, formulas, roots, conditions, guards, domains, positive)
+        return cls(sheet, formulas, roots, conditions, guards, domains, signs)
 
     @property
     def source(self) -> str:
@@ -173,15 +173,20 @@ class _Run:
         """What the values of a formula are: one that a double holds, one that none does, or none."""
         held, beyond = np.isfinite(value), ~np.isfinite(value)
         if column.positive:
-            nought = (value == 0) & (column.name in self.program.positive)
-            beyond = (beyond & (value != -np.inf)) | ((value > 0) & (value < SMALLEST)) | nought
+            beyond = (beyond & (value != -np.inf)) | ((value > 0) & (value < SMALLEST))
             held = held & (value >= SMALLEST)
         if held.all():
             return np.zeros(value.shape, dtype=np.uint8)
+        if column.name in self.program.positive:
+            beyond = beyond | ((value == 0) & self._holds(self.program.positive, column, kept))
         if column.name in self.program.domains:
-            beyond = beyond & self._call(self.program.domains[column.name], column, kept)[0].astype(bool)
+            beyond = beyond & self._holds(self.program.domains, column, kept)
         found = np.select([held, beyond], [Status.OK, Status.OVERFLOW], Status.DOMAIN)
         return found.astype(np.uint8)
+
+    def _holds(self, kernels: Mapping[str, Kernel], column: Column, kept: Masks) -> Array:
+        (holds,) = self._call(kernels[column.name], column, kept)
+        return holds.astype(bool)
 
     def _required(self, column: Column, kept: Masks, status: Codes, found: Codes) -> Codes:
         """What breaks a condition is outside the domain, whatever the rule made of it."""

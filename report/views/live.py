@@ -16,7 +16,7 @@ from typing import Any
 from sympy import Indexed, Symbol
 
 from ...derivations.reductions import REDUCTIONS
-from ..quantity import Printed
+from ..quantity import Bounds, Printed
 from ..result import Report
 from ..sheet import Column, Formula, Given, Root, name_of
 from ..unit_text import parse_unit
@@ -29,7 +29,7 @@ from .math import Printer
 from .parts import index_text
 from .words import TEMPLATES
 
-__all__ = ["FIGURES", "SCRIPTS", "Part", "data", "drawn", "parts", "script"]
+__all__ = ["FIGURES", "SCRIPTS", "Part", "data", "drawn", "limits", "parts", "script"]
 
 SCRIPTS = (
     "page.js",
@@ -118,9 +118,6 @@ def data(report: Report, document: Document) -> str:
         "units": {name: inputs.header_units[name] for name in measured},
         "uncertainties": _uncertainties(inputs.tests, measured),
         "toml": list(_toml(report)),
-        "equations": {
-            equation.label: document.identifiers[equation.label] for equation in document.equations
-        },
         "rows": next(([axis.name, axis.row] for axis in sheet.axes if not axis.parents), ["rows", "row"]),
         "headline": [name for name in report.workbook.headline if name in sheet],
         "figures": drawn(report),
@@ -215,12 +212,17 @@ def _given(report: Report, column: Column) -> dict[str, Any]:
     printed, bounds = _printed(report, column.name), report.sheet.bounds[column.name]
     return {
         "scale": _fraction(printed.scale if printed else parse_unit(column.unit).scale),
-        "bounds": {
-            name: repr(bound) if name in ("low", "high") else True
-            for name in ("low", "high", "low_open", "high_open", "integer")
-            if (bound := getattr(bounds, name)) is not None and bound is not False
-        },
+        "bounds": limits(bounds),
         "allowed": f"{bounds.said(column.unit)} ({meaning})",
+    }
+
+
+def limits(bounds: Bounds) -> dict[str, Any]:
+    """What an input may be, as the page reads it: ends as text, which its fractions hold exactly."""
+    return {
+        name: repr(bound) if name in ("low", "high") else True
+        for name in ("low", "high", "low_open", "high_open", "integer")
+        if (bound := getattr(bounds, name)) is not None and bound is not False
     }
 
 

@@ -108,7 +108,7 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
         "(the column check says what is wrong, however it came into its cell), #DOMAIN! outside the "
         "equation's domain, #NOROOT! no value satisfies it, #TWOROOTS! several do, #OVERFLOW! there is a "
         "value, but it or a step towards it is too large or too small for any cell, #STEPS! the steps of "
-        "this workbook do not reach the root (build the report again: it takes as many as are needed). "
+        "this workbook do not reach the root (the page goes on until it is reached). "
         "What depends on such a cell shows its code; a sum leaves such rows out and says from how many it "
         "was made.",
         "Numbers are stored in full; only what is shown is rounded, to the digits that the inputs warrant.",

@@ -157,7 +157,7 @@ function evaluateSheet(program, labels, inputs) {
     // Where there is a value all the same, no double holds it, or a step towards it: 0 is one that was positive.
     const defined = kind === "root" ? (row, number) => !Number.isNaN(number) : kernels.defined ?? (() => true);
     const fault = (row, number) => {
-      const beyond = Number.isFinite(number) ? number > 0 || (number === 0 && positive > 1) : !positive || number !== -Infinity;
+      const beyond = number === 0 ? positive > 1 || kernels.positive?.(row) : number > 0 || Number.isNaN(number) || !positive;
       return beyond && defined(row, number) ? STATUS.OVERFLOW : STATUS.DOMAIN;
     };
     faulty[name] = fill(out, codes, kind === "root" ? only : kernels.value, positive, fault);

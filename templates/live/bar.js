@@ -58,21 +58,24 @@ function fullValue(look, name, row) {
   return unit === "1" ? [shown] : [`${shown}\u00a0`, ...part(name, "unit")];
 }
 
+// The articles of the equations, by number: where what is known of them stands.
+const CLAIMS = Object.fromEntries(all(".claim").map((claim) => [claim.querySelector(".number").textContent, claim]));
+
 // The numbers of its equations in the ledger; mostly there is one.
-const equationsOf = ({ equations, source }) => equations ?? (LIVE.equations[source] ? [source] : []);
+const equationsOf = ({ equations, source }) => equations ?? (CLAIMS[source] ? [source] : []);
 
 function sourceLine(column) {
   const equations = equationsOf(column);
   if (!equations.length) return [`from ${column.source}`];
   return equations.flatMap((label, place) => {
-    const id = LIVE.equations[label], link = make("a", { href: `#${id}`, class: "eqref" }, label);
-    return [place ? ", solved as " : "from ", link, " ", byId(id).querySelector(".status").cloneNode(true)];
+    const claim = CLAIMS[label], link = make("a", { href: `#${claim.id}`, class: "eqref" }, label);
+    return [place ? ", solved as " : "from ", link, " ", claim.querySelector(".status").cloneNode(true)];
   });
 }
 
 // The equation as the report prints it: a copy from its place there.
 function publishedMath(column, name) {
-  const [label] = equationsOf(column), found = label && byId(LIVE.equations[label])?.querySelector(".eq math");
+  const [label] = equationsOf(column), found = label && CLAIMS[label].querySelector(".eq math");
   if (!found) return [];
   const copy = found.cloneNode(true);
   const rows = LIVE.columns[name].put ? "" : summedRows(name);

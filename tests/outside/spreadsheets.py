@@ -256,12 +256,17 @@ def compare(
 def recalculate(
     soffice: str, folder: Path, books: Mapping[str, bytes]
 ) -> dict[str, dict[str, dict[str, Any]]]:
-    """Let LibreOffice open workbooks, recalculate them and save them; then read every cell.
+    """Let LibreOffice recalculate workbooks; then read every cell.
 
     Returns
     -------
     mapping of name to mapping of worksheet to mapping of address to value
     """
+    return {name: cells_of(content) for name, content in recalculated(soffice, folder, books).items()}
+
+
+def recalculated(soffice: str, folder: Path, books: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Let LibreOffice open workbooks, recalculate them and save them, all in one run of the program."""
     profile, given, made = (folder / name for name in ("profile", "given", "made"))
     for each in (profile / "user", given, made):
         each.mkdir(parents=True, exist_ok=True)
@@ -275,7 +280,7 @@ def recalculate(
         [*command, "--outdir", str(made), *files], capture_output=True, text=True, timeout=600, check=False
     )
     assert run.returncode == 0, run.stderr
-    return {name: cells_of((made / f"{name}.xlsx").read_bytes()) for name in books}
+    return {name: (made / f"{name}.xlsx").read_bytes() for name in books}
 
 
 def cells_of(content: bytes) -> dict[str, dict[str, Any]]:
