@@ -51,8 +51,7 @@ with evaluate(False):
     end = Equation(
         "(L24)",
         (1 - u, alpha * u),
-        "u is positive, so alpha is positive where u < 1 and nowhere else: roots of (L5) beyond are none of "
-        "a loading curve",
+        "alpha is positive where u < 1 and nowhere else: roots of (L5) beyond are none of a loading curve",
         title="end of the domain of (11)",
     )
 
@@ -66,7 +65,7 @@ with evaluate(False):
     log_form = Equation(
         "(L6)",
         (root_form.members[0], (1 - (beta + 1) * E[1] ** 2 * u) * (1 - exp(-logarithm))),
-        "where both factors 1 - (beta + 1) e^2 u are positive, (L5) has the sign of this logarithm",
+        "where both factors are positive, (L5) has the sign of this logarithm",
         title="sign of (L5)",
         conditions=(1 - (beta + 1) * E[1] ** 2 * u > 0, 1 - (beta + 1) * E[2] ** 2 * u > 0),
     )
@@ -97,13 +96,13 @@ with evaluate(False):
         conditions=(1 - _a1 * u_turn > 0, 1 - _a2 * u_turn > 0),
     )
 
-    _slope = _a2 / (1 - _a2 * u) - _a1 / (1 - _a1 * u) - 2 * Lambda
+    _slope = (beta + 1) * (E[2] ** 2 - E[1] ** 2) / ((1 - _a1 * u) * (1 - _a2 * u)) - 2 * Lambda
 
     slope = Equation(
         "(L9)",
-        (_a2 / (1 - _a2 * u_turn) - _a1 / (1 - _a1 * u_turn) - 2 * Lambda, Integer(0)),
-        "the slope of the logarithm vanishes at (L8); the quadratic's other zero lies outside the domain, "
-        "so (11) has at most one root on each side of (L8)",
+        (_slope.xreplace({u: u_turn}), Integer(0)),
+        "the denominator falls, so the slope is monotone: it vanishes at (L8) alone, and "
+        "(11) has at most one root on each side",
         title="slope of the logarithm at (L8)",
         conditions=(1 - _a1 * u_turn > 0, 1 - _a2 * u_turn > 0),
     )
@@ -137,10 +136,8 @@ ENTRIES = (
     turning,
     Derivation(
         (
-            Step(slope_law, (log_speeds,), (Lambda,), "Differentiate the logarithm of (L6) by u."),
-            Step(
-                slope, (turning,), (u_turn,), "Put (L8) in; the numerator is a quadratic in u with this zero."
-            ),
+            Step(slope_law, (log_speeds,), (Lambda,), "Differentiate the logarithm of (L6)."),
+            Step(slope, (turning,), (u_turn,), "Put (L8) in."),
         )
     ),
 )

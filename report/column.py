@@ -178,6 +178,9 @@ class Formula:
 class Root:
     """The only root of an equation in an interval; that it is the only one is decided before it is sought.
 
+    It is decided for all inputs at once where `form` has a slope of one sign, or `turning_by` says why it
+    changes sign at most once between turning points; elsewhere for each row by interval arithmetic.
+
     Parameters
     ----------
     equation : Equation
@@ -195,7 +198,9 @@ class Root:
         where rounding would decide; None evaluates it.
     turning : tuple of Expr
         Increasing points of the interval between which `form` changes sign at most once; one that is not
-        a number, or lies outside, does not count.
+        a number, or lies outside, does not count. Believed if `turning_by` says why, and not used if not.
+    turning_by : tuple of Equation
+        The statements from which that follows: proved claims of the workbook's ledger.
     start : Expr
         A first guess. It costs steps, never truth: the bracket decides.
     steps : int
@@ -216,6 +221,7 @@ class Root:
     sign_low: Expr | None = None
     sign_high: Expr | None = None
     turning: tuple[Expr, ...] = ()
+    turning_by: tuple[Equation, ...] = ()
     steps: int = 4
     none: str = "no value of the interval satisfies the equation"
     two: str = "several values of the interval satisfy the equation"
@@ -372,6 +378,11 @@ class Reference:
 
     cell: Expr
     over: Axis | None = None
+
+    @property
+    def place(self) -> tuple[str, Axis | None]:
+        """The same for a cell of which something else is assumed."""
+        return str(self.cell), self.over
 
 
 def references(

@@ -25,6 +25,7 @@ __all__ = [
     "Grid",
     "Place",
     "Series",
+    "as_issued",
     "checked",
     "factors",
     "letters",
@@ -75,6 +76,11 @@ def checked(name: str) -> str:
     'x_p checked'
     """
     return f"{name} checked"
+
+
+def as_issued(name: str) -> str:
+    """What the cells are called that keep a given column as it was when the workbook was made."""
+    return f"{name} as issued"
 
 
 @dataclass(frozen=True)

@@ -29,6 +29,7 @@ class Status(IntEnum):
     NOROOT = 3
     TWOROOTS = 4
     OVERFLOW = 5
+    UNDECIDED = 6
 
     @property
     def code(self) -> str:
@@ -43,11 +44,15 @@ CODES = {
     Status.NOROOT: "#NOROOT!",
     Status.TWOROOTS: "#TWOROOTS!",
     Status.OVERFLOW: "#OVERFLOW!",
+    Status.UNDECIDED: "#UNDECIDED!",
 }
 
 
 BEYOND = "it, or a step towards it, is above 1.8e308, or positive and below 2.2e-308"
 """What ``#OVERFLOW!`` means, for the reader."""
+
+UNCERTAIN = "it may touch zero, jump, or cross it too often"
+"""What ``#UNDECIDED!`` means, for the reader."""
 
 # --- how errors spread: the same for every engine ---------------------------------------------------------
 
@@ -155,7 +160,8 @@ class Values:
     status : mapping of column name to integer array (..., rows)
         :class:`Status`.
     roots : mapping of column name to mapping of row to tuple of float
-        For ambiguous cells, all the roots that were found; without a batch.
+        For ambiguous cells, all the roots that were found; for undecided ones, the ends of the part of the
+        unknown's interval where it was not decided. Without a batch.
     counted : mapping of column name to mapping of axis name to int
         How many rows the sums of a column ran over, where some were left out; without a batch.
     broken : mapping of column name to integer array (..., rows)
@@ -280,6 +286,10 @@ class Values:
             return f"{column.source} has more than one root here: {found or rule.two}" + (
                 f" ({rule.two})" if found else ""
             )
+        if isinstance(rule, Root) and status is Status.UNDECIDED:
+            ends = dict.fromkeys(f"{end:.6g}" for end in self.roots.get(column.name, {}).get(row, ()))
+            where = f" near {rule.unknown} = {' to '.join(ends)}" if ends else ""
+            return f"the roots of {column.source} cannot be counted{where}: {UNCERTAIN}"
         if status is Status.OVERFLOW:
             return f"{column.source} has a value here that no double holds: {BEYOND}"
         outside = f"outside the domain of {column.source}"

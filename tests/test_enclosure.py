@@ -14,7 +14,6 @@ from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.derivations.reductions import Median
 from loopsheet.report import build
 from loopsheet.report.analysis.enclosure import Enclosure, slope_kernels
-from loopsheet.report.analysis.intervals import Intervals
 from loopsheet.report.analysis.referee.campaign import Campaign
 from loopsheet.report.analysis.referee.certificate import Certificate
 from loopsheet.report.analysis.referee.minimax import best
@@ -22,6 +21,7 @@ from loopsheet.report.analysis.referee.problem import Problem
 from loopsheet.report.conditions import conditions
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
+from loopsheet.report.intervals import Intervals
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
 

@@ -137,7 +137,7 @@ def test_hundreds_of_campaigns_as_numpy_has_them(
             seen |= set(codes)
         assert theirs["counted"] == {c: dict(n) for c, n in ours.counted.items()}
         _same_exponents(sheet, tests, data, program, theirs["out"]["alpha"][0])
-    assert seen == set(Status)
+    assert seen == set(Status) - {Status.UNDECIDED}
 
 
 def _same_exponents(sheet: Sheet, tests: list[int], data: Any, program: Program, theirs: list[Any]) -> None:

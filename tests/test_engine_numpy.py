@@ -222,7 +222,7 @@ def test_a_batch_is_the_same_as_one_by_one_bit_for_bit(shape: tuple[int, ...]) -
             np.testing.assert_array_equal(status[place], alone.status[name], err_msg=name)
             codes |= set(status[place].tolist())
     if np.prod(shape) >= 20:
-        assert codes == set(Status)
+        assert codes == set(Status) - {Status.UNDECIDED}
 
 
 def test_only_what_rests_on_a_batch_has_one() -> None:

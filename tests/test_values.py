@@ -234,6 +234,7 @@ def test_every_status_has_a_code() -> None:
         "#NOROOT!",
         "#TWOROOTS!",
         "#OVERFLOW!",
+        "#UNDECIDED!",
     ]
 
 

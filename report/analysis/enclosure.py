@@ -1,8 +1,9 @@
 """What the cells of a sheet, and their derivatives, can be while the given cells move within intervals.
 
 The sheet's program runs on intervals as it is. A root is enclosed by certain signs of its equation on both
-sides of it: the rule promises one change of sign between turning points, so that with certain signs at the
-ends and no turning point inside there is one root, whatever the values inside the intervals. Derivatives
+sides of it: between turning points it changes sign at most once, which is certified or counted here, so that
+with certain signs at the ends and no turning point inside there is one root, whatever the values inside the
+intervals. Derivatives
 are the sheet's own, made by algebra (:mod:`~loopsheet.report.conditions`), and added up along all ways.
 
 A mean-value form then bounds the cells far better than the program alone:
@@ -20,10 +21,11 @@ from sympy import Indexed
 
 from ..conditions import Conditions, Node, Slope
 from ..engines.numpy import Kernel, Program, kernel
-from ..engines.numpy_root import RootProgram
+from ..engines.numpy_root import EnclosedRows, RootProgram
+from ..engines.numpy_rows import KeptIntervals
+from ..intervals import Intervals, whole
 from ..layout import Layout, rows_of
 from ..sheet import Column, Formula, Given, Reference, Root, Sheet, name_of
-from .intervals import Intervals, whole
 
 __all__ = ["Enclosure"]
 
@@ -122,8 +124,8 @@ class Enclosure:
             found = found.where(self.sure[name_of(cell)])
         return found if rows is None else found.take(rows)
 
-    def _rows(self, axis: str) -> _Rows:
-        return _Rows(self.layouts[axis].size)
+    def _rows(self, axis: str) -> KeptIntervals:
+        return KeptIntervals(np.ones(self.layouts[axis].size, dtype=bool))
 
     # --- rules ----------------------------------------------------------------------------------------
 
@@ -158,10 +160,25 @@ class Enclosure:
         one = before * after < 0
         for turn in turning:
             one &= (turn.high <= low.low) | (turn.low >= high.high)
+        if program.enclosing is not None:
+            one &= self._counted(program, column, low, high, (at_low.sign, at_high.sign)) == 1
         left, right = self._bracket(at, low.low.copy(), high.high.copy(), after)
         (value,) = run_value(Intervals(left, right), *rest, *totals)
         found = Intervals.of(value).broadcast(shape)
         return found.where(one), one
+
+    def _counted(
+        self, program: RootProgram, column: Column, low: Intervals, high: Intervals, signs: Any
+    ) -> NDArray[np.intp]:
+        """How many roots there are whatever the values inside the intervals; -1 where that is not certain."""
+        assert program.enclosing is not None
+        cells = {r: Intervals.of(self._argument(r, column, self.value)) for r in program.fixed.references}
+        kept = {axis: np.ones(self.layouts[axis].size, dtype=bool) for axis in program.enclosing.totals}
+        rows = EnclosedRows(program.enclosing, cells, kept, low.shape)
+        ends = [end.reshape(-1) for end in (low.low, high.high, *signs)]
+        found = rows.isolate(np.arange(ends[0].size), ends[0], ends[1], (ends[2], ends[3]))
+        number = [-1 if row in found.undecided else len(own) for row, own in enumerate(found.brackets)]
+        return np.array(number).reshape(low.shape)
 
     def _bracket(self, at: Any, low: Any, high: Any, after: Any) -> tuple[Any, Any]:
         """The largest point that is certainly before the root, and the smallest certainly behind it."""
@@ -247,27 +264,6 @@ class Enclosure:
         if not isinstance(slope.by, Indexed):
             return None
         return rows_of(slope.by, node.over or node.axis, self.layouts)
-
-
-class _Rows:
-    """What a kernel takes over the rows of an axis."""
-
-    def __init__(self, size: int) -> None:
-        self.size = size
-
-    def total(self, terms: Any) -> Intervals:
-        """Their sum."""
-        return self.every(terms).total()
-
-    def median(self, terms: Any) -> Intervals:
-        """Their median."""
-        low, high = self.every(terms).middle()
-        return (low + high) / 2  # type: ignore[no-any-return]
-
-    def every(self, terms: Any) -> Intervals:
-        terms = Intervals.of(terms)
-        every: Intervals = terms.broadcast(np.broadcast_shapes(terms.shape, (self.size,)))
-        return every
 
 
 def _shares(terms: Intervals) -> Intervals:

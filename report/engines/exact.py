@@ -6,7 +6,7 @@ mpmath, roots are bracketed and then narrowed until 50 digits stand. It is slow 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -20,11 +20,15 @@ from numpy.typing import NDArray
 from sympy import Basic, Expr, Indexed, Symbol, lambdify
 
 from ...derivations.reductions import REDUCTIONS, Median
+from ..intervals import Intervals
 from ..layout import Layout, lay_out, precedents, rows_of
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, RepeatAxis, Root, Sheet, name_of
 from ..values import Status, inherited, rows_kept
-from .domain import LARGEST, SMALLEST
+from .certified import certified, enclosing, slope
+from .domain import LARGEST, SMALLEST, typed
+from .exact_roots import Enclose, brackets, of_arrays, of_mpmath
+from .isolation import Doubtful
 
 __all__ = ["DIGITS", "ExactValues", "evaluate"]
 
@@ -43,7 +47,7 @@ class ExactValues:
         SI; None where the status is not OK.
     status : mapping of column name to list of Status
     roots : mapping of column name to mapping of row to tuple of mpf
-        All roots of ambiguous cells.
+        All roots of ambiguous cells; of undecided ones, the part of the interval that was not decided.
     """
 
     value: Mapping[str, list[Any]]
@@ -159,7 +163,8 @@ class _Exact:
         form, value = (scope.function(e, rule.unknown) for e in (rule.expression, rule.value))
         low, high = scope.function(rule.low), scope.function(rule.high)
         given = [None if end is None else scope.function(end) for end in (rule.sign_low, rule.sign_high)]
-        turning = [scope.function(point) for point in rule.turning]
+        counted = None if certified(self.sheet, column) else scope.enclosing(rule)
+        turning = [] if counted else [scope.function(point) for point in rule.turning]
 
         def solve(row: int) -> Any:
             points, right = [low(row)], high(row)
@@ -176,11 +181,19 @@ class _Exact:
             signs = [mpmath.sign(f) for f in (first, *inner, last)]
             if any(mpmath.isnan(sign) for sign in signs):
                 raise _Failed(Status.DOMAIN)
-            roots = [
-                value(row, _narrow(lambda u: form(row, u), a, b, rising))
+            found: Iterable[tuple[Any, Any, Any]] = (
+                (a, b, rising)
                 for (a, b), (falling, rising) in zip(pairwise(points), pairwise(signs), strict=True)
                 if falling * rising < 0
-            ]
+            )
+            if counted is not None:
+                told = [None if sign is None else sign(row) for sign in given]
+                try:
+                    found = brackets(counted(row), points[0], right, told)
+                except Doubtful as doubtful:
+                    self.roots.setdefault(column.name, {})[row] = doubtful.part
+                    raise _Failed(Status.UNDECIDED) from None
+            roots = [value(row, _narrow(lambda u: form(row, u), a, b, rising)) for a, b, rising in found]
             if len(roots) == 1:
                 return roots[0]
             if not roots:
@@ -258,6 +271,36 @@ class _Scope:
                 return mpmath.nan
 
         return run
+
+    def enclosing(self, rule: Root) -> Callable[[int], Enclose]:
+        """What encloses the form of a root, for each row."""
+        sheet, axis = self.engine.sheet, self.column.axis
+        plain = Symbol(rule.unknown.name, real=True)
+        form = typed(sheet, rule.expression).xreplace({rule.unknown: plain})
+        named = {cell: Symbol(f"cell_{n}") for n, cell in enumerate(sorted(form.atoms(Indexed), key=str))}
+        parts = [each.xreplace(named) for each in (form, *slope(form, plain))]
+        possible = of_mpmath(*parts, plain)
+        if possible is not None:
+            symbols, of_row = possible
+            cells = {symbol: cell for cell, symbol in named.items()}
+            readers = [self._reader(cells.get(symbol, symbol), axis) for symbol in symbols]
+            return lambda row: of_row([read(row) for read in readers])
+        kernel = enclosing(sheet, self.column)
+        every = [(r, self._reader(r.cell, r.over or axis)) for r in kernel.references if r.cell != plain]
+        kept = {}
+        for name in kernel.totals:
+            kept[name] = np.zeros(self.engine.layouts[name].size, dtype=bool)
+            kept[name][list(self.kept.get(name, range(kept[name].size)))] = True
+
+        def of_rows(row: int) -> Enclose:
+            given = {}
+            for reference, read in every:
+                rows = [row] if reference.over is None else range(self._size(reference.over))
+                numbers = [np.nan if (x := read(each)) is None else float(x) for each in rows]
+                given[reference] = Intervals.near(numbers, numbers)
+            return of_arrays(kernel, given, kept)
+
+        return of_rows
 
     def _many(
         self, expressions: Sequence[Basic], axis: Axis | None, unknown: Symbol | None

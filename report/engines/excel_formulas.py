@@ -6,7 +6,7 @@ by row: printing is slow, and a report may have a hundred thousand points.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -14,7 +14,7 @@ from typing import Any
 from sympy import And, Expr, Float, Indexed, Rational, Rel, Sum, Symbol
 
 from ...derivations.reductions import Median
-from ..grid import Place, factors
+from ..grid import Place, as_issued, checked, factors
 from ..layout import Layout, rows_of
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, Reference, Root, Sheet, name_of, within
@@ -105,6 +105,12 @@ class Formulas:
         """The formulas of the cell that says whether a root can be sought."""
         writing = _Writing(self, unrolled.column, unrolled.check.name)
         return writing.rows(writing.inherited(f'"{READY}"'))
+
+    def issued(self, name: str, column: Column, given: Sequence[str]) -> tuple[str, ...]:
+        """The formulas of the cell that says whether given columns are as issued (1) or not (0)."""
+        writing = _Writing(self, column, name)
+        pairs = [(self.places.columns[checked(one)], self.places.columns[as_issued(one)]) for one in given]
+        return writing.rows(writing.same(pairs))
 
     def auxiliary(self, unrolled: Unrolled, cell: Auxiliary) -> tuple[str, ...]:
         """The formulas of a cell on the way to a root."""
@@ -233,6 +239,16 @@ class _Writing:
             return f'MEDIAN(IF({self.mask(axis)},{terms},""))'  # of a text, no reader takes account
         return f"SUM(IF({self.mask(axis)},{terms},0))"
 
+    def same(self, pairs: Sequence[tuple[Place, Place]]) -> str:
+        """1 where the cells of two places are the same, row by row, for each pair of them."""
+        here = self.here
+        ranges = [
+            (a.range(here), b.range(here)) if a.rows > 1 else (a.cell(0, here), b.cell(0, here))
+            for a, b in pairs
+        ]
+        tests = [f"SUM(IF({a}={b},0,1))=0" if ":" in a else f"{a}={b}" for a, b in ranges] or ["TRUE()"]
+        return f"IFERROR(IF({_all(tests)},1,0),0)"
+
     # --- errors
 
     def inherited(self, otherwise: str) -> str:
@@ -313,7 +329,13 @@ class _Writing:
         known, settled = (self.printer.doprint(test) for test in (unrolled.known, unrolled.settled))
         found = f"IF({settled},{self.value(unrolled.value, _CODE[Status.OVERFLOW])},{_UNSETTLED})"
         found = f"IF({number}=1,IF({known},{found},{domain}),IF({number}=0,{none},{two}))"
-        found = self.where_it_holds(f"IF(ISNUMBER({number}),{found},{domain})", domain)
+        if unrolled.issued is not None:
+            undecided = _CODE[Status.UNDECIDED]
+            found = f"IF({number}<0,{undecided},{found})"
+            found = f"IF({self.own(unrolled.issued)}=1,IF(ISNUMBER({number}),{found},{domain}),{undecided})"
+        else:
+            found = f"IF(ISNUMBER({number}),{found},{domain})"
+        found = self.where_it_holds(found, domain)
         return f'IF({check}="{READY}",{found},{check})'
 
     def drawn(self) -> str:

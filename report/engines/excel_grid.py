@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from decimal import Decimal
 from fractions import Fraction
 
-from ..grid import CHECKED, FIRST_ROW, SCALARS, STEPS, Block, Drawn, Grid, Place, checked
+from ..grid import CHECKED, FIRST_ROW, SCALARS, STEPS, Block, Drawn, Grid, Place, as_issued, checked
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, PairAxis, RepeatAxis, Root, Sheet, name_of
 from ..unit_text import UnitError, parse_unit
 from ..values import CODES, Values
+from .certified import certified
 from .excel_formulas import Formulas, Places, carried, guard
 from .excel_roots import Unrolled, unroll
 from .excel_values import auxiliary_values
@@ -121,7 +123,17 @@ class _Assembly:
         self.places: dict[str, Place] = {}
         self.notes: dict[str, Place] = {}
         self.indices: dict[str, tuple[Place, ...]] = {}
-        self.unrolled = {c.name: unroll(c) for c in sheet.columns if isinstance(c.rule, Root)}
+        self.unrolled = {
+            c.name: unroll(c, certified(sheet, c)) for c in sheet.columns if isinstance(c.rule, Root)
+        }
+        asked = {
+            given.name
+            for unrolled in self.unrolled.values()
+            if unrolled.issued is not None
+            for given in sheet.ancestors(unrolled.column)
+            if isinstance(given.rule, Given)
+        }
+        self.asked = [column for column in sheet.columns if column.name in asked]
         self.carried = {k: v for c in whole.columns for k, v in carried(whole, c).items()}
 
     def grid(self) -> Grid:
@@ -166,10 +178,15 @@ class _Assembly:
         for unrolled in self.unrolled.values():
             over = unrolled.column.axis
             if over is not None:
-                for name in (unrolled.check.name, *(cell.name for cell in unrolled.cells)):
+                for name in (unrolled.check.name, *_counting(unrolled), *(c.name for c in unrolled.cells)):
                     self.places[name] = self.rooms[over.name].next()
             else:
                 row = self.put_steps(unrolled, row)
+        for column in self.asked:
+            if column.axis is not None:
+                self.put(column, as_issued(column.name))
+            else:
+                self.places[as_issued(column.name)] = Place(STEPS, row := row + 1, 1, 1, self.unit(column)[1])
 
     def put(self, column: Column, name: str) -> None:
         """The next free column of its worksheet."""
@@ -202,6 +219,9 @@ class _Assembly:
         """What comes before the steps one below the other, then a table with a row for each step."""
         place = row + 1
         self.places[unrolled.check.name] = Place(STEPS, place, 1)
+        for name in _counting(unrolled):
+            place += 1
+            self.places[name] = Place(STEPS, place, 1)
         for cell in unrolled.cells:
             if cell.step == 0:
                 place += 1
@@ -303,12 +323,41 @@ class _Assembly:
                 source=unrolled.column.source,
             )  # fmt: skip
             yield _computed(block, formulas.check(unrolled))
+            if unrolled.issued is not None:
+                yield from self.counting_blocks(unrolled, found, formulas)
             for cell in unrolled.cells:
                 block = Block(
                     cell.name, "step", cell.title, cell.meaning, self.places[cell.name],
                     values=found[cell.name], of=unrolled.column.name, step=cell.step,
                 )  # fmt: skip
                 yield _computed(block, formulas.auxiliary(unrolled, cell))
+        guarded = [unrolled.column for unrolled in self.unrolled.values() if unrolled.issued is not None]
+        for column in self.asked:
+            shown = self.shown(column)
+            yield Block(
+                as_issued(column.name), "step", f"{column.name} as issued", f"{column.name} as issued, "
+                "for which the roots were counted", self.places[as_issued(column.name)],
+                tuple(map(_literal, shown)), values=shown, of=guarded[0].name, source=column.source,
+            )  # fmt: skip
+
+    def counting_blocks(
+        self, unrolled: Unrolled, found: Mapping[str, tuple[float | str, ...]], formulas: Formulas
+    ) -> Iterator[Block]:
+        """Whether the inputs are as issued, and how many roots there are then."""
+        issued, counted = _counting(unrolled)
+        column = unrolled.column
+        given = [c.name for c in self.sheet.ancestors(column) if isinstance(c.rule, Given)]
+        block = Block(
+            issued, "step", "as issued", "1 if all inputs are those as issued, for which the roots were "
+            "counted; if not, build the report again", self.places[issued], values=found[issued],
+            of=column.name, source=column.source,
+        )  # fmt: skip
+        yield _computed(block, formulas.issued(issued, column, given))
+        says = "how many roots there are for the inputs as issued, by interval arithmetic; -1 if not certain"
+        yield replace(
+            block, name=counted, title="counted", meaning=says, place=self.places[counted],
+            formulas=tuple(map(_literal, found[counted])), values=found[counted],
+        )  # fmt: skip
 
 
 def _computed(block: Block, formulas: tuple[str, ...]) -> Block:
@@ -316,6 +365,16 @@ def _computed(block: Block, formulas: tuple[str, ...]) -> Block:
     return replace(
         block, formulas=formulas, array=any(taken in formulas[0] for taken in ("SUM(IF(", "MEDIAN(IF("))
     )
+
+
+def _counting(unrolled: Unrolled) -> tuple[str, ...]:
+    """The cells of a root whose number is known for the inputs as issued only."""
+    return tuple(symbol.name for symbol in (unrolled.issued, unrolled.counted) if symbol is not None)
+
+
+def _literal(value: float | str | None) -> str:
+    """A formula that is a number, with no exponent, or a text."""
+    return f"={Decimal(repr(value)):f}" if isinstance(value, float) else f'="{value}"'
 
 
 def _worksheet(axis: Axis) -> str:

@@ -7,7 +7,7 @@ formulas prints them as well, and NumPy computes what they show before a spreads
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from sympy import Abs, And, Eq, Expr, Integer, Piecewise, Sum, Symbol, diff, sign
@@ -75,6 +75,10 @@ class Unrolled:
         In order of evaluation.
     number : Symbol
         How many roots there are; no number where the form has no sign.
+    issued, counted : Symbol or None
+        Where the number of roots is not certified for all inputs: the cell that says whether the inputs are
+        those of the report as issued (1 or 0), and the one that holds how many roots there are for those, -1
+        where that is not certain.
     known, settled : Boolean
         Whether the form had a value at the last step, and whether that step was so small that the next
         one would not show.
@@ -89,25 +93,31 @@ class Unrolled:
     known: Boolean
     settled: Boolean
     value: Expr
+    issued: Symbol | None = None
+    counted: Symbol | None = None
 
 
-def unroll(column: Column) -> Unrolled:
+def unroll(column: Column, certified: bool = True) -> Unrolled:
     """Lay the solver of a root out as cells.
 
     Parameters
     ----------
     column : Column
         Its rule is a :class:`~loopsheet.report.sheet.Root`.
+    certified : bool
+        Whether the number of its roots follows from signs for all inputs. No formula could count them
+        otherwise: the workbook then keeps to the inputs for which they were counted.
     """
-    return _Unrolling(column).run()
+    return _Unrolling(column, certified).run()
 
 
 class _Unrolling:
     """One root being laid out: the cells so far."""
 
-    def __init__(self, column: Column) -> None:
+    def __init__(self, column: Column, certified: bool) -> None:
         assert isinstance(column.rule, Root)
-        self.column, self.rule = column, column.rule
+        self.column, self.certified = column, certified
+        self.rule = column.rule if certified else replace(column.rule, turning=())
         self.unknown = column.rule.unknown
         self.form = column.rule.expression
         self.cells: list[Auxiliary] = []
@@ -131,7 +141,10 @@ class _Unrolling:
         form, before = self.known(f"f_{self.steps}"), self.known(f"u_{self.steps - 1}")
         known, settled = IsNumber(form), Abs(here - before) * _SETTLED <= Abs(here)
         value = self.rule.value.xreplace({self.unknown: here})
-        return Unrolled(self.column, self.real("check"), tuple(self.cells), number, known, settled, value)
+        asked = (None, None) if self.certified else (self.real("issued"), self.real("counted"))
+        return Unrolled(
+            self.column, self.real("check"), tuple(self.cells), number, known, settled, value, *asked
+        )
 
     def known(self, name: str) -> Symbol:
         return next(cell.symbol for cell in self.cells if cell.name == f"{self.column.name}.{name}")
@@ -228,7 +241,11 @@ class _Unrolling:
         crossings = [a * b < 0 for a, b in pairwise(signs)]
         counted = sum((Piecewise((1, crossing), (0, True)) for crossing in crossings), Integer(0))
         known = And(*(IsNumber(cell) for cell in (*signs, places[0], places[-1])))
-        number = self.add("roots", "roots", "number of sign changes: of roots", Piecewise((counted, known)))
+        says = "number of sign changes: of roots"
+        if not self.certified:
+            counted, says = self.real("counted"), "number of roots, if the inputs are those as issued"
+            known = And(known, Eq(self.real("issued"), 1))
+        number = self.add("roots", "roots", says, Piecewise((counted, known)))
         self.alone = True
 
         def choose(values: Sequence[Symbol]) -> Expr:

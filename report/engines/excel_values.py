@@ -47,6 +47,11 @@ class _Evaluation:
         shown: dict[str, tuple[float | str, ...]] = {
             self.unrolled.check.name: tuple(READY if c == Status.OK else CODES[Status(int(c))] for c in codes)
         }
+        for symbol, known in zip(
+            (self.unrolled.issued, self.unrolled.counted), (np.ones(self.rows), self._counted()), strict=True
+        ):
+            if symbol is not None:
+                self.known[symbol.name], shown[symbol.name] = known, tuple(known.tolist())
         for cell in self.unrolled.cells:
             with np.errstate(all="ignore"):
                 found = np.broadcast_to(self._at(cell.expression), (self.rows,)).astype(np.float64)
@@ -57,6 +62,14 @@ class _Evaluation:
                 for x, want in zip(found, wanted, strict=True)
             )
         return shown
+
+    def _counted(self) -> Any:
+        """How many roots each row has; -1 where that is not certain."""
+        status = self.values.status[self.column.name]
+        roots = self.values.roots.get(self.column.name, {})
+        several = [max(2, len(roots.get(row, ()))) for row in range(self.rows)]
+        codes = [Status.NOROOT, Status.TWOROOTS, Status.UNDECIDED]
+        return np.select([status == code for code in codes], [0, several, -1], 1).astype(np.float64)
 
     def _at(self, expression: Expr) -> Any:
         if isinstance(expression, Sum):

@@ -12,17 +12,19 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from sympy import Basic, Dummy, Indexed, Sum, Symbol, cse, diff, numbered_symbols
+from sympy import Basic, Dummy, Indexed, Sum, Symbol, cse, numbered_symbols
 from sympy.printing.jscode import JavascriptCodePrinter
 
 from ...derivations.reductions import Median
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet, name_of
+from .certified import certified, slope
 from .domain import defined, positive, typed
-from .roots import derivatives, householder, magnitude
+from .javascript_intervals import enclose, needed
 
 __all__ = ["RUNTIME", "program"]
 
 RUNTIME = Path(__file__).resolve().parents[2] / "templates" / "engines" / "runtime.js"
+"""What runs a program."""
 
 _NULL = Dummy()
 """JavaScript's null."""
@@ -140,6 +142,24 @@ class _Scope:
             return f"(r, u) => {result}"
         return "\n".join(["(r, u) => {", *lines, f"      return {result};", "    }"])
 
+    def enclose(self, rule: Root) -> str:
+        """The function of the row and an interval of the unknown that tells the form and its slope there."""
+        plain = Symbol(rule.unknown.name, real=True)
+        form = typed(self.sheet, rule.expression).xreplace({rule.unknown: plain})
+        steepness, known = slope(form, plain)
+        axes = self.sheet.indices
+
+        def terms(total: Sum) -> tuple[str, Any]:
+            axis = axes[total.limits[0][0]]
+            inner: dict[Sum, Symbol] = {}
+            body = self.plain(total.function, axis, "q", inner)
+            return axis.name, Symbol("ALL") if inner else body
+
+        fixed, self.fixed, self.unknown = self.fixed, {}, plain
+        text = enclose(form, steepness, known, lambda e, s: self.plain(e, self.column.axis, "r", s), terms)
+        self.fixed, self.unknown = fixed, rule.unknown
+        return text
+
     def moves(self, expression: Any) -> bool:
         return self.unknown is not None and bool(expression.has(self.unknown))
 
@@ -189,13 +209,14 @@ def _kernels(sheet: Sheet, column: Column) -> str:
             found["positive"] = scope.function(sign, alone=True)
         found["value"] = value
     elif isinstance(rule, Root):
-        f, unknown = rule.expression, rule.unknown
         # An end whose sign is not given is evaluated as any other point.
         signs = [_NULL if sign is None else sign for sign in (rule.sign_low, rule.sign_high)]
-        ends = [rule.low, rule.high, rule.start, *signs, *rule.turning]
+        known = certified(sheet, column)
+        ends = [rule.low, rule.high, *signs, *(rule.turning if known else ())]
         found["ends"] = scope.function(*ends)
-        found["at"] = scope.function(f, alone=True)
-        found["step"] = scope.function(f, _step(f, unknown), magnitude(f))
+        if not known:
+            found |= {"isolate": "", "enclose": scope.enclose(rule)}
+        found["at"] = scope.function(rule.expression, alone=True)
         found["value"] = scope.function(rule.value, alone=True)
     if column.requires:
         found["requires"] = scope.function(*(condition for condition, _ in column.requires))
@@ -203,16 +224,10 @@ def _kernels(sheet: Sheet, column: Column) -> str:
         return ""
     arrays = ", ".join(f"{name} = {text}" for name, text in sorted(scope.names.items()))
     lines = [f"      const {arrays};"] if arrays else []
-    inner = ",\n".join(f"    {name}: {function}" for name, function in found.items())
+    inner = ",\n".join(
+        f"    {name}: {function}" if function else f"    {name}" for name, function in found.items()
+    )
     return "\n".join(["(c, a, n, k) => {", *lines, *scope.head, f"    return {{\n{inner}\n    }};", "  }"])
-
-
-def _step(f: Any, unknown: Symbol) -> Any:
-    """What is subtracted from the unknown, as :func:`~loopsheet.report.engines.roots.step` chooses it."""
-    if f.has(Sum):
-        return f / diff(f, unknown)
-    names = [Symbol(f"f_{n}", real=True) for n in range(4)]
-    return householder(*names).xreplace(dict(zip(names, derivatives(f, unknown), strict=True)))
 
 
 def _references(sheet: Sheet, column: Column) -> Iterable[tuple[str, str | None, str | None]]:
@@ -253,7 +268,6 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
             "refs": [] if kind == "given" else [_least(each) for each in _references(sheet, column)],
             "sums": [axis.name for axis in sheet.summed_axes(column)],
             "positive": kind != "given" and int(column.positive),
-            "steps": column.rule.steps if isinstance(column.rule, Root) else None,
         }
         if isinstance(column.rule, Formula) and column.positive:
             # 2 is positive by what is assumed of the cells: then a zero is a value that no double holds.
@@ -270,7 +284,9 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
     axes = ", ".join(json.dumps(_axis(axis)) for axis in sheet.axes)
     fixed = json.dumps({name: [value] for name, value in (constants or {}).items()})
     listed = ",\n".join(columns)
-    return f'{{\n "constants": {fixed},\n "axes": [{axes}],\n "columns": [\n{listed}\n ]{_WHOLE}\n}}'
+    text = f'{{\n "constants": {fixed},\n "axes": [{axes}],\n "columns": [\n{listed}\n ]{_WHOLE}\n}}'
+    used = needed(text)
+    return f"(() => {{\n{used}\nreturn {text};\n}})()" if used else text
 
 
 _WHOLE = (

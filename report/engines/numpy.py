@@ -77,7 +77,7 @@ class Program:
                 if (domain := defined(formula)) != True:  # noqa: E712 - sympy's true
                     domains[column.name] = kernel([domain], sheet.indices)
             elif isinstance(column.rule, Root):
-                roots[column.name] = RootProgram.of(column.rule, sheet.indices)
+                roots[column.name] = RootProgram.of(sheet, column)
             if column.requires:
                 conditions[column.name] = kernel([c for c, _ in column.requires], sheet.indices)
         return cls(sheet, formulas, roots, conditions, guards, domains, signs)
@@ -250,6 +250,8 @@ class _Run:
             ]
             batch += [(*a.shape[:-1], 1) for a in arguments]
             solved = program.solve(arguments, totals, np.broadcast_shapes(*batch, (self._size(column),)))
+            if solved.several and inherited.reshape(-1)[0] == Status.OK:
+                self.roots[column.name] = solved.several
             return solved.value, solved.status
         arguments = [self._argument(reference, column, kept) for reference in references]
         shape = np.broadcast_shapes(*(a.shape for a in arguments), inherited.shape)

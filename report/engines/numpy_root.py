@@ -1,27 +1,32 @@
 """The only root of an equation, for all rows at once, with NumPy.
 
-How many roots there are is decided first, by the signs of the equation between its turning points. Then
-every row takes the same number of fourth-order steps inside its bracket. A row that they leave anywhere but
-where rounding leaves nothing of the equation is bisected until no double is left between the ends.
+How many roots there are is decided first: by the signs of the equation between its turning points where it
+is certified to change sign once between them, else for each row by intervals. Then every row takes the same
+number of fourth-order steps inside its bracket. A row that they leave anywhere but where rounding leaves
+nothing of the equation is bisected until no double is left between the ends.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from sympy import Expr, Integer, Symbol
 
-from ..sheet import Axis, Root
+from ..intervals import Intervals, whole
+from ..sheet import Column, Reference, Root, Sheet
 from ..values import Status
+from .certified import certified, enclosing
+from .isolation import Isolated, isolate
 from .numpy_code import Array, Function, Kernel, Writer, totals_in, write
-from .numpy_rows import Kept
+from .numpy_rows import Kept, KeptIntervals
 from .roots import hoist, magnitude, step
 
-__all__ = ["RootProgram", "Solved"]
+__all__ = ["EnclosedRows", "RootProgram", "Solved"]
 
 Mask = NDArray[np.bool_]
 
@@ -38,9 +43,10 @@ class Solved:
     value : float array
         The cell's value; NaN where there is not one root.
     status : integer array
-        OK, NOROOT, TWOROOTS; DOMAIN where the equation has no sign.
+        OK, NOROOT, TWOROOTS, UNDECIDED; DOMAIN where the equation has no sign.
     several : mapping of position to tuple of float
-        For ambiguous rows, the values of all roots, increasing.
+        For ambiguous rows, the values of all roots, increasing; for undecided ones, the ends of the part of
+        the unknown's interval where it was not decided.
     bisected : int
         How many rows the steps did not settle.
     """
@@ -73,6 +79,9 @@ class RootProgram:
         The cell's value.
     source : str
         The text of all of them.
+    enclosing : Kernel or None
+        What intervals are put into (:func:`~loopsheet.report.engines.certified.enclosing`), where the number
+        of roots is not certified for all inputs at once.
     """
 
     rule: Root
@@ -83,11 +92,17 @@ class RootProgram:
     terms: Function
     value: Function
     source: str
+    enclosing: Kernel | None = None
 
     @classmethod
-    def of(cls, rule: Root, sums: Mapping[Symbol, Axis]) -> RootProgram:
+    def of(cls, sheet: Sheet, column: Column) -> RootProgram:
         """Print the functions of one root."""
-        writer = Writer(sums)
+        rule = column.rule
+        assert isinstance(rule, Root)
+        enclosed = None if certified(sheet, column) else enclosing(sheet, column)
+        if enclosed is not None:
+            rule = replace(rule, turning=())  # what nobody proved is not used
+        writer = Writer(sheet.indices)
         f, value = writer.plain(rule.expression), writer.plain(rule.value)
         unknown = writer.plain(rule.unknown)
         constants: dict[Expr, Symbol] = {}
@@ -108,7 +123,7 @@ class RootProgram:
             [f"# fixed\n{fixed.source}", *(f"# {n}\n{text}" for n, (text, _) in printed.items())]
         )
         at, go, terms, of_unknown = (function for _, function in printed.values())
-        return cls(rule, fixed, totals, at, go, terms, of_unknown, source)
+        return cls(rule, fixed, totals, at, go, terms, of_unknown, source, enclosed)
 
     # --- numbers --------------------------------------------------------------------------------------
 
@@ -129,9 +144,22 @@ class RootProgram:
         ends = [np.broadcast_to(end, shape) for end in fixed[: 5 + len(self.rule.turning)]]
         rows = _Rows(self, fixed[len(ends) :], [totals[axis] for axis in self.totals])
         stretches, odd = self._stretches(ends, rows)
-        number = sum(stretch.crosses.astype(np.uint8) for stretch in stretches)
+        doubts: Mapping[int, tuple[float, float]] = {}
+        if self.enclosing is not None:
+            thin = {
+                reference: Intervals(cell, cell)
+                for reference, cell in zip(self.fixed.references, arguments, strict=True)
+            }
+            masks = {axis: kept.mask for axis, kept in totals.items()}
+            cells = EnclosedRows(self.enclosing, thin, masks, shape)
+            stretches, doubts = self._isolated(ends, cells, odd)
+        doubtful = np.zeros(odd.size, dtype=bool)
+        doubtful[list(doubts)] = True
+        number = sum((stretch.crosses.astype(np.uint8) for stretch in stretches), np.zeros(shape, np.uint8))
         status = np.select(
-            [odd, number == 1, number > 1], [Status.DOMAIN, Status.OK, Status.TWOROOTS], Status.NOROOT
+            [odd, doubtful.reshape(shape), number == 1, number > 1],
+            [Status.DOMAIN, Status.UNDECIDED, Status.OK, Status.TWOROOTS],
+            Status.NOROOT,
         )
         crossings, alone = [stretch.crosses for stretch in stretches], status == Status.OK
         left = np.select(crossings, [stretch.left for stretch in stretches], np.nan)
@@ -139,9 +167,10 @@ class RootProgram:
         rising = np.select(crossings, [stretch.rising for stretch in stretches], np.nan)
         found, bisected = rows.narrow(left, right, rising, ends[_START], alone)
         value = np.where(alone, rows.call(self.value, found), np.nan)
-        several = {}
-        if not self.totals and len(shape) == 1:
-            several = self._several(stretches, rows, ends[_START], status == Status.TWOROOTS)
+        several: dict[int, tuple[float, ...]] = {}
+        if len(shape) == 1:
+            several |= self._several(stretches, rows, ends[_START], status == Status.TWOROOTS)
+            several |= {row: doubts[row] for row in np.flatnonzero(status == Status.UNDECIDED).tolist()}
         return Solved(value, status.astype(np.uint8), several, bisected)
 
     def _stretches(self, ends: Sequence[Array], rows: _Rows) -> tuple[list[_Stretch], Mask]:
@@ -162,6 +191,23 @@ class RootProgram:
             for (left, right), (before, after) in zip(pairwise(places), pairwise(signs), strict=True)
         ]
         return stretches, np.isnan(sum(signs))
+
+    def _isolated(
+        self, ends: Sequence[Array], cells: EnclosedRows, odd: Mask
+    ) -> tuple[list[_Stretch], Mapping[int, tuple[float, float]]]:
+        """A stretch for the first root of each row, one for the second, ...; and what was not decided."""
+        asked = np.flatnonzero(~odd)
+        low, high, _, *told = (end.reshape(-1)[asked] for end in ends)
+        signs = [np.sign(at) for at in told]  # 0 where the rule gives none
+        found = cells.isolate(asked, low, high, (signs[0], signs[1]))
+        stretches = []
+        for n in range(max([1, *map(len, found.brackets)])):
+            each = np.full((3, odd.size), np.nan)
+            for row, own in zip(asked, found.brackets, strict=True):
+                each[:, row] = own[n] if len(own) > n else np.nan
+            left, right, rising = each.reshape(3, *odd.shape)
+            stretches.append(_Stretch(left, right, rising, ~np.isnan(rising)))
+        return stretches, {int(asked[row]): part for row, part in found.undecided.items()}
 
     def _several(
         self, stretches: Sequence[_Stretch], rows: _Rows, start: Array, ambiguous: Mask
@@ -196,6 +242,95 @@ class _Stretch:
 
 
 @dataclass(frozen=True)
+class EnclosedRows:
+    """The cells that a root names, for intervals of the unknown of some rows.
+
+    Parameters
+    ----------
+    kernel : Kernel
+        The root's, from :func:`~loopsheet.report.engines.certified.enclosing`.
+    cells : mapping of Reference to Intervals
+    kept : mapping of axis name to boolean array (..., rows)
+        For the axes that it sums over, the rows that have values.
+    shape : tuple of int
+        Of the root's rows, batch first.
+    """
+
+    kernel: Kernel
+    cells: Mapping[Reference, Intervals]
+    kept: Mapping[str, Mask]
+    shape: tuple[int, ...]
+
+    def isolate(
+        self, asked: NDArray[np.intp], low: Array, high: Array, signs: tuple[Array, Array]
+    ) -> Isolated:
+        """The roots of some rows, numbered in the flattened shape."""
+        return isolate(lambda rows, a, b: self.enclose(asked[rows], a, b), low, high, signs)
+
+    def enclose(self, rows: NDArray[np.intp], low: Array, high: Array) -> tuple[Intervals, Intervals]:
+        """The equation and its slope, the slope whole where it does not tell the equation's course.
+
+        Parameters
+        ----------
+        rows : integer array (parts,)
+            In the flattened shape.
+        low, high : float arrays (parts,)
+        """
+        terms = max((c.shape[-1] for r, c in self.cells.items() if r.over is not None), default=1)
+        each = max(1, _BLOCK // max(1, terms))
+        blocks = [slice(n, n + each) for n in range(0, max(len(rows), 1), each)]
+        found = [self._block(rows[block], low[block], high[block]) for block in blocks]
+        values, slopes = zip(*found, strict=True)
+        return _joined(values), _joined(slopes)
+
+    def _block(self, rows: NDArray[np.intp], low: Array, high: Array) -> tuple[Intervals, Intervals]:
+        middle = low + (high - low) / 2
+        batch = rows // self.shape[-1]
+
+        named = {reference.place: cell for reference, cell in self.cells.items()}
+
+        def of_rows(end: Array) -> Array:
+            return np.broadcast_to(end, self.shape).reshape(-1)[rows][:, None]
+
+        def of_terms(end: Any) -> Any:
+            if end.ndim == 1:
+                return end
+            return np.broadcast_to(end, (*self.shape[:-1], end.shape[-1])).reshape(-1, end.shape[-1])[batch]
+
+        def cell(reference: Reference) -> Intervals | None:
+            if reference.place not in named:
+                return None  # the unknown
+            found, take = named[reference.place], of_rows if reference.over is None else of_terms
+            return Intervals(take(found.low), take(found.high))
+
+        given = [cell(reference) for reference in self.kernel.references]
+        sums = [KeptIntervals(of_terms(self.kept[axis])) for axis in self.kernel.totals]
+
+        def at(left: Array, right: Array) -> list[Intervals]:
+            here = Intervals(left[:, None], right[:, None])
+            try:
+                run: Any = self.kernel.run
+                parts = run(*(here if each is None else each for each in given), *sums)
+            except TypeError:  # intervals do not know some function
+                parts = (whole((1,)), whole((1,)), 0)
+            return [Intervals.of(part).broadcast((len(rows), 1))[:, 0] for part in parts]
+
+        with np.errstate(all="ignore"):
+            value, slope, known = at(low, high)
+            slope = slope.where(known.low == 1)
+            mean = at(middle, middle)[0] + slope * (Intervals(low, high) - Intervals(middle, middle))
+        return value.within(mean), slope
+
+
+_BLOCK = 1 << 18
+"""How many terms are put into intervals at a time."""
+
+
+def _joined(parts: Sequence[Intervals]) -> Intervals:
+    return Intervals(*(np.concatenate([getattr(part, end) for part in parts]) for end in ("low", "high")))
+
+
+@dataclass(frozen=True)
 class _Rows:
     """The functions of a root with the constants of some rows."""
 
@@ -209,6 +344,8 @@ class _Rows:
 
     def only(self, which: NDArray[np.intp], shape: tuple[int, ...]) -> _Rows:
         """Fewer rows, by their positions in the flattened shape."""
+        if self.totals:
+            return self  # the constants of a sum belong to its terms, and there is one row
         fewer = [
             c.reshape(()) if c.size == 1 else np.broadcast_to(c, shape).reshape(-1)[which]
             for c in self.constants

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Kept"]
+from ..intervals import Intervals
+
+__all__ = ["Kept", "KeptIntervals"]
 
 
 @dataclass(frozen=True)
@@ -52,3 +54,29 @@ class Kept:
     def _every(self, terms: Any) -> Any:
         # A term that names no row is the same for all.
         return np.broadcast_to(terms, np.broadcast_shapes(np.shape(terms), self.mask.shape[-1:]))
+
+
+@dataclass(frozen=True)
+class KeptIntervals:
+    """The same for a function that runs on intervals.
+
+    Parameters
+    ----------
+    mask : boolean array (..., rows)
+    """
+
+    mask: NDArray[np.bool_]
+
+    def total(self, terms: Any) -> Intervals:
+        """The sum of the kept rows (..., 1)."""
+        every = self._every(terms)
+        return Intervals(*(np.where(self.mask, end, 0.0) for end in (every.low, every.high))).total()
+
+    def median(self, terms: Any) -> Intervals:
+        """The median, of all rows."""
+        low, high = self._every(terms).middle()
+        return (low + high) / 2  # type: ignore[no-any-return]
+
+    def _every(self, terms: Any) -> Intervals:
+        terms = Intervals.of(terms)
+        return terms.broadcast(np.broadcast_shapes(terms.shape, self.mask.shape))  # type: ignore[no-any-return]

@@ -53,6 +53,9 @@ def _column(report: Report, column: Column) -> dict[str, Any]:
         labels = report.values.layouts[column.axis.name].labels.tolist()
         index = [label[0] for label in labels] if len(labels[0]) == 1 else labels
         entry |= {"axis": column.axis.name, "index": index, "value": numbers, "status": codes}
+    if column.name in report.values.roots:
+        reasons = [cell.reason or None for cell in report.values.cells(column.name)]
+        entry["reason"] = reasons[0] if column.axis is None else reasons
     if isinstance(column.rule, Given):
         entry["u"] = _given_uncertainty(report, column)
     if column.limits:

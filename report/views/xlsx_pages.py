@@ -108,7 +108,9 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
         "(the column check says what is wrong, however it came into its cell), #DOMAIN! outside the "
         "equation's domain, #NOROOT! no value satisfies it, #TWOROOTS! several do, #OVERFLOW! there is a "
         "value, but it or a step towards it is too large or too small for any cell, #STEPS! the steps of "
-        "this workbook do not reach the root (the page goes on until it is reached). "
+        "this workbook do not reach the root (the page goes on until it is reached), "
+        "#UNDECIDED! the number of roots is not certain; where it was counted for the inputs as issued, and "
+        "they were changed since, build the report again. "
         "What depends on such a cell shows its code; a sum leaves such rows out and says from how many it "
         "was made.",
         "Numbers are stored in full; only what is shown is rounded, to the digits that the inputs warrant.",

@@ -44,6 +44,12 @@ def write_block(
     form = style("step") if block.kind == "step" else style(name, _number_format(report, block))
     for row, (formula, value) in enumerate(zip(block.formulas, block.values, strict=True)):
         style.formula(sheet, place.row + row, place.column, formula, value, form, block.array)
+    if block.kind == "computed":
+        # No formula names the roots that there are; as issued they are known.
+        values, labels = report.values, report.values.labels(report.sheet[block.name])
+        for row in values.roots.get(block.name, {}):
+            reason = values.cell(block.name, labels[row]).reason
+            sheet.write_comment(place.row + row, place.column, f"as issued: {reason}", {"x_scale": 3})
 
 
 def _number_format(report: Report, block: Block) -> str:
@@ -165,7 +171,7 @@ def write_steps(sheet: Any, style: Style, report: Report, grid: Grid) -> None:
         sheet,
         1,
         0,
-        "Every engine takes the same steps; here each of their quantities has a cell.",
+        "NumPy takes the same steps; here each of their quantities has a cell.",
         "subtitle",
     )
     sheet.set_column(0, 0, 12)

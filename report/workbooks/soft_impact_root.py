@@ -52,6 +52,7 @@ def alpha_rule(where: Cells) -> Root:
         sign_low=cells(XP[2] - XP[1]),
         sign_high=cells(Piecewise((at_one, livelier < 1), (E[2] - E[1], Ne(E[1], E[2])), (equal_e, True))),
         turning=(cells(_turning()),),
+        turning_by=(alpha_root.log_form, alpha_root.slope),
         start=cells(_start()),
         steps=4,
         none="no exponent above 0 gives both tests a positive approach on one loading curve; "

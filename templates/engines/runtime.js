@@ -2,10 +2,9 @@
 // Evaluates a sheet in plain JavaScript. `program` is generated from the declaration that every other engine
 // is generated from: its index sets and, for each column, functions of a row. Nothing here knows a model.
 
-const STATUS = { OK: 0, INPUT: 1, DOMAIN: 2, NOROOT: 3, TWOROOTS: 4, OVERFLOW: 5 };
-const NOISE = 16 * Number.EPSILON; // the share of its terms below which rounding hides a form
+const STATUS = { OK: 0, INPUT: 1, DOMAIN: 2, NOROOT: 3, TWOROOTS: 4, OVERFLOW: 5, UNDECIDED: 6 };
 const BLOCK = 16; // rows that a sum adds as they come
-const CODES = ["ok", "#INPUT!", "#DOMAIN!", "#NOROOT!", "#TWOROOTS!", "#OVERFLOW!"];
+const CODES = ["ok", "#INPUT!", "#DOMAIN!", "#NOROOT!", "#TWOROOTS!", "#OVERFLOW!", "#UNDECIDED!"];
 const SMALLEST = 2 ** -1022; // the least positive number with all its digits
 
 // The rows of an index set, and for each index that formulas use the rows that it names.
@@ -61,10 +60,10 @@ function median(kept, term) {
   return (all[(length - 1) >> 1] + all[length >> 1]) / 2;
 }
 
-// The only root of a form in its interval: counted first by the signs between turning points, then taken in
-// fixed steps inside the bracket.
+// The only root of a form in its interval: counted first by the signs between turning points, or with intervals
+// where nothing is known of those, then halved out of the bracket.
 function solveRoot(root, row) {
-  const [low, high, start, atLow, atHigh, ...turning] = root.ends(row);
+  const [low, high, atLow, atHigh, ...turning] = root.ends(row);
   const places = [low], signs = [Math.sign(atLow ?? root.at(row, low))];
   for (const point of turning) {
     if (point > places[places.length - 1] && point < high) {
@@ -75,26 +74,10 @@ function solveRoot(root, row) {
   places.push(high);
   signs.push(Math.sign(atHigh ?? root.at(row, high)));
   if (signs.some(Number.isNaN)) return null; // outside the domain
-  const found = [];
-  for (let n = 0; n + 1 < places.length; n++) {
-    if (signs[n] * signs[n + 1] < 0) {
-      found.push(root.value(row, polish(root, row, places[n], places[n + 1], signs[n + 1], start)));
-    }
-  }
-  return found;
-}
-
-function polish(root, row, left, right, rising, start) {
-  let here = start > left && start < right ? start : (left + right) / 2;
-  for (let n = 0; n < root.steps; n++) {
-    const [f, step, terms] = root.step(row, here), there = here - step;
-    if (f * rising > 0) right = here;
-    if (f * rising <= 0) left = here;
-    // Where rounding leaves nothing of the form, this step was the last; it may leave the bracket by an ulp.
-    if (Math.abs(f) <= NOISE * terms) return Number.isFinite(there) ? Math.min(Math.max(there, left), right) : here;
-    here = there >= left && there <= right ? there : (left + right) / 2;
-  }
-  return bisect(root, row, left, right, rising);
+  const brackets = root.isolate
+    ? root.isolate(root, row, low, high, [atLow, atHigh])
+    : signs.flatMap((sign, n) => (sign * signs[n - 1] < 0 ? [[places[n - 1], places[n], sign]] : []));
+  return brackets[0] === null ? brackets : brackets.map(([left, right, rising]) => root.value(row, bisect(root, row, left, right, rising)));
 }
 
 function bisect(root, row, left, right, rising) {
@@ -144,13 +127,13 @@ function evaluateSheet(program, labels, inputs) {
       codes[row] = STATUS.DOMAIN;
       note("broken", row, failed);
     }
-    const root = { ...kernels, steps: column.steps };
     const only = (row) => {
-      const found = solveRoot(root, row);
+      const found = solveRoot(kernels, row);
       if (found?.length === 0) codes[row] = STATUS.NOROOT;
       if (found?.length > 1) {
-        codes[row] = STATUS.TWOROOTS;
-        note("roots", row, found.sort((a, b) => a - b));
+        const doubt = found[0] === null;
+        codes[row] = doubt ? STATUS.UNDECIDED : STATUS.TWOROOTS;
+        note("roots", row, found.slice(+doubt).sort((a, b) => a - b));
       }
       return found?.length === 1 ? found[0] : NaN;
     };

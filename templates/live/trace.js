@@ -93,12 +93,15 @@ class Trace {
 
   // Why a cell where an error begins has no value.
   why(name, row) {
-    const { source, none, two, requires } = this.columns[name], status = this.sheet.status[name][row];
+    const { source, none, two, unknown, requires } = this.columns[name], status = this.sheet.status[name][row];
+    const roots = Array.from(this.sheet.roots[name]?.[row] ?? [], brief);
     if (status === STATUS.INPUT) return this.sheet.refused[name]?.[row] ?? "the datum is missing or invalid";
     if (status === STATUS.NOROOT) return `${source} has no root here: ${none}`;
     if (status === STATUS.TWOROOTS) {
-      const roots = Array.from(this.sheet.roots[name]?.[row] ?? [], brief).join(" and ");
-      return `${source} has more than one root here: ${roots ? `${roots} (${two})` : two}`;
+      return `${source} has more than one root here: ${roots.join(" and ")} (${two})`;
+    }
+    if (status === STATUS.UNDECIDED) {
+      return `the roots of ${source} cannot be counted near ${unknown ?? name} = ${[...new Set(roots)].join(" to ")}: it may touch zero, jump, or cross it too often`;
     }
     if (status === STATUS.OVERFLOW) return `${source} has a value here that no double holds: ${BEYOND}`;
     return `outside the domain of ${source}: ${this.outside(name, row, requires ?? [])}`;

@@ -8,7 +8,7 @@ import re
 import subprocess
 import zipfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, cached_property
 from pathlib import Path
@@ -20,9 +20,10 @@ from loopsheet.report import build
 from loopsheet.report.analysis.readers import ALWAYS_RECALCULATE
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
+from loopsheet.report.engines.certified import certified
 from loopsheet.report.grid import Drawn, Grid, checked
 from loopsheet.report.result import Report
-from loopsheet.report.sheet import Given, RepeatAxis, Sheet
+from loopsheet.report.sheet import Given, RepeatAxis, Root, Sheet
 from loopsheet.report.values import CODES, Status, Values
 from loopsheet.report.views import xlsx
 from loopsheet.report.workbooks import soft_impact_charts
@@ -85,7 +86,27 @@ class Delivered:
                 fixed = column.name in self.counts and cells[0] != block.values[0]
                 data[column.name] = np.array([np.nan if fixed else float(x) for x in numbers])
         labels = {a.name: self.report.inputs.tests for a in self.whole.axes if not a.parents}
-        return engine.evaluate(self.whole, labels, data, self.program)
+        values = engine.evaluate(self.whole, labels, data, self.program)
+        changed = {name for (name, row), value in edits.items() if value != self.grid[name].values[row]}
+        return self._as_counted(values, changed)
+
+    def _as_counted(self, values: Values, changed: set[str]) -> Values:
+        """After an edit no formula counts roots: where they were counted row by row, nothing is certain."""
+        value, status = dict(values.value), dict(values.status)
+        lost: set[str] = set()
+        for column in self.whole.order:
+            named = {precedent.name for precedent in self.whole.precedents(column)}
+            if isinstance(column.rule, Root) and not certified(self.whole, column):
+                here = {c.name for c in self.whole.ancestors(column)} & changed
+                fresh = np.array([cell.culprit is None for cell in values.cells(column.name)])
+            else:
+                here = named & lost
+                fresh = status[column.name] == Status.OK
+            if here:
+                lost.add(column.name)
+                status[column.name] = np.where(fresh, Status.UNDECIDED, status[column.name]).astype(np.uint8)
+                value[column.name] = np.where(fresh, np.nan, value[column.name])
+        return replace(values, value=value, status=status)
 
     @property
     def counts(self) -> set[str]:

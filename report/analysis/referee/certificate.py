@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...conditions import conditions
+from ...intervals import Intervals
 from ...sheet import SheetError
 from ..enclosure import Enclosure, slope_kernels
-from ..intervals import Intervals
 from .campaign import Array
 from .problem import Box, Problem
 

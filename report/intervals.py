@@ -230,6 +230,21 @@ def _rising(function: Callable[[Array], Array]) -> Callable[[Intervals], Interva
     return lambda a: _loosely(function(a.low), function(a.high))
 
 
+def _cos(a: Intervals) -> Intervals:
+    # Which multiples of pi may lie inside, where the cosine is 1 or -1: rather one too many.
+    first, last = np.ceil(a.low / np.pi - 1e-9), np.floor(a.high / np.pi + 1e-9)
+    known = (np.abs(a.low) < 1e6) & (np.abs(a.high) < 1e6) & (last - first < 1)
+    ends, even = (np.cos(a.low), np.cos(a.high)), first % 2 == 0
+    low = np.where((first == last) & ~even, -1.0, np.minimum(*ends) - WIDER)
+    high = np.where((first == last) & even, 1.0, np.maximum(*ends) + WIDER)
+    return _cleaned(np.where(known, np.maximum(low, -1.0), -1.0), np.where(known, np.minimum(high, 1.0), 1.0))
+
+
+def _sin(a: Intervals) -> Intervals:
+    quarter = Intervals(np.array(_below(np.pi / 2)), np.array(_above(np.pi / 2)))
+    return _cos(_UFUNCS["subtract"](a, quarter))
+
+
 def _truth(certain: Any, possible: Any) -> Intervals:
     return Intervals(np.where(certain, 1.0, 0.0), np.where(possible, 1.0, 0.0))
 
@@ -273,10 +288,16 @@ _UFUNCS: dict[str, Callable[..., Intervals]] = {
     "sqrt": _sqrt,
     "exp": _exp,
     "log": _log,
+    "cos": _cos,
+    "sin": _sin,
+    "cosh": lambda a: _loosely(np.cosh(_absolute(a).low), np.cosh(_absolute(a).high)),
     **{
         function.__name__: _rising(function)
         for function in (np.expm1, np.log1p, np.cbrt, np.arctan, np.sinh, np.tanh, np.arcsinh)
     },
+    "floor": lambda a: Intervals(np.floor(a.low), np.floor(a.high)),
+    "ceil": lambda a: Intervals(np.ceil(a.low), np.ceil(a.high)),
+    "heaviside": lambda a, _: _truth(a.low > 0, a.high >= 0),
     "minimum": _smaller,
     "maximum": _larger,
     "less": _less,

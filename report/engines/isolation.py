@@ -1,0 +1,156 @@
+"""How many roots each row has, and where: branch and bound with intervals of an equation and of its slope.
+
+A part of the interval is settled where the equation is certainly not zero, or certainly rises, or certainly
+falls; any other is halved. Between parts where it is not zero it then crosses zero once if its signs there
+differ, and never if they do not. What remains of a row after all halvings, such as a double root, where the
+equation touches zero, leaves it undecided: nothing is guessed.
+
+Source: R. E. Moore, R. B. Kearfott and M. J. Cloud, Introduction to Interval Analysis, SIAM, 2009, chapter 8.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..intervals import Intervals
+
+__all__ = ["HALVINGS", "Doubtful", "Isolated", "crossings", "isolate"]
+
+Array = NDArray[np.float64]
+Enclose = Callable[[NDArray[np.intp], Array, Array], tuple[Intervals, Intervals]]
+
+HALVINGS = 48
+"""How often a part is halved before it is given up."""
+CROWD = 64
+"""How many parts of a row may be unsettled at a time."""
+
+
+class Doubtful(Exception):
+    """The roots in a part of an interval could not be counted."""
+
+    def __init__(self, low: Any, high: Any) -> None:
+        self.part = (low, high)
+
+
+@dataclass
+class Isolated:
+    """The roots of every row, each between two points where the equation certainly has a sign.
+
+    Parameters
+    ----------
+    brackets : list of tuple (left, right, sign at the right end), one list a row
+        Increasing.
+    undecided : mapping of row to (low, high)
+        The part of the interval in which the roots of a row could not be counted.
+    """
+
+    brackets: list[list[tuple[float, float, float]]]
+    undecided: dict[int, tuple[float, float]] = field(default_factory=dict)
+
+    def doubt(self, row: int, low: float, high: float) -> None:
+        """Leave a row undecided because of a part of its interval."""
+        before = self.undecided.get(row, (low, high))
+        self.undecided[row] = (min(low, before[0]), max(high, before[1]))
+
+
+def isolate(enclose: Enclose, low: Array, high: Array, signs: tuple[Array, Array]) -> Isolated:
+    """Isolate all roots of the open intervals.
+
+    Parameters
+    ----------
+    enclose : callable
+        For numbers of rows and the ends of a part of each: an interval that holds the equation's values there
+        and one that holds its slope, all of the numbers where the equation may not be continuous.
+    low, high : float arrays (rows,)
+    signs : tuple of float array (rows,)
+        The equation's signs at both ends where intervals cannot tell them; 0 where nobody can.
+    """
+    rows = np.arange(len(low))
+    found = Isolated([[] for _ in rows])
+    if not rows.size:
+        return found
+    first, last = (
+        np.where(at.sign == 0, told, at.sign)
+        for at, told in zip((enclose(rows, end, end)[0] for end in (low, high)), signs, strict=True)
+    )
+    settled: list[Any] = []
+    rows = np.flatnonzero(low < high)
+    a, b = low[rows], high[rows]
+    for _ in range(HALVINGS):
+        value, slope = enclose(rows, a, b)
+        middle = a + (b - a) / 2
+        done = (value.sign != 0) | (slope.sign != 0)
+        settled.append([each[done] for each in (rows, a, b, value.sign, slope.sign)])
+        rows, a, b, middle = (each[~done] for each in (rows, a, b, middle))
+        crowded = np.bincount(rows, minlength=len(low))[rows] > CROWD
+        whole = crowded | ~((middle > a) & (middle < b))
+        for row, left, right in zip(*(each[whole].tolist() for each in (rows, a, b)), strict=True):
+            found.doubt(row, left, right)
+        # Of a row that is given up nothing more is asked.
+        kept = ~np.isin(rows, list(found.undecided))
+        rows, a, b, middle = (each[kept] for each in (rows, a, b, middle))
+        if not rows.size:
+            break
+        rows, a, b = np.tile(rows, 2), np.concatenate([a, middle]), np.concatenate([middle, b])
+    for row, left, right in zip(rows.tolist(), a.tolist(), b.tolist(), strict=True):
+        found.doubt(row, left, right)
+    parts = [np.concatenate(each) for each in zip(*settled, strict=True)]
+    order = np.lexsort((parts[1], parts[0]))
+    by_row: list[list[Any]] = [[] for _ in low]
+    for row, *part in zip(*(each[order].tolist() for each in parts), strict=True):
+        by_row[row].append(part)
+    for row, own in enumerate(by_row):
+        if own and row not in found.undecided:
+            try:
+                found.brackets[row] = crossings((low[row], high[row]), (first[row], last[row]), own)
+            except Doubtful as doubtful:
+                found.doubt(row, *doubtful.part)
+    return found
+
+
+def crossings(
+    ends: tuple[Any, Any], signs: tuple[Any, Any], parts: Iterable[Sequence[Any]]
+) -> list[tuple[Any, Any, Any]]:
+    """Follow the settled parts of an interval from the left, and note where the sign changes.
+
+    Parameters
+    ----------
+    ends : tuple of numbers
+        Of the interval.
+    signs : tuple of numbers
+        The equation's there; 0 where it is not known.
+    parts : iterable of (left, right, sign, sign of the slope)
+        All of the interval, in order; a sign is 0 where it is not certain.
+
+    Returns
+    -------
+    list of (left, right, sign at the right end)
+        Each holds one root.
+
+    Raises
+    ------
+    Doubtful
+        There is a part of which nothing is certain, or the sign beside one that rises or falls is not known.
+    """
+    found = []
+    place, before, way = ends[0], signs[0], 0
+    for left, right, sign, slope in [*parts, (ends[1], ends[1], signs[1], 0)]:
+        if sign == 0 and way * slope >= 0 and slope:
+            way = slope
+            continue
+        if sign == 0 and left < right:
+            raise Doubtful(left, right)
+        if left > place:
+            if before * sign == 0:
+                raise Doubtful(place, left)
+            if before * sign < 0:
+                found.append((place, left, sign))
+        elif before * sign < 0:
+            raise Doubtful(place, place)  # a jump
+        place, before, way = right, sign, 0
+    return found
