@@ -11,16 +11,21 @@ from typing import Any
 import mpmath
 import numpy as np
 from random_campaigns import SHEETS, Broken, Campaign, Node, judge_of, laid_out, numpy_reads
+from sympy import Float, Indexed, preorder_traversal
 
 from loopsheet.report.analysis.engines import EPS, LIMIT, Judge
 from loopsheet.report.analysis.readers import Reading
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
+from loopsheet.report.engines.domain import LARGEST, SMALLEST
 from loopsheet.report.engines.numpy import Program
-from loopsheet.report.sheet import Column
-from loopsheet.report.values import CODES
+from loopsheet.report.layout import rows_of
+from loopsheet.report.sheet import Column, Formula, name_of
+from loopsheet.report.values import CODES, Status
 
 __all__ = ["Tally", "compare"]
+
+_OVERFLOW = CODES[Status.OVERFLOW]
 
 
 @dataclass
@@ -91,7 +96,7 @@ def excuse(campaign: Campaign, judge: Judge, reading: Reading, findings: Sequenc
     """Why the first cells that differ from 50 digits are right all the same; empty if they are not.
 
     Roundings decide: cells that are a few of them off have the same code at 50 digits too, or where a number
-    differs, they have none, or one that has little to do with it.
+    differs, they have none, or one that has little to do with it. Or a step on the way is beyond doubles.
     """
     places = {
         place: (name, row) for name in judge.addresses for row, place in enumerate(judge.addresses[name])
@@ -102,6 +107,9 @@ def excuse(campaign: Campaign, judge: Judge, reading: Reading, findings: Sequenc
     name = found[0][0]
     rows = [row for other, row in found if other == name]
     true, codes, theirs = judge.judged.value[name], judge.judged.status[name], reading.status[name]
+
+    if all(theirs[row] == _OVERFLOW and _steps_beyond(campaign, judge, name, row) for row in rows):
+        return "steps"
 
     def decided(row: int, off: exact.ExactValues) -> bool:
         if theirs[row] != CODES[codes[row]]:
@@ -116,6 +124,22 @@ def excuse(campaign: Campaign, judge: Judge, reading: Reading, findings: Sequenc
         if not rows:
             return "roundings"
     return ""
+
+
+def _steps_beyond(campaign: Campaign, judge: Judge, name: str, row: int) -> bool:
+    """Whether a step towards a value of a formula is one that no double holds: that has the same code."""
+    column, layouts, cells = judge.sheet[name], laid_out(campaign), {}
+    if not isinstance(column.rule, Formula) or judge.judged.value[name][row] is None:
+        return False
+    for reference in judge.sheet.named(column):
+        if reference.over is not None:
+            return False
+        rows = rows_of(reference.cell, column.axis, layouts)
+        at = row if isinstance(reference.cell, Indexed) else 0
+        value = judge.judged.value[name_of(reference.cell)][at if rows is None else rows[row]]
+        cells[reference.cell] = Float(value, exact.DIGITS)
+    steps = (step.xreplace(cells) for step in preorder_traversal(column.rule.expression))
+    return any(step.is_number and not SMALLEST <= abs(step) < LARGEST for step in steps if step != 0)
 
 
 def reasons_decided(campaign: Campaign, ours: Broken, theirs: Broken) -> bool:

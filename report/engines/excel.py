@@ -12,7 +12,7 @@ from decimal import Decimal
 from functools import reduce
 from typing import Any
 
-from sympy import Add, Basic, Expr, Function, Indexed, Integer, Mul, Pow, Rational, Sum, Symbol
+from sympy import Add, Basic, Expr, Function, Integer, Mul, Pow, Rational, Sum
 from sympy.logic.boolalg import BooleanFunction
 from sympy.printing.printer import Printer as SympyPrinter
 
@@ -183,9 +183,6 @@ class Printer(SympyPrinter):
             return f"1/{self._divisor(Pow(base, -exponent))}"
         if exponent == Rational(1, 2):
             return f"SQRT({self._print(base)})"
-        if exponent == 2 and isinstance(base, (Symbol, Indexed)):
-            # A product too small for a double is zero; of a power too small, LibreOffice makes an error.
-            return f"({self._print(base)}*{self._print(base)})"
         return f"{_enclosed(self._print(base))}^{_enclosed(self._print(exponent))}"
 
     def _print_Function(self, expr: Expr) -> str:
@@ -194,10 +191,7 @@ class Printer(SympyPrinter):
             return self.emptyPrinter(expr)
         return f"{FUNCTIONS[name]}({self._print(expr.args[0])})"
 
-    _print_exp = _print_log = _print_Abs = _print_Function
-
-    def _print_sign(self, expr: Expr) -> str:
-        return f"{FUNCTIONS['sign']}({self._print(expr.args[0]) if self.rows else self.added(expr.args[0])})"
+    _print_exp = _print_log = _print_Abs = _print_sign = _print_Function
 
     def _print_IfError(self, expr: Expr) -> str:
         return f"IFERROR({self._print(expr.args[0])},{self._print(expr.args[1])})"
@@ -234,9 +228,6 @@ class Printer(SympyPrinter):
 
     def _print_Relational(self, expr: Expr) -> str:
         relation = {"==": "=", "!=": "<>"}.get(expr.rel_op, expr.rel_op)
-        if not self.rows and all(isinstance(side, (Symbol, Indexed)) for side in expr.args):
-            # Spreadsheets call numbers equal that differ in their last digits; SUM rounds nothing.
-            return f"{self.added(expr.lhs - expr.rhs)}{relation}0"
         return f"{self._side(expr.lhs)}{relation}{self._side(expr.rhs)}"
 
     def _side(self, expr: Expr) -> str:

@@ -232,7 +232,7 @@ class _Unrolling:
             told = self.add(
                 f"form_{name}", "form", f"value of the form {where}", self.at(place), residual=True
             )
-        return self.add(f"sign_{name}", "sign", f"sign of the form {where}", _sign_of(told))
+        return self.add(f"sign_{name}", "sign", f"sign of the form {where}", sign(told))
 
     def bracket(
         self, places: Sequence[Symbol], signs: Sequence[Symbol]
@@ -285,10 +285,3 @@ class _Unrolling:
         moved = Piecewise((here, Eq(f, 0)), (there, inside), (middle, True))
         says = "the unknown after the step; a step out of the bracket is replaced by its middle"
         return left, right, self.place(f"u_{n}", self.lowered(n), says, IfError(moved, middle))
-
-
-def _sign_of(form: Expr) -> Expr:
-    """The sign of an expression by that of each of its cases: of a difference, no digit is lost to it."""
-    if isinstance(form, Piecewise):
-        return Piecewise(*((_sign_of(case), condition) for case, condition in form.args))
-    return sign(form)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from campaign_books import workbook_reads
@@ -41,11 +42,10 @@ def test_page_workbook_and_numpy_say_what_fifty_digits_say(
     summary: Callable[[str], None],
     size: int,
 ) -> None:
-    number, how = sizes.workbooks[size], {}
-    if (
-        number < 30
-    ):  # formulas for other parameters, or another number of rows, take longer to print than to run
-        how = {"variants": (size % 2,), "points": (2,)}
+    number = sizes.workbooks[size]
+    how: dict[str, Any] = {"most": 15}  # spreadsheets call numbers equal that differ in later digits
+    if number < 30:  # formulas for other parameters, or more rows, take longer to print than to run
+        how |= {"variants": (size % 2,), "points": (2,)}
     campaigns = [
         campaign
         for kind, share in shares(size, number).items()

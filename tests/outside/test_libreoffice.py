@@ -105,13 +105,12 @@ class Office:
 
 
 def mutated(content: bytes, cell: str) -> bytes:
-    """The workbook with one character of one formula changed: a square of e becomes twice e."""
+    """The workbook with one character of one formula changed: a square of e becomes a cube."""
     files = spreadsheets.parts(content)
     name = spreadsheets.part_of(files, "tests")
     text = files[name].decode()
-    e = re.escape(cell)
-    square = rf"(<f>IF\([^<]*1022\),[^<]*?\({e})\*({e}\)[^<]*</f>)"
-    changed, found = re.subn(square, r"\1+\2", text, count=1)
+    square = rf"(<f>IF\([^<]*1022\),[^<]*?\({re.escape(cell)}\)\^\()2(\)[^<]*</f>)"
+    changed, found = re.subn(square, r"\g<1>3\2", text, count=1)
     assert found == 1
     assert sum(a != b for a, b in zip(text, changed, strict=True)) == 1
     files[name] = changed.encode()
