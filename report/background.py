@@ -8,10 +8,11 @@ import multiprocessing
 import os
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from typing import Generic, TypeVar
 
-from .stopping import Stopped, stoppable_worker, unstoppable
+from .stopping import unstoppable, worker
 
 __all__ = ["Background"]
 
@@ -77,13 +78,13 @@ class Background(Generic[T]):
 
 
 def _run(work: Callable[[], T], sender: Connection, parent: int) -> None:
-    stoppable_worker(parent)
-    gc.freeze()  # what was inherited is no garbage, and looking at it would copy it
-    try:
+    def send() -> None:
+        gc.freeze()  # what was inherited is no garbage, and looking at it would copy it
         try:
             outcome: tuple[object, Exception | None] = (work(), None)
         except Exception as error:
             outcome = (None, error)
-        sender.send(outcome)
-    except (Stopped, BrokenPipeError):
-        pass  # nobody waits for it
+        with suppress(BrokenPipeError):  # nobody waits for it
+            sender.send(outcome)
+
+    worker(parent, send)

@@ -7,12 +7,12 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any, NoReturn
 
-__all__ = ["Stopped", "stoppable", "stoppable_worker", "unstoppable"]
+__all__ = ["Stopped", "stoppable", "unstoppable", "worker"]
 
 _SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 _PATIENCE = 10.0
@@ -54,8 +54,17 @@ class _Stop:
         if not isinstance(found.exc_value, Stopped):
             sys.__unraisablehook__(found)
             return
-        self.raised, number = -_PATIENCE, found.exc_value.number
-        threading.Timer(0.01, os.kill, (os.getpid(), number)).start()
+        self.raised = -_PATIENCE
+        self.shields += 1  # here it would be lost again
+        threading.Thread(target=self.again, args=(found.exc_value.number,), daemon=True).start()
+        self.shields -= 1
+
+    def again(self, number: int) -> None:
+        """Send a signal to ourselves once it can be heeded."""
+        while self.shields:
+            time.sleep(0.01)
+        time.sleep(0.05)
+        os.kill(os.getpid(), number)
 
 
 _stop = _Stop()
@@ -95,8 +104,8 @@ def unstoppable() -> Iterator[None]:
         _stop.throw(_stop.waiting)
 
 
-def stoppable_worker(parent: int) -> None:
-    """Let a process that was just forked, in an unstoppable block, end with its parent and not before.
+def worker(parent: int, work: Callable[[], None]) -> None:
+    """Work in a process that was just forked, in an unstoppable block: it ends with its parent, not before.
 
     What a terminal sends to all is for the parent, which ends its workers by SIGTERM. If the parent is
     killed, nobody does: then the worker tells itself.
@@ -105,11 +114,20 @@ def stoppable_worker(parent: int) -> None:
     ----------
     parent : int
         Its process number.
+    work : callable
     """
     for number in _SIGNALS:
         signal.signal(number, _stop if number == signal.SIGTERM else signal.SIG_IGN)
-    _stop.shields = _stop.waiting = 0
     threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+    try:
+        _stop.shields = 0
+        if _stop.waiting:
+            _stop.throw(_stop.waiting)
+        work()
+    except Stopped:
+        pass  # nobody waits for it
+    finally:
+        _stop.shields = 1  # it ends anyway
 
 
 def _end_with(parent: int) -> None:

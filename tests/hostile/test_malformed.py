@@ -6,6 +6,7 @@ import copy
 import json
 import random
 import shutil
+import sys
 import traceback
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
@@ -79,6 +80,15 @@ def test_a_parameter_that_the_sheet_wants_is_missing(
     told = capsys.readouterr().err
     assert "error[LS204]: the key 'theta' is missing in [parameters]" in told
     assert 'write theta = "1.0 K"' in told
+
+
+def test_a_difference_that_no_double_holds_is_one(tmp_path: Path) -> None:
+    end_gauge(tmp_path, "source,cell,index,value,unit\nH.1,l,1,1e-290,mm\n")
+    toml = tmp_path / "report.toml"
+    toml.write_text(toml.read_text().replace('"50.000623 mm"', '"1e150 mm"'))
+    (comparison,) = build.compute(tmp_path, prove=False).comparisons
+    assert comparison.verdict == "differs"
+    assert comparison.distance == sys.float_info.max
 
 
 @pytest.mark.campaigns

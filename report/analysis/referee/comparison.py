@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import replace
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -80,9 +81,15 @@ def _compare(published: PublishedValue, values: Values) -> Comparison:
         again, distance, verdict = cell.status.code, None, "not-checkable"
     else:
         again = print_as(cell.value, printed)
-        distance = float((Fraction(cell.value) - printed.value) / (2 * printed.half_unit))
+        distance = _double((Fraction(cell.value) - printed.value) / (2 * printed.half_unit))
         verdict = "same" if prints_same(cell.value, printed) else "differs"
     return Comparison(published, cell, again, distance, verdict, _finding(published, again, verdict))
+
+
+def _double(number: Fraction) -> float:
+    """The nearest double: the largest there is for what is larger."""
+    most = Fraction(sys.float_info.max)
+    return float(max(-most, min(number, most)))
 
 
 def _finding(published: PublishedValue, again: str, verdict: str) -> str:

@@ -198,7 +198,8 @@ class Problem:
 
     def mismatch(self, cells: Array) -> Array:
         """How far cells are from what was published, in half units of the last digit."""
-        found: Array = (cells - self.centre) / self.half
+        with np.errstate(over="ignore"):
+            found: Array = (cells - self.centre) / self.half
         if self.ignored:
             found[..., list(self.ignored)] = 0.0
         return found
