@@ -68,7 +68,8 @@ def test_an_exponent_may_be_a_name() -> None:
     [
         (
             "furlong",
-            "unknown unit 'furlong' in 'furlong'; known are kg, m, s, K, A, mol, cd, N, J, Pa, W, Hz",
+            "unknown unit 'furlong' in 'furlong'; known are "
+            "kg, m, s, K, A, mol, cd, N, J, Pa, W, Hz, C, V, ohm, S, F, Wb, T, H",
         ),
         ("m//s", "'m//s' is no unit: write names, multiplied by * and divided by /"),
         ("m/", "'m/' is no unit: write names, multiplied by * and divided by /"),
