@@ -22,13 +22,15 @@ from loopsheet.report.analysis.readers import Reading, _columns, read_cells
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
-from loopsheet.report.grid import Grid
+from loopsheet.report.grid import Grid, as_issued
+from loopsheet.report.sheet import Root
 from loopsheet.report.values import CODES, Status
 from loopsheet.report.views.xlsx import _Worksheet
 
 MOST = 50
 """Campaigns of a workbook."""
 _INPUT = CODES[Status.INPUT]
+_COUNTS = {Status.NOROOT: 0, Status.TWOROOTS: 2, Status.UNDECIDED: -1}
 
 
 def workbook_reads(soffice: str, folder: Path, campaigns: Sequence[Campaign]) -> list[Reading]:
@@ -84,6 +86,7 @@ def book_of(campaigns: Sequence[tuple[Grid, Campaign]]) -> bytes:
     with xlsxwriter.Workbook(buffer, {"in_memory": True}) as book:
         for n, (grid, campaign) in enumerate(campaigns):
             sheets = {name: book.add_worksheet(f"{name} {n}", _Worksheet) for name in _worksheets(grid)}
+            issued = _issued(campaign)
             for block in grid.blocks:
                 sheet, place = sheets[block.place.worksheet], block.place
                 for row in range(place.rows):
@@ -92,11 +95,28 @@ def book_of(campaigns: Sequence[tuple[Grid, Campaign]]) -> bytes:
                         _paste(sheet, at, campaign.data[block.name][row], row)
                     elif block.kind == "index":
                         sheet.write_number(*at, block.values[row])
+                    elif block.name in issued:
+                        sheet.write(*at, issued[block.name][row])
                     else:
                         formula = _WORKSHEET.sub(rf"'\1 {n}'!", block.formulas[row])
                         write = sheet.write_array_formula if block.array else sheet.write_formula
                         write(*(at * 2 if block.array else at), formula, None, "")
     return buffer.getvalue()
+
+
+def _issued(campaign: Campaign) -> dict[str, list[float | str]]:
+    """What a workbook keeps of the inputs that it was made from, and how many roots were counted then."""
+    sheet = SHEETS[campaign.variant]
+    values = engine.evaluate(sheet, campaign.labels, campaign.data, Program.of(sheet))
+    found: dict[str, list[float | str]] = {
+        as_issued(name): [x if sheet.bounds[name].allow(x) else _INPUT for x in column]
+        for name, column in campaign.data.items()
+    }
+    for column in sheet.columns:
+        if isinstance(column.rule, Root):
+            codes = [Status(int(code)) for code in values.status[column.name]]
+            found[f"{column.name}.counted"] = [_COUNTS.get(code, 1) for code in codes]
+    return found
 
 
 def _worksheets(grid: Grid) -> list[str]:
