@@ -331,6 +331,7 @@ def compared(report: Report) -> Report:
 def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
     """In which unit a column is shown, and with how many digits.
 
+    What was printed is shown in the unit it was printed in, whatever the workbook would show it in.
     The digits follow from the inputs: one more than the least precise measured number that the column
     rests on, so that rounding for the reader loses nothing that was measured.
     """
@@ -338,9 +339,11 @@ def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
     from .sheet import Given
 
     unit = column.display or column.unit
+    like = column.name if isinstance(column.rule, Given) else ""
     if unit.startswith("like "):
-        name = unit.removeprefix("like ")
-        unit = inputs.header_units.get(name) or inputs.parameters[name].unit
+        like = like or unit.removeprefix("like ")
+    if printed := inputs.printed(like):
+        unit = printed[0].unit
     try:
         scale = float(parse_unit(unit).scale)
     except NotAUnit:

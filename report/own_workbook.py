@@ -65,6 +65,8 @@ class _Own:
         module.__file__ = str(self.path)
         sys.modules[module.__name__] = module
         exec(compile(self.code, str(self.path), "exec", dont_inherit=True), vars(module))
+        if not hasattr(module, "WORKBOOK"):
+            self._refuse("it declares no WORKBOOK")
         return module.WORKBOOK
 
     def guarded(self, what: str, function: Callable[..., Any], kind: Any = object) -> Callable[..., Any]:

@@ -53,7 +53,7 @@ SHEET = "Sheet((d, *given.values(), l))"
         ("import sys\nsys.exit()", "sys.exit", "cannot be used: SystemExit\n"),
         ("raise BaseException", "raise", "cannot be used: BaseException\n"),
         ("WORKBOOK = 7", "", "WORKBOOK is no Workbook"),
-        ("", "", "AttributeError: "),
+        ("", "", "workbook.py cannot be used: it declares no WORKBOOK\n"),
         (changed("Ledger((eq,))", "exit(0)"), "exit(0)", "SystemExit: 0"),
         (changed("Ledger((eq,))", "eq"), "", "what ledger() returns is no Ledger"),
         (changed("Ledger((eq,))", "Ledger((eq,), (lambda own: exit(1),))"), "exit(1)", "SystemExit: 1"),
@@ -73,6 +73,24 @@ def test_what_it_raises_is_told_with_folder_and_line(
     assert said in told
     number = code[: code.index(line)].count("\n") + 1
     assert f"--> gauge/workbook.py{f':{number}:' if line else ''}" in told
+
+
+@pytest.mark.parametrize(
+    ("verb", "cell", "said"),
+    [
+        ("why", "d[1]", ["d[1] = 215 nm  difference", "given     as 215 nm, d.csv:2:3"]),
+        ("why", "l[1]", ["rests on  d[1] = 215 nm, l_S = 50.000623 mm,"]),
+        ("show", "d", ["d  difference  [nm]", "d[1]             215.0", "d[2]             204.0"]),
+        ("show", "l_S", ["[mm]", "l_S              50.000623"]),
+    ],
+)
+def test_a_given_number_stands_with_the_unit_it_was_given_in(
+    verb: str, cell: str, said: list[str], folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The workbook says metres and nothing of how its columns are to be shown."""
+    assert main([verb, cell, folder.name]) == 0
+    out = capsys.readouterr().out
+    assert [words for words in said if words not in out] == [], out
 
 
 def test_the_bytes_that_were_read_are_run_and_nothing_else(folder: Path) -> None:

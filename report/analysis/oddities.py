@@ -192,8 +192,7 @@ class _Oddities:
         if cell.value is None:
             return f"{cell.address} {cell.status.code}"
         text = printed.text if printed else f"{cell.value / how.scale:.{how.digits}g}"
-        unit = printed.unit if printed else how.unit
-        return f"{cell.address} = {text}" + (f" {unit}" if unit != "1" else "")
+        return f"{cell.address} = {text}" + (f" {how.unit}" if how.unit != "1" else "")
 
     def of_expectations(self) -> Iterator[Check]:
         """Whether each expectation has come true."""

@@ -72,7 +72,6 @@ class Document:
             # A given number is shown as it was printed, in the unit it was printed in.
             texts = tuple(number.text for number in printed)
             figures = [read(number.text) for number in printed]
-            head = replace(head, unit=printed[0].unit)
         places = max((len(figure.fraction) for figure in figures if figure is not None), default=0)
         head = replace(head, format=table_format(figures), places=places)
         rows = zip(cells, figures, texts, self.report.marks.of(name), strict=True)

@@ -164,7 +164,7 @@ def _column(report: Report, document: Document, column: Column, grounds: list[Gr
     head = document.head(column)
     entry: dict[str, Any] = {
         "source": column.source,
-        "unit": unit_text(_unit(report, column)).strip("()"),
+        "unit": unit_text(shown.unit).strip("()"),
         "scale": shown.scale,
     }
     if limits := report.marks.limiting(column.name):
@@ -200,12 +200,6 @@ def _ground(report: Report, column: Column) -> Ground:
     ancestors = report.sheet.ancestors(column)
     measured = tuple(given.name for given in ancestors if isinstance(given.rule, Given) and not given.exact)
     return report.shown[column.name].digits, measured
-
-
-def _unit(report: Report, column: Column) -> str:
-    """The unit in which a column is shown: a given one stays in the unit it was printed in."""
-    printed = _printed(report, column.name) if isinstance(column.rule, Given) else None
-    return report.shown[column.name].unit if printed is None else printed.unit
 
 
 def _given(report: Report, column: Column) -> dict[str, Any]:
@@ -330,7 +324,7 @@ def parts(report: Report, document: Document) -> Iterator[Part]:
     """What the formula bar shows of every column."""
     for column in report.sheet.columns:
         equation = Put(document).equation(column)
-        yield Part(column, document.latex(column.name), _unit(report, column), equation)
+        yield Part(column, document.latex(column.name), report.shown[column.name].unit, equation)
 
 
 _BETWEEN = re.compile(

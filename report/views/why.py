@@ -103,8 +103,7 @@ def _where(report: Report, name: str, row: int) -> str:
     if not printed:
         return "by the workbook"
     number = printed[row]
-    unit = "" if number.unit == "1" else f" {number.unit}"
-    return f"as {number.text}{unit}, {number.where or 'by default'} ({number.mode})"
+    return f"as {number.text}{_unit(report, name)}, {number.where or 'by default'} ({number.mode})"
 
 
 # --- equations -------------------------------------------------------------------------------------------
