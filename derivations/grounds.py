@@ -7,7 +7,7 @@ moved or multiplied by a number. Whether two equations say the same is seen from
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from itertools import combinations
 from typing import Any
@@ -21,7 +21,7 @@ from .evaluation import UNDEFINED, NotEvaluable, Program
 from .reductions import REDUCTIONS
 from .sums import in_terms
 
-__all__ = ["circle", "is_assumed", "says"]
+__all__ = ["circle", "is_assumed", "says", "stated", "supported"]
 
 _DIGITS, _POINTS = 30, 3
 _ALIKE = mpmath.mpf(10) ** -20
@@ -106,7 +106,7 @@ def circle(entry: Equation | Derivation, ledger: Ledger) -> str:
     """Draw the way on which a claim rests on itself, ``(2) -> (1) -> (2)``; empty if there is none."""
     if isinstance(entry, Equation):
         return ""
-    steps = _steps(entry, ledger)
+    steps = _steps((entry, *ledger.entries))
     claims = [each.claim for each in ledger.entries if isinstance(each, Derivation)]
     if entry.claim not in claims:
         claims.append(entry.claim)
@@ -136,12 +136,29 @@ def circle(entry: Equation | Derivation, ledger: Ledger) -> str:
     return search(entry.claim, (entry.claim.label,))
 
 
-def _steps(entry: Derivation, ledger: Ledger) -> dict[Equation, Step]:
-    """The step that ends in each claim, those of the entry itself before others."""
+def stated(equation: Equation, ledger: Ledger) -> bool:
+    """Whether a ledger says what an equation, or the one that it is an instance of, says."""
+    entries = {entry for entry in ledger.entries if isinstance(entry, Equation)}
+    return equation.origin in entries or equation.origin in _steps(ledger.entries)
+
+
+def supported(equation: Equation, by: Equation, ledger: Ledger) -> bool:
+    """Whether an equation is another one, for other symbols perhaps, or is derived from it."""
+    steps, seen, left = _steps(ledger.entries), set(), [equation.origin]
+    while left:
+        if (each := left.pop()) == by.origin:
+            return True
+        if each not in seen and each in steps:
+            left += [premise.origin for premise in steps[each].premises]
+        seen.add(each)
+    return False
+
+
+def _steps(entries: Iterable[Equation | Derivation]) -> dict[Equation, Step]:
+    """The step that ends in each claim, those of earlier entries before others."""
     found: dict[Equation, Step] = {}
-    others = [each for each in ledger.entries if isinstance(each, Derivation)]
-    for derivation in (entry, *others):
-        for step in derivation.steps:
+    for entry in entries:
+        for step in entry.steps if isinstance(entry, Derivation) else ():
             found.setdefault(step.claim, step)
     return found
 

@@ -153,22 +153,49 @@ def prepare(folder: Path, find: Find = find_workbook) -> Prepared:
     InputError
         With every finding.
     """
-    return _prepared(load(folder, find))
+    inputs = load(folder, find)
+    return _prepared(inputs, inputs.workbook.ledger())
 
 
-def _prepared(inputs: Inputs) -> Prepared:
+def _prepared(inputs: Inputs, ledger: Ledger) -> Prepared:
     from . import units
     from .sheet import SheetError
 
     try:
         sheet = inputs.workbook.sheet(inputs.given)
         units.check(sheet)
+        _refuse_what_is_not_stated(sheet, ledger)
     except SheetError as error:
         if inputs.workbook.name in SHIPPED:
             raise  # ours, and our bug
-        raise InputError(diagnose("LS213", text=inputs.workbook.name, reason=str(error))) from error
+        code = next(name for name in inputs.files if name.endswith(".py"))
+        at = Location((inputs.folder / code).as_posix())
+        raise InputError(diagnose("LS213", at, text=inputs.workbook.name, reason=str(error))) from error
     _refuse_what_is_missing(sheet, inputs)
     return Prepared(inputs, sheet)
+
+
+def _refuse_what_is_not_stated(sheet: Sheet, ledger: Ledger) -> None:
+    """A column computes what the ledger says, so that there is nothing that no proof looks at."""
+    from ..derivations.grounds import stated, supported
+    from ..derivations.text import text_of_equation
+    from .sheet import Given, Root, SheetError
+
+    for column in sheet.columns:
+        rule = column.rule
+        if isinstance(rule, Given):
+            continue
+        for equation in rule.statements:
+            if not stated(equation, ledger):
+                written = text_of_equation(equation.origin, ledger.vocabulary)
+                raise SheetError(
+                    f"{column.name} is computed from {equation.label} {written}, "
+                    "which the ledger does not have: add it there, with its derivation if it is a claim"
+                )
+        if isinstance(rule, Root) and not supported(rule.form, rule.equation, ledger):
+            raise SheetError(
+                f"{column.name} solves {rule.form.label}, which is not derived from {rule.equation.label}"
+            )
 
 
 def _refuse_what_is_missing(sheet: Sheet, inputs: Inputs) -> None:
@@ -200,8 +227,9 @@ def compute(folder: Path, step: Step = _silent, prove: bool = True, find: Find =
         As for :func:`prepare`.
     """
     step("reading the folder")
-    prepared = prepare(folder, find)
-    report = _evaluated(prepared, prepared.inputs.workbook.ledger(), step)
+    inputs = load(folder, find)
+    ledger = inputs.workbook.ledger()
+    report = _evaluated(_prepared(inputs, ledger), ledger, step)
     if not prove:
         return report
     proofs, errata = checked(report.inputs, report.ledger, step)
@@ -433,7 +461,7 @@ def build(
         ledger = inputs.workbook.ledger()
         # Everything that takes long has a process of its own, from when there is what it needs.
         proving = running.enter_context(Background(lambda: _checked_plainly(inputs, ledger)))
-        report = _evaluated(_prepared(inputs), ledger, step)
+        report = _evaluated(_prepared(inputs, ledger), ledger, step)
         if "xlsx" in formats:
             _refuse_too_many_rows(report)
         judging = running.enter_context(Background(lambda: judged(report, every_engine).engines))

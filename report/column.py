@@ -173,6 +173,11 @@ class Formula:
         """What is computed."""
         return self.equation.value
 
+    @property
+    def statements(self) -> tuple[Equation, ...]:
+        """What the ledger must say."""
+        return (self.equation,)
+
 
 @dataclass(frozen=True)
 class Root:
@@ -225,6 +230,11 @@ class Root:
     steps: int = 4
     none: str = "no value of the interval satisfies the equation"
     two: str = "several values of the interval satisfy the equation"
+
+    @property
+    def statements(self) -> tuple[Equation, ...]:
+        """What the ledger must say."""
+        return (self.equation, self.form, *self.turning_by)
 
     @cached_property
     def expression(self) -> Expr:

@@ -59,6 +59,12 @@ SHEET = "Sheet((d, *given.values(), l))"
         (changed("Ledger((eq,))", "Ledger((eq,), (lambda own: exit(1),))"), "exit(1)", "SystemExit: 1"),
         (changed(SHEET, "1 / 0"), "1 / 0", "ZeroDivisionError"),
         (changed(SHEET, "None"), "", "what sheet() returns is no Sheet"),
+        (changed("Ledger((eq,))", "Ledger(())"), "", "l is computed from (H.1) l = "),
+        (
+            changed("Formula(eq)", "Formula(Equation('(H.1)', (Symbol('l'), l_S), '', Kind.DEFINITION))"),
+            "",
+            "l is computed from (H.1) l = l_S, which the ledger does not have: add it there",
+        ),
         (changed("    sheet=", "    check_parameters=lambda x: 1 / 0,\n    sheet="), "1 / 0", "ZeroDivision"),
         (changed("    sheet=", "    curves=lambda *_: exit(),\n    sheet="), "exit()", "SystemExit"),
     ],

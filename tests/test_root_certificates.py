@@ -309,6 +309,25 @@ REASONS = [
 ]
 
 
+@pytest.mark.parametrize("told", ["", "w0 solves (2), which is not derived from (1)"])
+def test_what_is_solved_is_what_is_told_or_follows_from_it(
+    told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Twice the equation is derived from it; three times the coefficient is another equation."""
+    second = "2 * w**2 - 6 * w + 2 * c" if not told else "w**2 - 9 * w + c"
+    entry = "Derivation.of(eq2, (eq1,), (c,), 'doubled')" if not told else "eq2"
+    kind = "CLAIM" if not told else "ASSUMPTION"
+    code = FOLDER["workbook.py"].replace("import Equation", "import Derivation, Equation")
+    code = code.replace(
+        "form = eq1", f"eq2 = Equation('(2)', ({second}, 0 * w), '', Kind.{kind})\nform = eq2"
+    )
+    code = code.replace("Root(form, ", "Root(eq1.at({c: given[k]}), ").replace("(eq1,)", f"(eq1, {entry})", 1)
+    for name, text in (FOLDER | {"workbook.py": code}).items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    assert main(["show", "w0", str(tmp_path)]) == (2 if told else 0)
+    assert told in capsys.readouterr().err
+
+
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("parabola")
