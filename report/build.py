@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .background import Background
+from .crate import added
 from .errors import ForeignCode, InputError, Location, UnknownWorkbook, UsageError, close, diagnose, listing
-from .folders import PAPER, told
+from .folders import INPUTS, PAPER, told
 from .inputs import Find, Inputs, check_cells, load
 from .own_workbook import own_workbook
 from .provenance import sources
@@ -446,7 +447,7 @@ def build(
         As for :func:`prepare`.
     tell : callable
         Told what is built from where once the folder was read and found right, and which files that somebody
-        had changed are kept.
+        had changed are kept; and what a crate of the report before had added, which is removed.
 
     Returns
     -------
@@ -454,7 +455,7 @@ def build(
     list of Path
         The files that were written.
     """
-    with staged(out, tell) as stage, ExitStack() as running:
+    with staged(out, tell, lambda place: _of_a_crate(place, folder)) as stage, ExitStack() as running:
         step("reading the folder")
         inputs = load(folder, find)
         tell(f"building '{inputs.title}' from {told(folder)} into {out}")
@@ -492,6 +493,13 @@ def build(
         _write(finished, stage, formats, pictures, program, workbook, step)
         names = sorted(p.relative_to(stage) for p in stage.rglob("*") if p.is_file())
     return finished, [out / name for name in names]
+
+
+def _of_a_crate(out: Path, folder: Path) -> dict[Path, str]:
+    """What `crate` added to an output, without what is built from: a crate is built again in itself too."""
+    copies, source = (out / INPUTS).resolve(), folder.resolve()
+    own = source.is_relative_to(copies)
+    return {name: digest for name, digest in added(out).items() if not (own and INPUTS in name.parts)}
 
 
 _WITH_FIGURES = {"html", "latex", "pdf"}

@@ -16,16 +16,17 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from .errors import OutputError, UsageError, diagnose
+from .errors import LoopsheetError, OutputError, UsageError, diagnose
 from .folders import INPUTS, built_from
 from .results import Manifest, read_manifest
 from .scratch import scratch
 from .staging import put
 from .stopping import unstoppable
 
-__all__ = ["NAME", "crate", "write"]
+__all__ = ["NAME", "added", "crate", "write"]
 
 NAME = "ro-crate-metadata.json"
+_BUILD = "loopsheet build"
 SPECIFICATION = "https://w3id.org/ro/crate/1.1"
 _SPDX = re.compile(r"[A-Za-z0-9][A-Za-z0-9.+-]{0,99}")
 _ADDRESS = re.compile(r"https?://[^\s<>\"{}|\\^`]{1,2000}")
@@ -120,19 +121,39 @@ def _read(folder: Path, name: str, digest: str) -> bytes:
 
 def _refuse_what_somebody_changed(out: Path, inputs: Mapping[str, bytes]) -> None:
     """Replace no file that is neither the one to write nor as the crate before has it."""
-    try:
-        entities = json.loads((out / NAME).read_text(encoding="utf-8"))["@graph"]
-        before = {entity["@id"]: entity.get("sha256") for entity in entities}
-    except (OSError, ValueError, LookupError, TypeError, AttributeError):
-        before = {}  # no crate, or none of ours
+    before = added(out)
     for name, content in inputs.items():
         if not (out / name).resolve().is_relative_to(out.resolve()):
             raise OutputError(diagnose("LS610", text=name, reason="leads out of the folder"))
         if not (out / name).is_file():
             continue
         there = (out / name).read_bytes()
-        if there != content and hashlib.sha256(there).hexdigest() != before.get(quote(name)):
+        if there != content and hashlib.sha256(there).hexdigest() != before.get(Path(name)):
             raise OutputError(diagnose("LS610", text=name, reason="was changed after it was put there"))
+
+
+def added(out: Path) -> dict[Path, str]:
+    """The sha256 of what :func:`write` added to an output folder, as it was then; empty if there is no crate.
+
+    The metadata does not hold its own sha256: it is written again from its words and the manifest.
+    """
+    try:
+        graph = json.loads((out / NAME).read_text(encoding="utf-8"))["@graph"]
+        entities = {entity["@id"]: entity for entity in graph}
+        if entities["#build"]["name"] != _BUILD:
+            return {}
+        files = [entity for entity in graph if entity["@type"] == "File"]
+        inputs = {Path(file["name"]): str(file["sha256"]) for file in files if _is_input(file["name"])}
+        root, sizes = entities["./"], {file["name"]: int(str(file["contentSize"])) for file in files}
+        licence = entities[root["license"]["@id"]]
+        people = [entity for entity in graph if entity["@type"] in ("Person", "Organization")]
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        return {}  # no crate, or none of ours
+    try:
+        metadata = crate(read_manifest(out), sizes, root["datePublished"], licence, people).encode()
+    except (LoopsheetError, LookupError, TypeError, ValueError):
+        metadata = b""  # not of this manifest
+    return {**inputs, Path(NAME): hashlib.sha256(metadata).hexdigest()}
 
 
 def _date(text: str) -> str:
@@ -206,7 +227,7 @@ def crate(
     action = {
         "@id": "#build",
         "@type": "CreateAction",
-        "name": "loopsheet build",
+        "name": _BUILD,
         "description": "Computed every file of this folder from the inputs",
         "instrument": {"@id": software[0]["@id"]},
         "object": _refer(inputs),
@@ -244,14 +265,17 @@ def _refer(entities: list[Entity]) -> list[Entity]:
 def _files(sizes: Mapping[str, int], hashes: Mapping[str, str]) -> Iterator[Entity]:
     for name, size in sorted(sizes.items()):
         entity: Entity = {"@id": quote(name), "@type": "File", "name": name}
-        is_input = name.startswith(f"{INPUTS}/")
-        other = "What the report was computed from" if is_input else "A figure of the report"
+        other = "What the report was computed from" if _is_input(name) else "A figure of the report"
         entity["description"] = _WHAT.get(name, other)
         entity["encodingFormat"] = _MEDIA.get(Path(name).suffix, "application/octet-stream")
         entity["contentSize"] = str(size)
         if name in hashes:
             entity["sha256"] = hashes[name]
         yield entity
+
+
+def _is_input(name: str) -> bool:
+    return name.startswith(f"{INPUTS}/")
 
 
 def _software(manifest: Manifest) -> Iterator[Entity]:

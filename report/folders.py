@@ -109,6 +109,7 @@ def built_from(out: Path, inputs: Mapping[str, str]) -> Path:
     Path
         The folder above the output, its own :data:`INPUTS`, the working directory or the shipped paper,
         whichever holds these inputs; if none does, one of the first two, whose inputs were changed then.
+        Where the report of the folder above goes, that folder is meant, and no copy of what it held once.
 
     Raises
     ------
@@ -117,7 +118,8 @@ def built_from(out: Path, inputs: Mapping[str, str]) -> Path:
     """
     here, above = Path.cwd(), out.resolve().parent
     above = above.relative_to(here) if above.is_relative_to(here) else above
-    places = (above, out / INPUTS, Path(), PAPER)
+    of_above = is_report(above) and out.resolve() == output(above).resolve()
+    places = (above, above if of_above else out / INPUTS, Path(), PAPER)
     found = [folder for folder in places if is_report(folder)]
     for folder in found:
         if holds(folder, inputs):

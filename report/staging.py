@@ -6,7 +6,7 @@ import hashlib
 import json
 import os
 import shutil
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
@@ -74,7 +74,11 @@ def replaced(path: Path, before: bytes, after: bytes) -> None:
 
 
 @contextmanager
-def staged(out: Path, tell: Callable[[str], None] = lambda _: None) -> Iterator[Path]:
+def staged(
+    out: Path,
+    tell: Callable[[str], None] = lambda _: None,
+    added: Callable[[Path], Mapping[Path, str]] = lambda _: {},
+) -> Iterator[Path]:
     """Give a temporary folder beside the output, moved in whole when the block ends well.
 
     A file that is in its way, and that no build made as it is there, is kept under another name. Who builds
@@ -85,7 +89,10 @@ def staged(out: Path, tell: Callable[[str], None] = lambda _: None) -> Iterator[
     out : Path
         The output; made if it does not exist.
     tell : callable
-        Told which files are kept, and under which name.
+        Told which files are kept, and under which name, and which are removed of what was added.
+    added : callable
+        Given `out`, the sha256 of what was added to it since it was built: that is of the report which is
+        there, and is removed with it if another one takes its place.
 
     Raises
     ------
@@ -103,9 +110,14 @@ def staged(out: Path, tell: Callable[[str], None] = lambda _: None) -> Iterator[
             with scratch(out) as stage:
                 yield stage
                 with unstoppable():
-                    kept = _move_in(stage, out, killed)
+                    gone = _added(stage, out, added)
+                    kept = _move_in(stage, out, killed, gone)
+                    for name in gone:
+                        _remove([out / parent for parent in name.parents[:-1]])
         for name, free in kept.items():
             tell(f"{name.as_posix()} was not as built: it is kept as {free.as_posix()}")
+        if removed := sorted(name.as_posix() for name in gone if name not in kept):
+            tell(f"{', '.join(removed)}: removed, as of the report before")
     except OSError as error:
         _remove(made)
         file, place = Path(error.filename or ""), out
@@ -148,11 +160,14 @@ def _remove(made: list[Path]) -> None:
             return
 
 
-def _move_in(stage: Path, out: Path, killed: list[dict[Path, str]]) -> dict[Path, Path]:
+def _move_in(
+    stage: Path, out: Path, killed: list[dict[Path, str]], gone: Mapping[Path, str]
+) -> dict[Path, Path]:
     """Put the staged files in place, all or none; return what was kept, and as what.
 
     The manifest comes last and never speaks of half an output. What an earlier build made and this one does
-    not is taken away, unless somebody changed it. `killed` is what other builds were about to put here.
+    not is taken away, unless somebody changed it. `killed` is what other builds were about to put here;
+    `gone` goes in any case, and what somebody changed of it is kept.
     """
     names = sorted(
         (p.relative_to(stage) for p in stage.rglob("*") if p.is_file()),
@@ -164,11 +179,11 @@ def _move_in(stage: Path, out: Path, killed: list[dict[Path, str]]) -> dict[Path
     done: list[tuple[Path, Path | None]] = []
     kept_as: dict[Path, Path] = {}
     try:
-        for name in _changed(stage, out, names, built, killed):
+        for name in _changed(stage, out, (*names, *gone), built, [*killed, gone]):
             kept_as[name] = _free(name, out)
             done.append((out / kept_as[name], None))
             shutil.copy2(out / name, out / kept_as[name])
-        for name in (*_stale(out, names, built or {}), *names):
+        for name in (*gone, *_stale(out, names, built or {}), *names):
             target = out / name
             kept = _kept(target, before / name)
             done.append((target, kept))
@@ -223,15 +238,16 @@ def _changed(
     out: Path,
     names: Collection[Path],
     built: dict[Path, str] | None,
-    killed: list[dict[Path, str]],
+    killed: Collection[Mapping[Path, str]],
 ) -> Iterator[Path]:
-    """What is about to be replaced, and is neither as a build made it nor as it is built now."""
+    """What is about to be replaced or removed, and is neither as a build made it nor as it is built now."""
     for name in names:
         path = out / name
         if path.is_symlink() or not path.is_file() or (name.name == "manifest.json" and built is not None):
             continue
         ours = {listed.get(name) for listed in (built or {}, *killed)}
-        if _sha256(path) not in {*ours, _sha256(stage / name)}:
+        now = {_sha256(stage / name)} if (stage / name).is_file() else set()
+        if _sha256(path) not in ours | now:
             yield name
 
 
@@ -240,6 +256,21 @@ def _free(name: Path, out: Path) -> Path:
     marks = ("edited" if number == 1 else f"edited-{number}" for number in count(1))
     names = (name.with_name(f"{name.stem}.{mark}{name.suffix}") for mark in marks)
     return next(free for free in names if not os.path.lexists(out / free))
+
+
+def _added(stage: Path, out: Path, added: Callable[[Path], Mapping[Path, str]]) -> dict[Path, str]:
+    """What was added to the report that is there, if another one takes its place."""
+    old, new = out / "manifest.json", stage / "manifest.json"
+    if old.is_file() and new.is_file() and old.read_bytes() == new.read_bytes():
+        return {}
+    return {
+        name: digest
+        for name, digest in added(out).items()
+        if os.path.isfile(out / name)  # false for a name that no file can have, too
+        and (out / name).resolve() == out.resolve() / name  # no link leads elsewhere
+        and ".." not in name.parts
+        and not (stage / name).exists()
+    }
 
 
 def _stale(out: Path, names: Collection[Path], built: dict[Path, str]) -> list[Path]:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from small_report import end_gauge
+from small_report import FILES, end_gauge
 
 from loopsheet.report import folders
 from loopsheet.report.build import PAPER
@@ -273,3 +275,87 @@ def test_what_a_killed_build_had_put_in_place_is_nobodys_edit(gauge: Path, run: 
     code, out, _ = run("build", "gauge", "--to", "json")
     assert (code, "kept" in out) == (0, False)
     assert sorted(path.name for path in (gauge / "out").iterdir()) == ["manifest.json", "values.json"]
+
+
+# --- a crate whose report goes on ---------------------------------------------------------------------------
+
+CRATE = ("crate", "--date", "2026-03-31", "--license", "MIT")
+
+
+@pytest.fixture
+def edited(gauge: Path, run: Run) -> Path:
+    """A folder with a crate in it, whose inputs were edited since."""
+    assert run("build", "--to", "json", at=gauge)[0] == 0
+    assert run(*CRATE, at=gauge)[0] == 0
+    (gauge / "report.toml").write_text((gauge / "report.toml").read_text() + "# edited\n")
+    return gauge
+
+
+def test_a_folder_is_verified_by_what_it_holds_and_not_by_the_copies_of_a_crate(
+    edited: Path, run: Run
+) -> None:
+    for code, out, _ in (
+        run("verify", "--run-workbook", at=edited),
+        run("verify", "gauge", "--run-workbook"),
+        run("verify", "gauge/out", "--run-workbook"),
+    ):
+        assert code == 1
+        assert "the input report.toml was changed\n" in out
+    (edited / "out").rename(edited / "archive")  # a crate for itself, wherever it lies
+    code, out, _ = run("verify", "gauge/archive", "--run-workbook")
+    assert (code, out.splitlines()[-1]) == (0, "the same report again")
+
+
+def test_a_crate_goes_with_the_report_that_it_is_of(edited: Path, run: Run) -> None:
+    out, toml = edited / "out", (edited / "report.toml").read_text()
+    (edited / "report.toml").write_text(toml.removesuffix("# edited\n"))
+    before = files(out)
+    assert "removed" not in run("build", "gauge", "--to", "json")[1]
+    assert files(out) == before
+    (edited / "report.toml").write_text(toml)
+    code, said, _ = run("build", "gauge", "--to", "json")
+    assert code == 0
+    names = ", ".join([*(f"inputs/{name}" for name in sorted(FILES)), "ro-crate-metadata.json"])
+    assert said.splitlines()[1] == f"{names}: removed, as of the report before"
+    assert sorted(path.name for path in out.iterdir()) == ["manifest.json", "values.json"]
+    assert run(*CRATE, at=edited)[0] == 0
+
+
+@pytest.mark.parametrize("name", ["ro-crate-metadata.json", "inputs/report.toml"])
+def test_what_somebody_changed_in_a_crate_is_kept(name: str, edited: Path, run: Run) -> None:
+    path = edited / "out" / name
+    path.write_text(path.read_text() + "\n")
+    mine = path.read_bytes()
+    _, said, _ = run("build", "gauge", "--to", "json")
+    kept = path.with_name(f"{path.stem}.edited{path.suffix}")
+    assert f"{name} was not as built: it is kept as {kept.relative_to(edited / 'out')}\n" in said
+    assert kept.read_bytes() == mine
+    assert not path.exists()
+
+
+def test_a_crate_that_is_built_in_itself_keeps_what_it_is_built_from(edited: Path, run: Run) -> None:
+    out = edited / "out"
+    toml = out / "inputs" / "report.toml"
+    toml.write_text(toml.read_text() + "# edited\n")
+    held = {path.name: path.read_bytes() for path in toml.parent.iterdir()}
+    assert run("build", "inputs", "--out", ".", "--to", "json", at=out)[0] == 0
+    assert {path.name: path.read_bytes() for path in toml.parent.iterdir()} == held
+    assert not (out / "ro-crate-metadata.json").exists()
+
+
+@pytest.mark.parametrize(
+    "name", ["inputs/\0", "inputs/\ud800", f"inputs/{'x' * 5000}", "inputs/../../report.toml", 7]
+)
+def test_metadata_that_somebody_tampered_with_removes_nothing(name: object, edited: Path, run: Run) -> None:
+    path = edited / "out" / "ro-crate-metadata.json"
+    metadata = json.loads(path.read_text())
+    digest = hashlib.sha256((edited / "report.toml").read_bytes()).hexdigest()
+    metadata["@graph"].append(
+        {"@id": "x", "@type": "File", "name": name, "contentSize": "1", "sha256": digest}
+    )
+    path.write_text(json.dumps(metadata))
+    mine = path.read_bytes()
+    code, said, _ = run("build", "gauge", "--to", "json")
+    assert (code, "crate-metadata.json: removed" in said) == (0, False)
+    assert mine in [left.read_bytes() for left in path.parent.glob("ro-crate-*")]
+    assert (edited / "report.toml").is_file()
