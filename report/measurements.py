@@ -140,7 +140,7 @@ def _unit(
     field = table.header[place]
     expected = parse_unit(column.unit)
     try:
-        unit = parse_unit(head.unit.strip())
+        unit = parse_unit(head.unit.strip() or "1")
     except UnitError as error:
         shift = head.start + head.unit.index(head.unit.strip())
         at = table.at(field, shift + error.start, len(error.text))
