@@ -25,7 +25,8 @@ from .workbooks import SHIPPED
 if TYPE_CHECKING:
     from ..derivations.equation import Erratum, Ledger
     from ..derivations.proof import Proof, StepProof
-    from .grid import Drawn, Grid
+    from .charts import Drawn
+    from .grid import Grid
     from .result import Comparison, Report, Shown
     from .sheet import Column, Sheet
     from .verdict import Referee

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from .errors import Findings, Location, listing, suggest
-
-if TYPE_CHECKING:
-    from .inputs import Inputs
 
 __all__ = ["EXAMPLE", "Expectation", "check_expected"]
 
@@ -60,31 +56,32 @@ class Expectation:
         return own[0] in tests if not name else (name, own) == (cell, index)
 
 
-def check_expected(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]]) -> None:
-    """Check that there are the cells and tests that something is expected of.
+def check_expected(
+    expected: Sequence[Expectation],
+    tests: Sequence[int],
+    cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
+    findings: Findings,
+) -> None:
+    """Find what is expected of cells and tests that there are not.
 
     Parameters
     ----------
-    inputs : Inputs
-        What was read.
+    expected : sequence of Expectation
+    tests : sequence of int
+        The numbers of the tests that there are.
     cells : mapping of str to (str, collection of tuple of int)
         For each cell its SI unit and the indices that it has: ``{()}`` for a scalar.
-
-    Raises
-    ------
-    InputError
-        For unknown cells, indices and tests.
+    findings : Findings
+        Where unknown cells, indices and tests go.
     """
-    findings = Findings()
-    for each in inputs.expected:
+    called = [f"test {test}" for test in tests]
+    for each in expected:
         name, index = each.cell
-        tests = [f"test {test}" for test in inputs.tests]
         if (name or not index) and name not in cells:
-            known, suggestion = listing([*tests[:1], *cells], most=24), suggest(name, [*tests, *cells])
+            known, suggestion = listing([*called[:1], *cells], most=24), suggest(name, [*called, *cells])
             findings.add("LS505", each.at, text=each.address, known=known, suggestion=suggestion)
             continue
-        indices = cells[name][1] if name else {(test,) for test in inputs.tests}
+        indices = cells[name][1] if name else {(test,) for test in tests}
         if index not in indices:
             known = listing("-".join(map(str, one)) or "no index" for one in sorted(indices))
             findings.add("LS506", each.at, name=name or "test", text="-".join(map(str, index)), known=known)
-    findings.check()

@@ -1,7 +1,6 @@
 """A workbook as cells: where every quantity stands, and the formula that is in each of its cells.
 
-The Excel engine makes it, the workbook view draws it; neither knows the other. What a model wants drawn
-as native charts is declared here as well, as columns of the same kind as the sheet's.
+The Excel engine makes it, the workbook view draws it; neither knows the other.
 """
 
 from __future__ import annotations
@@ -11,8 +10,9 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 
+from .charts import Drawn
 from .quantity import Bounds
-from .sheet import Axis, Column, Sheet
+from .sheet import Axis
 
 __all__ = [
     "CHECKED",
@@ -20,11 +20,8 @@ __all__ = [
     "SCALARS",
     "STEPS",
     "Block",
-    "Chart",
-    "Drawn",
     "Grid",
     "Place",
-    "Series",
     "as_issued",
     "checked",
     "factors",
@@ -189,73 +186,6 @@ class Block:
     kept: Mapping[str, str] = field(default_factory=dict)
     bounds: Bounds = field(default_factory=Bounds)
     guard: str = ""
-
-
-@dataclass(frozen=True)
-class Series:
-    """Points of a chart: two drawn columns of one axis.
-
-    Parameters
-    ----------
-    label : str
-        What the legend says; ``%s`` is where the parent's row is named if there is one series for each.
-    x, y : str
-        Names of drawn columns.
-    style : str
-        ``points``, ``line`` or ``branch`` (one of several lines of a kind).
-    split : bool
-        Whether each row of the parent's axis is a line of its own.
-    """
-
-    label: str
-    x: str
-    y: str
-    style: str = "line"
-    split: bool = False
-
-
-@dataclass(frozen=True)
-class Chart:
-    """A native chart of the workbook.
-
-    Parameters
-    ----------
-    title, x_title, y_title : str
-        The axes' titles without their units.
-    series : tuple of Series
-        The last is drawn on top.
-    from_zero : bool
-        Whether both axes begin at zero.
-    """
-
-    title: str
-    x_title: str
-    y_title: str
-    series: tuple[Series, ...]
-    from_zero: bool = False
-
-
-@dataclass(frozen=True)
-class Drawn:
-    """What a workbook wants drawn as charts: columns for their points, and the charts.
-
-    Parameters
-    ----------
-    columns : tuple of Column
-        Formulas as the sheet's. A cell in error shows ``#N/A``, which charts leave out.
-    charts : tuple of Chart
-    given : mapping of str to int
-        Values of the given columns among them: how often an axis that only charts have repeats its parent.
-    """
-
-    columns: tuple[Column, ...]
-    charts: tuple[Chart, ...]
-    given: Mapping[str, int]
-
-    def with_curves(self, sheet: Sheet) -> Sheet:
-        """The sheet with the curves: without what only copies its columns for a chart."""
-        known = set(sheet.axes)
-        return Sheet((*sheet.columns, *(c for c in self.columns if c.axis not in known)))
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from .errors import (
     Findings,
     ForeignCode,
-    InputError,
     Location,
     LoopsheetError,
     UnknownWorkbook,
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
     from .quantity import Printed
     from .workbook import Workbook
 
-__all__ = ["Find", "Inputs", "PublishedValue", "check_cells", "check_published", "load"]
+__all__ = ["Find", "Inputs", "PublishedValue", "check_cells", "load"]
 
 Find = Callable[[str, Path, bytes | None], "Workbook"]
 """Finds a workbook by its name in report.toml, the folder, and what the file of that name holds."""
@@ -151,13 +150,23 @@ def load(folder: Path, find_workbook: Find) -> Inputs:
 
 
 def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]]) -> None:
-    """Check all that was read of cells against those of the sheet; as :func:`check_published`."""
+    """Check all that was read of cells against those of the sheet.
+
+    Parameters
+    ----------
+    inputs : Inputs
+        What was read.
+    cells : mapping of str to (str, collection of tuple of int)
+        For each cell its SI unit and the indices that it has: ``{()}`` for a scalar.
+
+    Raises
+    ------
+    InputError
+        With every cell, index and test that there is not, and every unit of another dimension.
+    """
     findings = Findings()
-    for check in (check_expected, check_published):
-        try:
-            check(inputs, cells)
-        except InputError as error:
-            findings.found += error.diagnostics
+    check_expected(inputs.expected, inputs.tests, cells, findings)
+    check_published(inputs.published, inputs.free_at, cells, findings)
     findings.check()
 
 

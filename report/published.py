@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,6 @@ from .number_text import NumberError, read_number, read_printed
 from .unit_text import UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
-    from .inputs import Inputs
     from .quantity import Printed
     from .sources import Source
 
@@ -202,28 +201,30 @@ def _printed(table: Table, fields: Mapping[str, Field], findings: Findings) -> P
     return None
 
 
-def check_published(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]]) -> None:
-    """Check the published values against the cells of the sheet.
+def check_published(
+    published: Sequence[PublishedValue],
+    free: Mapping[str, Location],
+    cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
+    findings: Findings,
+) -> None:
+    """Compare what the published values are values of with the cells of the sheet.
 
     Parameters
     ----------
-    inputs : Inputs
-        What was read.
+    published : sequence of PublishedValue
+    free : mapping of str to Location
+        The columns that the publication does not print, with the place that says so.
     cells : mapping of str to (str, collection of tuple of int)
         For each cell its SI unit and the indices that it has: ``{()}`` for a scalar. A unit that is not
         fixed, such as ``N/m^alpha``, is not compared.
-
-    Raises
-    ------
-    InputError
-        For unknown cells and indices, and units of another dimension.
+    findings : Findings
+        Where unknown cells and indices go, and units of another dimension.
     """
-    findings = Findings()
-    for name, place in inputs.free_at.items():
+    for name, place in free.items():
         if name not in cells:
             known, suggestion = listing(cells, most=24), suggest(name, cells)
             findings.add("LS505", place, text=name, known=known, suggestion=suggestion)
-    for value in inputs.published:
+    for value in published:
         if findings.full:
             break
         if value.cell not in cells:
@@ -250,7 +251,6 @@ def check_published(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tu
             at = value.places.get("unit")
             known = examples(expected)
             findings.add("LS422", at, name=value.cell, text=value.printed.unit, unit=unit, known=known)
-    findings.check()
 
 
 def _indices(indices: Collection[tuple[int, ...]]) -> str:

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..derivations.equation import Erratum, Ledger
 from ..derivations.proof import Proof
 from .agreement import Agreement
+from .charts import Curve
 from .diagnostics import Check
 from .inputs import Inputs, PublishedValue
 from .marks import Marks
@@ -28,7 +26,7 @@ from .verdict import (
 )
 from .workbook import Workbook
 
-__all__ = ["Comparison", "Curve", "Report", "Shown"]
+__all__ = ["Comparison", "Report", "Shown"]
 
 
 @dataclass(frozen=True)
@@ -48,28 +46,6 @@ class Shown:
     unit: str
     scale: float
     digits: int
-
-
-@dataclass(frozen=True)
-class Curve:
-    """A line or a set of points of a figure, in SI.
-
-    Parameters
-    ----------
-    figure : str
-        Which figure it belongs to: the name of its drawing.
-    role : str
-        What it is there: ``compression``, ``restitution``, ``fit``, ``points``, ...
-    label : str
-        What tells it from others of the same role: the test's or the pair's number.
-    x, y : float arrays of the same length
-    """
-
-    figure: str
-    role: str
-    label: str
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,7 @@ from .quantity import Bounds
 
 if TYPE_CHECKING:
     from ..derivations.equation import Ledger
-    from .grid import Drawn
-    from .result import Curve
+    from .charts import Curve, Drawn
     from .sheet import Sheet
     from .values import Values
 

@@ -34,7 +34,7 @@ from loopsheet.report.errors import (
     suggest,
 )
 from loopsheet.report.folders import built_from, report_folder
-from loopsheet.report.inputs import check_published, load
+from loopsheet.report.inputs import check_cells, load
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.results import read_manifest, read_result
 from loopsheet.report.scaffold import new
@@ -94,7 +94,7 @@ def campaign(toml: str | bytes = TOML, csv: str | bytes = CSV, published: str | 
     """Write a report folder into the current one, read it and check it against a sheet."""
     for name, text in {"report.toml": toml, "measurements.csv": csv, "published.csv": published}.items():
         Path(name).write_bytes(text if isinstance(text, bytes) else text.encode())
-    check_published(load(Path(), find_workbook), CELLS)
+    check_cells(load(Path(), find_workbook), CELLS)
 
 
 def toml(old: str, new_text: str) -> Callable[[], None]:

@@ -11,7 +11,8 @@ import subprocess
 import sys
 import tomllib
 import zipfile
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
+from graphlib import CycleError, TopologicalSorter
 from importlib import metadata
 from pathlib import Path
 from typing import NamedTuple
@@ -50,6 +51,7 @@ SHEET = (
     WORDS
     | PROVER
     | {
+        "report.charts",
         "report.column",
         "report.grid",
         "report.sheet",
@@ -83,7 +85,8 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.sheet": (SHEET, ALGEBRA),
     "report.units": (SHEET, ALGEBRA | {"pint"}),
     "report.conditions": (SHEET, ALGEBRA),
-    "report.workbook": (RESULT, ALGEBRA),
+    "report.charts": (SHEET, {"numpy"}),
+    "report.workbook": (VALUES, ALGEBRA),
     "report.workbooks": (RESULT | {"derivations", "report.workbooks", "report.analysis"}, ALGEBRA),
     "report.engines": (VALUES | {"report.engines"}, RUNTIME - {"jinja2", "matplotlib"}),
     "report.analysis": (
@@ -254,6 +257,35 @@ def test_a_wrong_import_is_seen(module: str, source: str, complaint: str) -> Non
 def test_a_right_import_is_let_through(module: str, source: str) -> None:
     known = {"derivations", "derivations.proof", "report", "report.engines"}
     assert wrong_imports(source, module, known) == []
+
+
+def circle(files: Mapping[str, Path]) -> list[str]:
+    """Modules that import one another in a ring, imports for types alone included; empty if there is none."""
+    arrows = {
+        module: {
+            one.target
+            for one in imports(path.read_text(encoding="utf-8"), module, files, path.name == "__init__.py")
+            if one.inside and one.target in files and one.target not in ("", module)
+        }
+        for module, path in files.items()
+    }
+    try:
+        TopologicalSorter(arrows).prepare()
+    except CycleError as error:
+        found: list[str] = error.args[1]
+        return found
+    return []
+
+
+def test_no_modules_import_one_another() -> None:
+    assert not circle(MODULES)
+
+
+def test_a_circle_is_seen(tmp_path: Path) -> None:
+    one, other = tmp_path / "one.py", tmp_path / "other.py"
+    one.write_text("if TYPE_CHECKING:\n    from .other import x\n")
+    other.write_text("def f():\n    from . import one\n")
+    assert set(circle({"report.one": one, "report.other": other})) == {"report.one", "report.other"}
 
 
 @pytest.mark.parametrize("package", PACKAGES)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from loopsheet.report.errors import InputError, UnknownWorkbook, diagnose
-from loopsheet.report.inputs import Inputs, check_published, load
+from loopsheet.report.inputs import Inputs, check_cells, load
 from loopsheet.report.number_text import read_printed
 from loopsheet.report.published import Pin
 from loopsheet.report.quantity import Bounds
@@ -130,7 +130,7 @@ def test_the_paper_s_published_values_fit_a_sheet() -> None:
         "ball_density": ("kg/m^3", {()}),
         "C_log": ("N/m^alpha_log", {()}),
     }
-    check_published(inputs, cells)
+    check_cells(inputs, cells)
     assert len(inputs.published) == 27
     assert [value.printed.text for value in inputs.published[:10]] == (
         ["1.234", "1.275", "1.286", "1.299", "1.303", "1.315", "1.327", "1.355", "1.367", "1.379"]
@@ -478,10 +478,10 @@ def test_published_values_against_the_sheet(row: str, code: str | None, read: Re
     inputs = read(WITH_PUBLISHED, published=PUBLISHED + row + "\n")
     cells = {"alpha": ("1", {(1, 2)}), "mean": ("1", {()}), "C": ("N/m^alpha", {(1, 2)})}
     if code is None:
-        check_published(inputs, cells)
+        check_cells(inputs, cells)
         return
     with pytest.raises(InputError) as caught:
-        check_published(inputs, cells)
+        check_cells(inputs, cells)
     assert [finding.code for finding in caught.value.diagnostics] == [code]
     assert caught.value.diagnostics[0].at.path == "published.csv"
 

@@ -12,8 +12,8 @@ from sympy import Float, lambdify
 from loopsheet.derivations import soft_impact as model
 from loopsheet.report.analysis import loops
 from loopsheet.report.analysis.loops import SCHEMATIC, ForceLaw, curves
+from loopsheet.report.charts import Curve
 from loopsheet.report.engines.numpy import evaluate
-from loopsheet.report.result import Curve
 from loopsheet.report.values import Status, Values
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 

@@ -19,8 +19,8 @@ from sympy import Basic
 
 from ...derivations import soft_impact as model
 from ...derivations.equation import evaluated
+from ..charts import Curve
 from ..engines.numpy import kernel
-from ..result import Curve
 from ..sheet import PairAxis, Sheet
 from ..values import Status, Values
 

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
 
-from ..grid import CHECKED, FIRST_ROW, SCALARS, STEPS, Block, Drawn, Grid, Place, as_issued, checked
+from ..charts import Drawn
+from ..grid import CHECKED, FIRST_ROW, SCALARS, STEPS, Block, Grid, Place, as_issued, checked
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, PairAxis, RepeatAxis, Root, Sheet, name_of
 from ..unit_text import UnitError, parse_unit

@@ -269,7 +269,7 @@ class Document:
     @cached_property
     def refereed(self) -> Refereed:
         """What the referee found of them."""
-        return Refereed(self)
+        return Refereed(self.report, [pair for group in self.groups for pair in group.pairs])
 
     # --- errors
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..result import Curve, Report, Shown
+from ..charts import Curve
+from ..result import Report, Shown
 from ..workbook import FigureSpec
 from . import drawing, reach, refereed
 from .drawing import GREY, INK, LOADING, PALE, UNLOADING, Array, Labels, Place

@@ -7,11 +7,10 @@ Nothing is judged here, and nothing is worded: its sentences are those of every 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
-from typing import TYPE_CHECKING
 
 from .. import verdict_words as words
 from ..result import Report
@@ -30,9 +29,6 @@ from ..verdict import (
 from ..workbook import FigureSpec
 from .numbers import Figure, decimals, read
 from .parts import Head, Pair
-
-if TYPE_CHECKING:
-    from .document import Document
 
 __all__ = ["FIGURE", "Finding", "Refereed", "Run", "Together", "Value", "figure"]
 
@@ -237,13 +233,14 @@ class Refereed:
 
     Parameters
     ----------
-    document : Document
+    report : Report
+    pairs : sequence of Pair
+        Its published values by their source, in the order of the file.
     """
 
-    def __init__(self, document: Document) -> None:
-        self.document = document
-        self.report: Report = document.report
-        self.found: Referee = document.report.referee
+    def __init__(self, report: Report, pairs: Sequence[Pair]) -> None:
+        self.report, self.pairs = report, pairs
+        self.found: Referee = report.referee
 
     @property
     def present(self) -> bool:
@@ -255,8 +252,7 @@ class Refereed:
         """The published values by their source, in the order of the file."""
         return tuple(
             Value(pair, pair.comparison.refereed)
-            for group in self.document.groups
-            for pair in group.pairs
+            for pair in self.pairs
             if pair.comparison.refereed is not None
         )
 
@@ -313,12 +309,12 @@ class Refereed:
         return tuple(words.fit(found, self._meaning) for found in self.found.fits)
 
     def _meaning(self, name: str) -> str:
-        return self.document.head(self.report.sheet[name]).meaning
+        return self.report.sheet[name].meaning
 
     @property
     def free(self) -> tuple[str, ...]:
         """The columns that the publication does not print."""
-        return tuple(name for name in self.found.free if self.document.has(name))
+        return tuple(name for name in self.found.free if name in self.report.sheet)
 
     @property
     def joint(self) -> Together | None:
@@ -335,8 +331,7 @@ class Refereed:
     def _together(self, table: TableVerdict) -> Together:
         worst = None
         if table.worst is not None and table.verdict not in GOOD:
-            pairs = [value.pair for value in self.values if value.pair.comparison.published is table.worst]
-            worst = pairs[0] if pairs else self.document.published(table.worst.cell, table.worst.index)
+            worst = next((pair for pair in self.pairs if pair.comparison.published is table.worst), None)
         return Together(table, worst)
 
     @property

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from ..grid import Block, Grid, Series
+from ..charts import Series
+from ..grid import Block, Grid
 from ..result import Report
 from ..sheet import RepeatAxis
 from .xlsx_style import Style

@@ -21,8 +21,7 @@ from .soft_impact_limits import limits
 from .soft_impact_root import alpha_rule, two_tests
 
 if TYPE_CHECKING:
-    from ..grid import Drawn
-    from ..result import Curve
+    from ..charts import Curve, Drawn
     from ..values import Values
 
 __all__ = ["WORKBOOK"]

@@ -10,20 +10,15 @@ from sympy.core.parameters import evaluate
 
 from ...derivations import soft_impact as model
 from ...derivations.equation import Equation, Kind
-from ..grid import Chart, Drawn, Series
-from ..sheet import Column, Formula, Given, RepeatAxis, Sheet
-from .soft_impact import PAIRS, POINTS, TESTS, i, j, k
+from ..charts import Chart, Drawn, Series
+from ..sheet import Column, Formula, Given, PairAxis, RepeatAxis, Sheet
 
 __all__ = ["POINTS_PER_BRANCH", "drawn"]
 
 POINTS_PER_BRANCH = 41
 """Abscissae of each branch; straight lines between so many look like a curve."""
 
-_row = Symbol("l", integer=True, positive=True)
-_step = Symbol("m", integer=True, positive=True)
-LOOPS = RepeatAxis(
-    "loops", _row, Symbol("n_loops", integer=True, positive=True), of=TESTS, step=_step, count="loop_points"
-)
+_row, _step, _size = (Symbol(name, integer=True, positive=True) for name in ("l", "m", "n_loops"))
 
 
 def drawn(sheet: Sheet) -> Drawn:
@@ -33,16 +28,19 @@ def drawn(sheet: Sheet) -> Drawn:
     ----------
     sheet : Sheet
     """
-    x_m, x_p, peak = (sheet[name][k] for name in ("x_m", "x_p", "Cprime_eq9"))
+    tests, pairs, points = (sheet[name].axis for name in ("v", "alpha", "x"))
+    assert tests is not None
+    assert points is not None
+    assert isinstance(pairs, PairAxis)
+    loops = RepeatAxis("loops", _row, _size, of=tests, step=_step, count="loop_points")
+    x_m, x_p, peak = (sheet[name][tests.index] for name in ("x_m", "x_p", "Cprime_eq9"))
     C_log, alpha_log, beta = (sheet[name].symbol for name in ("C_log", "alpha_log", "beta"))
     closed = ((x_m > x_p, "a loop is drawn where the imprint is shallower than the approach"),)
 
-    def column(
-        name: str, equation: Equation, like: str, meaning: str, unit: str, axis: RepeatAxis = LOOPS
-    ) -> Column:
+    def column(name: str, equation: Equation, like: str, meaning: str, unit: str) -> Column:
         return Column(
             name,
-            axis,
+            loops,
             Formula(equation),
             unit,
             meaning,
@@ -52,7 +50,7 @@ def drawn(sheet: Sheet) -> Drawn:
         )
 
     x_c, x_r = (
-        Column(name, LOOPS, Formula(model.law_c), "m", positive=False)
+        Column(name, loops, Formula(model.law_c), "m", positive=False)
         for name in ("loading_x", "unloading_x")
     )
     share = (_step - 1) / Integer(POINTS_PER_BRANCH - 1)
@@ -61,7 +59,9 @@ def drawn(sheet: Sheet) -> Drawn:
         down = _definition(
             x_p + (x_m - x_p) * share, "equal parts of the way from the imprint to the maximum approach"
         )
-        speed = _definition((sheet["v"][i] + sheet["v"][j]) / 2, "mean speed of the pair's tests")
+        speed = _definition(
+            (sheet["v"][pairs.first] + sheet["v"][pairs.second]) / 2, "mean speed of the pair's tests"
+        )
     compression = model.law_c.at(
         {model.x: x_c[_row], model.C: C_log, model.alpha: alpha_log, model.F: Symbol("F")}
     )
@@ -76,28 +76,28 @@ def drawn(sheet: Sheet) -> Drawn:
         Column(
             name,
             axis,
-            Formula(_definition(sheet[of][index], "what has no value is left out of the chart")),
+            Formula(_definition(sheet[of][axis.index], "what has no value is left out of the chart")),
             sheet[of].unit,
             f"{of}, for the chart",
             display=f"like {of}",
             positive=False,
         )
-        for name, of, axis, index in (
-            ("plotted_x", "x", POINTS, POINTS.index),
-            ("plotted_F", "F", POINTS, POINTS.index),
-            ("plotted_alpha", "alpha", PAIRS, PAIRS.index),
+        for name, of, axis in (
+            ("plotted_x", "x", points),
+            ("plotted_F", "F", points),
+            ("plotted_alpha", "alpha", pairs),
         )
     ]
     columns = (
-        Column(LOOPS.count, None, Given("chart"), meaning="points of each branch", exact=True),
+        Column(loops.count, None, Given("chart"), meaning="points of each branch", exact=True),
         column("loading_x", up, "x_m", "approach while loading", "m"),
         column("loading_F", compression, "Cprime_eq9", "force while loading, on the fitted curve", "N"),
         column("unloading_x", down, "x_m", "approach while unloading", "m"),
         column("unloading_F", restitution, "Cprime_eq9", "force while unloading", "N"),
         *copies,
-        Column("plotted_v", PAIRS, Formula(speed), "m/s", "mean impact speed of the pair", display="like v"),
+        Column("plotted_v", pairs, Formula(speed), "m/s", "mean impact speed of the pair", display="like v"),
     )
-    loops = Chart(
+    law = Chart(
         "Figure 4: generated points, fitted curve, hysteresis loops",
         "approach x",
         "force F",
@@ -114,7 +114,7 @@ def drawn(sheet: Sheet) -> Drawn:
         "exponent α",
         (Series("pairs", "plotted_v", "plotted_alpha", "points"),),
     )
-    return Drawn(columns, (loops, exponents), {LOOPS.count: POINTS_PER_BRANCH})
+    return Drawn(columns, (law, exponents), {loops.count: POINTS_PER_BRANCH})
 
 
 def _definition(value: Expr, because: str) -> Equation:

@@ -8,7 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from loopsheet.report.errors import InputError, UnknownWorkbook, render_all
-from loopsheet.report.inputs import Inputs, check_published, load
+from loopsheet.report.inputs import Inputs, check_cells, load
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.workbook import Measured, Parameter, Workbook
 
@@ -50,7 +50,7 @@ def read(
             )
         try:
             inputs = load(folder, find_workbook)
-            check_published(inputs, {"a": ("1", {(1,)})})
+            check_cells(inputs, {"a": ("1", {(1,)})})
         except InputError as refusal:
             error = refusal
         else:

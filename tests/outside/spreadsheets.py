@@ -18,10 +18,11 @@ import numpy as np
 
 from loopsheet.report import build
 from loopsheet.report.analysis.readers import ALWAYS_RECALCULATE
+from loopsheet.report.charts import Drawn
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.certified import certified
-from loopsheet.report.grid import Drawn, Grid, checked
+from loopsheet.report.grid import Grid, checked
 from loopsheet.report.result import Report
 from loopsheet.report.sheet import Given, RepeatAxis, Root, Sheet
 from loopsheet.report.values import CODES, Status, Values
