@@ -266,6 +266,7 @@ def _check_names(sheet: Sheet) -> None:
     """A symbol means one thing: a column, an index, a size, a running number or an unknown."""
     taken: dict[str, str] = {}
     for axis in sheet.axes:
+        _check_name(axis.name, "an index set's")
         own = {axis.index: "the index", axis.size: "the size"}
         if isinstance(axis, PairAxis):
             own |= {axis.first: "the first member", axis.second: "the second member"}
@@ -283,8 +284,7 @@ def _check_names(sheet: Sheet) -> None:
                 )
             taken[symbol.name] = f"{what} of {axis.name}"
     for column in sheet.columns:
-        if not column.name.isidentifier() or iskeyword(column.name):
-            raise SheetError(f"{column.name!r} cannot be a column's name: letters, digits and _ make a name")
+        _check_name(column.name, "a column's")
         if column.name in taken:
             raise SheetError(f"the column {column.name!r} is called as {taken[column.name]} is; rename one")
         unknown = column.rule.unknown.name if isinstance(column.rule, Root) else column.name
@@ -292,6 +292,11 @@ def _check_names(sheet: Sheet) -> None:
             raise SheetError(
                 f"{column.name}: its unknown {unknown!r} is called as something else of the sheet is"
             )
+
+
+def _check_name(name: str, whose: str) -> None:
+    if not name.isidentifier() or iskeyword(name):
+        raise SheetError(f"{name!r} cannot be {whose} name: letters, digits and _ make a name")
 
 
 def _check_symbols(sheet: Sheet, column: Column) -> None:

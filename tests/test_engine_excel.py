@@ -361,11 +361,25 @@ def test_a_missing_datum_is_carried_as_such() -> None:
     assert grid["a[i] of points"].formulas[0] == "=items!$D$8"
 
 
-def test_worksheets_of_reserved_names_get_another() -> None:
-    axis = Axis("report", k, n_items)
-    b = Column("a", axis, Given())
-    values = engine.evaluate(Sheet((b,)), {"report": (1, 2)}, {"a": [1.0, 2.0]})
-    assert excel_grid.grid(Sheet((b,)), values, {})["a"].place.worksheet == "report_rows"
+@pytest.mark.parametrize(
+    ("names", "worksheets"),
+    [
+        (("report", "Figures"), ["report_rows", "Figures_rows"]),
+        (("runs", "Runs", "runs_rows"), ["runs", "Runs_rows", "runs_rows_rows"]),
+        (("r" * 31, "r" * 40, "r" * 41), ["r" * 31, "r" * 26 + "_rows", "r" * 24 + "_rows_2"]),
+    ],
+)
+def test_no_two_worksheets_have_one_name(names: tuple[str, ...], worksheets: list[str]) -> None:
+    columns = [
+        Column(f"a_{n}", Axis(name, Symbol(f"k_{n}", integer=True), Symbol(f"n_{n}")), Given())
+        for n, name in enumerate(names)
+    ]
+    sheet = Sheet(tuple(columns))
+    values = engine.evaluate(
+        sheet, dict.fromkeys(names, (1, 2)), {name: [1.0, 2.0] for name in sheet.by_name}
+    )
+    grid = excel_grid.grid(sheet, values, {})
+    assert [grid[column.name].place.worksheet for column in columns] == worksheets
 
 
 def test_more_rows_than_a_worksheet_should_hold(monkeypatch: pytest.MonkeyPatch) -> None:

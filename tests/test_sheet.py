@@ -230,6 +230,10 @@ REFUSED: dict[str, tuple[tuple[Column, ...], str]] = {
     ),
     "index as a value": ((a, formula("f", a[k] * k, ROWS)), "f: no column is called 'k'"),
     "no name": ((given("a b"),), "'a b' cannot be a column's name: letters, digits and _ make a name"),
+    "no name of rows": (
+        (given("a", Axis("what I saw", k, n)),),
+        "'what I saw' cannot be an index set's name: letters, digits and _ make a name",
+    ),
     "a word of Python": (
         (given("lambda"),),
         "'lambda' cannot be a column's name: letters, digits and _ make a name",

@@ -7,10 +7,11 @@ worksheet ``report``; the cells on the way to a scalar root have the worksheet `
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
+from itertools import chain, count
 
 from ..charts import Drawn
 from ..grid import CHECKED, FIRST_ROW, SCALARS, STEPS, Block, Grid, Place, as_issued, checked
@@ -28,7 +29,10 @@ __all__ = ["MOST_ROWS", "TooManyRows", "check_rows", "grid"]
 
 MOST_ROWS = 200_000
 """Rows of a worksheet; a million would fit, but no reader opens it gladly."""
-_RESERVED = ("report", "steps", "published", "equations", "history")
+_RESERVED = (SCALARS, STEPS, "figures", "published", "equations", "history")
+"""Worksheets that are there already, and one that Excel keeps for itself."""
+_LONGEST_NAME = 31
+"""Characters of a worksheet's name."""
 _TOP = 5
 """The row, from 0, of the first scalar."""
 _ABOVE = 6
@@ -117,7 +121,7 @@ class _Assembly:
     ) -> None:
         self.sheet, self.judged, self.whole, self.values, self.units = sheet, judged, whole, values, units
         self.first, self.drawn = first, drawn
-        self.names = {axis.name: _worksheet(axis) for axis in whole.axes}
+        self.names = _worksheets(whole.axes)
         self.rooms = {
             axis.name: _Room(self.names[axis.name], values.layouts[axis.name].size) for axis in whole.axes
         }
@@ -378,9 +382,16 @@ def _literal(value: float | str | None) -> str:
     return f"={Decimal(repr(value)):f}" if isinstance(value, float) else f'="{value}"'
 
 
-def _worksheet(axis: Axis) -> str:
-    """The worksheet's name of an axis."""
-    return f"{axis.name}_rows" if axis.name.lower() in _RESERVED else axis.name
+def _worksheets(axes: Iterable[Axis]) -> dict[str, str]:
+    """The worksheets' names of axes, short enough for Excel, which does not tell capitals apart."""
+    names: dict[str, str] = {}
+    taken = set(_RESERVED)
+    for axis in axes:
+        endings = chain(("", "_rows"), (f"_rows_{number}" for number in count(2)))
+        tried = (axis.name[: _LONGEST_NAME - len(ending)] + ending for ending in endings)
+        names[axis.name] = next(name for name in tried if name.lower() not in taken)
+        taken.add(names[axis.name].lower())
+    return names
 
 
 def _parts(axis: Axis) -> tuple[tuple[str, str], ...]:
