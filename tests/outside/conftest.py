@@ -1,5 +1,6 @@
 """What the tests beside it share: npm packages."""
 
+import fcntl
 import shutil
 import subprocess
 from collections.abc import Callable
@@ -15,15 +16,21 @@ def npm_packages(require: Callable[..., str]) -> Callable[[Path], Path]:
     def install(folder: Path) -> Path:
         npm, lock = require("npm"), (folder / "package-lock.json").read_text(encoding="utf-8")
         cache = Path.home() / ".cache" / "loopsheet" / folder.name
-        installed = cache / "package-lock.json"
-        if not installed.exists() or installed.read_text(encoding="utf-8") != lock:
-            cache.mkdir(parents=True, exist_ok=True)
-            shutil.copy(folder / "package.json", cache)
-            (cache / "npm-shrinkwrap.json").write_text(lock, encoding="utf-8")
-            command = [npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--no-update-notifier"]
-            run = subprocess.run(command, cwd=cache, capture_output=True, text=True, timeout=300, check=False)
-            assert run.returncode == 0, run.stderr
-            installed.write_text(lock, encoding="utf-8")
+        cache.mkdir(parents=True, exist_ok=True)
+        with (cache / "lock").open("w") as waiting:  # for tests in another process
+            fcntl.flock(waiting, fcntl.LOCK_EX)
+            _install(npm, folder, cache, lock)
         return cache / "node_modules"
 
     return install
+
+
+def _install(npm: str, folder: Path, cache: Path, lock: str) -> None:
+    installed = cache / "package-lock.json"
+    if not installed.exists() or installed.read_text(encoding="utf-8") != lock:
+        shutil.copy(folder / "package.json", cache)
+        (cache / "npm-shrinkwrap.json").write_text(lock, encoding="utf-8")
+        command = [npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--no-update-notifier"]
+        run = subprocess.run(command, cwd=cache, capture_output=True, text=True, timeout=300, check=False)
+        assert run.returncode == 0, run.stderr
+        installed.write_text(lock, encoding="utf-8")

@@ -27,7 +27,6 @@ from loopsheet.report.result import Report
 from loopsheet.report.sheet import Given, RepeatAxis, Root, Sheet
 from loopsheet.report.values import CODES, Status, Values
 from loopsheet.report.views import xlsx
-from loopsheet.report.workbooks import soft_impact_charts
 
 
 class Error(str):
@@ -132,7 +131,7 @@ def _number(value: Typed, scale: Fraction) -> float:
 def deliver(folder: Path = build.PAPER, drawn: bool = True) -> Delivered:
     """Compute a folder and make its workbook."""
     report = build.compute(folder, prove=False)
-    charts: Drawn | None = soft_impact_charts.drawn(report.sheet) if drawn else None
+    charts = report.workbook.drawn(report.sheet) if drawn and report.workbook.drawn else None
     units = {name: shown.unit for name, shown in report.shown.items()}
     grid = excel_grid.grid(report.sheet, report.marks.values, units, report.workbook.headline, charts)
     return Delivered(report, grid, xlsx.render(report, grid))
