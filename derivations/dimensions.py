@@ -85,6 +85,8 @@ _UNITS: dict[str, dict[str, int]] = {
     "H": {"kg": 1, "m": 2, "s": -2, "A": -2},
 }
 
+_WRITTEN = "write names, multiplied by * and divided by / without parentheses, as J/kg/K for J/(kg*K)"
+
 
 class DimensionError(ValueError):
     """An expression adds, compares or raises what cannot be, or a unit cannot be read."""
@@ -113,12 +115,14 @@ def dimension_of_unit(unit: str, exponents: Mapping[str, Expr] | None = None) ->
     """
     factor = r"([^*/^()]+)(?:\^(\([^()]+\)|[^*/^()]+))?"
     if not re.fullmatch(rf"{factor}([*/]{factor})*", unit):
-        raise DimensionError(f"{unit!r} is no unit: write names, multiplied by * and divided by /")
+        raise DimensionError(f"{unit!r} is no unit: {_WRITTEN}")
     total = PURE
     for divided, named, raised in re.findall(rf"(^|[*/]){factor}", unit):
         name = named.strip()
         if name == "1":
             continue
+        if name not in _UNITS and all(part in _UNITS for part in name.split()):
+            raise DimensionError(f"{unit!r} leaves out a * or a / in {name!r}")
         if name not in _UNITS:
             raise DimensionError(f"unknown unit {name!r} in {unit!r}; known are {', '.join(_UNITS)}")
         exponent = _exponent(raised.strip("() ") or "1", unit, exponents or {})

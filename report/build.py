@@ -15,7 +15,7 @@ from .crate import added
 from .errors import ForeignCode, InputError, Location, UnknownWorkbook, UsageError, close, diagnose, listing
 from .folders import INPUTS, PAPER, told
 from .inputs import Find, Inputs, check_cells, load
-from .own_workbook import own_workbook
+from .own_workbook import own_workbook, place_of, place_of_column
 from .provenance import sources
 from .staging import put, staged
 from .unit_text import UnitError as NotAUnit
@@ -170,11 +170,37 @@ def _prepared(inputs: Inputs, ledger: Ledger) -> Prepared:
     except SheetError as error:
         if inputs.workbook.name in SHIPPED:
             raise  # ours, and our bug
-        code = next(name for name in inputs.files if name.endswith(".py"))
-        at = Location((inputs.folder / code).as_posix())
+        at = place_of_column(*_own_code(inputs), str(error))
         raise InputError(diagnose("LS213", at, text=inputs.workbook.name, reason=str(error))) from error
+    if inputs.workbook.name not in SHIPPED:
+        _refuse_what_is_misnamed(sheet, inputs)
     _refuse_what_is_missing(sheet, inputs)
     return Prepared(inputs, sheet)
+
+
+def _own_code(inputs: Inputs) -> tuple[Path, bytes]:
+    """The file of the user's own workbook, and what it held."""
+    name = next(name for name in inputs.files if name.endswith(".py"))
+    return inputs.folder / name, inputs.files[name]
+
+
+def _refuse_what_is_misnamed(sheet: Sheet, inputs: Inputs) -> None:
+    """What a user's own workbook wants shown must be there, before anything is computed."""
+    from .declared import misnamed
+    from .views.words import NARRATIVES
+
+    def drawings() -> Collection[str]:
+        from .views import figures
+
+        return figures.NAMES
+
+    path, code = _own_code(inputs)
+    found = [
+        diagnose("LS213", place_of(path, code, field, word), text=path.name, reason=reason)
+        for field, word, reason in misnamed(inputs.workbook, sheet, NARRATIVES, drawings)
+    ]
+    if found:
+        raise InputError(*found)
 
 
 def _refuse_what_is_not_stated(sheet: Sheet, ledger: Ledger) -> None:

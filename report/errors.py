@@ -86,6 +86,12 @@ CATALOGUE: dict[str, Entry] = {
     "LS112": Entry(
         "control character", "the control character {text} is in the text", "printable text on one line"
     ),
+    "LS113": Entry(
+        "spreadsheet in place of text",
+        "the file is {kind}, not a table in text",
+        "comma-separated values (CSV) in UTF-8, with a decimal point",
+        "open it there and save the sheet as 'CSV UTF-8'; then name that file in report.toml",
+    ),
     # report.toml
     "LS201": Entry("not TOML", "not TOML: {reason}", "TOML 1.0, https://toml.io", "{suggestion}"),
     "LS202": Entry("TOML too deep", "the file is nested too deeply", "the keys of a report, two levels deep"),

@@ -114,12 +114,12 @@ def _last(table: Table) -> Location:
 def _head(table: Table, field: Field, columns: Mapping[str, Measured], findings: Findings) -> _Head | None:
     """Read a field of the first line; a column that should name its unit and does not is a finding."""
     match = _HEAD.fullmatch(field.text)
-    if match is None:
+    meant = None if match and match["name"] in columns else _meant(field.text, columns)
+    if match is None or meant is not None:
         if not field.text:
             return _Head("", None, 0)
-        known = re.match(r"[^\W\d]\w*", field.text)
-        column = columns.get(known.group()) if known else None
-        example = f"{column.name} [{column.unit}]" if column else "x_p [um]"
+        column, unit = meant or (None, "um")
+        example = f"{column.name if column else 'x_p'} [{unit}]"
         findings.add("LS305", table.at(field), text=field.text, example=example)
         return _Head(column.name, None, 0) if column else None
     name = re.sub(r"\s", "", match["name"]) if match["name"].startswith("u(") else match["name"]
@@ -128,6 +128,26 @@ def _head(table: Table, field: Field, columns: Mapping[str, Measured], findings:
         example = f"{name} [{column.unit}]"
         findings.add("LS304", table.at(field), text=name, unit=column.unit, example=example)
     return _Head(name, match["unit"], match.start("unit"))
+
+
+def _meant(text: str, columns: Mapping[str, Measured]) -> tuple[Measured, str] | None:
+    """The column that a text begins with, and the unit that follows somehow: ``x_p (mm)``, ``x_p_mm``.
+
+    What follows and is no unit of that column leaves the column's own unit, if it stands in brackets of any
+    kind; without them, the text means something else.
+    """
+    for name in sorted(columns, key=len, reverse=True):
+        if not re.match(rf"{re.escape(name)}(?![^\W_])", text):
+            continue
+        column, rest = columns[name], text.removeprefix(name)
+        word = re.sub(r"^[\W_]*(?:in\b)?", "", rest).strip(" ()[]{}<>")
+        try:
+            fits = parse_unit(word).dimension == parse_unit(column.unit).dimension if word else False
+        except UnitError:
+            fits = False
+        if fits or re.search(r"[()\[\]{}]", rest):
+            return column, word if fits else column.unit
+    return None
 
 
 def _unit(

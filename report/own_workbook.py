@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import types
 from collections.abc import Callable
@@ -9,13 +10,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from .declared import mistyped
 from .errors import InputError, Location, LoopsheetError, diagnose
 
 if TYPE_CHECKING:
     from ..derivations.equation import Ledger
     from .workbook import Workbook
 
-__all__ = ["own_workbook"]
+__all__ = ["own_workbook", "place_of", "place_of_column"]
 
 
 def own_workbook(path: Path, code: bytes) -> Workbook:
@@ -39,6 +41,12 @@ def own_workbook(path: Path, code: bytes) -> Workbook:
 
     own = _Own(path, code)
     found: Workbook = own.guarded("WORKBOOK", own.run, Workbook)()
+    wrong = [
+        diagnose("LS213", place_of(path, code, field, word), text=path.name, reason=reason)
+        for field, word, reason in mistyped(found)
+    ]
+    if wrong:
+        raise InputError(*wrong)
 
     def ledger() -> Ledger:
         plain: Ledger = own.guarded("what ledger() returns", found.ledger, Ledger)()
@@ -66,7 +74,7 @@ class _Own:
         sys.modules[module.__name__] = module
         exec(compile(self.code, str(self.path), "exec", dont_inherit=True), vars(module))
         if not hasattr(module, "WORKBOOK"):
-            self._refuse("it declares no WORKBOOK")
+            self.refuse("it declares no WORKBOOK")
         return module.WORKBOOK
 
     def guarded(self, what: str, function: Callable[..., Any], kind: Any = object) -> Callable[..., Any]:
@@ -78,14 +86,14 @@ class _Own:
             except (KeyboardInterrupt, LoopsheetError):
                 raise
             except BaseException as error:  # sys.exit() too: it must not end us as if all were well
-                self._refuse(f"{type(error).__name__}: {error}".removesuffix(": "), error)
+                self.refuse(f"{type(error).__name__}: {error}".removesuffix(": "), error)
             if not isinstance(found, kind):
-                self._refuse(f"{what} is no {getattr(kind, '__name__', kind)}")
+                self.refuse(f"{what} is no {getattr(kind, '__name__', kind)}")
             return found
 
         return call
 
-    def _refuse(self, reason: str, error: BaseException | None = None) -> NoReturn:
+    def refuse(self, reason: str, error: BaseException | None = None) -> NoReturn:
         """Raise a finding at the last line of the user's file that the error passed through."""
         line = getattr(error, "lineno", None) if isinstance(error, SyntaxError) else None
         traceback = None if error is None else error.__traceback__
@@ -93,8 +101,44 @@ class _Own:
             if traceback.tb_frame.f_code.co_filename == str(self.path):
                 line = traceback.tb_lineno
             traceback = traceback.tb_next
-        source = self.code.decode("utf-8", "replace").splitlines()
-        shown = source[line - 1] if line is not None and 0 < line <= len(source) else ""
-        file, text = self.path.as_posix(), shown.strip()
-        at = Location(file, line, shown.index(text) + 1, len(text), shown) if text else Location(file)
+        at = _place(self.path, self.code, line)
         raise InputError(diagnose("LS213", at, text=self.path.name, reason=reason)) from error
+
+
+def place_of(path: Path, code: bytes, field: str, word: str = "") -> Location:
+    """Where a field of the workbook is given, or a word in quotes from there on; else the file alone."""
+    text = code.decode("utf-8", "replace")
+    given = re.search(rf"\b{field}\s*=", text)
+    found = given and re.compile(_quoted(word) if word else field).search(text, given.start())
+    return _found(path, text, found)
+
+
+def place_of_column(path: Path, code: bytes, complaint: str) -> Location:
+    """Where what a sheet complains of is written: a text that it quotes, or the column it begins with."""
+    text = code.decode("utf-8", "replace")
+    ways = [_quoted(word) for word in re.findall("'([^']+)'", complaint)]
+    ways += [rf"Column\(\s*{_quoted(complaint.partition(':')[0].partition(' ')[0])}"]
+    found = (re.search(way, text) for way in ways)
+    return _found(path, text, next(filter(None, found), None))
+
+
+def _quoted(word: str) -> str:
+    return rf"([\"']){re.escape(word)}\1"
+
+
+def _found(path: Path, text: str, found: re.Match[str] | None) -> Location:
+    """The place of a match that ends on its line, in a file."""
+    if found is None:
+        return Location(path.as_posix())
+    begin = text.rfind("\n", 0, found.end()) + 1
+    line, first = text[begin:].partition("\n")[0].rstrip("\r"), max(found.start(), begin)
+    number = text.count("\n", 0, begin) + 1
+    return Location(path.as_posix(), number, first - begin + 1, found.end() - first, line)
+
+
+def _place(path: Path, code: bytes, line: int | None) -> Location:
+    """A line of the code, if it is one."""
+    source = code.decode("utf-8", "replace").splitlines()
+    shown = source[line - 1] if line is not None and 0 < line <= len(source) else ""
+    file, text = path.as_posix(), shown.strip()
+    return Location(file, line, shown.index(text) + 1, len(text), shown) if text else Location(file)

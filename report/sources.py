@@ -18,6 +18,12 @@ __all__ = ["Source", "open_source", "read_bytes"]
 _NEWLINE = re.compile(r"\r\n|\n|\r")
 _CONTROL = re.compile("[\x01-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ufffe\uffff]")
 
+_SPREADSHEETS = {
+    b"PK\x03\x04": "a spreadsheet (.xlsx or .ods) or another archive",
+    b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1": "a spreadsheet (.xls) or another Office document",
+}
+"""What files begin with that come from a spreadsheet as it saves them."""
+
 
 class Source:
     """The text of a file, and the line and column of every character of it.
@@ -137,6 +143,10 @@ def open_source(path: str, name: str, data: bytes, wanted: str, findings: Findin
     findings : Findings
         Where findings go.
     """
+    for magic, kind in _SPREADSHEETS.items():
+        if data.startswith(magic):
+            findings.add("LS113", Location(path), kind=kind)
+            return None
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:

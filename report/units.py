@@ -85,7 +85,7 @@ def exponents(sheet: Sheet, column: Column, index: Expr | None) -> dict[str, Exp
     found: dict[str, Expr] = {}
     for name in re.findall(r"\^([A-Za-z_]\w*)", column.unit):
         if name not in sheet:
-            raise UnitError(f"{column.name}: its unit {column.unit!r} names {name!r}, which is no column")
+            raise UnitError(f"its unit {column.unit!r} names {name!r}, which is no column")
         other = sheet[name]
         row = index if index is not None else (None if column.axis is None else column.axis.index)
         found[name] = other.symbol if other.axis is None else other[row]
@@ -102,7 +102,10 @@ def check(sheet: Sheet) -> None:
     """
     for column in sheet.columns:
         checker = _Checker(sheet, column)
-        own = dimension_of_unit(column.unit, exponents(sheet, column, None))
+        try:
+            own = dimension_of_unit(column.unit, exponents(sheet, column, None))
+        except UnitError as problem:
+            raise UnitError(f"{column.name}: {problem}") from None
         rule = column.rule
         if isinstance(rule, Formula):
             _expect(checker, rule.expression, own)

@@ -229,6 +229,7 @@ CASES: dict[str, Callable[[], None]] = {
     "LS110": lambda: campaign(csv=CSV.replace("2.940", "2.9\x0040")),
     "LS111": lambda: campaign(csv=""),
     "LS112": csv("29.7", "29.\x1b[2J7"),
+    "LS113": lambda: campaign(csv=b"PK\x03\x04" + CSV.encode()),
     "LS201": toml('"8.366 g"', "8.366 g"),
     "LS202": toml("[parameters]", "x = " + "[" * 5000 + "\n[parameters]"),
     "LS203": toml("[parameters]\n", '[parameters]\nbeat = "1.5"\n'),

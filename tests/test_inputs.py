@@ -545,6 +545,37 @@ def test_other_encodings_are_one_finding(encoding: str, findings: Findings) -> N
     assert found[0][:5] in {"LS109", "LS110"}
 
 
+@pytest.mark.parametrize(
+    ("head", "help_"),
+    [
+        ("x_p (mm)", "x_p [mm]"),
+        ('"x_p, mm"', "x_p [mm]"),
+        ("x_p_mm", "x_p [mm]"),
+        ("x_p mm", "x_p [mm]"),
+        ("x_p in mm", "x_p [mm]"),
+        ("x_p/mm", "x_p [mm]"),
+        ("x_p: µm", "x_p [µm]"),
+        ("x_p [mm", "x_p [mm]"),
+        ("x_p (s)", "x_p [m]"),
+        ("x_p (depth)", "x_p [m]"),
+        ("x_p depth", None),
+        ("x_p_2", None),
+    ],
+)
+def test_help_for_a_header_keeps_the_user_s_unit(head: str, help_: str | None, read: Reader) -> None:
+    with pytest.raises(InputError) as caught:
+        read(csv=CSV.replace("x_p [um]", head))
+    first = caught.value.diagnostics[0]
+    assert (first.code, first.hint if help_ else "") == (
+        ("LS305", f"write '{help_}'") if help_ else ("LS303", "")
+    )
+
+
+@pytest.mark.parametrize("magic", [b"PK\x03\x04\x14\x00\x08", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1\x00"])
+def test_a_spreadsheet_is_told_for_what_it_is(magic: bytes, findings: Findings) -> None:
+    assert findings(csv=magic + bytes(range(256))) == ["LS113 measurements.csv+1"]
+
+
 def test_the_place_of_a_wrong_byte_counts_characters_not_bytes(findings: Findings) -> None:
     assert findings(csv="µµ,\r\nµx\xff".encode("latin-1").replace(b"\xb5", "µ".encode())) == [
         "LS109 measurements.csv:2:3+1"

@@ -40,6 +40,13 @@ def changed(old: str, new: str) -> str:
     return SOURCE.replace(old, new)
 
 
+def shows(field: str) -> str:
+    return changed("    sheet=", f"    {field},\n    sheet=").replace(
+        "import Meas", "import FigureSpec, Meas"
+    )
+
+
+UNIT = '"m", "length'
 SHEET = "Sheet((d, *given.values(), l))"
 
 
@@ -65,6 +72,33 @@ SHEET = "Sheet((d, *given.values(), l))"
             "",
             "l is computed from (H.1) l = l_S, which the ledger does not have: add it there",
         ),
+        (changed(UNIT, '"Pa m^6", "length'), '"Pa m^6"', "l: 'Pa m^6' leaves out a * or a / in 'Pa m'"),
+        (changed(UNIT, '"J/(kg*K)", "length'), '"J/(kg*K)"', "as J/kg/K for J/(kg*K)"),
+        (changed(UNIT, '"m^2", "length'), 'Column("l"', "l (H.1): the unit m^2 is m^2, but the formula"),
+        (changed('"d", "m", "diff', '"d", "furlongg", "diff'), '"furlongg"', "cannot be read at 'furlongg'"),
+        (shows('headline=("L",)'), '"L"', "there is no cell 'L', which headline names; there is l_S, "),
+        (shows('headline=("l",)'), '"l",)', "'l' has many rows, and headline names single numbers"),
+        (shows('headline="l_S"'), "headline", "headline is no tuple of names in quotes; one alone"),
+        (shows('fits=("l_S", "l_s", "theta")'), '"l_s"', "there is no cell 'l_s', which fits names; did you"),
+        (shows('fits=("l_S",)'), "fits", "fits names the mean and two fits, or nothing"),
+        (
+            shows('prose="../own"'),
+            '"../own"',
+            "there is no text '../own', which prose names; there is generic",
+        ),
+        (shows("prose=None"), "prose", "prose is no text in quotes"),
+        (
+            shows('figures=(FigureSpec("f", "1", "", "loop"),)'),
+            '"loop"',
+            "no drawing 'loop', which figures names; did",
+        ),
+        (
+            shows('figures=(FigureSpec("../f", "1", "", "loops"),)'),
+            '"../f"',
+            "cannot be the name of a figure",
+        ),
+        (shows("tables=7"), "tables", "tables is no tuple of TableSpec"),
+        (shows("published_as=7"), "published_as", "published_as is no dict of titles"),
         (changed("    sheet=", "    check_parameters=lambda x: 1 / 0,\n    sheet="), "1 / 0", "ZeroDivision"),
         (changed("    sheet=", "    curves=lambda *_: exit(),\n    sheet="), "exit()", "SystemExit"),
     ],

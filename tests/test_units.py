@@ -63,6 +63,9 @@ def test_an_exponent_may_be_a_name() -> None:
     assert dimension_of_unit("N/m^q", {"q": a}) == {"kg": 1, "m": 1 - a, "s": -2}
 
 
+WRITTEN = "write names, multiplied by * and divided by / without parentheses, as J/kg/K for J/(kg*K)"
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -71,9 +74,11 @@ def test_an_exponent_may_be_a_name() -> None:
             "unknown unit 'furlong' in 'furlong'; known are "
             "kg, m, s, K, A, mol, cd, N, J, Pa, W, Hz, C, V, ohm, S, F, Wb, T, H",
         ),
-        ("m//s", "'m//s' is no unit: write names, multiplied by * and divided by /"),
-        ("m/", "'m/' is no unit: write names, multiplied by * and divided by /"),
-        ("", "'' is no unit: write names, multiplied by * and divided by /"),
+        ("m//s", "'m//s' is no unit: " + WRITTEN),
+        ("J/(kg*K)", "'J/(kg*K)' is no unit: " + WRITTEN),
+        ("Pa m^6", "'Pa m^6' leaves out a * or a / in 'Pa m'"),
+        ("m/", "'m/' is no unit: " + WRITTEN),
+        ("", "'' is no unit: " + WRITTEN),
         ("N/m^q", "unknown exponent 'q' in the unit 'N/m^q'"),
     ],
 )

@@ -24,9 +24,11 @@ from .escape import Markup, slug
 from .numbers import Figure, read
 from .parts import Head, Item, index_text
 
-__all__ = ["TEMPLATES", "Words", "environment"]
+__all__ = ["NARRATIVES", "TEMPLATES", "Words", "environment"]
 
 TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
+NARRATIVES = ("generic", "soft_impact")
+"""The texts around tables and figures that a workbook may name, each a template under templates/prose."""
 
 _PART = re.compile(
     r"(?P<number>(?<![\w.])-?\d+(?:\.\d+)?e[+-]?\d+(?!\w))"
