@@ -112,7 +112,7 @@ def short_markup(page: str) -> str:
 
 
 def _unquoted(tag: str) -> str:
-    return re.sub(r'="([\w.-]+)"(?=[ >])', r"=\1", tag)
+    return re.sub(r'="([\w.#-]+)"(?=[ >])', r"=\1", tag)
 
 
 # --- MathML ----------------------------------------------------------------------------------------------

@@ -3,34 +3,35 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from itertools import pairwise
 
-__all__ = ["short_svg"]
+__all__ = ["inlined", "short_svg"]
 
-FONT = "DejaVu Sans,Verdana,Noto Sans,Arial,sans-serif"
-"""Where the first is missing, another takes its place and is fitted to its width."""
-
+_SVG = "http://www.w3.org/2000/svg"
 _PATH = re.compile(r' d="(M[^"]*)"')
 _STEP = re.compile(r"([MLQCzhHvV])|(-?\d+(?:\.\d+)?)")
 _COUNTS = {"M": 2, "L": 2, "Q": 4, "C": 6, "h": 1}
 
 
-def short_svg(svg: str) -> str:
-    """An SVG without comments, idle groups and names, its paths told in steps from place to place."""
+def short_svg(svg: str, prefix: str = "a") -> str:
+    """An SVG without comments, idle groups and names, its paths told in steps from place to place.
+
+    What is referred to in it is called `prefix` and a number.
+    """
     text = svg.replace("xlink:href", "href").replace(' xmlns:xlink="http://www.w3.org/1999/xlink"', "")
     text = text.replace(' version="1.1"', "").replace("#ffffff", "#fff")
     text = _with_texts(text)
     text = re.sub(r"<!--[\s\S]*?-->|<\?xml[^>]*\?>", "", text)
     text = re.sub(r">\s+<", "><", text.strip())
     used = set(re.findall(r'(?:href="|url\()#([^")]+)', text))
-    names = {name: f"a{number:x}" for number, name in enumerate(sorted(used))}
+    names = {name: f"{prefix}{number:x}" for number, name in enumerate(sorted(used))}
     text = re.sub(r' id="([^"]*)"', lambda f: f' id="{names[f[1]]}"' if f[1] in names else "", text)
     text = re.sub(r'(href="|url\()#([^")]+)', lambda f: f"{f[1]}#{names[f[2]]}", text)
     text = re.sub(r' style="[^"]*"', lambda found: re.sub(r"([:;]) +", r"\1", found.group()), text)
     text = _PATH.sub(lambda found: f' d="{_relative(found[1])}"', text)
     text = re.sub(r"translate\([^)]*\)", _rounded, text)
     text = re.sub(r'<text transform="translate\(([-\d.]+),([-\d.]+)\)"', r'<text x="\1" y="\2"', text)
-    text = _with_classes(text)
     while True:
         # A group without attributes does nothing.
         less = re.sub(r"<g>((?:(?!</?g\b)[\s\S])*)</g>", r"\1", text)
@@ -88,7 +89,7 @@ def _with_texts(svg: str) -> str:
     needed = [glyph for name, glyph in glyphs.items() if f'href="#{name}"' in text]
     defs = f"<defs>{''.join(needed)}</defs>" if needed else ""
     text = re.sub(r"<defs>\s*</defs>", "", text)
-    return re.sub(r"(<svg\b[^>]*)>", rf'\1 font-family="{FONT}">{defs}', text, count=1)
+    return re.sub(r"(<svg\b[^>]*>)", rf"\1{defs}", text, count=1)
 
 
 def _said(text: str) -> str | None:
@@ -121,13 +122,23 @@ def _said(text: str) -> str | None:
 # --- styles ----------------------------------------------------------------------------------------------
 
 
-def _with_classes(svg: str) -> str:
-    """Each style once, under a name."""
-    styles = dict.fromkeys(re.findall(r' style="([^"]*)"', svg))
+_STYLE = re.compile(r' style="([^"]*)"')
+
+
+def inlined(svgs: Mapping[str, str]) -> tuple[dict[str, str], str]:
+    """Pictures that stand in one page, by their names, and the style sheet that they share.
+
+    What a picture calls its parts is told apart from what the others do, each style is told once, and what is
+    the same for all (the font, how lines join) is for the sheet of the page to say.
+    """
+    short = {name: short_svg(svg, f"d{place}-") for place, (name, svg) in enumerate(svgs.items())}
+    short = {name: re.sub(r"<defs><style\b[\s\S]*?</style></defs>", "", svg) for name, svg in short.items()}
+    styles = dict.fromkeys(style for svg in short.values() for style in _STYLE.findall(svg))
     names = {style: f"s{number:x}" for number, style in enumerate(styles)}
-    rules = "".join(f".{name}{{{style}}}" for style, name in names.items())
-    text = re.sub(r' style="([^"]*)"', lambda found: f' class="{names[found[1]]}"', svg)
-    return text.replace("</style>", f"{rules}</style>", 1) if "</style>" in text else svg
+    return {
+        name: _STYLE.sub(lambda found: f' class="{names[found[1]]}"', svg).replace(f' xmlns="{_SVG}"', "", 1)
+        for name, svg in short.items()
+    }, "".join(f".{name}{{{style}}}" for style, name in names.items())
 
 
 # --- paths -----------------------------------------------------------------------------------------------

@@ -8,14 +8,13 @@ import re
 from collections.abc import Mapping
 from functools import cached_property
 from typing import Any
-from urllib.parse import quote
 
 from ...derivations.equation import Equation
 from ..result import Report
 from ..values import Cell
 from . import live
 from .compact import short_markup, short_mathml, short_style
-from .compact_svg import short_svg
+from .compact_svg import inlined
 from .document import Document
 from .escape import Markup, html, html_finalize
 from .numbers import Figure, is_pure, unit_html
@@ -92,22 +91,24 @@ class HtmlWords(Words):
         return mathml_block(self.document.block(equation))
 
 
-_NOT_IN_URL = re.compile(r"""[\0-\x1f"#%&<>\x7f]""")
-"""What a browser would not take for a letter of the data, in an attribute between quotation marks."""
+_OPENING = re.compile(r"<svg\b[^>]*>")
+_SIZE = re.compile(r'\b(width|height)="([\d.]+)(pt|px|)"')
 
 
 def picture(svg: str, alt: str) -> Markup:
-    """An SVG as an image that is part of the page: nothing in it can run or load anything."""
-    opening = re.search(r"<svg\b[^>]*>", svg)
-    size = {}
-    for name in ("width", "height"):
-        found = re.search(rf'\b{name}="([\d.]+)(pt|px|)"', opening.group() if opening else "")
-        if found:
-            size[name] = round(float(found[1]) * (4 / 3 if found[2] == "pt" else 1))
-    attributes = Markup("").join(Markup(' {}="{}"').format(name, value) for name, value in size.items())
-    # In apostrophes the text of an SVG needs next to no escapes: three quarters of what base64 takes.
-    data = _NOT_IN_URL.sub(lambda found: quote(found.group()), short_svg(svg).replace('"', "'"))
-    return Markup('<img src="data:image/svg+xml,{}" alt="{}"{}>').format(Markup(data), html(alt), attributes)
+    """An SVG as a part of the page, as large as it wants to be, and what it shows in words.
+
+    It was drawn here: what foreign text is in it was escaped by what drew it.
+    """
+    said = Markup('<svg role="img" aria-label="{}"').format(html(alt))
+    opening = _OPENING.search(svg)
+    assert opening is not None
+    attributes = _SIZE.sub(_pixels, opening.group().removeprefix("<svg"))
+    return said + Markup(attributes + svg[opening.end() :])
+
+
+def _pixels(found: re.Match[str]) -> str:
+    return f'{found[1]}="{round(float(found[2]) * (4 / 3 if found[3] == "pt" else 1))}"'
 
 
 class Count(int):
@@ -183,15 +184,14 @@ def render(report: Report, figures: Mapping[str, str], program: str | None = Non
     """
     document = HtmlDocument(report)
     words = HtmlWords(document)
+    shown = [figure for figure in document.figures if figure.name in figures]
+    drawn, style_of_drawn = inlined({figure.name: figures[figure.name] for figure in shown})
     # Both are hashed as they stand in the page, where there are no empty lines.
-    style = short_style(_text("html/style.css") + (_text("html/live.css") if program is not None else ""))
+    live_style = _text("html/live.css") if program is not None else ""
+    style = short_style(_text("html/style.css") + style_of_drawn + live_style)
     script = "" if program is None else _squeezed(_script(report, program))
     jinja = environment(finalize)
-    pictures = {
-        figure.name: picture(figures[figure.name], figure.alt or figure.caption)
-        for figure in document.figures
-        if figure.name in figures
-    }
+    pictures = {figure.name: picture(drawn[figure.name], figure.alt or figure.caption) for figure in shown}
     context = {"report": report, "doc": document, "w": words, "figures": pictures, "macros": "html/macros.j2"}
     # The body comes first: the table of contents is made of the sections that it has.
     body = Markup(_BETWEEN.sub("", jinja.get_template(f"prose/{report.workbook.prose}.j2").render(context)))

@@ -252,12 +252,12 @@ def _tests_after_fit() -> tuple[Column, ...]:
         _column(
             "Cprime_eq7", TESTS, Formula(model.Cprime_of_test.at({**where, model.Cprime: seven[k]})),
             "Cprime",
-            meaning="maximum force, from the restitution (7)", latex="C'_{(7)%s}",
+            meaning="maximum force, from the restitution (7)", latex=r"C'_{\text{(7)}%s}",
             requires=((x_m[k] > x_p[k], "the imprint is not shallower than the approach"),),
         ),
         _column(
             "Cprime_eq9", TESTS, Formula(model.eq9.reversed.at({**where, model.Cprime: nine[k]})), "Cprime",
-            meaning="maximum force, from the compression (9)", latex="C'_{(9)%s}",
+            meaning="maximum force, from the compression (9)", latex=r"C'_{\text{(9)}%s}",
         ),
     )  # fmt: skip
 

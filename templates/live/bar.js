@@ -59,7 +59,7 @@ function fullValue(look, name, row) {
 }
 
 // The articles of the equations, by number: where what is known of them stands.
-const CLAIMS = Object.fromEntries(all(".claim").map((claim) => [claim.querySelector(".number").textContent, claim]));
+const CLAIMS = Object.fromEntries(all("article").map((claim) => [claim.querySelector("b").textContent, claim]));
 
 // The numbers of its equations in the ledger; mostly there is one.
 const equationsOf = ({ equations, source }) => equations ?? (CLAIMS[source] ? [source] : []);
@@ -69,13 +69,13 @@ function sourceLine(column) {
   if (!equations.length) return [`from ${column.source}`];
   return equations.flatMap((label, place) => {
     const claim = CLAIMS[label], link = make("a", { href: `#${claim.id}`, class: "eqref" }, label);
-    return [place ? ", solved as " : "from ", link, " ", claim.querySelector(".status").cloneNode(true)];
+    return [place ? ", solved as " : "from ", link, " ", claim.querySelector("small").cloneNode(true)];
   });
 }
 
 // The equation as the report prints it: a copy from its place there.
 function publishedMath(column, name) {
-  const [label] = equationsOf(column), found = label && CLAIMS[label].querySelector(".eq math");
+  const [label] = equationsOf(column), found = label && CLAIMS[label].querySelector("div > math");
   if (!found) return [];
   const copy = found.cloneNode(true);
   const rows = LIVE.columns[name].put ? "" : summedRows(name);

@@ -207,7 +207,7 @@ function makeRoom([entry]) {
 
 // Equations and pictures that are wider than the page are scrolled with the keyboard, too.
 function letScroll() {
-  const boxes = all("main .eq .scroll, main .eq.scroll, main .card");
+  const boxes = all("main .eq .scroll, article div, main .card");
   const wide = boxes.map((box) => box.scrollWidth > box.clientWidth || box.scrollHeight > box.clientHeight);
   boxes.forEach((box, n) => (wide[n] ? box.setAttribute("tabindex", "0") : box.removeAttribute("tabindex")));
 }

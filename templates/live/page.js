@@ -15,7 +15,7 @@
 //   #formula-bar[data-cell][data-index]; #bar-toggle (aria-expanded)
 //   #bar-name #bar-meaning #bar-value #bar-reason #bar-source #bar-equation #bar-put
 //   #bar-precedents button[data-goto="x_p[2]"], #bar-dependents button[data-goto]
-//   #figure-loops svg, #figure-alpha_pairs svg      drawn again (the issued picture is an img)
+//   #figure-loops svg, #figure-alpha_pairs svg      drawn again (then of the class picture)
 //   #why-NAME-INDEX                   the row that says why a cell has no value
 //   html[data-milliseconds]           how long the last recalculation and redrawing took
 

@@ -37,7 +37,7 @@ class Table {
 
   newRow(index) {
     const text = index.replaceAll("-", "–");
-    const row = make("tr", { "data-label": index }, make("th", { scope: "row", class: "row" }, text));
+    const row = make("tr", { "data-label": index }, make("th", { scope: "row" }, text));
     for (const { name, identified } of this.columns) {
       const data = { id: identified ? cellId("cell", name, index) : null, "data-cell": name, "data-index": index };
       if (!LIVE.columns[name].given) {
@@ -175,7 +175,7 @@ function writeMissing(look) {
       const index = look.trace.index(name, row);
       return make(
         "tr", code === "†" ? {} : { id: cellId("why", name, index) },
-        make("th", { scope: "row", class: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
+        make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
         make("td", { class: "row" }, index.replaceAll("-", "–")),
         make("td", { class: "words" }, make("code", {}, code)),
         make("td", { class: "words" }, why),

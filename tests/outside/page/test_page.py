@@ -48,7 +48,8 @@ def test_edit_recalculates_every_cell_as_numpy_does(live: Live, open_page: Open,
 
 
 def test_figures_are_drawn_again(live: Live) -> None:
-    assert live.paths("loops") == []  # the issued picture is an image
+    drawn = "#figure-loops svg.picture"
+    assert live.page.locator(drawn).count() == 0  # the issued picture was drawn by another program
     live.type("x_p", 2, "29.8")
     first = {name: live.paths(name) for name in ("loops", "alpha_pairs")}
     live.type("x_p", 2, "31")
@@ -59,6 +60,9 @@ def test_figures_are_drawn_again(live: Live) -> None:
         assert not re.search("NaN|Infinity|undefined", "".join(again))
     live.click("live-undo")
     assert live.paths("loops") == first["loops"]
+    assert live.page.locator(drawn).count() == 1
+    live.click("live-undo")
+    assert live.page.locator(drawn).count() == 0
 
 
 def test_pair_without_a_root_says_why_as_the_terminal_does(

@@ -142,7 +142,7 @@ def test_formula_bar_says_where_a_number_comes_from(live: Live) -> None:
     assert live.text("bar-value").endswith("µm")
     assert "approach of the pair's second test" in live.text("bar-meaning").replace("’", "'")
     assert live.text("bar-source").startswith("from (")
-    assert live.page.locator("#bar-source .status").inner_text() in ("proved", "proved numerically", "stated")
+    assert live.page.locator("#bar-source small").inner_text() in ("proved", "proved numerically", "stated")
     assert live.page.locator("#bar-source math").count() == 1
     put = live.text("bar-put")
     for value in ("0.512", "2.97", "1.5", "1.258"):
