@@ -221,6 +221,9 @@ def _column(name: str, cells: Mapping[str, Any]) -> Column:
     if axis is None:
         labels: list[Index] = [()]
         values, statuses = [entry.get("value")], [entry.get("status")]
+    elif "of" in entry:  # generated rows are counted, not listed
+        _get(entry, "size", int)
+        labels, values, statuses = [], [], []
     else:
         labels = [_index(each) for each in _list(entry, "index")]
         values, statuses = _list(entry, "value"), _list(entry, "status")

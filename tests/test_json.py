@@ -35,6 +35,12 @@ def test_shape(values: dict) -> None:  # type: ignore[type-arg]
     assert {c["axis"] for c in values["cells"].values()} == {"tests", "pairs", "points", None}
 
 
+def test_rows_that_a_rule_makes_of_each_pair_are_counted_not_listed(values: dict) -> None:  # type: ignore[type-arg]
+    F = dict(values["cells"]["F"])
+    assert F.pop("rule").startswith("(L")
+    assert F == {"axis": "points", "of": "pairs", "unit": "N", "size": 500, "status": {"ok": 500}}
+
+
 def test_cells_of_the_design_are_there(values: dict) -> None:  # type: ignore[type-arg]
     names = (
         "v e x_p m_red beta alpha x_m1 x_m2 C Cprime_1 Cprime_2 alpha_mean alpha_log C_log alpha_lin C_lin"

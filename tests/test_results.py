@@ -22,6 +22,7 @@ RESULT: dict[str, Any] = {
             "index": [1, 2], "value": [1.5, 2], "status": ["ok", "ok"],
         },
         "a": {"axis": "pairs", "unit": "1", "index": [[1, 2]], "value": [None], "status": ["#NOROOT!"]},
+        "F": {"axis": "points", "of": "pairs", "unit": "N", "rule": "(2) F = a", "size": 9, "status": {"ok": 9}},
         "m": {"axis": None, "unit": "1", "rule": "(1) m = 2", "value": 2.5, "status": "ok"},
     },
     "proofs": {"(1)": "proved"},
@@ -55,6 +56,7 @@ def test_a_result(tmp_path: Path) -> None:
     assert found.columns["v"].cells == {(1,): (1.5, "ok"), (2,): (2.0, "ok")}
     assert found.columns["a"].cells == {(1, 2): (None, "#NOROOT!")}
     assert found.columns["a"].rule == ""
+    assert (found.columns["F"].axis, found.columns["F"].cells) == ("points", {})
     assert found.columns["m"].cells == {(): (2.5, "ok")}
     assert found.published == {"Table 2 a[1-2]": "1.2: same", "text m": "2: differs"}
 
@@ -72,6 +74,7 @@ WRONG: dict[str, Callable[[dict[str, Any]], Any]] = {
     "truth": lambda d: d["cells"]["v"].update(value=[True, 2]),
     "huge": lambda d: d["cells"]["v"].update(value=[10**400, 2]),
     "status": lambda d: d["cells"]["m"].update(status=None),
+    "size": lambda d: d["cells"]["F"].pop("size"),
     "unit": lambda d: d["cells"]["m"].update(unit=1),
     "axis": lambda d: d["cells"]["v"].update(axis=[]),
     "rule": lambda d: d["cells"]["v"].update(rule=[]),

@@ -10,13 +10,14 @@ from pathlib import Path
 
 import html5lib
 import pytest
+from large_campaigns import write
 
 from loopsheet.report import build
 from loopsheet.report.result import Report
 from loopsheet.report.sheet import Given, RepeatAxis
-from loopsheet.report.views import figures, html
+from loopsheet.report.views import figures, html, latex
 from loopsheet.report.views.document import Document
-from loopsheet.report.views.parts import index_text
+from loopsheet.report.views.parts import MOST, index_text
 
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ ((( report ))) {{ 7 * 7 }}"
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="360pt" height="180pt"><path d="M0 0"/></svg>'
@@ -35,6 +36,44 @@ def tree(page: str) -> ET.Element:
     parsed: ET.Element = parser.parse(page)
     assert parser.errors == []
     return parsed
+
+
+@pytest.fixture(scope="module")
+def large(tmp_path_factory: pytest.TempPathFactory) -> Report:
+    """The report of 26 tests with 325 pairs, of which every third has no exponent at all."""
+    folder = write(tmp_path_factory.mktemp("large"), 26)
+    file = folder / "measurements.csv"
+    rows = file.read_text().splitlines()
+    rows[1] = "1,2.000,0.5500,60.00"  # deeper than the fastest, so that no pair of it has a root
+    file.write_text("\n".join(rows))
+    return build.compute(folder, prove=False)
+
+
+def test_of_many_rows_the_first_are_shown_and_it_is_said(large: Report) -> None:
+    page = html.render(large, {})
+    document = Document(large)
+    assert {len(document.tables[name].rows) for name in ("alpha", "pairs")} == {MOST}
+    assert len(document.tables["measured"].rows) == 26
+    assert page.count("The first 300 pairs are shown; values.json has all of them.") == 2
+    assert page.count(f"data-most={MOST}") + page.count(f'data-most="{MOST}"') == 2
+    printed = latex.render(large, [])
+    assert printed.count("The first 300 pairs are shown; values.json has all of them.") == 2
+
+
+def test_of_many_remarks_the_first_are_shown_and_links_lead_to_those(
+    large: Report, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert Document(large).cut_remarks == ""
+    monkeypatch.setattr("loopsheet.report.views.document.MOST", 20)
+    document = Document(large)
+    assert len(document.remarks) == 20
+    assert document.cut_remarks.startswith("The first 20 are shown; ")
+    for text in (html.render(large, {}), latex.render(large, [])):
+        assert document.cut_remarks in text
+    page = html.render(large, {})
+    links = set(re.findall(r'href="?#(why-[^">\s]+)', page))
+    assert links
+    assert links <= set(re.findall(r'id="?(why-[^">\s]+)', page))
 
 
 def test_end_tags_that_are_left_out_are_read_as_if_they_stood_there(

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
+from itertools import chain, islice
 
 from ...derivations.equation import Derivation, Equation
 from ...derivations.proof import Proof
@@ -15,12 +16,13 @@ from ..diagnostics import Check
 from ..marks import Count
 from ..result import Report
 from ..sheet import Axis, Column, Given, RepeatAxis, Root
+from ..values import Cell
 from ..workbook import FigureSpec, TableSpec
 from . import figures
 from .escape import slug
 from .math import Printer, latex_names, name_latex
 from .numbers import Figure, decimals, read, shown, table_format
-from .parts import MARK, Group, Head, Item, Pair, Remark, Row, Table
+from .parts import MARK, MOST, Group, Head, Item, Pair, Remark, Row, Table
 from .refereed import Refereed
 from .typeset import Block, block
 
@@ -163,7 +165,11 @@ class Document:
             return Table(spec, "", heads, (Row((), tuple(items[0] for _, items in columns)),))
         labels = self.report.values.labels(self.report.sheet[names[0]])
         rows = zip(labels, zip(*(items for _, items in columns), strict=True), strict=True)
-        return Table(spec, axis.row, heads, tuple(Row(label, items) for label, items in rows))
+        if not axis.parents or len(labels) <= MOST:  # what was measured is shown whole
+            return Table(spec, axis.row, heads, tuple(Row(label, items) for label, items in rows))
+        first = tuple(Row(label, items) for label, items in islice(rows, MOST))
+        cut = f"The first {MOST} {axis.name} are shown; values.json has all of them."
+        return Table(spec, axis.row, heads, first, cut)
 
     # --- figures
 
@@ -273,11 +279,29 @@ class Document:
 
     # --- errors
 
-    @cached_property
+    @property
     def remarks(self) -> tuple[Remark, ...]:
-        """The cells where an error begins, then those that lie outside of what is expected."""
+        """The cells where an error begins, then those outside of what is expected; the first of many."""
+        return self._remarks[:MOST]
+
+    @property
+    def cut_remarks(self) -> str:
+        """A sentence about those that are not shown, if there are any."""
+        told = f"The first {MOST} are shown; values.json has what there is to say of every cell."
+        return told if len(self._remarks) > MOST else ""
+
+    @cached_property
+    def _remarks(self) -> tuple[Remark, ...]:
         errors = (Remark(cell, cell.status.code, cell.why) for cell in self.report.values.errors())
-        return (*errors, *self._marks())
+        return tuple(islice(chain(errors, self._marks()), MOST + 1))
+
+    def told(self, cell: Cell) -> bool:
+        """Whether a cell where an error begins is among those that are shown."""
+        return (cell.name, cell.label) in self._told
+
+    @cached_property
+    def _told(self) -> set[tuple[str, tuple[int, ...]]]:
+        return {(remark.cell.name, remark.cell.label) for remark in self.remarks}
 
     @cached_property
     def oddities(self) -> tuple[Check, ...]:

@@ -7,11 +7,13 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from ...derivations.text import text_of_equation
 from .. import verdict_data
 from ..marks import Count
 from ..result import Report
-from ..sheet import Column, Given
+from ..sheet import Column, Formula, Given, RepeatAxis
 from ..values import Status
 from ..verdict import Verdict
 
@@ -21,7 +23,11 @@ SCHEMA = 1
 
 
 def values(report: Report) -> str:
-    """All cells in SI, unrounded, with their statuses; the proofs; the published values."""
+    """All cells in SI, unrounded, with their statuses; the proofs; the published values.
+
+    The rows that an axis makes of each row of another are as many as pairs times points: they follow
+    from the rows of that one by the rule that is told, and are counted only.
+    """
     return _text(
         {
             "schema": SCHEMA,
@@ -44,6 +50,8 @@ def values(report: Report) -> str:
 
 def _column(report: Report, column: Column) -> dict[str, Any]:
     values, statuses = report.values.value[column.name], report.values.status[column.name]
+    if isinstance(column.axis, RepeatAxis) and isinstance(column.rule, Formula):
+        return _generated(report, column, column.axis)
     numbers = [float(v) if s == Status.OK else None for v, s in zip(values, statuses, strict=True)]
     codes = [Status(int(s)).code for s in statuses]
     entry: dict[str, Any] = {"axis": None, "unit": column.unit, "rule": _rule(report, column)}
@@ -66,6 +74,21 @@ def _column(report: Report, column: Column) -> dict[str, Any]:
     if marked := [_marked(count) for count in report.marks.behind(column) if count.number]:
         entry["marked"] = marked
     return entry
+
+
+def _generated(report: Report, column: Column, axis: RepeatAxis) -> dict[str, Any]:
+    """How many generated rows a column has, by their status."""
+    codes, sizes = np.unique(report.values.status[column.name], return_counts=True)
+    return {
+        "axis": axis.name,
+        "of": axis.of.name,
+        "unit": column.unit,
+        "rule": _rule(report, column),
+        "size": report.values.layouts[axis.name].size,
+        "status": {
+            Status(code).code: size for code, size in zip(codes.tolist(), sizes.tolist(), strict=True)
+        },
+    }
 
 
 def _marked(count: Count) -> dict[str, Any]:

@@ -15,6 +15,8 @@ __all__ = ["MARK", "Group", "Head", "Item", "Pair", "Remark", "Row", "Table", "a
 
 MARK = "†"
 """What stands behind a number that lies outside of what is expected."""
+MOST = 300
+"""Rows that a page shows of an index set made of others, and cells to look at: nobody reads more."""
 LONG = 30
 """A table of more rows than this scrolls in the page and breaks over pages in print."""
 
@@ -162,12 +164,15 @@ class Table:
     heads : tuple of Head
     rows : tuple of Row
         Of a list of scalars: one row, an item for each head.
+    cut : str
+        A sentence about the rows that are not shown, if there are any.
     """
 
     spec: TableSpec
     axis: str
     heads: tuple[Head, ...]
     rows: tuple[Row, ...]
+    cut: str = ""
 
     @property
     def marked(self) -> bool:

@@ -55,7 +55,7 @@ class Table {
   // The rows that the table has now, by their index.
   wanted(look) {
     if (this.editable) return look.state.tests.map((test) => String(test.label));
-    return look.trace.sheet.layouts[this.axis].labels.map((label) => label.join("-"));
+    return look.trace.sheet.layouts[this.axis].labels.slice(0, mostOf(this.element)).map((label) => label.join("-"));
   }
 
   // `last` is what the page shows now.
@@ -87,6 +87,9 @@ class Table {
     }
   }
 }
+
+// How many rows of a table are shown: the first of so many that nobody would read them.
+const mostOf = (table) => Number(table.dataset.most ?? Infinity);
 
 // A cell of a test that is left out: its printed number stays, it has no part in anything.
 function writeLeftOut(element, text) {
@@ -154,7 +157,8 @@ function writeCounted(look) {
 // The list of the cells to look at: where an error begins, or a limit ends; its section is made when there is one.
 function writeMissing(look) {
   const { errors, order, sheet } = look.trace;
-  const remarks = errors.map(({ name, row }) => [name, row, CODES[sheet.status[name][row]], look.trace.why(name, row)]);
+  const shown = byId("missing-cells")?.querySelector("table"), most = shown ? mostOf(shown) : Infinity;
+  const remarks = errors.slice(0, most).map(({ name, row }) => [name, row, CODES[sheet.status[name][row]], look.trace.why(name, row)]);
   for (const { name } of order) {
     for (const [margin, mark, says] of LIVE.columns[name].limits ?? []) {
       const told = says ? `${mark}, ${says}` : mark;
@@ -171,7 +175,7 @@ function writeMissing(look) {
   if (!section) return;
   section.hidden = remarks.length === 0;
   byId("missing-cells").querySelector("tbody").replaceChildren(
-    ...remarks.map(([name, row, code, why]) => {
+    ...remarks.slice(0, most).map(([name, row, code, why]) => {
       const index = look.trace.index(name, row);
       return make(
         "tr", code === "†" ? {} : { id: cellId("why", name, index) },
