@@ -45,6 +45,7 @@ function save() {
   });
   box.replaceChildren("saved: ", ...links.flatMap((link, n) => (n ? [" ", link] : [link])));
   box.hidden = false;
-  links.forEach((link) => link.click());
+  // WebKit drops a download that has not begun when the next one is asked for.
+  links.forEach((link, n) => setTimeout(() => link.click(), 200 * n));
   say(`Saved ${files.map(([name]) => name).join(" and ")}.`);
 }

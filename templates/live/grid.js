@@ -105,7 +105,7 @@ function onGridKey(event) {
     go({ row: control ? (last ? Infinity : 0) : here.row, stop: last ? Infinity : 0 });
   } else if (key === "Enter" && text) {
     go({ row: here.row + (shiftKey ? -1 : 1) });
-  } else if (key === "Tab" && text) {
+  } else if ((key === "Tab" || event.code === "Tab") && text) { // WebKitGTK has no key for Tab with Shift
     const inputs = () => all("input[data-cell]", here.grid.tBodies[0]), index = inputs().indexOf(element) + (shiftKey ? -1 : 1);
     if (inputs()[index]) event.preventDefault();
     commitAndEnter(() => inputs()[index]);

@@ -18,7 +18,6 @@ import numpy as np
 
 from loopsheet.report import build
 from loopsheet.report.analysis.readers import ALWAYS_RECALCULATE
-from loopsheet.report.charts import Drawn
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.certified import certified

@@ -75,6 +75,13 @@ _AROUND = """() => {
 _STATE = """() => [document.getElementById("main").innerHTML,
   ...Array.from(document.querySelectorAll("main input"), (input) => `${input.value} ${input.checked}`)]"""
 
+# Put a text into the clipboard when the next thing is copied, whatever that is.
+_COPY = """(text) => addEventListener("copy", (event) => {
+  event.clipboardData.setData("text/plain", text);
+  event.preventDefault();
+  event.stopImmediatePropagation();
+}, { capture: true, once: true })"""
+
 
 @dataclass
 class Live:
@@ -119,6 +126,10 @@ class Live:
     def text(self, identifier: str) -> str:
         return self.page.locator(f"#{identifier}").inner_text()
 
+    def heard(self) -> list[str]:
+        """Every error so far."""
+        return self.errors
+
     def focused(self) -> str:
         """The address of the cell that has the focus, or the id of another element."""
         found: str = self.page.evaluate(
@@ -140,6 +151,11 @@ class Live:
     def press(self, *keys: str) -> None:
         for key in keys:
             self.page.keyboard.press(key)
+
+    def paste(self, text: str) -> None:
+        """Paste where the focus is, from the machine's own clipboard."""
+        self.page.evaluate(_COPY, text)
+        self.press("Control+c", "Control+v")
 
     def click(self, identifier: str) -> None:
         self.page.locator(f"#{identifier}").click()
