@@ -22,7 +22,9 @@ RESULT: dict[str, Any] = {
             "index": [1, 2], "value": [1.5, 2], "status": ["ok", "ok"],
         },
         "a": {"axis": "pairs", "unit": "1", "index": [[1, 2]], "value": [None], "status": ["#NOROOT!"]},
-        "F": {"axis": "points", "of": "pairs", "unit": "N", "rule": "(2) F = a", "size": 9, "status": {"ok": 9}},
+        "F": {
+            "axis": "points", "of": "pairs", "unit": "N", "rule": "(2) F = a", "size": 9, "status": {"ok": 9},
+        },
         "m": {"axis": None, "unit": "1", "rule": "(1) m = 2", "value": 2.5, "status": "ok"},
     },
     "proofs": {"(1)": "proved"},
