@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn, TextIO, cast
 
 from .diagnostics import VisibleStream
-from .stopping import stoppable
+from .stopping import heeded, stoppable
 from .verbs import VERBS
 from .verbs.common import BUG, OK, print_checks
 
@@ -133,7 +133,8 @@ def _run(arguments: Sequence[str] | None) -> int:
     options = argparse.Namespace(traceback=False)
     try:
         options = _parse(sys.argv[1:] if arguments is None else arguments)
-        code: int = options.run(options)
+        with heeded():
+            code: int = options.run(options)
         sys.stdout.flush()
     except LoopsheetError as error:
         return _refuse(error, options)

@@ -7,12 +7,13 @@ import signal
 import sys
 import threading
 import time
+import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any, NoReturn
 
-__all__ = ["Stopped", "stoppable", "unstoppable", "worker"]
+__all__ = ["Stopped", "heeded", "stoppable", "unstoppable", "worker"]
 
 _SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 _PATIENCE = 10.0
@@ -34,10 +35,14 @@ class Stopped(KeyboardInterrupt):
 
 
 class _Stop:
-    """The signals of this process: what came, and whether it has to wait."""
+    """The signals of this process: what came, whether it has to wait, and which was raised."""
 
     def __init__(self) -> None:
-        self.shields, self.waiting, self.raised = 0, 0, -_PATIENCE
+        self.shields, self.waiting = 0, 0
+        self.begin()
+
+    def begin(self) -> None:
+        self.raised, self.number = -_PATIENCE, 0
 
     def __call__(self, number: int, _: FrameType | None = None) -> None:
         if self.shields:
@@ -46,13 +51,14 @@ class _Stop:
             self.throw(number)
 
     def throw(self, number: int) -> NoReturn:
-        self.raised, self.waiting = time.monotonic(), 0
+        self.raised, self.waiting, self.number = time.monotonic(), 0, number
         raise Stopped(number)
 
     def lost(self, found: Any) -> None:
         """Raise again what was raised in a destructor, of which Python only tells."""
         if not isinstance(found.exc_value, Stopped):
-            sys.__unraisablehook__(found)
+            if not self.number:  # else the destructor of what was not finished complains
+                sys.__unraisablehook__(found)
             return
         self.raised = -_PATIENCE
         self.shields += 1  # here it would be lost again
@@ -78,9 +84,12 @@ def stoppable() -> Iterator[None]:
         return
     before = {number: signal.signal(number, _stop) for number in _SIGNALS if _heeded(number)}
     hook, sys.unraisablehook = sys.unraisablehook, _stop.lost
-    _stop.raised = -_PATIENCE
+    _stop.begin()
     try:
         yield
+    except Stopped as stopped:
+        traceback.clear_frames(stopped.__traceback__)  # what was not finished goes while we are heard
+        raise
     finally:
         sys.unraisablehook = hook
         for number, handler in before.items():
@@ -90,6 +99,17 @@ def stoppable() -> Iterator[None]:
 def _heeded(number: int) -> bool:
     """Whether a signal is not ignored: ``nohup`` and shells that start us in the background say so."""
     return signal.getsignal(number) not in (signal.SIG_IGN, None)
+
+
+@contextmanager
+def heeded() -> Iterator[None]:
+    """Raise :class:`Stopped` for what others made of it: an import that it ended raises what it likes."""
+    try:
+        yield
+    except Exception as error:
+        if not _stop.number:
+            raise
+        raise Stopped(_stop.number) from error
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import json
 import os
@@ -16,6 +17,7 @@ import uuid
 from collections import Counter
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 from campaign_sizes import Sizes
@@ -423,6 +425,42 @@ def test_a_signal_in_a_destructor_is_not_lost(capsys: pytest.CaptureFixture[str]
 
     assert told(work) == signal.SIGTERM
     assert capsys.readouterr().err == ""
+
+
+def test_what_is_half_made_when_a_signal_comes_does_not_complain(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    complaints: list[Any] = []
+    monkeypatch.setattr(sys, "unraisablehook", complaints.append)
+
+    class Half:
+        def __init__(self) -> None:
+            os.kill(os.getpid(), signal.SIGTERM)
+            self.whole = True
+
+        def __del__(self) -> None:
+            assert self.whole
+
+    assert told(Half) == signal.SIGTERM
+    gc.collect()
+    assert not complaints
+    assert capsys.readouterr().err == ""
+
+
+def test_an_import_that_a_signal_ends_is_no_bug(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What is written in C makes of it what it likes."""
+
+    def compute(*_: object, **__: object) -> None:
+        try:
+            os.kill(os.getpid(), signal.SIGTERM)
+        except KeyboardInterrupt:
+            raise ImportError("initialization failed") from None
+
+    monkeypatch.setattr(building, "compute", compute)
+    assert main(["check", "paper"]) == 128 + signal.SIGTERM
+    assert capsys.readouterr().err.endswith("stopped; nothing was half-written\n")
 
 
 def test_what_is_ignored_stays_so() -> None:

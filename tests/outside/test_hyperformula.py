@@ -182,6 +182,8 @@ def test_every_construct_means_what_numpy_means(hyperformula: Recalculate) -> No
 # --- mutations -------------------------------------------------------------------------------------------
 
 _OTHERS = {"+": "-", "-": "+", "*": "/", "/": "*"}
+_HELD = ">=(2)^(0-1022),"
+"""Before the value of what is positive: that a double holds it."""
 
 
 def mutants(grid: Grid, how_many: int, seed: int) -> list[list[str]]:
@@ -194,6 +196,8 @@ def mutants(grid: Grid, how_many: int, seed: int) -> list[list[str]]:
         formula, sheet = block.formulas[0], block.place.worksheet
         # What comes before tests for errors, and says the same of good cells when it is changed.
         first = max(formula.find("IFERROR(") + 8, formula.rfind("ISNUMBER("))
+        if _HELD in formula:
+            first = max(first, formula.rfind(_HELD) + len(_HELD))
         if block.kind == "computed":
             first = max(first, formula.rfind(">0,"))
         if "IF(" in formula[first:].replace("SUM(IF(", ""):
@@ -203,7 +207,7 @@ def mutants(grid: Grid, how_many: int, seed: int) -> list[list[str]]:
                 changed = formula[:place] + _OTHERS[formula[place]] + formula[place + 1 :]
                 address = block.place.cell(0, sheet).replace("$", "")
                 found.append([sheet, address, f"{{{changed}}}" if block.array else changed])
-    return random.Random(seed).sample(found, how_many)
+    return random.Random(seed).sample(found, min(how_many, len(found)))
 
 
 @pytest.mark.campaigns
