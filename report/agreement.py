@@ -45,6 +45,10 @@ class Agreement:
         The program that is not installed: then nothing was compared, and nothing is wrong.
     unbounded : int
         Cells whose condition is infinite, such as a square root of zero: only their status is judged.
+    of : int
+        How many cells the report has, if these are those of a sample; else 0.
+    sample : str
+        What the sample is: ``14 of 200 tests``.
     """
 
     cells: int
@@ -57,12 +61,21 @@ class Agreement:
     program: str = ""
     missing: str = ""
     unbounded: int = 0
+    of: int = 0
+    sample: str = ""
+
+    @property
+    def counted(self) -> str:
+        """How many cells were compared, and of how many: ``2154 cells``."""
+        return (
+            f"{self.cells} of {self.of} cells, those of {self.sample}" if self.of else f"{self.cells} cells"
+        )
 
     @property
     def summary(self) -> str:
         """The comparison in a sentence, in relative differences."""
         within = f"within {self.worst:.1e} ({self.where})"
-        return f"{self.engine} agrees with 50 digits on {self.cells} cells {within}"
+        return f"{self.engine} agrees with 50 digits on {self.counted} {within}"
 
     @property
     def line(self) -> str:
@@ -75,7 +88,7 @@ class Agreement:
         place = f" ({self.units_where})" if self.units_where else ""
         rest = f", {self.unbounded} without a condition" if self.unbounded else ""
         most = f"at most {self.units:.2g} eps x condition"
-        return f"{self.engine:<11} {self.cells} cells, {most}{place}{rest}{ran}"
+        return f"{self.engine:<11} {self.counted}, {most}{place}{rest}{ran}"
 
     @property
     def data(self) -> dict[str, Any]:
@@ -85,6 +98,8 @@ class Agreement:
             "program": self.program or None,
             "missing": self.missing or None,
             "cells": self.cells,
+            "of": self.of or self.cells,
+            "sample": self.sample or None,
             "unbounded": self.unbounded,
             "eps_condition": self.units,
             "eps_condition_cell": self.units_where or None,

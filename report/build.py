@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 from .background import Background
 from .crate import added
-from .errors import ForeignCode, InputError, Location, UnknownWorkbook, UsageError, close, diagnose, listing
+from .errors import ForeignCode, UnknownWorkbook, UsageError, close, diagnose, listing
 from .folders import INPUTS, PAPER, told
 from .inputs import Find, Inputs, check_cells, load
-from .own_workbook import own_workbook, place_of, place_of_column
+from .own_workbook import own_workbook
 from .provenance import sources
 from .staging import put, staged
 from .unit_text import UnitError as NotAUnit
@@ -25,10 +25,12 @@ from .workbooks import SHIPPED
 if TYPE_CHECKING:
     from ..derivations.equation import Erratum, Ledger
     from ..derivations.proof import Proof, StepProof
+    from .agreement import Agreement
     from .charts import Drawn
     from .grid import Grid
     from .result import Comparison, Report, Shown
     from .sheet import Column, Sheet
+    from .values import Values
     from .verdict import Referee
     from .workbook import FigureSpec, Workbook
 
@@ -57,6 +59,10 @@ Step = Callable[[str], None]
 
 _Found = tuple[dict[str, Any], list[dict[str, Any]]]
 """A proof without its equation, and its steps without theirs."""
+
+EXACTLY = 20_000
+"""Up to so many cells, a sheet is evaluated at 50 digits, which takes .3 ms a cell; of a larger one, those of
+some of its tests."""
 
 
 def _silent(_: str) -> None:
@@ -160,84 +166,29 @@ def prepare(folder: Path, find: Find = find_workbook) -> Prepared:
 
 
 def _prepared(inputs: Inputs, ledger: Ledger) -> Prepared:
-    from . import units
+    from . import refusals
     from .sheet import SheetError
 
+    own = inputs.workbook.name not in SHIPPED
     try:
         sheet = inputs.workbook.sheet(inputs.given)
-        units.check(sheet)
-        _refuse_what_is_not_stated(sheet, ledger)
+        refusals.refuse_what_is_not_stated(sheet, ledger)
     except SheetError as error:
-        if inputs.workbook.name in SHIPPED:
+        if not own:
             raise  # ours, and our bug
-        at = place_of_column(*_own_code(inputs), str(error))
-        raise InputError(diagnose("LS213", at, text=inputs.workbook.name, reason=str(error))) from error
-    if inputs.workbook.name not in SHIPPED:
-        _refuse_what_is_misnamed(sheet, inputs)
-    _refuse_what_is_missing(sheet, inputs)
+        raise refusals.of_sheet(inputs, error) from error
+    if own:
+        from .views.words import NARRATIVES
+
+        refusals.refuse_what_is_misnamed(sheet, inputs, NARRATIVES, _drawings)
+    refusals.refuse_what_is_missing(sheet, inputs)
     return Prepared(inputs, sheet)
 
 
-def _own_code(inputs: Inputs) -> tuple[Path, bytes]:
-    """The file of the user's own workbook, and what it held."""
-    name = next(name for name in inputs.files if name.endswith(".py"))
-    return inputs.folder / name, inputs.files[name]
+def _drawings() -> Collection[str]:
+    from .views import figures
 
-
-def _refuse_what_is_misnamed(sheet: Sheet, inputs: Inputs) -> None:
-    """What a user's own workbook wants shown must be there, before anything is computed."""
-    from .declared import misnamed
-    from .views.words import NARRATIVES
-
-    def drawings() -> Collection[str]:
-        from .views import figures
-
-        return figures.NAMES
-
-    path, code = _own_code(inputs)
-    found = [
-        diagnose("LS213", place_of(path, code, field, word), text=path.name, reason=reason)
-        for field, word, reason in misnamed(inputs.workbook, sheet, NARRATIVES, drawings)
-    ]
-    if found:
-        raise InputError(*found)
-
-
-def _refuse_what_is_not_stated(sheet: Sheet, ledger: Ledger) -> None:
-    """A column computes what the ledger says, so that there is nothing that no proof looks at."""
-    from ..derivations.grounds import stated, supported
-    from ..derivations.text import text_of_equation
-    from .sheet import Given, Root, SheetError
-
-    for column in sheet.columns:
-        rule = column.rule
-        if isinstance(rule, Given):
-            continue
-        for equation in rule.statements:
-            if not stated(equation, ledger):
-                written = text_of_equation(equation.origin, ledger.vocabulary)
-                raise SheetError(
-                    f"{column.name} is computed from {equation.label} {written}, "
-                    "which the ledger does not have: add it there, with its derivation if it is a claim"
-                )
-        if isinstance(rule, Root) and not supported(rule.form, rule.equation, ledger):
-            raise SheetError(
-                f"{column.name} solves {rule.form.label}, which is not derived from {rule.equation.label}"
-            )
-
-
-def _refuse_what_is_missing(sheet: Sheet, inputs: Inputs) -> None:
-    """A workbook need not say which parameters go together: what its sheet wants must be there."""
-    from .sheet import Given
-
-    place = Location((inputs.folder / "report.toml").as_posix())
-    missing = [c for c in sheet.columns if isinstance(c.rule, Given) and not inputs.printed(c.name)]
-    found = [
-        diagnose("LS204", place, text=c.name, table="[parameters]", example=f'{c.name} = "1.0 {c.unit}"')
-        for c in missing
-    ]
-    if found:
-        raise InputError(*found)
+    return figures.NAMES
 
 
 def compute(folder: Path, step: Step = _silent, prove: bool = True, find: Find = find_workbook) -> Report:
@@ -340,13 +291,29 @@ def judged(report: Report, every: bool = True, step: Step = _silent) -> Report:
     step : callable
         Told what is begun.
     """
-    from .analysis import engines
+    from .analysis import sample
+    from .layout import how_large
 
     step("judging the engines at 50 digits")
+    whole = report.marks.values
+    inputs = sample.part(report.inputs, whole, EXACTLY)
+    if inputs is report.inputs:
+        return replace(report, engines=_agreements(report, whole, every))
+    few = _evaluated(Prepared(inputs, report.sheet), report.ledger, _silent)
+    found = _agreements(few, sample.with_own(few.marks.values, whole), every)
+    rows = next(axis.name for axis in report.sheet.axes if not axis.parents)
+    told = f"{len(inputs.tests)} of {len(report.inputs.tests)} {rows}"
+    of = how_large(whole.sheet, whole.layouts)
+    return replace(report, engines=tuple(replace(each, of=of, sample=told) for each in found))
+
+
+def _agreements(report: Report, values: Values, every: bool) -> tuple[Agreement, ...]:
+    """How NumPy's values agree with 50 digits; and what else is installed here, if that is wanted."""
+    from .analysis import engines
+
     prepared = Prepared(report.inputs, report.sheet)
     if not every:
-        agreement = engines.compare(report.marks.values, prepared.labels, prepared.exact_data)
-        return replace(report, engines=(agreement,))
+        return (engines.compare(values, prepared.labels, prepared.exact_data),)
     from .analysis.readers import Book
 
     try:
@@ -354,9 +321,7 @@ def judged(report: Report, every: bool = True, step: Step = _silent) -> Report:
         book = Book(content, grid)
     except UsageError:
         book = None  # there is no such workbook, and nothing to judge
-    values, exactly = report.marks.values, prepared.exact_data
-    agreements = engines.compare_all(values, prepared.labels, prepared.data, exactly, book)
-    return replace(report, engines=agreements)
+    return engines.compare_all(values, prepared.labels, prepared.data, prepared.exact_data, book)
 
 
 def refereed(report: Report, step: Step = _silent) -> Report:

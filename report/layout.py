@@ -11,7 +11,7 @@ from sympy import Expr, Indexed, Symbol
 
 from .sheet import Axis, Column, PairAxis, RepeatAxis, Sheet, name_of
 
-__all__ = ["Layout", "Precedent", "lay_out", "precedents"]
+__all__ = ["Layout", "Precedent", "how_large", "lay_out", "precedents"]
 
 
 @dataclass(frozen=True)
@@ -63,6 +63,11 @@ def lay_out(
         else:
             layouts[axis.name] = _given(axis, labels[axis.name])
     return layouts
+
+
+def how_large(sheet: Sheet, layouts: Mapping[str, Layout]) -> int:
+    """How many cells a sheet has."""
+    return sum(1 if column.axis is None else layouts[column.axis.name].size for column in sheet.columns)
 
 
 def _given(axis: Axis, labels: Sequence[int]) -> Layout:

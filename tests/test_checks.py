@@ -148,6 +148,8 @@ def test_how_engines_agree_in_a_line_and_for_machines() -> None:
         "program": None,
         "missing": None,
         "cells": 7,
+        "of": 7,
+        "sample": None,
         "unbounded": 0,
         "eps_condition": 0.0,
         "eps_condition_cell": None,

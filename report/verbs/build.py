@@ -50,6 +50,9 @@ def run(options: argparse.Namespace) -> int:
         report, files = build.build(folder, out, formats, progress, options.engines, tell=say)
     for name in report.workbook.headline:
         print(_line(report, name))
+    for agreement in report.engines:
+        if agreement.sample:
+            print(f"{agreement.engine}: {agreement.counted}, judged at 50 digits")
     found = checks(report)
     tell(found)
     names = {path.name: path for path in files}

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...engines.numpy import Program, evaluate
-from ...layout import precedents
+from ...layout import how_large, precedents
 from ...published import PublishedValue
 from ...quantity import Printed
 from ...sheet import Given, Sheet
@@ -113,8 +113,7 @@ class Problem:
     @cached_property
     def size(self) -> int:
         """How many cells its sheet has."""
-        layouts = self.campaign.values.layouts
-        return sum(1 if c.axis is None else layouts[c.axis.name].size for c in self.sheet.columns)
+        return how_large(self.sheet, self.campaign.values.layouts)
 
     @cached_property
     def box(self) -> Box:

@@ -1,0 +1,81 @@
+"""What a sheet must be before anything is computed: sound, stated, and given all that it wants."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from pathlib import Path
+
+from ..derivations.equation import Ledger
+from ..derivations.grounds import stated, supported
+from ..derivations.text import text_of_equation
+from . import units
+from .declared import misnamed
+from .errors import InputError, Location, diagnose
+from .inputs import Inputs
+from .own_workbook import place_of, place_of_column
+from .sheet import Given, Root, Sheet, SheetError
+
+__all__ = ["of_sheet", "refuse_what_is_misnamed", "refuse_what_is_missing", "refuse_what_is_not_stated"]
+
+
+def of_sheet(inputs: Inputs, error: SheetError) -> InputError:
+    """What is wrong with the sheet of a user's own workbook, with its place there."""
+    at = place_of_column(*_own_code(inputs), str(error))
+    return InputError(diagnose("LS213", at, text=inputs.workbook.name, reason=str(error)))
+
+
+def _own_code(inputs: Inputs) -> tuple[Path, bytes]:
+    """The file of the user's own workbook, and what it held."""
+    name = next(name for name in inputs.files if name.endswith(".py"))
+    return inputs.folder / name, inputs.files[name]
+
+
+def refuse_what_is_misnamed(
+    sheet: Sheet, inputs: Inputs, narratives: Collection[str], drawings: Callable[[], Collection[str]]
+) -> None:
+    """What a user's own workbook wants shown must be there; parameters as for :func:`~.declared.misnamed`."""
+    path, code = _own_code(inputs)
+    found = [
+        diagnose("LS213", place_of(path, code, field, word), text=path.name, reason=reason)
+        for field, word, reason in misnamed(inputs.workbook, sheet, narratives, drawings)
+    ]
+    if found:
+        raise InputError(*found)
+
+
+def refuse_what_is_not_stated(sheet: Sheet, ledger: Ledger) -> None:
+    """A column computes what the ledger says, so that there is nothing that no proof looks at.
+
+    Raises
+    ------
+    SheetError
+        It does not, or mixes dimensions.
+    """
+    units.check(sheet)
+    for column in sheet.columns:
+        rule = column.rule
+        if isinstance(rule, Given):
+            continue
+        for equation in rule.statements:
+            if not stated(equation, ledger):
+                written = text_of_equation(equation.origin, ledger.vocabulary)
+                raise SheetError(
+                    f"{column.name} is computed from {equation.label} {written}, "
+                    "which the ledger does not have: add it there, with its derivation if it is a claim"
+                )
+        if isinstance(rule, Root) and not supported(rule.form, rule.equation, ledger):
+            raise SheetError(
+                f"{column.name} solves {rule.form.label}, which is not derived from {rule.equation.label}"
+            )
+
+
+def refuse_what_is_missing(sheet: Sheet, inputs: Inputs) -> None:
+    """A workbook need not say which parameters go together: what its sheet wants must be there."""
+    place = Location((inputs.folder / "report.toml").as_posix())
+    missing = [c for c in sheet.columns if isinstance(c.rule, Given) and not inputs.printed(c.name)]
+    found = [
+        diagnose("LS204", place, text=c.name, table="[parameters]", example=f'{c.name} = "1.0 {c.unit}"')
+        for c in missing
+    ]
+    if found:
+        raise InputError(*found)
