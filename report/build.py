@@ -7,9 +7,11 @@ import sys
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from . import cost
 from .background import Background
 from .crate import added
 from .errors import ForeignCode, UnknownWorkbook, UsageError, close, diagnose, listing
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from .agreement import Agreement
     from .charts import Drawn
     from .grid import Grid
+    from .layout import Layout
     from .result import Comparison, Report, Shown
     from .sheet import Column, Sheet
     from .values import Values
@@ -132,6 +135,13 @@ class Prepared:
         """Row numbers of the axes that come with the data."""
         return {axis.name: self.inputs.tests for axis in self.sheet.axes if not axis.parents}
 
+    @cached_property
+    def layouts(self) -> dict[str, Layout]:
+        """The rows of every axis."""
+        from .engines.exact import laid_out
+
+        return laid_out(self.sheet, self.labels, self.exact_data)
+
     @property
     def exact_data(self) -> dict[str, Any]:
         """What the exact engine starts from."""
@@ -221,10 +231,11 @@ def _evaluated(prepared: Prepared, ledger: Ledger, step: Step) -> Report:
     from .analysis.oddities import oddities
     from .analysis.referee import compare
     from .engines import numpy as engine
+    from .layout import how_large
     from .marks import Marks, margins
     from .result import Report
 
-    step("computing the sheet")
+    step(f"computing {how_large(sheet, prepared.layouts)} cells")
     values = engine.evaluate(sheet, prepared.labels, prepared.data)
     check_cells(inputs, {c.name: (c.unit, set(values.labels(c))) for c in sheet.columns})
     workbook, limits = inputs.workbook, margins(sheet)
@@ -412,7 +423,7 @@ def parse_formats(words: str) -> tuple[str, ...]:
 def build(
     folder: Path,
     out: Path,
-    formats: Collection[str] = DEFAULT_FORMATS,
+    formats: Collection[str] | None = None,
     step: Step = _silent,
     every_engine: bool = False,
     find: Find = find_workbook,
@@ -429,8 +440,8 @@ def build(
         A report folder.
     out : Path
         Where the report goes; made if it does not exist. Other files in it are left alone.
-    formats : collection of str
-        Of :data:`FORMATS`.
+    formats : collection of str, optional
+        Of :data:`FORMATS`. Without it, :data:`DEFAULT_FORMATS`, but no workbook that would be too large.
     step : callable
         Told what is begun.
     every_engine : bool
@@ -438,8 +449,9 @@ def build(
     find : callable
         As for :func:`prepare`.
     tell : callable
-        Told what is built from where once the folder was read and found right, and which files that somebody
-        had changed are kept; and what a crate of the report before had added, which is removed.
+        Told what is built from where once the folder was read and found right, what is left out, and what it
+        takes if that is long; which files that somebody had changed are kept; and what a crate of the report
+        before had added, which is removed.
 
     Returns
     -------
@@ -454,9 +466,11 @@ def build(
         ledger = inputs.workbook.ledger()
         # Everything that takes long has a process of its own, from when there is what it needs.
         proving = running.enter_context(Background(lambda: _checked_plainly(inputs, ledger)))
-        report = _evaluated(_prepared(inputs, ledger), ledger, step)
-        if "xlsx" in formats:
-            _refuse_too_many_rows(report)
+        prepared = _prepared(inputs, ledger)
+        formats = _possible(prepared, formats, tell)
+        if long := cost.told(prepared.sheet, prepared.layouts, formats):
+            tell(long)
+        report = _evaluated(prepared, ledger, step)
         judging = running.enter_context(Background(lambda: judged(report, every_engine).engines))
         refereeing, drawing, workbook = None, None, None
         if report.inputs.published:
@@ -578,12 +592,27 @@ def _write(
     put(stage / "manifest.json", json.manifest(report, outputs, sources()))
 
 
-def _refuse_too_many_rows(report: Report) -> None:
+def _possible(prepared: Prepared, formats: Collection[str] | None, tell: Step) -> Collection[str]:
+    """The formats that are asked for; or those that everybody gets, without a workbook that is too large."""
+    wanted = DEFAULT_FORMATS if formats is None else formats
+    if "xlsx" in wanted:
+        try:
+            _refuse_too_many_rows(prepared.layouts)
+        except UsageError as refused:
+            if formats is not None:
+                raise
+            (reason,) = refused.diagnostics
+            tell(f"{reason.message}; {reason.allowed}")
+            return [each for each in wanted if each != "xlsx"]
+    return wanted
+
+
+def _refuse_too_many_rows(layouts: Mapping[str, Layout]) -> None:
     """Before anything long is begun."""
     from .engines.excel_grid import MOST_ROWS, TooManyRows, check_rows
 
     try:
-        check_rows(report.values)
+        check_rows(layouts)
     except TooManyRows as error:
         known = f"at most {MOST_ROWS} rows in a worksheet; fewer points_per_pair make fewer rows"
         raise UsageError(diagnose("LS606", reason=error, known=known)) from error
@@ -596,7 +625,7 @@ def _drawn(report: Report) -> Drawn | None:
 
 def _workbook(report: Report) -> tuple[Grid, bytes]:
     """The sheet as a workbook with live formulas: where its cells are, and the file."""
-    _refuse_too_many_rows(report)
+    _refuse_too_many_rows(report.values.layouts)
     from .engines import excel_grid
     from .engines.excel import NotPrintable
     from .views import xlsx

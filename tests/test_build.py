@@ -5,15 +5,18 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from loopsheet.report import build
+from loopsheet.report import build, cost
 from loopsheet.report.cli import main
+from loopsheet.report.engines import excel_grid
 from loopsheet.report.errors import InputError, OutputError, UsageError
 from loopsheet.report.result import Report
 
@@ -56,11 +59,49 @@ def test_too_many_rows_for_a_worksheet_are_refused_before_anything_is_written(tm
     more = "".join(f"{n},{n}.1,0.{500 - 10 * n},{9 * n}.3\n" for n in (6, 7))
     table.write_text(table.read_text() + more)
     with pytest.raises(UsageError) as refused:
-        build.build(folder, tmp_path / "out")
+        build.build(folder, tmp_path / "out", ("json", "xlsx"))
     (finding,) = refused.value.diagnostics
     assert finding.code == "LS606"
     assert "points has 210000 rows" in finding.message
     assert not (tmp_path / "out").exists()
+
+
+def test_a_workbook_that_nobody_asked_for_is_left_out_where_it_would_be_too_large(
+    issued: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unjudged: None
+) -> None:
+    monkeypatch.setattr(excel_grid, "MOST_ROWS", 499)
+    told: list[str] = []
+    _, files = build.build(issued, tmp_path / "out", tell=told.append)
+    assert {"report.html", "report.tex", "values.json", "manifest.json"} == {
+        p.name for p in files if p.suffix in {".html", ".tex", ".json", ".xlsx"}
+    }
+    assert told[1].startswith(
+        "report.xlsx cannot be made: points has 500 rows; at most 499 rows in a worksheet"
+    )
+
+
+def test_what_a_long_build_takes_is_told_before_it_begins(
+    issued: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unjudged: None
+) -> None:
+    """By what there is to compute, the same on every machine."""
+    prepared = build.prepare(issued)
+    formats = ("html", "json")
+    assert cost.told(prepared.sheet, prepared.layouts, formats) == ""
+    counts = {name: replace(layout, size=500 * layout.size) for name, layout in prepared.layouts.items()}
+    long = cost.told(prepared.sheet, counts, formats)
+    assert long.startswith("2500 tests, 5000 pairs, 250000 points: this takes about 11 s")
+    assert "about 53 s" in cost.told(prepared.sheet, counts, (*formats, "xlsx"))
+    told: list[str] = []
+
+    def step(begun: str) -> None:
+        told.append(begun)
+
+    monkeypatch.setattr(cost, "LONG", 0.0)
+    build.build(issued, tmp_path / "out", formats, step, tell=step)
+    line = "5 tests, 10 pairs, 500 points: this takes about 6 s, without what the referee needs"
+    assert told.index(line) < next(
+        n for n, said in enumerate(told) if re.fullmatch("computing [0-9]+ cells", said)
+    )
 
 
 def test_same_bytes_everywhere(issued: Path, tmp_path: Path) -> None:

@@ -294,7 +294,7 @@ CASES: dict[str, Callable[[], None]] = {
     ),
     "LS605": raises(OutputError, "LS605", kind="pdf", text="latexmk", known="TeX Live, or leave out pdf"),
     "LS606": raises(
-        UsageError, "LS606", reason="points has 995000 rows", known="at most 200000 rows in a worksheet"
+        UsageError, "LS606", reason="points has 995000 rows", known="at most 40000 rows in a worksheet"
     ),
     "LS607": result_without_cells,
     "LS608": lambda: read_manifest(Path("out")) and None,

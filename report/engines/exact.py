@@ -30,7 +30,7 @@ from .domain import LARGEST, SMALLEST, typed
 from .exact_roots import Enclose, brackets, of_arrays, of_mpmath
 from .isolation import Doubtful
 
-__all__ = ["DIGITS", "ExactValues", "evaluate"]
+__all__ = ["DIGITS", "ExactValues", "evaluate", "laid_out"]
 
 DIGITS = 50
 _GUARD = 15
@@ -97,11 +97,24 @@ def evaluate(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[st
     data : mapping of column name to a number, or a sequence of numbers, in SI
         Fractions are taken exactly; None or NaN is a missing datum.
     """
+    layouts = laid_out(sheet, labels, data)
     with mpmath.workdps(DIGITS + _GUARD):
         given = {name: [_datum(x, sheet.bounds[name]) for x in _rows(data[name])] for name in sheet.bounds}
-        repeated = {a.count: given[a.count][0] for a in sheet.axes if isinstance(a, RepeatAxis)}
-        counts = {name: 0 if mpmath.isnan(number) else int(number) for name, number in repeated.items()}
-        return _Exact(sheet, lay_out(sheet, labels, counts), given).run()
+        return _Exact(sheet, layouts, given).run()
+
+
+def laid_out(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[str, Any]) -> dict[str, Layout]:
+    """The rows of every axis.
+
+    Parameters
+    ----------
+    sheet, labels, data
+        As for :func:`evaluate`.
+    """
+    repeats = [axis.count for axis in sheet.axes if isinstance(axis, RepeatAxis)]
+    numbers = {name: _datum(_rows(data[name])[0], sheet.bounds[name]) for name in repeats}
+    counts = {name: 0 if mpmath.isnan(number) else int(number) for name, number in numbers.items()}
+    return lay_out(sheet, labels, counts)
 
 
 class _Exact:

@@ -15,6 +15,7 @@ from itertools import chain, count
 
 from ..charts import Drawn
 from ..grid import CHECKED, FIRST_ROW, SCALARS, STEPS, Block, Grid, Place, as_issued, checked
+from ..layout import Layout
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, PairAxis, RepeatAxis, Root, Sheet, name_of
 from ..unit_text import UnitError, parse_unit
@@ -27,8 +28,8 @@ from .numpy import extend
 
 __all__ = ["MOST_ROWS", "TooManyRows", "check_rows", "grid"]
 
-MOST_ROWS = 200_000
-"""Rows of a worksheet; a million would fit, but no reader opens it gladly."""
+MOST_ROWS = 40_000
+"""Rows of a worksheet; a million would fit, but these take half a gigabyte to make, and more to open."""
 _RESERVED = (SCALARS, STEPS, "figures", "published", "equations", "history")
 """Worksheets that are there already, and one that Excel keeps for itself."""
 _LONGEST_NAME = 31
@@ -74,12 +75,12 @@ def grid(
     NotPrintable
         A formula has no spreadsheet formula.
     """
-    check_rows(values)
+    check_rows(values.layouts)
     every = values if drawn is None else extend(values, drawn.columns, drawn.given)
     return _Assembly(sheet, values.sheet, every.sheet, every, units, first, drawn).grid()
 
 
-def check_rows(values: Values) -> None:
+def check_rows(layouts: Mapping[str, Layout]) -> None:
     """Refuse what no worksheet should hold.
 
     Raises
@@ -87,7 +88,7 @@ def check_rows(values: Values) -> None:
     TooManyRows
         An axis has more than :data:`MOST_ROWS` rows.
     """
-    for name, layout in values.layouts.items():
+    for name, layout in layouts.items():
         if layout.size > MOST_ROWS:
             raise TooManyRows(f"{name} has {layout.size} rows")
 

@@ -23,8 +23,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--to",
         metavar="FORMATS",
-        default="html,latex,xlsx,json",
-        help="html, latex, xlsx, json, pdf (default: html,latex,xlsx,json)",
+        help="html, latex, xlsx, json, pdf (default: the first four, but no workbook that is too large)",
     )
     parser.add_argument(
         "--engines",
@@ -40,7 +39,8 @@ def run(options: argparse.Namespace) -> int:
     from ..findings import checks
     from ..folders import output, report_folder
 
-    formats, folder = build.parse_formats(options.to), report_folder(options.folder)
+    formats = None if options.to is None else build.parse_formats(options.to)
+    folder = report_folder(options.folder)
     out = Path(options.out) if options.out else output(folder)
 
     def say(sentence: str) -> None:
