@@ -52,7 +52,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> ReportFile | None:
     """Take a report.toml that names a workbook; another tool's file of that name is none of our business."""
-    if file_path.name != "report.toml" or not _is_ours(file_path):
+    if file_path.name != "report.toml" or not _is_ours(file_path) or _is_copy(file_path):
         return None
     return ReportFile.from_parent(parent, path=file_path)
 
@@ -70,6 +70,14 @@ def _is_ours(path: Path) -> bool:
     except (ValueError, RecursionError):
         return bool(_LIKE_OURS.search(text)) and ("[measurements" in text or "[parameters" in text)
     return "workbook" in data and ("measurements" in data or "parameters" in data)
+
+
+def _is_copy(path: Path) -> bool:
+    """Whether it stands in a crate that was made of the folder around it, which is collected itself."""
+    from .folders import INPUTS
+
+    folder, out = path.parent, path.parent.parent
+    return folder.name == INPUTS and (out / "manifest.json").exists() and _is_ours(out.parent / path.name)
 
 
 def _own_code_is_asked_for(config: pytest.Config) -> bool:

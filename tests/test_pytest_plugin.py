@@ -58,6 +58,16 @@ def test_every_check_is_a_test(campaign: Path) -> None:
     assert len(ids) == len(set(ids)) == 3 + 46 + 27 + 5 + 3 + 10
 
 
+def test_the_inputs_in_a_crate_are_tests_where_their_folder_is_not(campaign: Path) -> None:
+    crate = campaign / "out"
+    shutil.copytree(PAPER, crate / "inputs")
+    (crate / "manifest.json").write_text("{}")
+    assert run(campaign.parent, "--collect-only", "-k", "engine").stdout.count("report.toml::engine") == 3
+    crate.rename(campaign.parent / "crate")
+    there = run(campaign.parent, "--collect-only", "-k", "engine").stdout
+    assert there.count("steel/report.toml::engine") == there.count("crate/inputs/report.toml::engine") == 3
+
+
 def test_a_test_is_selected_by_its_id_and_passes(campaign: Path) -> None:
     ids = [f"report.toml::{name}" for name in ("published::alpha[1-2]", "proof::(11)", "engine::numpy")]
     listed = run(campaign, "--collect-only", *ids)
@@ -76,6 +86,9 @@ def test_a_published_value_that_differs_fails_alone_and_says_which(campaign: Pat
     said = "steel/published.csv:2:19: Table 2 alpha[1-2] prints 1.239, recomputed 1.258, and differs"
     assert said in done.stdout
     assert "26 passed" in done.stdout
+    alike = run(campaign.parent, "-k", "published", "--numprocesses", "2", "--dist", "loadfile")
+    assert (failed(alike.stdout), alike.returncode) == (failed(done.stdout), 1)
+    assert "26 passed" in alike.stdout
     assert "Traceback" not in done.stdout
     assert "pytest_plugin.py" not in done.stdout
 
