@@ -194,7 +194,8 @@ function begin() {
   writeBar(page.look);
   toggleBar(matchMedia("(min-width: 48rem)").matches);
   new ResizeObserver(makeRoom).observe(byId("live-dock"));
-  new ResizeObserver(letScroll).observe(byId("main"));
+  // A frame later: to ask for widths lays out what was put off, and sizes would change under the observer.
+  new ResizeObserver(() => requestAnimationFrame(letScroll)).observe(byId("main"));
   document.documentElement.dataset.live = "ready";
 }
 

@@ -72,8 +72,12 @@ _AROUND = """() => {
     ...all("#result > p"), ...all(".headline dd"), ...all("#published > ul > li")];
 }"""
 
-_STATE = """() => [document.getElementById("main").innerHTML,
-  ...Array.from(document.querySelectorAll("main input"), (input) => `${input.value} ${input.checked}`)]"""
+# When all that waits for the next frame has been done.
+_STATE = """async () => {
+  for (let n = 0; n < 3; n++) await new Promise(requestAnimationFrame);
+  return [document.getElementById("main").innerHTML,
+    ...Array.from(document.querySelectorAll("main input"), (input) => `${input.value} ${input.checked}`)];
+}"""
 
 # Put a text into the clipboard when the next thing is copied, whatever that is.
 _COPY = """(text) => addEventListener("copy", (event) => {

@@ -202,6 +202,23 @@ def test_bar_says_where_a_number_comes_from(live: Live) -> None:
     assert "measurements.csv, test 2" in live.text("bar-source")
 
 
+_READ_ON = """async () => {
+  const frame = () => new Promise(requestAnimationFrame);
+  for (const one of document.querySelectorAll("main section, main h3, main .table, main figure")) {
+    one.scrollIntoView();
+    await frame();
+    await frame();
+  }
+}"""
+
+
+def test_page_is_read_to_its_end_after_an_edit(live: Live) -> None:
+    """What is laid out only when it comes into sight makes nothing complain."""
+    live.type("e", 2, ".900")
+    live.page.evaluate(_READ_ON)
+    assert live.page.evaluate("() => document.visibilityState") == "visible"
+
+
 def test_saved_files_give_the_numbers_of_the_page(live: Live, tmp_path: Path) -> None:
     live.type("x_p", 2, "29.8")
     live.type("beta", "", "1.4")

@@ -17,12 +17,12 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 Call = Callable[..., Any]
 """A command of WebDriver's by its name, with its parameters."""
 
-WAIT = 30.0
+WAIT = 60.0
 """Seconds that a browser may take for anything."""
 
 
@@ -71,14 +71,17 @@ def firefox(program: str, folder: Path, downloads: Path) -> Iterator[Call]:
     said = folder / "MarionetteActivePort"
     with _running([program, "--headless", "--marionette", "--no-remote", "--profile", str(folder)], folder):
         port = int(until(lambda: said.exists() and said.read_text(encoding="ascii"), "Firefox"))
-        with socket.create_connection(("127.0.0.1", port), WAIT) as connection:
-            call = _marionette(connection)
+        with (
+            socket.create_connection(("127.0.0.1", port), WAIT) as connection,
+            connection.makefile("rb") as answers,
+        ):
+            call = _marionette(connection, answers)
             call("NewSession", capabilities={})
             yield call
 
 
-def _marionette(connection: socket.socket) -> Call:
-    answers, number = connection.makefile("rb"), 0
+def _marionette(connection: socket.socket, answers: BinaryIO) -> Call:
+    number = 0
 
     def receive() -> Any:
         length = b""
@@ -233,7 +236,7 @@ class Page:
     call: Call
 
     def __post_init__(self) -> None:
-        self.call("SwitchToWindow", handle=self.call("NewWindow", type="tab")["handle"])
+        self.call("SwitchToWindow", handle=self.call("NewWindow", type="window")["handle"])
 
     @property
     def keyboard(self) -> Keyboard:
