@@ -19,7 +19,7 @@ from .errors import (
     suggest,
 )
 from .expected import EXAMPLE, Expectation, check_expected
-from .measurements import MODES, Measurements, read_measurements
+from .measurements import MODES, LeftOut, Measurements, read_measurements
 from .number_text import NumberError, read_printed
 from .parameters import read_parameters, wrong_type
 from .published import PublishedValue, check_published, read_published
@@ -79,6 +79,10 @@ class Inputs:
         Only the referee asks what would come out of them.
     by_source : bool
         Whether the published values are those of the workbook's own source.
+    left_out : tuple of LeftOut
+        The tests that take no part, each with its reason; all else is about the others.
+    aside : tuple of PublishedValue
+        Published values that rest on a test that is left out: they are not compared.
     """
 
     folder: Path
@@ -95,6 +99,8 @@ class Inputs:
     expected: tuple[Expectation, ...] = ()
     errata: dict[tuple[str, int], Printed] = field(default_factory=dict)
     by_source: bool = False
+    left_out: tuple[LeftOut, ...] = ()
+    aside: tuple[PublishedValue, ...] = ()
 
     @property
     def about_source(self) -> bool:
@@ -149,8 +155,10 @@ def load(folder: Path, find_workbook: Find) -> Inputs:
     return _Reader(folder, find_workbook).read()
 
 
-def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]]) -> None:
+def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]]) -> Inputs:
     """Check all that was read of cells against those of the sheet.
+
+    What is said of a cell that is missing because a test is left out is set aside.
 
     Parameters
     ----------
@@ -159,15 +167,34 @@ def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[
     cells : mapping of str to (str, collection of tuple of int)
         For each cell its SI unit and the indices that it has: ``{()}`` for a scalar.
 
+    Returns
+    -------
+    Inputs
+        Those without what was set aside.
+
     Raises
     ------
     InputError
         With every cell, index and test that there is not, and every unit of another dimension.
     """
+    gone = {each.test for each in inputs.left_out}
+
+    def rests_on_gone(name: str, index: tuple[int, ...]) -> bool:
+        there = cells[name][1] if name in cells else () if not name else (index,)
+        return index not in there and not gone.isdisjoint(index)
+
+    aside = tuple(value for value in inputs.published if rests_on_gone(value.cell, value.index))
+    kept = replace(
+        inputs,
+        expected=tuple(each for each in inputs.expected if not rests_on_gone(*each.cell)),
+        published=tuple(value for value in inputs.published if value not in aside),
+        aside=aside,
+    )
     findings = Findings()
-    check_expected(inputs.expected, inputs.tests, cells, findings)
-    check_published(inputs.published, inputs.free_at, cells, findings)
+    check_expected(kept.expected, kept.tests, cells, findings)
+    check_published(kept.published, kept.free_at, cells, findings)
     findings.check()
+    return kept
 
 
 class _Reader:
@@ -214,6 +241,7 @@ class _Reader:
             expected,
             self.errata(measurements),
             self.by_source,
+            measurements.left_out,
         )
 
     def open_toml(self) -> TomlFile | None:
@@ -423,6 +451,8 @@ class _Reader:
         if name not in columns:
             known, suggestion = listing(columns), suggest(name, columns)
             self.findings.add("LS505", at, text=name, known=known, suggestion=suggestion)
+        elif index in [str(each.test) for each in measurements.left_out]:
+            pass  # it is misprinted in a row that nothing is computed from
         elif index not in tests:
             self.findings.add("LS506", at, name=name, text=index, known=listing(tests))
         else:

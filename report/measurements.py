@@ -18,22 +18,54 @@ if TYPE_CHECKING:
     from .sources import Source
     from .workbook import Measured
 
-__all__ = ["MODES", "Measurements", "read_measurements"]
+__all__ = ["LEFT_OUT", "MODES", "LeftOut", "Measurements", "read_measurements"]
 
 MODES = ("rounded", "truncated")
 """How a printed number may have been shortened."""
+
+LEFT_OUT = "left out"
+"""The column that says why a test takes no part; empty where it does."""
 
 _HEAD = re.compile(r"(?P<name>u\([^()\[\]]*\)|[^()\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 _TEST = re.compile(r"0*[1-9][0-9]{0,8}")
 
 
 @dataclass(frozen=True)
+class LeftOut:
+    """A test that takes no part in anything.
+
+    Parameters
+    ----------
+    test : int
+        Its number.
+    reason : str
+        Why, in the words of the file.
+    texts : dict of str to str
+        What stands in its row, as it stands, by the name of the column; it may be no number.
+    place : int
+        How many rows stand above it.
+    at : Location
+        Where its reason was written.
+    """
+
+    test: int
+    reason: str
+    texts: dict[str, str]
+    place: int
+    at: Location
+
+
+@dataclass(frozen=True)
 class Measurements:
-    """The checked table: test numbers, and a printed number for each test and measured column."""
+    """The checked table: test numbers, and a printed number for each test and measured column.
+
+    What is left out stands apart from them.
+    """
 
     tests: tuple[int, ...]
     measured: dict[str, tuple[Printed, ...]]
     header_units: dict[str, str]
+    left_out: tuple[LeftOut, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -74,12 +106,17 @@ def read_measurements(
     if measured is None:
         places = {"test": names.index("test")} if "test" in names else {}
     else:
-        places = match_columns(table, names, required, [f"u({name})" for name in columns], findings)
-    if table.total < 2:
-        count = "no test" if table.total == 0 else "one test only"
+        optional = [*(f"u({name})" for name in columns), LEFT_OUT]
+        places = match_columns(table, names, required, optional, findings)
+    tests = _tests(table, places["test"], findings) if "test" in places else ()
+    reasons = [row.fields[places[LEFT_OUT]] for row in table.rows] if LEFT_OUT in places else []
+    gone = {place for place, reason in enumerate(reasons) if reason.text}
+    total = table.total - len(gone)
+    if total < 2:
+        count = ("no test" if total == 0 else "one test only") + " that is not left out" * bool(gone)
         at = table.end_of_header() if table.total == 0 else _last(table)
         findings.add("LS310", at, count=count)
-    tests = _tests(table, places["test"], findings) if "test" in places else ()
+    used = [row for place, row in enumerate(table.rows) if place not in gone]
     values: dict[str, tuple[Printed, ...]] = {}
     units: dict[str, str] = {}
     for name, column in columns.items():
@@ -90,7 +127,7 @@ def read_measurements(
         if name in places:
             mode = modes.get(name, "rounded")
             read = []
-            for row in table.rows:
+            for row in used:
                 if findings.full:
                     break
                 cell = row.fields[places[name]]
@@ -103,7 +140,22 @@ def read_measurements(
                     printed = printed and replace(printed, given_u=given)
                 read.append(printed)
             values[name] = tuple(printed for printed in read if printed is not None)
-    return None if len(findings.found) > before else Measurements(tests, values, units)
+    if len(findings.found) > before:
+        return None
+    taken = tuple(test for place, test in enumerate(tests) if place not in gone)
+    # What else stands in a row that is left out is not looked at.
+    texts = {name: place for name, place in places.items() if name not in ("test", LEFT_OUT)}
+    left_out = tuple(
+        LeftOut(
+            tests[row],
+            reasons[row].text,
+            {name: table.rows[row].fields[place].text for name, place in texts.items()},
+            row,
+            table.at(reasons[row]),
+        )
+        for row in sorted(gone)
+    )
+    return Measurements(taken, values, units, left_out)
 
 
 def _last(table: Table) -> Location:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["names", "oddities"]
 
-DATA, LIMIT, EXPECTED = "data", "limit", "expected"
+DATA, LIMIT, EXPECTED, LEFT_OUT = "data", "limit", "expected", "left out"
 """The kinds of these checks."""
 CELLS, ROWS, RESULT = "cells", "rows", "result"
 """The checks of the first kind: every cell has a value, every sum is over all rows, there is a result."""
@@ -36,6 +36,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
         DATA: [CELLS, ROWS, RESULT],
         LIMIT: list(map(_name, margins(sheet))),
         EXPECTED: [expectation.address for expectation in inputs.expected],
+        LEFT_OUT: [f"test {each.test}" for each in inputs.left_out],
     }
 
 
@@ -75,6 +76,7 @@ class _Oddities:
         yield self.of_result()
         yield from map(self.of_limit, self.report.marks.margins)
         yield from self.of_expectations()
+        yield from self.of_left_out()
 
     def cells(self, margin: Margin) -> Iterator[Cell]:
         """The cells outside of a limit."""
@@ -202,6 +204,14 @@ class _Oddities:
             if not met:
                 said = f"{each.address} is expected to be odd ({each.reason}), and is not: drop it"
             yield Check(EXPECTED, each.address, bool(met), said, each.at, note="expected")
+
+    def of_left_out(self) -> Iterator[Check]:
+        """The tests that somebody left out, and what is not compared for that."""
+        for each in self.inputs.left_out:
+            said = f"test {each.test}, {each.reason}"
+            if rests := sum(each.test in value.index for value in self.inputs.aside):
+                said += f"; {rests} published {'value rests' if rests == 1 else 'values rest'} on it"
+            yield Check(LEFT_OUT, f"test {each.test}", True, said, each.at, note="left out")
 
     def check(self, kind: str, name: str, said: str, odd: _Odd) -> Check:
         """A check that found something: with the test to look at, or with why it is expected."""

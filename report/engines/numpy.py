@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from ..layout import Layout, lay_out, precedents, rows_of
 from ..sheet import Column, Formula, Given, Reference, RepeatAxis, Root, Sheet, name_of
-from ..values import Status, Values, how_many, inherited, rows_kept
+from ..values import Status, Values, inherited, rows_kept
 from .domain import SMALLEST, defined, positive, typed
-from .numpy_code import SAME, Array, Function, Kernel, kernel, write
+from .numpy_code import Array, Function, Kernel, kernel, write
 from .numpy_root import RootProgram
 from .numpy_rows import Kept
 
@@ -48,7 +48,7 @@ class Program:
     positive: Mapping[str, Kernel]
 
     @classmethod
-    def of(cls, sheet: Sheet, known: Collection[str] = (), functions: Any = SAME) -> Program:
+    def of(cls, sheet: Sheet, known: Collection[str] = ()) -> Program:
         """Generate the program of a sheet.
 
         Parameters
@@ -56,9 +56,6 @@ class Program:
         sheet : Sheet
         known : collection of str
             Columns that are computed already.
-        functions : module
-            What computes exponentials, logarithms and powers: NumPy itself is several times as fast, for
-            draws by the million, but its last bits hang on the processor.
 
         Raises
         ------
@@ -71,18 +68,18 @@ class Program:
                 continue
             if column.name in sheet.guards:
                 datum, allowed = sheet.guards[column.name]
-                _, guards[column.name] = write([datum], (), [allowed], functions)
+                _, guards[column.name] = write([datum], (), [allowed])
             if isinstance(column.rule, Formula):
-                formulas[column.name] = kernel([column.rule.expression], sheet.indices, functions)
+                formulas[column.name] = kernel([column.rule.expression], sheet.indices)
                 formula = typed(sheet, column.rule.expression)
                 if column.positive and (sign := positive(formula)) != False:  # noqa: E712 - sympy's false
-                    signs[column.name] = kernel([sign], sheet.indices, functions)
+                    signs[column.name] = kernel([sign], sheet.indices)
                 if (domain := defined(formula)) != True:  # noqa: E712 - sympy's true
-                    domains[column.name] = kernel([domain], sheet.indices, functions)
+                    domains[column.name] = kernel([domain], sheet.indices)
             elif isinstance(column.rule, Root):
-                roots[column.name] = RootProgram.of(sheet, column, functions)
+                roots[column.name] = RootProgram.of(sheet, column)
             if column.requires:
-                conditions[column.name] = kernel([c for c, _ in column.requires], sheet.indices, functions)
+                conditions[column.name] = kernel([c for c, _ in column.requires], sheet.indices)
         return cls(sheet, formulas, roots, conditions, guards, domains, signs)
 
     @property
@@ -202,8 +199,9 @@ class _Run:
         return np.where(broken > 0, Status.DOMAIN, found).astype(np.uint8)
 
     def _count(self, column: Column, kept: Masks) -> None:
-        if some := how_many(kept):
-            self.counted[column.name] = some
+        some = {axis: mask for axis, mask in kept.items() if mask.ndim == 1 and not mask.all()}
+        if some:
+            self.counted[column.name] = {axis: int(mask.sum()) for axis, mask in some.items()}
 
     # --- what a kernel is called with ----------------------------------------------------------------
 

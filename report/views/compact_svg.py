@@ -32,6 +32,7 @@ def short_svg(svg: str, prefix: str = "a") -> str:
     text = _PATH.sub(lambda found: f' d="{_relative(found[1])}"', text)
     text = re.sub(r"translate\([^)]*\)", _rounded, text)
     text = re.sub(r'<text transform="translate\(([-\d.]+),([-\d.]+)\)"', r'<text x="\1" y="\2"', text)
+    text = _with_lines(text)
     while True:
         # A group without attributes does nothing.
         less = re.sub(r"<g>((?:(?!</?g\b)[\s\S])*)</g>", r"\1", text)
@@ -76,8 +77,10 @@ def _with_texts(svg: str) -> str:
         name, at, size = _USE.findall(found["glyphs"])[-1]
         last = _OTHER.get(found["text"].rstrip("$")[-1:], _PLAIN)
         width = (float(at or 0) + widths.get(name, last) * float(size or 1)) * float(found["scale"])
+        # A few characters are as wide in any font, near enough.
+        fitted = f'textLength="{width:.1f}" ' if len(found["text"]) > 5 else ""
         return (
-            f'<text transform="{found["where"]}" textLength="{width:.1f}" '
+            f'<text transform="{found["where"]}" {fitted}'
             f'style="font-size:{100 * float(found["scale"]):g}px;fill:{found["fill"]}">{said}</text>'
         )
 
@@ -117,6 +120,35 @@ def _said(text: str) -> str | None:
         if lowered and rest:
             made += '<tspan dy="-1.5">\u200b</tspan>'
     return made
+
+
+# --- lines ---------------------------------------------------------------------------------------------
+
+_MARKER = re.compile(
+    r'<defs><path id="(?P<name>[^"]*)" d="m0,0(?P<steps>[^"mz]*)"(?P<style> style="[^"]*")/></defs>'
+)
+_LINE = re.compile(r'<path d="m(?P<path>[-\d.,]+l[-\d.,]+)"(?P<style> style="[^"]*")/>')
+
+
+def _with_lines(svg: str) -> str:
+    """The picture with each tick as a line, and all lines of one style as one path where the first stands.
+
+    Only straight lines that are not clipped: those of the grid and of the axes, below all that is drawn.
+    """
+    for marker in list(_MARKER.finditer(svg)):
+        use = re.compile(rf'<use href="#{marker["name"]}" x="([^"]*)" y="([^"]*)"[^>]*/>')
+        svg = use.sub(
+            rf'<path d="m\1,\2{marker["steps"]}"{marker["style"]}/>', svg.replace(marker.group(), "")
+        )
+    lines: dict[str, list[str]] = {}
+    for found in _LINE.finditer(svg):
+        lines.setdefault(found["style"], []).append(found["path"])
+
+    def joined(found: re.Match[str]) -> str:
+        paths = lines.pop(found["style"], [])
+        return f'<path d="M{"M".join(paths)}"{found["style"]}/>' if paths else ""
+
+    return _LINE.sub(joined, svg)
 
 
 # --- styles ----------------------------------------------------------------------------------------------

@@ -165,11 +165,15 @@ class Document:
             return Table(spec, "", heads, (Row((), tuple(items[0] for _, items in columns)),))
         labels = self.report.values.labels(self.report.sheet[names[0]])
         rows = zip(labels, zip(*(items for _, items in columns), strict=True), strict=True)
-        if not axis.parents or len(labels) <= MOST:  # what was measured is shown whole
-            return Table(spec, axis.row, heads, tuple(Row(label, items) for label, items in rows))
-        first = tuple(Row(label, items) for label, items in islice(rows, MOST))
-        cut = f"The first {MOST} {axis.name} are shown; values.json has all of them."
-        return Table(spec, axis.row, heads, first, cut)
+        shown = [Row(label, items) for label, items in islice(rows, MOST if axis.parents else None)]
+        if not axis.parents and any(head.given for head in heads):
+            for each in self.report.inputs.left_out:
+                texts = tuple(each.texts.get(head.name, "") for head in heads)
+                shown.insert(each.place, Row((each.test,), texts=texts, left_out=each.reason))
+        cut = ""
+        if axis.parents and len(labels) > MOST:  # what was measured is shown whole
+            cut = f"The first {MOST} {axis.name} are shown; values.json has all of them."
+        return Table(spec, axis.row, heads, tuple(shown), cut)
 
     # --- figures
 

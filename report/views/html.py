@@ -86,6 +86,10 @@ class HtmlWords(Words):
         """The identifier of the sentence that says why a cell has no value."""
         return address(cell.name, cell.label).replace("cell-", "why-", 1)
 
+    def address(self, name: str, label: tuple[int, ...]) -> str:
+        """The identifier of a cell that has no value."""
+        return address(name, label)
+
     def claim(self, equation: Equation) -> Markup:
         """A displayed equation of a derivation, which is none of the ledger."""
         return mathml_block(self.document.block(equation))

@@ -6,6 +6,7 @@ explain; they know no model, and nothing of what they read is ever evaluated.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 from collections.abc import Iterator
@@ -25,6 +26,7 @@ from .compact import short_script
 from .document import Document
 from .drawing import unit_text
 from .escape import slug
+from .live_files import given
 from .math import Printer
 from .parts import index_text
 from .words import TEMPLATES
@@ -42,8 +44,11 @@ SCRIPTS = (
     "drawing.js",
     "figures.js",
     "bar.js",
+    "select.js",
     "grid.js",
     "files.js",
+    "keep.js",
+    "panel.js",
     "main.js",
 )
 """The scripts of the page in the order in which they are read."""
@@ -98,26 +103,12 @@ def data(report: Report, document: Document) -> str:
     document : Document
         The same report, as the views see it.
     """
-    inputs = report.inputs
     sheet = report.sheet
-    measured = {name: numbers for name, numbers in inputs.measured.items() if name in sheet}
-    parameters = {name: number for name, number in inputs.parameters.items() if name in sheet}
     grounds = _grounds(report)
     known = {
         "columns": {column.name: _column(report, document, column, grounds) for column in sheet.columns},
         "grounds": grounds,
-        "tests": [
-            {
-                "label": test,
-                "used": True,
-                "cells": {name: numbers[row].text for name, numbers in measured.items()},
-            }
-            for row, test in enumerate(inputs.tests)
-        ],
-        "parameters": {name: number.text for name, number in parameters.items()},
-        "units": {name: inputs.header_units[name] for name in measured},
-        "uncertainties": _uncertainties(inputs.tests, measured),
-        "toml": list(_toml(report)),
+        **given(report),
         "rows": next(([axis.name, axis.row] for axis in sheet.axes if not axis.parents), ["rows", "row"]),
         "headline": [name for name in report.workbook.headline if name in sheet],
         "figures": drawn(report),
@@ -141,17 +132,15 @@ def data(report: Report, document: Document) -> str:
             for group in document.groups
         ],
     }
+    # By its content an issue is known again: edits of another one do not fit.
+    known["issue"] = hashlib.sha256(json.dumps(known).encode()).hexdigest()[:16]
     # In an element of its own only these could be taken for its end or for a comment.
     return json.dumps(known, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
-def drawn(report: Report) -> dict[str, dict[str, str]]:
-    """The figures that the page draws again, by name: which drawing, and what it shows."""
-    return {
-        figure.name: {"draw": figure.draw, "alt": figure.alt or figure.caption}
-        for figure in report.workbook.figures
-        if figure.draw in FIGURES
-    }
+def drawn(report: Report) -> dict[str, str]:
+    """The figures that the page draws again, and which drawing each is."""
+    return {figure.name: figure.draw for figure in report.workbook.figures if figure.draw in FIGURES}
 
 
 def _fraction(value: Fraction) -> list[str]:
@@ -225,75 +214,6 @@ def limits(bounds: Bounds) -> dict[str, Any]:
 def _printed(report: Report, name: str) -> Printed | None:
     """A number of an input, for its unit."""
     return next(iter(report.inputs.printed(name)), None)
-
-
-def _uncertainties(
-    tests: tuple[int, ...], measured: dict[str, tuple[Printed, ...]]
-) -> dict[str, dict[str, str]]:
-    """The standard uncertainties that were given, in the unit of the header, by column and test."""
-    given = {
-        name: numbers for name, numbers in measured.items() if any(n.given_u is not None for n in numbers)
-    }
-    return {
-        name: {
-            str(test): _decimal(number.given_u / number.scale)
-            for test, number in zip(tests, numbers, strict=True)
-            if number.given_u is not None
-        }
-        for name, numbers in given.items()
-    }
-
-
-def _decimal(value: Fraction) -> str:
-    """A fraction that was a decimal number, as one again."""
-    places = 0
-    while (value * 10**places).denominator != 1 and places < 400:
-        places += 1
-    digits = str(round(value * 10**places)).rjust(places + 1, "0")
-    return f"{digits[:-places]}.{digits[-places:]}" if places else digits
-
-
-def _toml(report: Report) -> Iterator[str | dict[str, str]]:
-    """report.toml in pieces: text as it stands, and between it the numbers that may be edited.
-
-    A parameter that is not in the file has its piece behind the head of the table.
-    """
-    # Lines are counted as the reader counts them: any of the three ends, a mark in front is not text.
-    raw = report.inputs.files.get("report.toml", b"").decode("utf-8-sig", "replace")
-    text = re.sub("\r\n?", "\n", raw)
-    starts = [0, *(found.end() for found in re.finditer("\n", text))]
-    pieces: list[tuple[int, int, dict[str, str]]] = []
-    for name, number in report.inputs.parameters.items():
-        unit = number.unit if number.unit != "1" else ""
-        found = re.fullmatch(r"report\.toml:(\d+):(\d+)", number.where)
-        if found is None:
-            head = re.search(r"^[ \t]*\[[ \t]*parameters[ \t]*\][^\n]*\n?", text, re.MULTILINE)
-            if head is not None:
-                pieces.append((head.end(), head.end(), {"parameter": name, "unit": unit, "line": "new"}))
-            continue
-        place = text.find(number.text, starts[int(found[1]) - 1] + int(found[2]) - 1)
-        if place >= 0:
-            pieces.append((place, place + len(number.text), {"parameter": name}))
-    table = re.search(
-        r"""^[ \t]*file[ \t]*=[ \t]*(["'])(?P<name>[^"'\n]*)\1""", _measurements(text), re.MULTILINE
-    )
-    if table is not None and table["name"] != "measurements.csv":
-        start = text.index(_measurements(text)) + table.start("name")
-        pieces.append((start, start + len(table["name"]), {"file": "measurements.csv"}))
-    done = 0
-    for start, end, piece in sorted(pieces, key=lambda piece: piece[:2]):
-        yield text[done:start]
-        yield piece
-        done = end
-    yield text[done:]
-
-
-def _measurements(text: str) -> str:
-    """The lines of the table of the measurements."""
-    found = re.search(
-        r"^[ \t]*\[[ \t]*measurements[ \t]*\][^\n]*\n(?:(?![ \t]*\[)[^\n]*\n?)*", text, re.MULTILINE
-    )
-    return found.group() if found else ""
 
 
 # --- equations with places for numbers --------------------------------------------------------------------

@@ -141,10 +141,15 @@ class Remark:
 
 @dataclass(frozen=True)
 class Row:
-    """One row of a table: what it is called, and its cells."""
+    """One row of a table: what it is called, and its cells.
+
+    One that takes no part has a reason and texts in place of cells, one for each head.
+    """
 
     label: tuple[int, ...]
-    items: tuple[Item, ...]
+    items: tuple[Item, ...] = ()
+    texts: tuple[str, ...] = ()
+    left_out: str = ""
 
     @property
     def text(self) -> str:

@@ -36,7 +36,7 @@ function fillBar(look, name, row, index) {
     const origin = trace.culprit(name, row), itself = origin.name === name && origin.row === row;
     fillLine("bar-reason", itself ? "" : "needs ", ...(itself ? [] : [cellButton(look, origin.name, origin.row), ": "]), trace.why(origin.name, origin.row));
   }
-  if (column.given) fillLine("bar-source", `given, ${here.axis === null ? "in report.toml" : `in measurements.csv, ${ROW} ${index}`}`);
+  if (column.given) fillLine("bar-source", `given, ${here.axis === null ? "in report.toml" : `in ${LIVE.file}, ${ROW} ${index}`}`);
   else fillLine("bar-source", ...sourceLine(column), ...publishedMath(column, name));
   if (column.put && trace.isOk(name, row)) fillLine("bar-put", ...putIn(look, name, row));
   fillCells(look, "bar-precedents", "rests on", trace.precedents(name, row));

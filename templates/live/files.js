@@ -9,14 +9,23 @@ function measurementsCsv(state) {
     const unit = `[${LIVE.units[name]}]`;
     return given.includes(name) ? [`${name} ${unit}`, `u(${name}) ${unit}`] : [`${name} ${unit}`];
   });
-  const lines = usedTests(state).map(({ label, cells }) => {
+  const tests = savedTests(state), someOut = tests.some(({ used }) => !used);
+  const lines = tests.map(({ label, used, reason, cells }) => {
     const fields = names.flatMap((name) => {
       const known = LIVE.uncertainties[name];
       return known ? [cells[name], known[label] ?? lastDigitUncertainty(cells[name])] : [cells[name]];
     });
-    return [String(label), ...fields];
+    return [String(label), ...fields, ...(someOut ? [used ? "" : reason || "no reason was given"] : [])];
   });
+  if (someOut) heads.push("left out");
   return [["test", ...heads], ...lines].map((fields) => fields.map(csvField).join(",") + "\n").join("");
+}
+
+// An empty row is dropped. What was issued stays, for published values may be about it: as a test left out.
+function savedTests(state) {
+  const full = state.tests.filter(({ cells }) => Object.values(cells).some(Boolean)), labels = full.map(({ label }) => label);
+  const gone = page.history.issued.tests.filter(({ label }) => !labels.includes(label));
+  return [...full, ...gone.map((test) => ({ ...test, used: false, reason: test.reason || "removed" }))];
 }
 
 // What stands for the uncertainty of a number that came without one: half a unit of its last digit, rectangular.
@@ -28,24 +37,24 @@ function reportToml(state) {
   return LIVE.toml.map((piece) => {
     if (typeof piece === "string") return piece;
     if (piece.file) return piece.file;
-    const text = state.parameters[piece.parameter];
+    const text = JSON.stringify(state.parameters[piece.parameter]).slice(1, -1);
     if (!piece.line) return text;
-    const same = text === page.history.issued.parameters[piece.parameter];
+    const same = state.parameters[piece.parameter] === page.history.issued.parameters[piece.parameter];
     return same ? "" : `${piece.parameter} = "${text}${piece.unit ? ` ${piece.unit}` : ""}"\n`;
   }).join("");
 }
 
+// All files that a build needs.
 function save() {
-  const box = byId("live-downloads"), state = page.history.now;
-  for (const link of all("a", box)) URL.revokeObjectURL(link.href);
-  const files = [["measurements.csv", measurementsCsv(state), "text/csv"], ["report.toml", reportToml(state), "application/toml"]];
-  const links = files.map(([name, text, type]) => {
-    const url = URL.createObjectURL(new Blob([text], { type: `${type};charset=utf-8` }));
+  const { now } = page.history, files = { [LIVE.file]: measurementsCsv(now), "report.toml": reportToml(now), ...LIVE.files };
+  for (const link of all("#live-note a[download]")) URL.revokeObjectURL(link.href);
+  const links = Object.entries(files).map(([name, text]) => {
+    const url = URL.createObjectURL(new Blob([text], { type: "text/plain;charset=utf-8" }));
     return make("a", { href: url, download: name }, name);
   });
-  box.replaceChildren("saved: ", ...links.flatMap((link, n) => (n ? [" ", link] : [link])));
-  box.hidden = false;
+  note("Saved: ", ...links.flatMap((link, n) => (n ? [" ", link] : [link])));
   // WebKit drops a download that has not begun when the next one is asked for.
-  links.forEach((link, n) => setTimeout(() => link.click(), 200 * n));
-  say(`Saved ${files.map(([name]) => name).join(" and ")}.`);
+  links.forEach((link, n) => setTimeout(() => link.click(), 500 * n));
+  lasting.safe = now;
+  say(`Saved ${Object.keys(files).join(", ")}.`);
 }

@@ -3,7 +3,7 @@
 
 let editing = null; // { element, before, inPlace }
 
-const STOPS = "input, button, td[data-cell], td[data-published]";
+const STOPS = "input:not([data-reason]), button, td[data-cell], td[data-published]";
 const gridOf = (element) => element.closest?.("table[role=grid]");
 const stopsOf = (row) => all(STOPS, row);
 const isText = (element) => element?.tagName === "INPUT" && element.hasAttribute("data-cell");
@@ -20,6 +20,7 @@ function makeGrids() {
 
 // Gives a cell the focus and makes it the one that Tab comes back to.
 function enter(element) {
+  pick();
   const grid = gridOf(element);
   if (grid) {
     for (const other of all("tbody [tabindex='0']", grid)) {
@@ -87,13 +88,16 @@ const ARROWS = { ArrowUp: [-1, 0], ArrowDown: [1, 0], ArrowLeft: [0, -1], ArrowR
 
 function onGridKey(event) {
   const element = event.target.closest(STOPS), text = isText(element), inPlace = editing?.element === element && editing.inPlace;
-  if (!element || event.altKey) return;
+  if (!element || event.altKey || element.matches("[data-reason]")) return;
   const { key, ctrlKey, metaKey, shiftKey } = event, control = ctrlKey || metaKey, here = placeOf(element);
   const go = (place) => {
     event.preventDefault();
     commitAndEnter(() => stopAt({ ...here, ...place }));
   };
-  if (ARROWS[key] && !control) {
+  if (ARROWS[key] && shiftKey && !inPlace) {
+    event.preventDefault();
+    if (!editing) extend(element, ARROWS[key].map((step) => step * (control ? Infinity : 1) || 0));
+  } else if (ARROWS[key] && !control) {
     const [down, right] = ARROWS[key];
     if (inPlace && (right || text)) return;
     go({ row: here.row + down, stop: here.stop + right });
@@ -109,9 +113,10 @@ function onGridKey(event) {
     const inputs = () => all("input[data-cell]", here.grid.tBodies[0]), index = inputs().indexOf(element) + (shiftKey ? -1 : 1);
     if (inputs()[index]) event.preventDefault();
     commitAndEnter(() => inputs()[index]);
-  } else if (key === "Escape" && editing) {
+  } else if (key === "Escape") {
+    if (editing) cancel();
+    else pick();
     event.preventDefault();
-    cancel();
   } else if (key === "F2" && text) {
     event.preventDefault();
     beginEditing(element, true);
@@ -128,7 +133,7 @@ function onGridKey(event) {
 function onKey(event) {
   const { key, ctrlKey, metaKey, shiftKey } = event;
   // While a text is being typed, its own steps are what is taken back.
-  if ((ctrlKey || metaKey) && !editing && /^[zy]$/i.test(key)) {
+  if ((ctrlKey || metaKey) && !editing && /^[zy]$/i.test(key) && !event.target.matches("[data-reason]")) {
     event.preventDefault();
     if (key.toLowerCase() === "y" || shiftKey) redo();
     else undo();
@@ -145,7 +150,14 @@ function onKey(event) {
 
 // The first press selects a cell as a whole; one more, or one while it is typed in, puts the caret into it.
 function onPress(event) {
-  const { target, detail } = event;
+  const { target, detail, shiftKey } = event, box = boxOf(target), from = picked.from ?? boxOf(document.activeElement);
+  if (shiftKey && box && from?.closest("table") === box.closest("table")) {
+    event.preventDefault();
+    pick(from, box);
+    return;
+  }
+  pick();
+  picked.drag = box;
   if (isText(target)) {
     const active = target === document.activeElement;
     if (active && (editing || detail > 1)) beginEditing(target, true);
@@ -192,16 +204,4 @@ const NO_DATUM = /^(?:nan|n\/?a|none|null|inf|infinity|true|false)$/i;
 function isHead(fields) {
   const words = fields.filter(Boolean);
   return words.length > 0 && new Set(words).size === words.length && words.every((word) => /^\p{L}/u.test(word) && !NO_DATUM.test(word));
-}
-
-// A selection over a table is copied as text, with what stands in its inputs.
-function onCopy(event) {
-  const selection = document.getSelection(), table = gridOf(selection.anchorNode?.parentElement ?? document.body);
-  if (isText(event.target) || selection.isCollapsed || !table) return;
-  const rows = Array.from(table.rows).filter((row) => selection.containsNode(row, true));
-  if (rows.length < 2) return;
-  const content = (cell) => cell.querySelector("input[data-cell]")?.value ?? cell.textContent.trim().replace(/\s+/g, " ");
-  const lines = rows.map((row) => Array.from(row.cells).filter((cell) => cell.className !== "tools").map(content).join("\t"));
-  event.clipboardData.setData("text/plain", `${lines.join("\n")}\n`);
-  event.preventDefault();
 }

@@ -38,8 +38,8 @@ function readInput(given, text) {
 }
 
 // --- states ----------------------------------------------------------------------------------------------
-// A state is { tests: [{ label, used, cells: { v: "2.334" } }], parameters: { beta: "1.5" } } and is never
-// changed: an edit makes a new one.
+// A state is { tests: [{ label, used, reason, cells: { v: "2.334" } }], parameters: { beta: "1.5" } } and is never
+// changed: an edit makes a new one. The reason is why a test is not used.
 
 const copied = (state) => structuredClone(state);
 const sameState = (a, b) => JSON.stringify(a) === JSON.stringify(b);
@@ -80,7 +80,7 @@ function differences(state, issued) {
       count += 1;
       continue;
     }
-    count += (test.used !== old.used) - 1;
+    count += (test.used !== old.used || test.reason !== old.reason) - 1;
     for (const name of Object.keys(test.cells)) count += test.cells[name] !== old.cells[name];
   }
   for (const name of Object.keys(state.parameters)) count += state.parameters[name] !== issued.parameters[name];

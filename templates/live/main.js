@@ -1,6 +1,8 @@
 // What happens after an edit, in order: a new state, the sheet, the page. And how it all begins.
 
-const page = { history: null, look: null, issued: null, tables: [], kept: [], loose: [], places: null, marked: [], hadMissing: false };
+const page = {
+  history: null, look: null, issued: null, tables: [], kept: [], stale: [], loose: [], places: null, marked: [], panel: null, hadMissing: false,
+};
 
 function lookAt(state, issued) {
   return new Look(new Trace(PROGRAM, LIVE.columns, computeSheet(PROGRAM, LIVE.columns, state)), state, issued);
@@ -9,6 +11,9 @@ function lookAt(state, issued) {
 const say = (sentence) => {
   byId("live-said").textContent = sentence;
 };
+
+// What is to be read once, until something else is.
+const note = (...words) => byId("live-note").replaceChildren(...words);
 
 // --- edits -----------------------------------------------------------------------------------------------
 
@@ -28,12 +33,20 @@ const enough = (state) => usedTests(state).length >= 2;
 
 function useTest(label, used) {
   change((state) => {
-    state.tests.find((test) => test.label === label).used = used;
+    const test = state.tests.find((one) => one.label === label), issued = page.history.issued.tests.find((one) => one.label === label);
+    test.used = used;
+    test.reason = used ? "" : issued?.reason ?? "";
     if (enough(state)) return true;
     say(`Two ${ROWS} are the least that a report needs.`);
     return false;
   });
   for (const box of all("[data-use]")) box.checked = page.history.now.tests.find((test) => String(test.label) === box.dataset.use).used;
+}
+
+function giveReason(label, reason) {
+  change((state) => {
+    state.tests.find((test) => test.label === label).reason = reason.trim();
+  });
 }
 
 function removeTest(label) {
@@ -47,7 +60,7 @@ function removeTest(label) {
 
 function newTest(state) {
   const label = Math.max(0, ...state.tests.map((test) => test.label)) + 1;
-  const test = { label, used: true, cells: Object.fromEntries(Object.keys(LIVE.units).map((name) => [name, ""])) };
+  const test = { label, used: true, reason: "", cells: Object.fromEntries(Object.keys(LIVE.units).map((name) => [name, ""])) };
   state.tests.push(test);
   return test;
 }
@@ -98,13 +111,17 @@ function reset() {
 function show() {
   const begin = performance.now(), before = page.look, { now, issued } = page.history;
   const focus = document.activeElement?.closest?.("[data-cell], [data-use]");
+  pick();
   page.look = lookAt(now, page.issued);
   const edited = !sameState(now, issued), wasEdited = document.documentElement.hasAttribute("data-edited");
   document.documentElement.toggleAttribute("data-edited", edited);
   // As issued, the page holds the numbers of another engine: none of them is left between ours.
   if (edited) writePage(page.look, wasEdited ? before : null);
   else restore();
+  for (const word of page.stale) word.hidden = !edited;
+  keepState(now, edited);
   writeToolbar(edited);
+  writePanel(page.look);
   writeBar(page.look);
   if (focus && !focus.isConnected) refocus(focus);
   announce(before, page.look);
@@ -142,10 +159,11 @@ function refocus(element) {
 
 // Where nothing is to be drawn, the page has no DRAWINGS.
 function writeFigures(look) {
-  for (const [name, { draw: drawing, alt }] of Object.entries(LIVE.figures)) {
+  for (const [name, drawing] of Object.entries(LIVE.figures)) {
     const card = document.querySelector(`#figure-${CSS.escape(name)} .card`);
     if (!card) continue;
     const made = DRAWINGS[drawing](look);
+    const alt = page.kept.find(([part]) => part === card)[1].firstElementChild.getAttribute("aria-label");
     if (made) made.svg.setAttribute("aria-label", `${alt} Redrawn after an edit: ${made.says}`);
     card.replaceChildren(made?.svg ?? make("p", { class: "nothing" }, "Nothing to draw: the cells that it shows have no value."));
   }
@@ -158,7 +176,6 @@ function writeToolbar(edited) {
   byId("live-reset").disabled = !edited;
   byId("live-undo").disabled = history.place === 0;
   byId("live-redo").disabled = history.place === history.states.length - 1;
-  byId("live-downloads").hidden = true;
 }
 
 // One sentence about the result, for those who cannot see it change.
@@ -188,10 +205,15 @@ function begin() {
   ];
   page.kept = parts.filter((part) => !parts.some((other) => other !== part && other.contains(part))).map((part) => [part, part.cloneNode(true)]);
   page.hadMissing = byId("missing") !== null;
+  makeAround();
   listen();
   byId("live-dock").hidden = false;
-  writeToolbar(false);
-  writeBar(page.look);
+  recall();
+  if (page.history.place) show();
+  else {
+    writeToolbar(false);
+    writeBar(page.look);
+  }
   toggleBar(matchMedia("(min-width: 48rem)").matches);
   new ResizeObserver(makeRoom).observe(byId("live-dock"));
   // A frame later: to ask for widths lays out what was put off, and sizes would change under the observer.
@@ -208,6 +230,7 @@ function makeRoom([entry]) {
 
 // Equations and pictures that are wider than the page are scrolled with the keyboard, too.
 function letScroll() {
+  placePanel();
   const boxes = all("main .eq .scroll, article div, main .card");
   const wide = boxes.map((box) => box.scrollWidth > box.clientWidth || box.scrollHeight > box.clientHeight);
   boxes.forEach((box, n) => (wide[n] ? box.setAttribute("tabindex", "0") : box.removeAttribute("tabindex")));
@@ -240,7 +263,13 @@ function listen() {
   main.addEventListener("paste", onPaste);
   main.addEventListener("beforeinput", (event) => isText(event.target) && beginEditing(event.target, false));
   main.addEventListener("focusout", (event) => editing?.element === event.target && commit());
-  main.addEventListener("change", (event) => event.target.dataset.use && useTest(Number(event.target.dataset.use), event.target.checked));
+  main.addEventListener("mousemove", onDrag);
+  main.addEventListener("change", ({ target }) => {
+    if (target.dataset.use) useTest(Number(target.dataset.use), target.checked);
+    if (target.dataset.reason) giveReason(Number(target.dataset.reason), target.value);
+  });
+  addEventListener("beforeunload", onLeave);
+  addEventListener("hashchange", () => followLink() && show());
   document.addEventListener("click", (event) => {
     const button = event.target.closest?.("button");
     if (button) pressed(button);
@@ -248,8 +277,9 @@ function listen() {
 }
 
 function pressed(button) {
-  const actions = { "live-undo": undo, "live-redo": redo, "live-reset": reset, "live-save": save, "live-add": addTest };
+  const actions = { "live-undo": undo, "live-redo": redo, "live-reset": reset, "live-save": save, "live-link": shareLink, "live-add": addTest };
   if (button.dataset.goto) goTo(button.dataset.goto);
+  else if (button.matches("[data-copy]")) copyTable(button.parentElement.querySelector("table"));
   else if (button.dataset.remove) removeTest(Number(button.dataset.remove));
   else if (button.id === "bar-toggle") toggleBar(!bar.open);
   else actions[button.id]?.();

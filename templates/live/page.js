@@ -10,8 +10,13 @@
 //   .precedent, .selected             what the cell in the formula bar rests on; that cell
 //   tr[data-label="2"]                a row of a table; .excluded: a test that is left out
 //   input[data-use="2"]               takes a test in or out; button[data-remove="2"]; #live-add
-//   #live-undo #live-redo #live-reset #live-save, #live-banner (role=status), #live-said (aria-live)
-//   #live-downloads a[download]       the files of the last save
+//   input[data-reason="2"]            why a test is left out
+//   [aria-selected]                   a cell that Ctrl+C copies; .table > button[data-copy] copies all of a table
+//   #live-undo #live-redo #live-reset #live-save #live-link
+//   #live-banner (role=status), #live-said (aria-live), #live-note (role=status): what happened to the edits
+//   #live-note a[download]            the files of the last save; #live-note a: the link that was copied
+//   #live-panel                       the result beside the table that is edited, as issued and now
+//   [data-issued] > .stale            a chapter that is as issued
 //   #formula-bar[data-cell][data-index]; #bar-toggle (aria-expanded)
 //   #bar-name #bar-meaning #bar-value #bar-reason #bar-source #bar-equation #bar-put
 //   #bar-precedents button[data-goto="x_p[2]"], #bar-dependents button[data-goto]

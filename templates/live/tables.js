@@ -25,14 +25,19 @@ class Table {
 
   addTools(row) {
     const label = row.dataset.label, head = row.cells[0];
+    const { used, reason } = page.history.now.tests.find((test) => String(test.label) === label);
     const use = make("input", {
-      type: "checkbox", checked: true, "data-use": label, tabindex: "-1", "aria-label": `use ${ROW} ${label}`,
+      type: "checkbox", checked: used, "data-use": label, tabindex: "-1", "aria-label": `use ${ROW} ${label}`,
     });
     head.replaceChildren(make("label", {}, use, ` ${label}`));
     const remove = make("button", {
       type: "button", "data-remove": label, tabindex: "-1", "aria-label": `remove ${ROW} ${label}`, title: `remove ${ROW} ${label}`,
     }, "×");
-    row.append(make("td", { class: "tools" }, remove));
+    const why = make("input", {
+      type: "text", "data-reason": label, value: reason, maxlength: "500", autocomplete: "off",
+      placeholder: "reason", "aria-label": `why ${ROW} ${label} is left out`,
+    });
+    row.append(make("td", { class: "tools" }, why, remove));
   }
 
   newRow(index) {
@@ -76,6 +81,7 @@ class Table {
     if (test) {
       row.classList.toggle("excluded", !test.used);
       row.querySelector("[data-use]").checked = test.used;
+      row.querySelector("[data-reason]").value = test.reason;
     }
     for (let n = 0; n < this.columns.length; n++) {
       const { name } = this.columns[n], place = look.trace.row(name, index);

@@ -164,8 +164,8 @@ class Live:
     def click(self, identifier: str) -> None:
         self.page.locator(f"#{identifier}").click()
 
-    def save(self, folder: Path) -> Path:
-        """Save the inputs as the page offers it; gives the folder of the files."""
+    def save(self, folder: Path, *others: str, file: str = "measurements.csv") -> Path:
+        """Save all inputs as the page offers it; gives the folder of the files."""
         downloads: list[Download] = []
 
         def keep(download: Download) -> None:
@@ -173,10 +173,11 @@ class Live:
 
         self.page.on("download", keep)
         self.click("live-save")
-        links = self.page.locator("#live-downloads a[download]")
-        assert links.all_inner_texts() == ["measurements.csv", "report.toml"]
+        links = self.page.locator("#live-note a[download]")
+        names = [file, "report.toml", *(others or ("published.csv",))]
+        assert links.all_inner_texts() == names
         for _ in range(1500):  # half a minute at most
-            if len(downloads) < 2:
+            if len(downloads) < len(names):
                 self.page.wait_for_timeout(20)
         self.page.remove_listener("download", keep)
         for download in downloads:

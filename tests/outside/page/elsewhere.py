@@ -21,7 +21,7 @@ _LISTEN = """{
 }"""
 
 
-_OFFERED = "() => Array.from(document.querySelectorAll('#live-downloads a[download]'), (one) => one.download)"
+_OFFERED = "() => Array.from(document.querySelectorAll('#live-note a[download]'), (one) => one.download)"
 
 
 def listening(page: str) -> str:

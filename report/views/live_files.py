@@ -1,0 +1,140 @@
+"""The inputs of a report for the page that edits them, and the files that it makes of them."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from ..quantity import Printed
+from ..result import Report
+
+__all__ = ["given"]
+
+
+def given(report: Report) -> dict[str, Any]:
+    """What was given, as it was printed, and all that is needed to save it as the files that it came from."""
+    inputs, sheet = report.inputs, report.sheet
+    measured = {name: numbers for name, numbers in inputs.measured.items() if name in sheet}
+    return {
+        "tests": _tests(report, measured),
+        "parameters": {name: number.text for name, number in inputs.parameters.items() if name in sheet},
+        "units": {name: inputs.header_units[name] for name in measured},
+        "uncertainties": _uncertainties(report, measured),
+        "toml": list(_toml(report)),
+        **_files(report),
+    }
+
+
+def _tests(report: Report, measured: Mapping[str, tuple[Printed, ...]]) -> list[dict[str, Any]]:
+    """The rows of the table of the tests, in its order, with those that are left out."""
+    inputs = report.inputs
+    rows = [
+        {
+            "label": test,
+            "used": True,
+            "reason": "",
+            "cells": {name: numbers[row].text for name, numbers in measured.items()},
+        }
+        for row, test in enumerate(inputs.tests)
+    ]
+    for each in inputs.left_out:
+        cells = {name: each.texts[name] for name in measured}
+        rows.insert(each.place, {"label": each.test, "used": False, "reason": each.reason, "cells": cells})
+    return rows
+
+
+def _files(report: Report) -> dict[str, Any]:
+    """What the table of the tests is called when it is saved, and the files that go with it as they are."""
+    measurements = _path(report, "measurements")
+    others = {
+        name: data for name, data in report.inputs.files.items() if name not in ("report.toml", measurements)
+    }
+    return {
+        "file": _saved(measurements),
+        "files": {_saved(name): data.decode("utf-8", "replace") for name, data in others.items()},
+    }
+
+
+def _path(report: Report, table: str) -> str:
+    """The file that a table of report.toml names."""
+    said = tomllib.loads(_raw(report)).get(table, {})
+    return Path(said["file"].strip()).as_posix() if "file" in said else "measurements.csv"
+
+
+def _raw(report: Report) -> str:
+    return report.inputs.files.get("report.toml", b"").decode("utf-8-sig", "replace")
+
+
+def _saved(name: str) -> str:
+    """What a file is called that a browser saves: it makes no folders."""
+    return name.replace("/", "-")
+
+
+def _uncertainties(report: Report, measured: Mapping[str, tuple[Printed, ...]]) -> dict[str, dict[str, str]]:
+    """The standard uncertainties that were given, in the unit of the header, by column and test."""
+    given = {
+        name: numbers for name, numbers in measured.items() if any(n.given_u is not None for n in numbers)
+    }
+    return {
+        name: {
+            str(test): _decimal(number.given_u / number.scale)
+            for test, number in zip(report.inputs.tests, numbers, strict=True)
+            if number.given_u is not None
+        }
+        | {str(each.test): each.texts[f"u({name})"] for each in report.inputs.left_out}
+        for name, numbers in given.items()
+    }
+
+
+def _decimal(value: Fraction) -> str:
+    """A fraction that was a decimal number, as one again."""
+    places = 0
+    while (value * 10**places).denominator != 1 and places < 400:
+        places += 1
+    digits = str(round(value * 10**places)).rjust(places + 1, "0")
+    return f"{digits[:-places]}.{digits[-places:]}" if places else digits
+
+
+def _toml(report: Report) -> Iterator[str | dict[str, str]]:
+    """report.toml in pieces: text as it stands, and between it the numbers that may be edited.
+
+    A parameter that is not in the file has its piece behind the head of the table.
+    """
+    # Lines are counted as the reader counts them: any of the three ends, a mark in front is not text.
+    text = re.sub("\r\n?", "\n", _raw(report))
+    starts = [0, *(found.end() for found in re.finditer("\n", text))]
+    pieces: list[tuple[int, int, dict[str, str]]] = []
+    for name, number in report.inputs.parameters.items():
+        unit = number.unit if number.unit != "1" else ""
+        found = re.fullmatch(r"report\.toml:(\d+):(\d+)", number.where)
+        if found is None:
+            head = re.search(r"^[ \t]*\[[ \t]*parameters[ \t]*\][^\n]*\n?", text, re.MULTILINE)
+            if head is not None:
+                pieces.append((head.end(), head.end(), {"parameter": name, "unit": unit, "line": "new"}))
+            continue
+        place = text.find(number.text, starts[int(found[1]) - 1] + int(found[2]) - 1)
+        if place >= 0:
+            pieces.append((place, place + len(number.text), {"parameter": name}))
+    for name in ("measurements", "published"):
+        table = _table(text, name)
+        named = re.search(r"""^[ \t]*file[ \t]*=[ \t]*(["'])(?P<name>[^"'\n]*)\1""", table, re.MULTILINE)
+        if named is not None and "/" in named["name"]:
+            start = text.index(table) + named.start("name")
+            saved = _saved(_path(report, name))
+            pieces.append((start, start + len(named["name"]), {"file": saved}))
+    done = 0
+    for start, end, piece in sorted(pieces, key=lambda piece: piece[:2]):
+        yield text[done:start]
+        yield piece
+        done = end
+    yield text[done:]
+
+
+def _table(text: str, name: str) -> str:
+    """The lines of a table of report.toml."""
+    found = re.search(rf"^[ \t]*\[[ \t]*{name}[ \t]*\][^\n]*\n(?:(?![ \t]*\[)[^\n]*\n?)*", text, re.MULTILINE)
+    return found.group() if found else ""

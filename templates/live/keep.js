@@ -1,0 +1,108 @@
+// Edits outlive the page: the browser keeps them, and a link carries them. What comes back is foreign text, read
+// as strictly as a file; what does not fit this very issue of the report is left alone, with a word.
+
+const OURS = `loopsheet ${location.pathname} `, MINE = OURS + LIVE.issue, IN_LINK = "#edits=";
+const MOST_MORE = 300; // tests that a link may add: the work grows with the square of their number
+const lasting = { safe: null, warned: false }; // the state that was saved or copied; whether the browser keeps none
+
+// What foreign text holds as a state of this report; null if it is none.
+function readState(read, most = Infinity) {
+  try {
+    const found = JSON.parse(read());
+    if (found.tests.length > most) return null;
+    const names = Object.keys(LIVE.units), parameters = Object.keys(LIVE.parameters);
+    const texts = (from, wanted) => Object.fromEntries(wanted.map((name) => [name, plainText(from[name])]));
+    const tests = found.tests.map(({ label, used, reason, cells }) => {
+      if (!Number.isSafeInteger(label) || label < 1 || label >= 1e9) throw new RangeError("no number of a test");
+      return { label, used: used === true, reason: plainText(reason), cells: texts(cells, names) };
+    });
+    const state = { tests, parameters: texts(found.parameters, parameters) };
+    return enough(state) && new Set(tests.map(({ label }) => label)).size === tests.length ? state : null;
+  } catch {
+    return null;
+  }
+}
+
+function plainText(text) {
+  if (typeof text !== "string" || text.length > 500 || /\p{Cc}|\p{Cs}|[\u2028\u2029]/u.test(text)) throw new TypeError("no plain text");
+  return text;
+}
+
+// --- in the browser ----------------------------------------------------------------------------------------
+
+// Runs what uses the memory of the browser, which it may refuse.
+function remembering(action) {
+  try {
+    return action(localStorage);
+  } catch {
+    return undefined;
+  }
+}
+
+function keepState(state, edited) {
+  const done = remembering((memory) => {
+    if (edited) memory.setItem(MINE, JSON.stringify(state));
+    else memory.removeItem(MINE);
+    return true;
+  });
+  if (edited && !done && !lasting.warned) {
+    lasting.warned = true;
+    note("This browser keeps no edits of this page. Save them, or copy a link to them, before you close it.");
+  }
+}
+
+function recall() {
+  const own = remembering((memory) => memory.getItem(MINE));
+  if (own) {
+    const state = readState(() => own);
+    if (state) page.history.push(state);
+    note(state ? "Your edits of last time are here again." : "What this browser kept of your edits cannot be read; it was not used.");
+  } else if (remembering((memory) => Object.keys(memory).some((key) => key.startsWith(OURS)))) {
+    // They stay where they are.
+    note("This browser keeps edits of another issue of this report. They are not used in this one.");
+  }
+  followLink();
+}
+
+// --- in a link ---------------------------------------------------------------------------------------------
+
+function linkTo(state) {
+  const bytes = new TextEncoder().encode(JSON.stringify(state));
+  const text = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+  return `${IN_LINK}${LIVE.issue}.${text.replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "")}`;
+}
+
+function ofLink(text) {
+  return readState(() => {
+    const bytes = Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (one) => one.charCodeAt(0));
+    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+  }, LIVE.tests.length + MOST_MORE);
+}
+
+// Whether the address carries edits that were taken. They are taken once: what is edited then lasts by itself.
+function followLink() {
+  if (!location.hash.startsWith(IN_LINK)) return false;
+  const [issue, text] = location.hash.slice(IN_LINK.length).split("."), state = issue === LIVE.issue ? ofLink(text ?? "") : null;
+  remembering(() => history.replaceState(null, "", location.pathname + location.search));
+  if (state) page.history.push(state);
+  if (state) note("These edits came with the link. Undo leads back.");
+  else if (issue === LIVE.issue) note("The edits in this link are damaged; they were not used.");
+  else note("This link carries edits of another report, or of another issue of this one; they were not used.");
+  return state !== null;
+}
+
+function shareLink() {
+  const { now } = page.history, { href } = new URL(linkTo(now), location.href);
+  const link = make("a", { href }, "link to these edits");
+  copyText({ plain: href, html: asMarkup(link) });
+  lasting.safe = now;
+  note("Copied: a ", link, ".");
+}
+
+// --- closing -----------------------------------------------------------------------------------------------
+
+function onLeave(event) {
+  if (sameState(page.history.now, page.history.issued) || page.history.now === lasting.safe) return;
+  event.preventDefault();
+  event.returnValue = true; // what older browsers ask for
+}

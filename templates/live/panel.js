@@ -1,0 +1,48 @@
+// Beside the table that is edited: the result, as issued and now, and a picture of it. Where there is no room
+// beside the table it stands at the top of the window, while one is in the table.
+
+function makePanel() {
+  const table = page.tables.find((one) => one.editable), names = LIVE.headline;
+  if (!table || !names.length) return;
+  page.panel = make("div", { id: "live-panel", role: "group", "aria-label": "The result while you edit" });
+  const block = table.element.closest(".table"), around = make("div", { class: "edited-beside" });
+  block.before(around);
+  around.append(page.panel, block);
+  writePanel(page.look);
+  placePanel();
+}
+
+function writePanel(look) {
+  if (!page.panel) return;
+  const rows = LIVE.headline.map((name) => {
+    const [before, now] = [page.issued, look].map((one) => one.cell(name, 0).text), same = before === now;
+    return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
+      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now));
+  });
+  const head = make("tr", {}, ...["result", "as issued", "now"].map((text) => make("th", { scope: "col" }, text)));
+  // The last of the pictures: those before it show steps on the way.
+  const [name, drawing] = Object.entries(LIVE.figures).at(-1) ?? [], drawn = name && document.querySelector(`#figure-${CSS.escape(name)} svg.picture`);
+  const picture = drawn ? drawn.cloneNode(true) : drawing && DRAWINGS[drawing](look)?.svg;
+  picture?.setAttribute("aria-hidden", "true"); // the same stands in the report, with words
+  page.panel.replaceChildren(make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows)), ...(picture ? [picture] : []));
+}
+
+function placePanel() {
+  if (!page.panel) return;
+  const around = page.panel.parentElement, table = around.querySelector(".table table");
+  const room = around.clientWidth - table.offsetWidth - 24, beside = room > 230;
+  page.panel.classList.toggle("beside", beside);
+  page.panel.style.width = beside ? `${Math.min(room, 300)}px` : "";
+}
+
+// What stands beside the report: buttons that copy tables, the result beside what is edited, and what chapters
+// say of themselves that no script can compute again.
+function makeAround() {
+  for (const box of all("main .table")) box.prepend(make("button", { type: "button", class: "copy", "data-copy": true, title: "copy this table" }, "Copy"));
+  page.stale = all("[data-issued]").map((chapter) => {
+    const word = make("p", { class: "stale", hidden: true }, "This chapter is as issued, before the edits.");
+    chapter.querySelector("h2").after(word);
+    return word;
+  });
+  makePanel();
+}

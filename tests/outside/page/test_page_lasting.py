@@ -1,0 +1,299 @@
+"""Edits outlive the page: it keeps them, links carry them, closing asks; what does not fit is left alone."""
+
+import base64
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import driving
+import pytest
+from driving import Live
+from playwright.sync_api import Dialog
+
+from loopsheet.report import build
+
+Open = Callable[..., Live]
+
+OTHER_ISSUE = "another issue of this report"
+
+
+@pytest.fixture
+def copied(issued: Path, tmp_path: Path) -> Path:
+    """The page of the paper at an address of its own."""
+    path = tmp_path / "report.html"
+    path.write_bytes(issued.read_bytes())
+    return path
+
+
+def leave(dialog: Dialog) -> None:
+    dialog.accept()
+
+
+def reload(live: Live) -> None:
+    live.page.on("dialog", leave)
+    live.page.reload()
+    live.page.remove_listener("dialog", leave)
+
+
+def link(live: Live) -> str:
+    live.click("live-link")
+    href = live.page.locator("#live-note a").get_attribute("href")
+    assert href is not None
+    return href
+
+
+def as_issued(live: Live) -> bool:
+    cells = live.cells()
+    return not live.text("live-banner") and not any(cell.changed or cell.added for cell in cells)
+
+
+def edit(live: Live) -> None:
+    """Digits, a test that is left out and why, one more test, a parameter."""
+    live.type("x_p", 2, "29.80")
+    live.page.locator('[data-use="3"]').click()
+    live.page.locator('[data-reason="3"]').fill('heard "twice", ☃')
+    live.press("Enter")
+    live.click("live-add")
+    for text in ("5.50", "0.44", "56.6"):
+        live.page.keyboard.type(text)
+        live.press("Tab")
+    live.type("beta", "", "1.40")
+
+
+def test_edits_are_there_after_a_reload(open_page: Open, copied: Path) -> None:
+    live = open_page(copied)
+    edit(live)
+    cells, around, paths = live.cells(), live.around(), live.paths("loops")
+    reload(live)
+    assert "here again" in live.text("live-note")
+    assert live.text("live-banner").startswith("Edited: ")
+    assert live.cells() == cells
+    assert live.input("x_p", 2).input_value() == "29.80"
+    assert live.page.locator('[data-reason="3"]').input_value() == 'heard "twice", ☃'
+    assert (live.around(), live.paths("loops")) == (around, paths)
+    live.click("live-reset")
+    assert as_issued(live)
+    reload(live)
+    assert as_issued(live)
+    assert live.text("live-note") == ""
+
+
+def test_a_link_carries_the_edits(open_page: Open, copied: Path) -> None:
+    live = open_page(copied)
+    edit(live)
+    href = link(live)
+    other = open_page(copied)
+    assert as_issued(other)
+    other.page.goto(href)
+    other.page.reload()  # the file is the same, so that following the link loads nothing
+    assert "came with the link" in other.text("live-note") or "here again" in other.text("live-note")
+    assert other.cells() == live.cells()
+    fresh = open_page(copied)
+    fresh.page.goto("about:blank")
+    fresh.page.goto(href)
+    assert "came with the link" in fresh.text("live-note")
+    assert fresh.cells() == live.cells()
+    assert "#" not in fresh.page.url
+    # What is edited from there on is not taken back by the link.
+    fresh.type("e", 1, "0.52")
+    reload(fresh)
+    assert fresh.input("e", 1).input_value() == "0.52"
+    assert fresh.input("x_p", 2).input_value() == "29.80"
+
+
+def test_undo_leads_from_a_link_to_the_own_edits(open_page: Open, copied: Path) -> None:
+    live = open_page(copied)
+    live.type("v", 1, "2.4")
+    href = link(live)
+    live.click("live-reset")
+    live.type("e", 1, "0.52")
+    live.page.goto("about:blank")
+    live.page.goto(href)
+    assert (live.input("v", 1).input_value(), live.input("e", 1).input_value()) == ("2.4", "0.530")
+    live.click("live-undo")
+    assert (live.input("v", 1).input_value(), live.input("e", 1).input_value()) == ("2.334", "0.52")
+    live.click("live-undo")
+    assert as_issued(live)
+
+
+def encoded(state: Any) -> str:
+    text = state if isinstance(state, str) else json.dumps(state)
+    return base64.urlsafe_b64encode(text.encode()).decode().rstrip("=")
+
+
+def issue_of(page: Path) -> str:
+    found = re.search(r'"issue":"([0-9a-f]{16})"', page.read_text(encoding="utf-8"))
+    assert found is not None
+    return found[1]
+
+
+def state_with(**changes: Any) -> dict[str, Any]:
+    """A state that fits, but for what is changed in its first test or in itself."""
+    tests: list[dict[str, Any]] = [
+        {"label": label, "used": True, "reason": "", "cells": dict(cells)}
+        for label, cells in driving.paper().items()
+    ]
+    parameters = {"ball_diameter": "12.7", "ball_density": "7800", "beta": "1.5", "points_per_pair": "50"}
+    whole = {"tests": tests, "parameters": parameters}
+    for name, value in changes.items():
+        if name in whole:
+            whole[name] = value
+        else:
+            tests[0][name] = value
+    return whole
+
+
+CELLS = {"v": "2.3", "e": "0.5", "x_p": "23"}
+DAMAGED = {
+    "cut off": lambda: encoded(state_with())[:-9],
+    "no base64": lambda: "%%%",
+    "nothing": lambda: "",
+    "no JSON": lambda: encoded("{"),
+    "no state": lambda: encoded([]),
+    "null": lambda: encoded("null"),
+    "no tests": lambda: encoded(state_with(tests=[])),
+    "tests are none": lambda: encoded(state_with(tests={"length": 3})),
+    "a number for a text": lambda: encoded(state_with(cells={"v": 2.3, "e": "0.5", "x_p": "23"})),
+    "a column less": lambda: encoded(state_with(cells={"v": "2.3"})),
+    "a label twice": lambda: encoded(state_with(label=2)),
+    "no label": lambda: encoded(state_with(label="<b>")),
+    "a control character": lambda: encoded(state_with(reason="a\x1b[2J")),
+    "a line more": lambda: encoded(state_with(reason='"\n[published]')),
+    "a long text": lambda: encoded(state_with(reason="x" * 10_000)),
+    "too many tests": lambda: encoded(
+        state_with(tests=[{"label": n, "used": True, "reason": "", "cells": CELLS} for n in range(1, 5000)])
+    ),
+    "no parameters": lambda: encoded(state_with(parameters={})),
+    "no bytes of text": lambda: "__79",
+}
+
+
+@pytest.mark.parametrize("kind", DAMAGED)
+def test_a_damaged_link_is_told_and_not_used(open_page: Open, copied: Path, kind: str) -> None:
+    live = open_page(copied)
+    live.page.goto(f"{copied.as_uri()}#edits={issue_of(copied)}.{DAMAGED[kind]()}")
+    live.page.reload()
+    live.page.goto(f"{copied.as_uri()}#edits={issue_of(copied)}.{DAMAGED[kind]()}")
+    live.page.wait_for_function("() => document.getElementById('live-note').textContent")
+    assert "damaged" in live.text("live-note")
+    assert as_issued(live)
+    assert live.errors == []
+    live.type("x_p", 2, "29.8")
+    assert live.text("live-banner").startswith("Edited: ")
+
+
+def test_a_state_is_read_that_says_more_than_it_should(open_page: Open, copied: Path) -> None:
+    """What is not asked for goes nowhere; the rest fits."""
+    state = state_with(more="x", cells={"v": "2.4", "e": "0.53", "x_p": "23.5", "__proto__": "x"})
+    live = open_page(copied)
+    live.page.goto("about:blank")
+    live.page.goto(f"{copied.as_uri()}#edits={issue_of(copied)}.{encoded(state)}")
+    assert live.input("v", 1).input_value() == "2.4"
+    assert "more" not in live.page.evaluate("() => Object.values(localStorage).join()")
+
+
+def test_a_link_of_another_issue_is_told_and_not_used(open_page: Open, copied: Path) -> None:
+    live = open_page(copied)
+    live.page.goto("about:blank")
+    live.page.goto(f"{copied.as_uri()}#edits=0123456789abcdef.{encoded(state_with(reason='x'))}")
+    assert "another report, or of another issue of this one" in live.text("live-note")
+    assert as_issued(live)
+    # An address that is no link of ours is left alone.
+    live.page.goto("about:blank")
+    live.page.goto(f"{copied.as_uri()}#referee")
+    assert live.page.url.endswith("#referee")
+    assert live.text("live-note") == ""
+
+
+def test_edits_of_an_older_issue_stay_where_they_are(open_page: Open, copied: Path, tmp_path: Path) -> None:
+    issued = copied.read_bytes()
+    live = open_page(copied)
+    live.type("x_p", 2, "29.8")
+    folder = driving.write(tmp_path / "folder", driving.edited({("x_p", 2): "29.9"}))
+    build.build(folder, tmp_path / "out", ("html",))
+    copied.write_bytes((tmp_path / "out" / "report.html").read_bytes())
+    reload(live)
+    assert OTHER_ISSUE in live.text("live-note")
+    assert as_issued(live)
+    assert live.input("x_p", 2).input_value() == "29.9"
+    live.type("v", 1, "2.4")
+    reload(live)
+    assert live.input("v", 1).input_value() == "2.4"
+    copied.write_bytes(issued)
+    reload(live)
+    assert (live.input("v", 1).input_value(), live.input("x_p", 2).input_value()) == ("2.334", "29.8")
+
+
+@pytest.mark.parametrize("text", ["{", '{"tests": []}', "null", '"x"', json.dumps(state_with(label=-1))])
+def test_what_was_kept_and_cannot_be_read_is_told(open_page: Open, copied: Path, text: str) -> None:
+    live = open_page(copied)
+    live.type("x_p", 2, "29.8")
+    (key,) = live.page.evaluate("() => Object.keys(localStorage)")
+    live.page.evaluate("([key, text]) => localStorage.setItem(key, text)", [key, text])
+    reload(live)
+    assert "cannot be read" in live.text("live-note")
+    assert as_issued(live)
+
+
+NO_MEMORY = """Object.defineProperty(window, "localStorage", {
+  get() { throw new DOMException("no", "SecurityError"); },
+});"""
+FULL = """Storage.prototype.setItem = () => { throw new DOMException("full", "QuotaExceededError"); };"""
+
+
+@pytest.mark.parametrize("script", [NO_MEMORY, FULL])
+def test_a_page_whose_browser_keeps_nothing_works(open_page: Open, copied: Path, script: str) -> None:
+    live = open_page(copied)
+    live.page.add_init_script(script)
+    reload(live)
+    assert live.text("live-note") == ""
+    live.type("x_p", 2, "29.8")
+    assert "keeps no edits" in live.text("live-note")
+    assert live.cell("alpha", "1-2").changed
+    href = link(live)
+    live.click("live-reset")
+    assert as_issued(live)
+    live.page.goto("about:blank")
+    live.page.goto(href)
+    assert live.input("x_p", 2).input_value() == "29.8"
+
+
+def asked(live: Live) -> list[str]:
+    """What the page asks when its window is closed; then it stays open."""
+    said: list[str] = []
+    other = live.page.context.new_page()
+
+    def stay(dialog: Dialog) -> None:
+        said.append(dialog.type)
+        dialog.dismiss()
+
+    live.page.on("dialog", stay)
+    live.page.close(run_before_unload=True)
+    for _ in range(500):  # ten seconds at most
+        if not said and not live.page.is_closed():
+            other.wait_for_timeout(20)
+    return said
+
+
+@pytest.mark.parametrize("does", ["nothing", "edit", "edit and link", "edit and reset"])
+def test_closing_asks_while_there_are_edits_that_were_not_saved(
+    open_page: Open, copied: Path, does: str
+) -> None:
+    live = open_page(copied)
+    live.page.locator("h1").click()  # a page that nobody touched may not ask
+    if "edit" in does:
+        live.type("x_p", 2, "29.8")
+    if "link" in does:
+        link(live)
+    if "reset" in does:
+        live.click("live-reset")
+    assert asked(live) == (["beforeunload"] if does == "edit" else [])
+
+
+def test_closing_does_not_ask_after_saving(open_page: Open, copied: Path, tmp_path: Path) -> None:
+    live = open_page(copied)
+    live.type("x_p", 2, "29.8")
+    live.save(tmp_path / "saved")
+    assert asked(live) == []

@@ -1,0 +1,110 @@
+"""What is on the screen: the result while one edits, the bar, wide equations, chapters that are as issued."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from driving import Live
+
+Open = Callable[..., Live]
+
+WIDTHS = [360, 400, 500, 600, 700, 840, 1000, 1200, 1600]
+
+_ON_SCREEN = """(selector) => {
+  const seen = (element) => {
+    const box = element.getBoundingClientRect();
+    const dock = document.getElementById("live-dock").getBoundingClientRect();
+    if (box.width === 0 || box.left < 0 || box.right > innerWidth + 1) return false;
+    if (box.top < 0 || box.bottom > dock.top + 1) return false;
+    const there = document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2);
+    return element.contains(there) || (there?.contains(element) ?? false);
+  };
+  return Array.from(document.querySelectorAll(selector)).filter((one) => one.checkVisibility()).map(seen);
+}"""
+
+
+def seen(live: Live, selector: str) -> list[bool]:
+    found: list[bool] = live.page.evaluate(_ON_SCREEN, selector)
+    return found
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_the_result_is_on_the_screen_while_the_tests_are_edited(open_page: Open, width: int) -> None:
+    live = open_page(viewport={"width": width, "height": 850})
+    live.type("x_p", 2, "29.8")
+    panel = live.page.locator("#live-panel")
+    shown = [text for text in panel.locator("tbody tr").all_inner_texts() if text]
+    assert shown[0].split()[-2:] == ["1.303", "1.305"]
+    assert len(seen(live, "#live-panel tbody tr")) >= 3
+    assert all(seen(live, "#live-panel tbody tr, #live-panel svg"))
+    assert seen(live, "#live-panel svg") == [True]
+    assert all(seen(live, "#cell-x_p-2, #cell-x_p-3"))
+    # It follows, and with the last edit taken back it is as it was.
+    live.type("x_p", 2, "30.5")
+    assert "1.305" not in panel.locator("tbody tr").first.inner_text()
+    live.click("live-reset")
+    cells = panel.locator("tbody tr").first.locator("td").all_inner_texts()
+    assert cells == ["", "1.303"]
+
+
+def test_a_cell_without_a_value_shows_its_code_there(live: Live) -> None:
+    live.type("beta", "", "x")
+    assert "#INPUT!" in live.page.locator("#live-panel").inner_text()
+
+
+_COVERED = """() => {
+  const parts = "#live-banner, #live-dock button, #formula-bar .head > *, #bar-hint, #live-note";
+  const boxes = Array.from(document.querySelectorAll(parts))
+    .filter((one) => one.checkVisibility() && one.textContent).flatMap((one) => {
+      const text = document.createRange();
+      text.selectNodeContents(one);
+      const boxes = one.tagName === "BUTTON" ? [one.getBoundingClientRect()] : text.getClientRects();
+      return Array.from(boxes).map((box) => [one.id || one.textContent, box]);
+    });
+  const found = [];
+  for (const [name, a] of boxes) {
+    for (const [other, b] of boxes) {
+      const wide = Math.min(a.right, b.right) - Math.max(a.left, b.left);
+      const high = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
+      if (name < other && wide > 1 && high > 1) found.push([name, other]);
+    }
+    if (a.left < 0 || a.right > innerWidth) found.push([name, "outside"]);
+  }
+  return found;
+}"""
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_the_bar_does_not_cover_itself(open_page: Open, width: int) -> None:
+    live = open_page(viewport={"width": width, "height": 850})
+    assert live.page.evaluate(_COVERED) == []
+    live.type("x_p", 2, "29.8")
+    live.page.locator("#cell-C_log").click(position={"x": 3, "y": 3})
+    live.click("live-link")
+    assert live.page.evaluate(_COVERED) == []
+
+
+@pytest.mark.parametrize("width", [400, 700, 1200])
+def test_wide_equations_fit_or_show_that_they_scroll(open_page: Open, width: int) -> None:
+    live = open_page(viewport={"width": width, "height": 850})
+    for name in ("L6", "L8"):
+        found: dict[str, Any] = live.page.locator(f"#eq-{name} > div").evaluate(
+            """(box) => ({ wide: box.scrollWidth > box.clientWidth, tab: box.tabIndex,
+              shadow: getComputedStyle(box).backgroundImage.includes("gradient"),
+              reach: box.firstElementChild.getBoundingClientRect().x - box.getBoundingClientRect().x })"""
+        )
+        assert found["reach"] >= -1, name  # nothing is out of reach to the left
+        assert not found["wide"] or (found["shadow"] and found["tab"] == 0), name
+
+
+def test_chapters_that_are_as_issued_say_so(live: Live) -> None:
+    chapters = live.page.locator("section[data-issued]")
+    assert chapters.evaluate_all("all => all.map((one) => one.id)") == ["referee", "errata", "engines"]
+    words = live.page.locator("[data-issued] > .stale")
+    assert [word.is_visible() for word in words.all()] == [False] * 3
+    live.type("x_p", 2, "29.8")
+    for chapter in chapters.all():
+        assert "as issued, before the edits" in chapter.locator("> .stale").inner_text()
+    assert "As issued, before the edits" in live.page.locator("#result .note").first.inner_text()
+    live.click("live-undo")
+    assert [word.is_visible() for word in words.all()] == [False] * 3

@@ -1,0 +1,119 @@
+"""What the page saves builds by itself: with the tests that are left out, and with all other files."""
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+
+import driving
+import pytest
+from driving import Live
+
+from loopsheet.report import build
+
+Open = Callable[..., Live]
+
+HEAD = "test,v [m/s],e [1],x_p [um]"
+
+
+def page_of(folder: Path, place: Path) -> Path:
+    build.build(folder, place, ("html",))
+    return place / "report.html"
+
+
+def test_a_test_left_out_stays_with_its_reason(live: Live, open_page: Open, tmp_path: Path) -> None:
+    live.page.locator('[data-use="3"]').click()
+    assert live.page.locator('[data-reason="2"]').is_hidden()
+    live.page.locator('[data-reason="3"]').click()
+    live.page.keyboard.type('heard "twice", it seems')
+    live.press("Tab")
+    live.page.locator('[data-remove="5"]').click()
+    live.type("x_p", 2, "29.80")
+    assert live.text("live-banner").startswith("Edited: 3 inputs differ")
+    folder = live.save(tmp_path / "saved")
+    assert (folder / "measurements.csv").read_text(encoding="utf-8").splitlines() == [
+        f"{HEAD},left out",
+        "1,2.334,0.530,23.5,",
+        "2,2.940,0.512,29.80,",
+        '3,4.089,0.479,41.6,"heard ""twice"", it seems"',
+        "4,4.504,0.467,45.97,",
+        "5,4.993,0.453,51.03,removed",
+    ]
+    assert (folder / "published.csv").read_bytes() == (build.PAPER / "published.csv").read_bytes()
+    report = build.compute(folder, prove=False)
+    assert report.inputs.tests == (1, 2, 4)
+    assert driving.differences(live.cells(), report.values) == []
+    # In the page of what was saved they are left out, and can be taken in again.
+    fresh = open_page(page_of(folder, tmp_path / "out"))
+    assert driving.differences(fresh.cells(), report.values) == []
+    assert fresh.page.locator("tr.excluded").count() == 2
+    assert fresh.page.locator('[data-reason="3"]').input_value() == 'heard "twice", it seems'
+    notes = " ".join(fresh.page.locator("#result .note").all_inner_texts())
+    assert 'test 3, heard "twice", it seems; 7 published values rest on it' in notes
+    assert fresh.text("live-banner") == ""
+    for test in (3, 5):
+        fresh.page.locator(f'[data-use="{test}"]').click()
+    whole = driving.built(tmp_path / "whole", driving.edited({("x_p", 2): "29.80"}))
+    assert driving.differences(fresh.cells(), whole.values) == []
+    fresh.click("live-reset")
+    assert not fresh.page.locator('[data-use="3"]').is_checked()
+    assert fresh.page.locator("tr.excluded").count() == 2
+
+
+def test_an_empty_row_is_dropped(live: Live, tmp_path: Path) -> None:
+    live.click("live-add")
+    live.type("x_p", 2, "29.8")
+    lines = (live.save(tmp_path / "saved") / "measurements.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[0] == HEAD
+    assert len(lines) == 6
+
+
+def test_a_reason_is_taken_back_and_given_again(live: Live) -> None:
+    live.page.locator('[data-use="3"]').click()
+    why = live.page.locator('[data-reason="3"]')
+    why.fill("first")
+    live.press("Enter")
+    why.fill("second")
+    live.press("Enter")
+    live.page.locator("h1").click()
+    live.press("Control+z")
+    assert why.input_value() == "first"
+    live.press("Control+z", "Control+z")
+    assert live.page.locator('[data-use="3"]').is_checked()
+    assert live.text("live-banner") == ""
+
+
+def test_files_keep_their_names_and_a_workbook_comes_along(open_page: Open, tmp_path: Path) -> None:
+    folder = tmp_path / "own"
+    (folder / "data").mkdir(parents=True)
+    (folder / "workbook.py").write_bytes(
+        (Path(build.__file__).parent / "workbooks" / "soft_impact.py")
+        .read_bytes()
+        .replace(b"from ..", b"from loopsheet.report.")
+        .replace(b"from loopsheet.report..", b"from loopsheet.")
+        .replace(b"from .", b"from loopsheet.report.workbooks.")
+    )
+    (folder / "data" / "drops, 2.csv").write_bytes((build.PAPER / "measurements.csv").read_bytes())
+    (folder / "printed.csv").write_bytes((build.PAPER / "published.csv").read_bytes())
+    toml = (build.PAPER / "report.toml").read_text(encoding="utf-8")
+    toml = toml.replace('"soft_impact"', '"workbook.py"').replace('"published.csv"', '"printed.csv"')
+    toml = toml.replace('"measurements.csv"', '"data/drops, 2.csv"').replace('by = "source"', "")
+    (folder / "report.toml").write_text(toml, encoding="utf-8")
+    live = open_page(page_of(folder, tmp_path / "out"))
+    live.input("x_p", 2).click()
+    if live.page.locator("#bar-toggle").get_attribute("aria-expanded") == "false":
+        live.click("bar-toggle")
+    assert "given, in data-drops, 2.csv, test 2" in live.text("bar-source")
+    live.type("x_p", 2, "29.8")
+    saved = live.save(tmp_path / "saved", "workbook.py", "printed.csv", file="data-drops, 2.csv")
+    report = build.compute(saved, prove=False)
+    assert driving.differences(live.cells(), report.values) == []
+    assert len(report.inputs.published) == 27
+    assert (saved / "workbook.py").read_bytes() == (folder / "workbook.py").read_bytes()
+
+
+@pytest.mark.parametrize("text", ['1.5"', "1.5\\", '1.5"\nx = "1'])
+def test_no_parameter_writes_more_than_itself(live: Live, tmp_path: Path, text: str) -> None:
+    live.input("beta").fill(text)
+    live.press("Enter")
+    saved = tomllib.loads((live.save(tmp_path / "saved") / "report.toml").read_text(encoding="utf-8"))
+    assert saved["parameters"]["beta"] == text.replace("\n", " ")
