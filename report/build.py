@@ -6,8 +6,7 @@ import importlib
 import sys
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,9 +15,10 @@ from .background import Background
 from .crate import added
 from .errors import ForeignCode, UnknownWorkbook, UsageError, close, diagnose, listing
 from .folders import INPUTS, PAPER, told
-from .inputs import Find, Inputs, check_cells, load
+from .inputs import Find, Inputs, load
 from .own_workbook import own_workbook
-from .provenance import sources
+from .prepared import Prepared, given_data
+from .provenance import processor, sources
 from .staging import put, staged
 from .unit_text import UnitError as NotAUnit
 from .unit_text import parse_unit
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 __all__ = [
     "FORMATS",
     "PAPER",
+    "Prepared",
     "Step",
     "build",
     "checked",
@@ -64,8 +65,8 @@ _Found = tuple[dict[str, Any], list[dict[str, Any]]]
 """A proof without its equation, and its steps without theirs."""
 
 EXACTLY = 20_000
-"""Up to so many cells, a sheet is evaluated at 50 digits, which takes .3 ms a cell; of a larger one, those of
-some of its tests."""
+"""Up to so many cells, a sheet is evaluated at 50 digits, which takes .3 ms a cell, and its values are those,
+correctly rounded; of a larger one, some of its tests are."""
 
 
 def _silent(_: str) -> None:
@@ -114,46 +115,6 @@ def shipped_workbook(name: str, folder: Path, code: bytes | None = None) -> Work
 
 
 # --- from inputs to values --------------------------------------------------------------------------------
-
-
-def given_data(inputs: Inputs) -> dict[str, Any]:
-    """The given columns in SI as exact fractions: a list for a measured column, one for a parameter."""
-    data: dict[str, Any] = {name: [p.value for p in column] for name, column in inputs.measured.items()}
-    data |= {name: printed.value for name, printed in inputs.parameters.items()}
-    return data
-
-
-@dataclass(frozen=True)
-class Prepared:
-    """A folder that was read, with its sheet, checked and ready to be computed."""
-
-    inputs: Inputs
-    sheet: Sheet
-
-    @property
-    def labels(self) -> dict[str, tuple[int, ...]]:
-        """Row numbers of the axes that come with the data."""
-        return {axis.name: self.inputs.tests for axis in self.sheet.axes if not axis.parents}
-
-    @cached_property
-    def layouts(self) -> dict[str, Layout]:
-        """The rows of every axis."""
-        from .engines.exact import laid_out
-
-        return laid_out(self.sheet, self.labels, self.exact_data)
-
-    @property
-    def exact_data(self) -> dict[str, Any]:
-        """What the exact engine starts from."""
-        needed = {c.name for c in self.sheet.columns}
-        return {name: value for name, value in given_data(self.inputs).items() if name in needed}
-
-    @property
-    def data(self) -> dict[str, Any]:
-        """What the other engines start from: the nearest doubles."""
-        return {
-            n: [float(x) for x in v] if isinstance(v, list) else float(v) for n, v in self.exact_data.items()
-        }
 
 
 def prepare(folder: Path, find: Find = find_workbook) -> Prepared:
@@ -230,22 +191,22 @@ def _evaluated(prepared: Prepared, ledger: Ledger, step: Step) -> Report:
     inputs, sheet = prepared.inputs, prepared.sheet
     from .analysis.oddities import oddities
     from .analysis.referee import compare
-    from .engines import numpy as engine
     from .layout import how_large
-    from .marks import Marks, margins
+    from .marks import Marks, margins, with_margins
     from .result import Report
 
     step(f"computing {how_large(sheet, prepared.layouts)} cells")
-    values = engine.evaluate(sheet, prepared.labels, prepared.data)
-    inputs = check_cells(inputs, {c.name: (c.unit, set(values.labels(c))) for c in sheet.columns})
+    inputs = prepared.check_cells()
     workbook, limits = inputs.workbook, margins(sheet)
+    exactly, (values, whole) = prepared.computed(with_margins(sheet), EXACTLY)
     report = Report(
         title=inputs.title,
         workbook=workbook,
         inputs=inputs,
         sheet=sheet,
         values=values,
-        marks=Marks(engine.extend(values, [margin.column for margin in limits], {}), limits),
+        marks=Marks(whole, limits),
+        exactly=exactly,
         shown={column.name: shown(column, sheet, inputs) for column in sheet.columns},
         ledger=ledger,
         proofs=(),
@@ -303,15 +264,18 @@ def judged(report: Report, every: bool = True, step: Step = _silent) -> Report:
         Told what is begun.
     """
     from .analysis import sample
+    from .engines.numpy import evaluate
     from .layout import how_large
 
     step("judging the engines at 50 digits")
     whole = report.marks.values
     inputs = sample.part(report.inputs, whole, EXACTLY)
+    prepared = Prepared(inputs, report.sheet)
+    computed = evaluate(whole.sheet, prepared.labels, prepared.data)
     if inputs is report.inputs:
-        return replace(report, engines=_agreements(report, whole, every))
-    few = _evaluated(Prepared(inputs, report.sheet), report.ledger, _silent)
-    found = _agreements(few, sample.with_own(few.marks.values, whole), every)
+        return replace(report, engines=_agreements(report, computed, every))
+    few = _evaluated(prepared, report.ledger, _silent)
+    found = _agreements(few, sample.with_own(computed, whole), every)
     rows = next(axis.name for axis in report.sheet.axes if not axis.parents)
     told = f"{len(inputs.tests)} of {len(report.inputs.tests)} {rows}"
     of = how_large(whole.sheet, whole.layouts)
@@ -321,18 +285,19 @@ def judged(report: Report, every: bool = True, step: Step = _silent) -> Report:
 def _agreements(report: Report, values: Values, every: bool) -> tuple[Agreement, ...]:
     """How NumPy's values agree with 50 digits; and what else is installed here, if that is wanted."""
     from .analysis import engines
+    from .analysis.readers import Book, of_values
 
     prepared = Prepared(report.inputs, report.sheet)
+    labels, exactly = prepared.labels, prepared.exact_data
+    judge = engines.Judge.of(values.sheet, values.layouts, labels, exactly, report.exactly)
     if not every:
-        return (engines.compare(values, prepared.labels, prepared.exact_data),)
-    from .analysis.readers import Book
-
+        return (judge.agreement(of_values(values)),)
     try:
         grid, content = _workbook(report)
         book = Book(content, grid)
     except UsageError:
         book = None  # there is no such workbook, and nothing to judge
-    return engines.compare_all(values, prepared.labels, prepared.data, prepared.exact_data, book)
+    return engines.compare_all(judge, values, labels, prepared.data, book)
 
 
 def refereed(report: Report, step: Step = _silent) -> Report:
@@ -589,7 +554,7 @@ def _write(
     outputs = {
         p.relative_to(stage).as_posix(): p.read_bytes() for p in sorted(stage.rglob("*")) if p.is_file()
     }
-    put(stage / "manifest.json", json.manifest(report, outputs, sources()))
+    put(stage / "manifest.json", json.manifest(report, outputs, sources(), processor()))
 
 
 def _possible(prepared: Prepared, formats: Collection[str] | None, tell: Step) -> Collection[str]:

@@ -1,7 +1,7 @@
 """Interval arithmetic on arrays: every result encloses what the operation gives for any values inside.
 
 Ends are rounded outwards. Sums, products, quotients and square roots are rounded correctly by the processor
-(IEEE 754), so that the neighbouring double encloses them; of NumPy's exponentials and logarithms an error of
+(IEEE 754), so that the neighbouring double encloses them; of exponentials and logarithms an error of
 4 units in the last place is allowed for. An operation takes the part of an interval that lies in its domain.
 
 NumPy's functions accept these arrays, so that a generated program runs on them as it is.
@@ -16,12 +16,14 @@ import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 from numpy.typing import NDArray
 
+from . import elementary
+
 __all__ = ["Intervals", "whole"]
 
 Array = NDArray[np.float64]
 
 WIDER = 2.0**-50
-"""Four units in the last place, at most: how far NumPy's elementary functions may be off, relatively."""
+"""Four units in the last place, at most: how far elementary functions may be off, relatively."""
 
 
 class Intervals(NDArrayOperatorsMixin):
@@ -197,7 +199,7 @@ def _power(base: Intervals, exponent: Any) -> Intervals:
 def _whole_power(base: Intervals, exponent: int) -> Intervals:
     if exponent < 0:
         return _divide(Intervals.of(1), _whole_power(base, -exponent))
-    low, high = base.low**exponent, base.high**exponent
+    low, high = elementary.power(base.low, exponent), elementary.power(base.high, exponent)
     if exponent % 2 == 0:
         inside = (base.low <= 0) & (base.high >= 0)
         low, high = np.where(inside, 0.0, np.minimum(low, high)), np.maximum(low, high)
@@ -207,12 +209,13 @@ def _whole_power(base: Intervals, exponent: int) -> Intervals:
 
 
 def _exp(a: Intervals) -> Intervals:
-    found = _loosely(np.exp(a.low), np.exp(a.high))
+    found = _loosely(elementary.exp(a.low), elementary.exp(a.high))
     return Intervals(np.maximum(found.low, 0.0), found.high)
 
 
 def _log(a: Intervals) -> Intervals:
-    return _loosely(np.where(a.low > 0, np.log(a.low), -np.inf), np.where(a.high > 0, np.log(a.high), np.nan))
+    low, high = elementary.log(a.low), elementary.log(a.high)
+    return _loosely(np.where(a.low > 0, low, -np.inf), np.where(a.high > 0, high, np.nan))
 
 
 def _sqrt(a: Intervals) -> Intervals:

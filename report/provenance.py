@@ -1,11 +1,12 @@
-"""What a report was computed by: the sources of this program, by their content."""
+"""What a report was computed by: the sources of this program, by their content, and the processor."""
 
 from __future__ import annotations
 
 import hashlib
+import platform
 from pathlib import Path
 
-__all__ = ["PARTS", "ROOT", "files", "sources"]
+__all__ = ["PARTS", "ROOT", "files", "processor", "sources"]
 
 ROOT = Path(__file__).resolve().parent.parent
 """The folder of the package."""
@@ -53,3 +54,11 @@ def files(place: Path) -> set[Path]:
 def _is_made(name: Path) -> bool:
     """Whether it is hidden or a cache: nothing that a wheel holds."""
     return any(part.startswith(".") or part == "__pycache__" for part in name.parts)
+
+
+def processor() -> str:
+    """The kind of processor and what of it NumPy uses, as NumPy names it: ``x86_64 X86_V2 X86_V3``."""
+    import numpy as np
+
+    features = np.show_config(mode="dicts")["SIMD Extensions"]
+    return " ".join([platform.machine(), *features.get("baseline", []), *features.get("found", [])])

@@ -19,10 +19,8 @@ import pytest
 from _pytest.mark.expression import Expression
 
 if TYPE_CHECKING:
-    from .build import Prepared
     from .errors import Diagnostic
     from .findings import Check
-    from .inputs import Inputs
     from .result import Report
 
 __all__ = [
@@ -141,7 +139,7 @@ class Campaign:
                 raise
             self._refused = last
             return {"workbook": ["own code"]}
-        inputs = _checked_cells(prepared)
+        inputs = prepared.check_cells()
         return {
             "engine": list(ENGINES),
             "proof": [equation.label for equation in inputs.workbook.ledger().equations()],
@@ -200,20 +198,6 @@ class Campaign:
             "engine", name, True, f"{name} was not compared: it cannot hold this sheet", skipped=True
         )
         return self._engines.setdefault(name, nothing)
-
-
-def _checked_cells(prepared: Prepared) -> Inputs:
-    """Refuse what is said of cells that there are not, before there is a test for each of them."""
-    from .column import RepeatAxis
-    from .inputs import check_cells
-    from .layout import lay_out
-
-    sheet, data = prepared.sheet, prepared.data
-    counts = {axis.count: data[axis.count] for axis in sheet.axes if isinstance(axis, RepeatAxis)}
-    labels = {name: layout.labels for name, layout in lay_out(sheet, prepared.labels, counts).items()}
-    rows = {name: {tuple(row) for row in found.tolist()} for name, found in labels.items()}
-    cells = {c.name: (c.unit, {()} if c.axis is None else rows[c.axis.name]) for c in sheet.columns}
-    return check_cells(prepared.inputs, cells)
 
 
 class ReportFile(pytest.File):

@@ -10,6 +10,7 @@ from ..derivations.proof import Proof
 from .agreement import Agreement
 from .charts import Curve
 from .diagnostics import Check
+from .engines.exact import ExactValues
 from .inputs import Inputs, PublishedValue
 from .marks import Marks
 from .sheet import Sheet
@@ -123,6 +124,9 @@ class Report:
         Every cell, in SI, without a batch dimension.
     marks : Marks
         Which of them lie outside of what is expected.
+    exactly : ExactValues or None
+        Every cell at 50 digits, for the judge of the engines; then `values` and `marks` are these, rounded
+        to the nearest doubles. None where the sheet is too large for that: then they are NumPy's.
     shown : mapping of column name to Shown
     ledger : Ledger
     proofs : tuple of Proof
@@ -149,6 +153,7 @@ class Report:
     sheet: Sheet
     values: Values
     marks: Marks
+    exactly: ExactValues | None
     shown: Mapping[str, Shown]
     ledger: Ledger
     proofs: tuple[Proof, ...]

@@ -84,6 +84,8 @@ class Manifest:
         The program, its libraries, and the programs that ran other engines.
     engines : tuple of str
         Whose agreement the report tells.
+    processor : str
+        On which it ran; empty if the manifest does not say.
     """
 
     title: str
@@ -92,6 +94,7 @@ class Manifest:
     sources: Mapping[str, str]
     versions: Mapping[str, str]
     engines: tuple[str, ...]
+    processor: str = ""
 
 
 class _Wrong(ValueError):
@@ -149,6 +152,7 @@ def read_manifest(folder: Path) -> Manifest:
             _words(data, "sources") if "sources" in data else {},
             _words(data, "versions") | programs,
             tuple(engines),
+            _word(data, "processor") if "processor" in data else "",
         )
     except _Wrong as error:
         place = Location(path.as_posix())

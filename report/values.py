@@ -14,7 +14,7 @@ from .layout import Layout, Precedent, precedents
 from .quantity import Bounds
 from .sheet import Column, Formula, Root, Sheet
 
-__all__ = ["CODES", "Cell", "Status", "Values", "inherited", "rows_kept"]
+__all__ = ["CODES", "Cell", "Status", "Values", "how_many", "inherited", "rows_kept"]
 
 Codes = NDArray[np.uint8]
 Mask = NDArray[np.bool_]
@@ -83,6 +83,17 @@ def rows_kept(
             mask = kept.get(axis, np.ones(layouts[axis].size, dtype=bool))
             kept[axis] = mask & (precedent.take(status[precedent.column.name]) == Status.OK)
     return kept
+
+
+def how_many(kept: Mapping[str, Mask]) -> dict[str, int]:
+    """For every axis of which sums leave rows out, how many they run over; without a batch.
+
+    Parameters
+    ----------
+    kept : mapping of axis name to boolean array (..., rows)
+        From :func:`rows_kept`.
+    """
+    return {axis: int(mask.sum()) for axis, mask in kept.items() if mask.ndim == 1 and not mask.all()}
 
 
 def inherited(

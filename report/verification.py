@@ -87,14 +87,23 @@ def verify(
         report, _ = build.build(folder, again, formats, step, len(then.engines) > 1, find)
         now = read_manifest(again)
         differences = _numbers(out, again, report) if "values.json" in then.outputs else None
+        rounded = _rounded_otherwise(then, now, differences)
         checks = (
             *_same("input", then.inputs, now.inputs, "the input"),
             *_same("source", then.sources, now.sources, "the"),
             *_same("library", then.versions, now.versions, ""),
-            *_outputs(out, then, now),
+            *_outputs(out, then, now, rounded),
             *_moves(differences),
         )
-    return Verification(checks, differences, _verdict(checks, then, differences))
+    return Verification(checks, differences, _verdict(checks, then, differences, rounded))
+
+
+def _rounded_otherwise(then: Manifest, now: Manifest, found: Differences | None) -> str:
+    """What another processor did to the outputs, in words; empty if that is not all that happened."""
+    of = (then.inputs, then.sources, then.versions), (now.inputs, now.sources, now.versions)
+    if of[0] != of[1] or then.processor == now.processor or found is None or found.any or not found.noise:
+        return ""
+    return f"another processor rounds {found.noise} numbers otherwise"
 
 
 def _sha256(file: Path) -> str:
@@ -121,8 +130,11 @@ def _same(kind: str, then: Mapping[str, str], now: Mapping[str, str], what: str)
             yield Check(kind, name, False, f"{said} was changed")
 
 
-def _outputs(out: Path, then: Manifest, now: Manifest) -> Iterator[Check]:
-    """Each file as it was built, as it is there, as it is built again."""
+def _outputs(out: Path, then: Manifest, now: Manifest, rounded: str) -> Iterator[Check]:
+    """Each file as it was built, as it is there, as it is built again.
+
+    What the last digits of numbers make another file is the same report, if nothing but `rounded` is known.
+    """
     if half_moved(out):
         yield Check("output", "all", False, _HALF)
     for name in sorted({*then.outputs, *now.outputs}):
@@ -139,7 +151,8 @@ def _outputs(out: Path, then: Manifest, now: Manifest) -> Iterator[Check]:
             yield Check("output", name, False, f"{name} was built then, and is not now")
         else:
             said = "is the same, byte for byte" if again == was else "is another file when it is built again"
-            yield Check("output", name, again == was, f"{name} {said}")
+            told = f": {rounded}" if rounded and again != was else ""
+            yield Check("output", name, again == was or bool(rounded), f"{name} {said}{told}")
 
 
 def _is_inside(out: Path, file: Path) -> bool:
@@ -192,11 +205,11 @@ def _moves(found: Differences | None) -> Iterator[Check]:
         yield Check("published", change.name, False, said)
 
 
-def _verdict(checks: tuple[Check, ...], then: Manifest, found: Differences | None) -> str:
+def _verdict(checks: tuple[Check, ...], then: Manifest, found: Differences | None, rounded: str) -> str:
     """What changed, as far as it is known."""
     failed = [check for check in checks if not check.passed]
     if not failed:
-        return "the same report again"
+        return "the same report again" + (f": {rounded}" if rounded else "")
     by_kind = {kind: [c.name for c in failed if c.kind == kind] for kind in ("input", "source", "library")}
     words = {"input": "the input", "source": "the sources of loopsheet", "library": "the libraries"}
     changed = [f"{words[kind]} ({', '.join(names)})" for kind, names in by_kind.items() if names]

@@ -44,6 +44,8 @@ class Sizes:
         At every how many steps of a move of outputs it is ended.
     slips : int
         Campaigns with one decimal sign in the wrong place.
+    places : int
+        In which the shipped paper is built; the first has all differences at once.
     seed : int
     """
 
@@ -60,6 +62,7 @@ class Sizes:
     stride: int
     slips: int
     malformed: int
+    places: int
     seed: int = SEED
 
 
@@ -77,6 +80,7 @@ FEW = Sizes(
     stride=4,
     slips=8,
     malformed=30,
+    places=1,
 )
 ALL = Sizes(
     honest=40,
@@ -92,6 +96,7 @@ ALL = Sizes(
     stride=1,
     slips=500,
     malformed=10_000,
+    places=99,
 )
 assert min(sum(ALL.engines.values()), sum(ALL.workbooks.values())) > 2000
 

@@ -16,8 +16,10 @@ from loopsheet.report import build
 from loopsheet.report.analysis import engines, readers
 from loopsheet.report.analysis.readers import Book, Reading
 from loopsheet.report.engines import exact, excel_grid
+from loopsheet.report.engines import numpy as engine
 from loopsheet.report.grid import Place, checked
 from loopsheet.report.result import Report
+from loopsheet.report.values import Values
 from loopsheet.report.views import xlsx
 
 CELLS = 2117
@@ -34,6 +36,12 @@ def judge(report: Report, prepared: build.Prepared) -> engines.Judge:
 
 
 @pytest.fixture(scope="module")
+def computed(prepared: build.Prepared) -> Values:
+    """What NumPy computes; what is reported has no error."""
+    return engine.evaluate(prepared.sheet, prepared.labels, prepared.data)
+
+
+@pytest.fixture(scope="module")
 def book(report: Report) -> Book:
     units = {name: shown.unit for name, shown in report.shown.items()}
     grid = excel_grid.grid(report.sheet, report.values, units, report.workbook.headline)
@@ -44,8 +52,8 @@ def honest(agreement: engines.Agreement) -> bool:
     return not agreement.findings and agreement.cells == CELLS and 0 < agreement.units < 2
 
 
-def test_numpy(report: Report, prepared: build.Prepared) -> None:
-    agreement = engines.compare(report.values, prepared.labels, prepared.exact_data)
+def test_numpy(computed: Values, judge: engines.Judge) -> None:
+    agreement = judge.agreement(readers.of_values(computed))
     assert honest(agreement), agreement
     assert agreement.unbounded == 0
     assert agreement.line.startswith("numpy       2117 cells, at most 0.")
@@ -158,10 +166,14 @@ def without(find: Any, *names: str) -> Any:
 
 
 def test_a_missing_program_is_told_and_is_no_finding(
-    monkeypatch: pytest.MonkeyPatch, report: Report, prepared: build.Prepared, book: Book
+    monkeypatch: pytest.MonkeyPatch,
+    judge: engines.Judge,
+    computed: Values,
+    prepared: build.Prepared,
+    book: Book,
 ) -> None:
     monkeypatch.setattr(readers, "_find", lambda *names: None)
-    found = engines.compare_all(report.values, prepared.labels, prepared.data, prepared.exact_data, book)
+    found = engines.compare_all(judge, computed, prepared.labels, prepared.data, book)
     assert [agreement.line for agreement in found[1:]] == [
         "JavaScript  node or Chromium not found",
         "xlsx        LibreOffice not found",

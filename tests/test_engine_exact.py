@@ -1,5 +1,6 @@
 """The exact engine: 50 digits that stand against closed forms, and the same errors as the other engines."""
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -187,3 +188,64 @@ def test_none_and_nan_are_both_missing() -> None:
         values = evaluate(a, formula("f", a[k] * 2, ROWS), a=[1, missing])
         assert values.status["f"] == [Status.OK, Status.INPUT]
     assert evaluate(a, a=np.array([1.0, 2.0])).value["a"] == [1, 2]
+
+
+# --- what is written of it --------------------------------------------------------------------------------
+SPOILED = {
+    "ball_diameter": 0.0127, "ball_density": 7800.0, "beta": 1.5, "points_per_pair": 3,
+    "v": [2.334, 2.940, 4.089, 4.504, 1.0, 1.5, 2.334],
+    "e": [0.530, 0.512, 0.479, 0.467, 0.6, 0.67465466, 0.53],
+    "x_p": [30e-6, 29.7e-6, 41.6e-6, np.nan, 8.47722741e-6, 10e-6, 25e-6],
+}  # fmt: skip
+"""No datum, pairs without a root, with two, and of one speed."""
+
+
+def spoiled() -> tuple[Sheet, exact.ExactValues]:
+    sheet = soft_impact(frozenset({"ball_diameter", "ball_density"}))
+    return sheet, exact.evaluate(sheet, {"tests": range(1, 8)}, SPOILED)
+
+
+@pytest.mark.parametrize("digits", [5, 15, 40])
+def test_a_rounded_value_is_the_nearest_double(digits: int) -> None:
+    sheet, judged = spoiled()
+    with mpmath.workdps(digits):  # the caller's, which do not matter
+        values = judged.rounded(sheet)
+    with mpmath.workdps(60):
+        for name, column in values.value.items():
+            for double, true in zip(column.tolist(), judged.value[name], strict=True):
+                if true is None:
+                    assert np.isnan(double)
+                    continue
+                around = [abs(mpf(each) - true) for each in np.nextafter(double, [-np.inf, np.inf]).tolist()]
+                assert abs(mpf(double) - true) <= min(around), name
+
+
+def test_a_rounded_value_that_is_none_is_told_as_other_engines_tell_it() -> None:
+    sheet, judged = spoiled()
+    values = judged.rounded(sheet)
+    theirs = engine.evaluate(sheet, {"tests": range(1, 8)}, SPOILED)
+    codes = {Status(int(code)) for column in values.status.values() for code in column}
+    assert {Status.INPUT, Status.NOROOT, Status.TWOROOTS} <= codes
+    assert values.counted == theirs.counted != {}
+    for column in sheet.columns:
+        np.testing.assert_array_equal(values.status[column.name], theirs.status[column.name])
+        np.testing.assert_allclose(values.value[column.name], theirs.value[column.name], rtol=1e-9)
+        own, other = ([cell.reason for cell in found.cells(column.name)] for found in (values, theirs))
+        assert own == other
+
+
+def test_a_broken_condition_is_told_as_other_engines_tell_it() -> None:
+    conditions = ((a[k] > 1, "it is above 1"), (a[k] < 3, "it is below 3"))
+    sheet = Sheet((a, replace(formula("f", 1 / a[k], ROWS), requires=conditions)))
+    rows, data = {"rows": [1, 2, 3, 4]}, {"a": [0.5, 2, 4, np.nan]}
+    values, theirs = exact.evaluate(sheet, rows, data).rounded(sheet), engine.evaluate(sheet, rows, data)
+    assert values.broken["f"].tolist() == theirs.broken["f"].tolist() == [1, 0, 2, 0]
+    reasons = [cell.reason for cell in values.cells("f")]
+    assert reasons == [cell.reason for cell in theirs.cells("f")]
+    assert reasons[2].endswith("it is below 3")
+
+
+def test_a_part_of_a_sheet_is_rounded_alone() -> None:
+    sheet, judged = spoiled()
+    part = Sheet(tuple(column for column in sheet.columns if isinstance(column.rule, Given)))
+    assert set(judged.rounded(part).value) == {column.name for column in part.columns}

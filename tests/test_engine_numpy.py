@@ -47,11 +47,11 @@ x, y, z = (Symbol(name, positive=True) for name in "xyz")
     [
         (x**2, "(x*x)"),
         (x**3, "(x*x*x)"),
-        ((x + y) ** 3, "(x + y)**3"),
+        ((x + y) ** 3, "numpy.power(x + y, 3)"),
         (x**-1, "(1/x)"),
         (x**-2, "(1/(x*x))"),
         (x / y**2, "x/(y*y)"),
-        (x**y, "x**y"),
+        (x**y, "numpy.power(x, y)"),
         (sqrt(x), "numpy.sqrt(x)"),
         (x * pi / 6, "(1/6)*numpy.pi*x"),
         (exp(x) + log(y), "numpy.exp(x) + numpy.log(y)"),

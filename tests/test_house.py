@@ -59,7 +59,14 @@ SHEET = (
         "report.workbook",
     }
 )
-VALUES = SHEET | {"report.intervals", "report.layout", "report.marks", "report.trace", "report.values"}
+VALUES = SHEET | {
+    "report.elementary",
+    "report.intervals",
+    "report.layout",
+    "report.marks",
+    "report.trace",
+    "report.values",
+}
 RESULT = VALUES | {
     "report.agreement",
     "report.differences",
@@ -81,7 +88,8 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.findings": (RESULT | {"report.inputs"}, set()),
     "report.pytest_plugin": ({"derivations", "report"}, {"pytest", "_pytest"}),
     **{part: (WORDS, {"pint"} if part == "report.unit_text" else set()) for part in WORDS},
-    "report.intervals": (set(), {"numpy"}),
+    "report.elementary": (set(), {"numpy"}),
+    "report.intervals": ({"report.elementary"}, {"numpy"}),
     "report.sheet": (SHEET, ALGEBRA),
     "report.units": (SHEET, ALGEBRA | {"pint"}),
     "report.conditions": (SHEET, ALGEBRA),

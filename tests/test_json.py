@@ -28,7 +28,7 @@ def test_shape(values: dict) -> None:  # type: ignore[type-arg]
     assert alpha["index"][:2] == [[1, 2], [1, 3]]
     assert alpha["unit"] == "1"
     assert alpha["status"] == ["ok"] * 10
-    assert alpha["value"][0] == 1.2579969787312368
+    assert alpha["value"][0] == 1.2579969787312355
     assert values["cells"]["alpha_mean"]["axis"] is None
     assert values["cells"]["v"]["index"] == [1, 2, 3, 4, 5]
     assert values["cells"]["v"]["u"][0] == pytest.approx(0.0005 / 3**0.5)
@@ -57,8 +57,11 @@ def test_every_column_says_what_makes_it(values: dict) -> None:  # type: ignore[
 
 def test_the_manifest_says_what_computed_it(report: Report) -> None:
     report = replace(report, engines=(Agreement(1, 0.0, "", (), engine="JavaScript", program="node 20.1"),))
-    found = json.loads(view.manifest(report, {"b": b"2", "a": b"1"}, {"method": "00"}))
-    assert list(found) == ["schema", "title", "inputs", "outputs", "sources", "versions", "engines"]
+    found = json.loads(view.manifest(report, {"b": b"2", "a": b"1"}, {"method": "00"}, "x86_64 X86_V2"))
+    assert list(found) == [
+        "schema", "title", "inputs", "outputs", "sources", "versions", "engines", "processor", "values",
+    ]  # fmt: skip
+    assert (found["processor"], found["values"]) == ("x86_64 X86_V2", "correctly rounded")
     assert list(found["outputs"]) == ["a", "b"]
     assert found["engines"] == {"JavaScript": "node 20.1"}
     assert found["sources"] == {"method": "00"}

@@ -56,7 +56,12 @@ class Judge:
 
     @classmethod
     def of(
-        cls, sheet: Sheet, layouts: Mapping[str, Layout], labels: Mapping[str, Sequence[int]], data: Any
+        cls,
+        sheet: Sheet,
+        layouts: Mapping[str, Layout],
+        labels: Mapping[str, Sequence[int]],
+        data: Any,
+        judged: exact.ExactValues | None = None,
     ) -> Judge:
         """Evaluate a sheet at 50 digits and bound the errors of doubles.
 
@@ -66,8 +71,10 @@ class Judge:
         layouts : mapping of axis name to Layout
         labels, data
             As for :func:`loopsheet.report.engines.exact.evaluate`.
+        judged : ExactValues, optional
+            What that gives, if it is known.
         """
-        judged = exact.evaluate(sheet, labels, data)
+        judged = judged or exact.evaluate(sheet, labels, data)
         doubles = {
             name: np.array([np.nan if x is None else float(x) for x in found], dtype=np.float64)
             for name, found in judged.value.items()
@@ -197,23 +204,22 @@ def compare(values: Values, labels: Mapping[str, Sequence[int]], exact_data: Map
 
 
 def compare_all(
+    judge: Judge,
     values: Values,
     labels: Mapping[str, Sequence[int]],
     data: Mapping[str, Any],
-    exact_data: Mapping[str, Any],
     book: Book | None = None,
 ) -> tuple[Agreement, ...]:
     """Compare every engine that is found on this machine.
 
     Parameters
     ----------
+    judge : Judge
     values : Values
         What NumPy found, without a batch dimension.
     labels : mapping of axis name to sequence of int
     data : mapping of column name to float or sequence of float
         The given columns in SI, as doubles.
-    exact_data : mapping of column name to Fraction or sequence of Fraction
-        The same exactly.
     book : Book, optional
         The report's workbook; without it, there is nothing to recalculate.
 
@@ -225,5 +231,4 @@ def compare_all(
     readings = [of_values(values), run_javascript(values.sheet, labels, data)]
     if book is not None:
         readings.append(run_workbook(values.sheet, book))
-    judge = Judge.of(values.sheet, values.layouts, labels, exact_data)
     return tuple(judge.agreement(reading) for reading in readings)

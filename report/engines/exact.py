@@ -16,6 +16,7 @@ from typing import Any
 
 import mpmath
 import numpy as np
+from mpmath.libmp import round_nearest, to_float
 from numpy.typing import NDArray
 from sympy import Basic, Expr, Indexed, Symbol, lambdify
 
@@ -24,7 +25,7 @@ from ..intervals import Intervals
 from ..layout import Layout, lay_out, precedents, rows_of
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, RepeatAxis, Root, Sheet, name_of
-from ..values import Status, inherited, rows_kept
+from ..values import Status, Values, how_many, inherited, rows_kept
 from .certified import certified, enclosing, slope
 from .domain import LARGEST, SMALLEST, typed
 from .exact_roots import Enclose, brackets, of_arrays, of_mpmath
@@ -48,11 +49,44 @@ class ExactValues:
     status : mapping of column name to list of Status
     roots : mapping of column name to mapping of row to tuple of mpf
         All roots of ambiguous cells; of undecided ones, the part of the interval that was not decided.
+    layouts, counted, broken
+        As those of :class:`~loopsheet.report.values.Values`.
     """
 
     value: Mapping[str, list[Any]]
     status: Mapping[str, list[Status]]
     roots: Mapping[str, Mapping[int, tuple[Any, ...]]]
+    layouts: Mapping[str, Layout]
+    counted: Mapping[str, Mapping[str, int]]
+    broken: Mapping[str, NDArray[np.uint8]]
+
+    def rounded(self, sheet: Sheet) -> Values:
+        """Every cell as the double that is nearest to it, the same on every processor.
+
+        Parameters
+        ----------
+        sheet : Sheet
+            What was evaluated, or a part that rests on nothing else.
+        """
+        names = [column.name for column in sheet.order]
+        return Values(
+            sheet,
+            self.layouts,
+            {n: np.array([np.nan if x is None else _nearest(x) for x in self.value[n]]) for n in names},
+            {n: np.array(self.status[n], dtype=np.uint8) for n in names},
+            {
+                name: {row: tuple(map(_nearest, found)) for row, found in rows.items()}
+                for name, rows in self.roots.items()
+            },
+            {name: found for name, found in self.counted.items() if name in names},
+            {name: found for name, found in self.broken.items() if name in names},
+        )
+
+
+def _nearest(value: Any) -> float:
+    """The nearest double, whatever precision the caller works with; of nothing, without a sign."""
+    found = value if isinstance(value, float) else to_float(value._mpf_, rnd=round_nearest)
+    return float(found) + 0.0
 
 
 class _Failed(Exception):
@@ -125,6 +159,8 @@ class _Exact:
         self.value: dict[str, list[Any]] = {}
         self.status: dict[str, NDArray[np.uint8]] = {}
         self.roots: dict[str, dict[int, tuple[Any, ...]]] = {}
+        self.counted: dict[str, dict[str, int]] = {}
+        self.broken: dict[str, NDArray[np.uint8]] = {}
 
     def run(self) -> ExactValues:
         for column in self.sheet.order:
@@ -138,7 +174,7 @@ class _Exact:
                     status[row] = failed.status
             self.status[column.name] = status
         codes = {name: [Status(code) for code in status.tolist()] for name, status in self.status.items()}
-        return ExactValues(self.value, codes, self.roots)
+        return ExactValues(self.value, codes, self.roots, self.layouts, self.counted, self.broken)
 
     # --- rules ----------------------------------------------------------------------------------------
 
@@ -149,6 +185,8 @@ class _Exact:
             return np.zeros(size, dtype=np.uint8), lambda row: self._given(column, row)
         named = precedents(self.sheet, self.layouts, column)
         kept = rows_kept(named, self.layouts, self.status)
+        if some := how_many(kept):
+            self.counted[column.name] = some
         status = inherited(named, kept, self.status, size)
         scope = _Scope(self, column, {axis: np.flatnonzero(mask).tolist() for axis, mask in kept.items()})
         conditions = [scope.function(condition) for condition, _ in column.requires]
@@ -156,9 +194,15 @@ class _Exact:
             scope.function(rule.expression) if isinstance(rule, Formula) else self._root(rule, column, scope)
         )
 
+        broken = np.zeros(size, dtype=np.uint8)
+        if conditions:
+            self.broken[column.name] = broken
+
         def compute(row: int) -> Any:
-            if not all(condition(row) for condition in conditions):
-                raise _Failed(Status.DOMAIN)
+            for number, condition in enumerate(conditions, start=1):
+                if not condition(row):
+                    broken[row] = number
+                    raise _Failed(Status.DOMAIN)
             return _held(body(row), column.positive)
 
         return status, compute

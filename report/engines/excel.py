@@ -51,6 +51,10 @@ class IfError(Function):
 
     is_real = True
 
+    def _numpycode(self, printer: Any) -> str:
+        value, otherwise = map(printer._print, self.args)
+        return f"numpy.where(numpy.isfinite({value}), {value}, {otherwise})"
+
 
 class IsNumber(BooleanFunction):
     """Whether the argument has a value."""

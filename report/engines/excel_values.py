@@ -5,16 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from sympy import Expr, Indexed, Sum, Symbol, lambdify
+from sympy import Expr, Indexed, Sum, Symbol
 
 from ..layout import precedents, rows_of
 from ..sheet import Axis, name_of
 from ..values import CODES, Status, Values, inherited, rows_kept
 from .excel_roots import READY, Unrolled
+from .numpy_code import write
 
 __all__ = ["auxiliary_values"]
-
-_FUNCTIONS = {"IfError": lambda value, otherwise: np.where(np.isfinite(value), value, otherwise)}
 
 
 def auxiliary_values(values: Values, unrolled: Unrolled) -> dict[str, tuple[float | str, ...]]:
@@ -99,12 +98,12 @@ class _Evaluation:
         own = {
             s: stand_in(self._plain(s, axis, over)) for s in sorted(body.free_symbols - set(numbers), key=str)
         }
-        return self._function(body.xreplace(own), tuple(numbers))(*numbers.values())
+        return self._function(body.xreplace(own), tuple(numbers))(*numbers.values())[0]
 
     def _function(self, body: Expr, leaves: tuple[Symbol, ...]) -> Any:
         """The expression as a function: the steps to a root all have the same, of other cells."""
         if (body, leaves) not in self.functions:
-            self.functions[body, leaves] = lambdify(leaves, body, modules=[_FUNCTIONS, "numpy"])
+            self.functions[body, leaves] = write(leaves, (), [body])[1]
         return self.functions[body, leaves]
 
     def _cell(self, cell: Indexed, axis: Axis | None) -> Any:

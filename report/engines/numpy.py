@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from ..layout import Layout, lay_out, precedents, rows_of
 from ..sheet import Column, Formula, Given, Reference, RepeatAxis, Root, Sheet, name_of
-from ..values import Status, Values, inherited, rows_kept
+from ..values import Status, Values, how_many, inherited, rows_kept
 from .domain import SMALLEST, defined, positive, typed
-from .numpy_code import Array, Function, Kernel, kernel, write
+from .numpy_code import SAME, Array, Function, Kernel, kernel, write
 from .numpy_root import RootProgram
 from .numpy_rows import Kept
 
@@ -48,7 +48,7 @@ class Program:
     positive: Mapping[str, Kernel]
 
     @classmethod
-    def of(cls, sheet: Sheet, known: Collection[str] = ()) -> Program:
+    def of(cls, sheet: Sheet, known: Collection[str] = (), functions: Any = SAME) -> Program:
         """Generate the program of a sheet.
 
         Parameters
@@ -56,6 +56,9 @@ class Program:
         sheet : Sheet
         known : collection of str
             Columns that are computed already.
+        functions : module
+            What computes exponentials, logarithms and powers: NumPy itself is several times as fast, for
+            draws by the million, but its last bits hang on the processor.
 
         Raises
         ------
@@ -68,18 +71,18 @@ class Program:
                 continue
             if column.name in sheet.guards:
                 datum, allowed = sheet.guards[column.name]
-                _, guards[column.name] = write([datum], (), [allowed])
+                _, guards[column.name] = write([datum], (), [allowed], functions)
             if isinstance(column.rule, Formula):
-                formulas[column.name] = kernel([column.rule.expression], sheet.indices)
+                formulas[column.name] = kernel([column.rule.expression], sheet.indices, functions)
                 formula = typed(sheet, column.rule.expression)
                 if column.positive and (sign := positive(formula)) != False:  # noqa: E712 - sympy's false
-                    signs[column.name] = kernel([sign], sheet.indices)
+                    signs[column.name] = kernel([sign], sheet.indices, functions)
                 if (domain := defined(formula)) != True:  # noqa: E712 - sympy's true
-                    domains[column.name] = kernel([domain], sheet.indices)
+                    domains[column.name] = kernel([domain], sheet.indices, functions)
             elif isinstance(column.rule, Root):
-                roots[column.name] = RootProgram.of(sheet, column)
+                roots[column.name] = RootProgram.of(sheet, column, functions)
             if column.requires:
-                conditions[column.name] = kernel([c for c, _ in column.requires], sheet.indices)
+                conditions[column.name] = kernel([c for c, _ in column.requires], sheet.indices, functions)
         return cls(sheet, formulas, roots, conditions, guards, domains, signs)
 
     @property
@@ -199,9 +202,8 @@ class _Run:
         return np.where(broken > 0, Status.DOMAIN, found).astype(np.uint8)
 
     def _count(self, column: Column, kept: Masks) -> None:
-        some = {axis: mask for axis, mask in kept.items() if mask.ndim == 1 and not mask.all()}
-        if some:
-            self.counted[column.name] = {axis: int(mask.sum()) for axis, mask in some.items()}
+        if some := how_many(kept):
+            self.counted[column.name] = some
 
     # --- what a kernel is called with ----------------------------------------------------------------
 

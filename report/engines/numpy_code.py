@@ -10,18 +10,36 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Basic, Expr, Indexed, Max, Min, Piecewise, Symbol, cse, numbered_symbols
+from sympy import Basic, Expr, Indexed, Max, Min, Piecewise, S, Symbol, cse, numbered_symbols
 from sympy.printing.codeprinter import PrintMethodNotImplementedError
 from sympy.printing.numpy import NumPyPrinter
 
 from ...derivations.reductions import REDUCTIONS, Median
+from .. import elementary
 from ..sheet import Axis, Reference, SheetError, name_of
 from .roots import Total
 
-__all__ = ["Array", "Function", "Kernel", "Writer", "kernel"]
+__all__ = ["SAME", "Array", "Function", "Kernel", "Writer", "kernel"]
 
 Array = NDArray[np.float64]
 Function = Callable[..., tuple[Array, ...]]
+
+
+class _Same:
+    """NumPy, but its functions whose last bits hang on the processor are our own."""
+
+    exp, log, power = (
+        staticmethod(elementary.exp),
+        staticmethod(elementary.log),
+        staticmethod(elementary.power),
+    )
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(np, name)
+
+
+SAME: Any = _Same()
+"""What printed functions call, if they are not told to call NumPy itself, which is faster."""
 
 
 class Printer(NumPyPrinter):
@@ -55,7 +73,9 @@ class Printer(NumPyPrinter):
         if exponent.is_Integer and exponent < 0:
             inner = self.parenthesize(base, 70) if exponent == -1 else self._print(base**-exponent)
             return f"(1/{inner})"
-        return str(super()._print_Pow(expr, rational=rational))
+        if abs(exponent) == S.Half:
+            return str(super()._print_Pow(expr, rational=rational))  # a square root is IEEE 754's
+        return f"numpy.power({self._print(base)}, {self._print(exponent)})"
 
     def _print_Piecewise(self, expr: Piecewise) -> str:
         pairs = [(self._print(body), self._print(condition)) for body, condition in expr.args]
@@ -121,10 +141,12 @@ class Writer:
     ----------
     sums : mapping of index to Axis
         The axes that sums may run over.
+    functions : module
+        What they call: :data:`SAME`, or NumPy.
     """
 
-    def __init__(self, sums: Mapping[Symbol, Axis]) -> None:
-        self.sums = sums
+    def __init__(self, sums: Mapping[Symbol, Axis], functions: Any = SAME) -> None:
+        self.sums, self.functions = sums, functions
         self.symbols: dict[Reference, Symbol] = {}
         self._ordinals = {symbol for axis in sums.values() for symbol in axis.ordinals}
         self._reserved = {"numpy", *(f"{axis.name}_kept" for axis in sums.values())}
@@ -163,7 +185,7 @@ class Writer:
         used = set().union(*(expression.free_symbols for expression in expressions))
         references = sorted((r for r, s in self.symbols.items() if s in used), key=_by_name)
         totals = totals_in(expressions)
-        source, run = write([self.symbols[r] for r in references], totals, expressions)
+        source, run = write([self.symbols[r] for r in references], totals, expressions, self.functions)
         return Kernel(tuple(references), totals, source, run)
 
 
@@ -178,7 +200,7 @@ def totals_in(expressions: Iterable[Basic]) -> tuple[str, ...]:
 
 
 def write(
-    arguments: Sequence[Symbol], totals: Sequence[str], expressions: Sequence[Any]
+    arguments: Sequence[Symbol], totals: Sequence[str], expressions: Sequence[Any], functions: Any = SAME
 ) -> tuple[str, Function]:
     """Print expressions as one function, common parts computed once; return its text and the function.
 
@@ -198,14 +220,14 @@ def write(
     except PrintMethodNotImplementedError as error:
         raise SheetError(f"NumPy cannot compute this: {error}") from error
     source = "\n".join(lines)
-    namespace: dict[str, Any] = {"numpy": np}
+    namespace: dict[str, Any] = {"numpy": functions}
     exec(
         compile(source, "<generated>", "exec"), namespace
     )  # printed from our own expressions, never foreign text
     return source, namespace["kernel"]
 
 
-def kernel(expressions: Sequence[Basic], sums: Mapping[Symbol, Axis]) -> Kernel:
+def kernel(expressions: Sequence[Basic], sums: Mapping[Symbol, Axis], functions: Any = SAME) -> Kernel:
     """Print expressions as one function of arrays.
 
     Parameters
@@ -214,6 +236,8 @@ def kernel(expressions: Sequence[Basic], sums: Mapping[Symbol, Axis]) -> Kernel:
         What the function returns, in order.
     sums : mapping of index to Axis
         The axes that sums in them may run over.
+    functions : module
+        As for :class:`Writer`.
     """
-    writer = Writer(sums)
+    writer = Writer(sums, functions)
     return writer.kernel([writer.plain(expression) for expression in expressions])

@@ -22,7 +22,7 @@ from ..sheet import Column, Reference, Root, Sheet
 from ..values import Status
 from .certified import certified, enclosing
 from .isolation import Isolated, isolate
-from .numpy_code import Array, Function, Kernel, Writer, totals_in, write
+from .numpy_code import SAME, Array, Function, Kernel, Writer, totals_in, write
 from .numpy_rows import Kept, KeptIntervals
 from .roots import hoist, magnitude, step
 
@@ -95,14 +95,14 @@ class RootProgram:
     enclosing: Kernel | None = None
 
     @classmethod
-    def of(cls, sheet: Sheet, column: Column) -> RootProgram:
+    def of(cls, sheet: Sheet, column: Column, functions: Any = SAME) -> RootProgram:
         """Print the functions of one root."""
         rule = column.rule
         assert isinstance(rule, Root)
         enclosed = None if certified(sheet, column) else enclosing(sheet, column)
         if enclosed is not None:
             rule = replace(rule, turning=())  # what nobody proved is not used
-        writer = Writer(sheet.indices)
+        writer = Writer(sheet.indices, functions)
         f, value = writer.plain(rule.expression), writer.plain(rule.value)
         unknown = writer.plain(rule.unknown)
         constants: dict[Expr, Symbol] = {}
@@ -118,7 +118,7 @@ class RootProgram:
         arguments = [unknown, *constants.values(), *cells]
         totals = totals_in([f, value])
         bodies = {"at": [f], "step": [f, step(f, unknown)], "terms": [magnitude(f)], "value": [value]}
-        printed = {name: write(arguments, totals, body) for name, body in bodies.items()}
+        printed = {name: write(arguments, totals, body, functions) for name, body in bodies.items()}
         source = "\n".join(
             [f"# fixed\n{fixed.source}", *(f"# {n}\n{text}" for n, (text, _) in printed.items())]
         )

@@ -167,7 +167,7 @@ def _interval(verdict: Verdict | None) -> list[float | None] | None:
     return None if verdict is None or verdict.low is None else [verdict.low, verdict.high]
 
 
-def manifest(report: Report, outputs: Mapping[str, bytes], sources: Mapping[str, str]) -> str:
+def manifest(report: Report, outputs: Mapping[str, bytes], sources: Mapping[str, str], processor: str) -> str:
     """What went in, what came out and what computed it, by content; no clock and no place.
 
     Parameters
@@ -177,6 +177,8 @@ def manifest(report: Report, outputs: Mapping[str, bytes], sources: Mapping[str,
         Every file that was written, by its name in the output folder.
     sources : mapping of str to str
         The sha256 of the parts of this program.
+    processor : str
+        On which it ran.
     """
 
     def hashes(files: Mapping[str, bytes]) -> dict[str, str]:
@@ -191,6 +193,8 @@ def manifest(report: Report, outputs: Mapping[str, bytes], sources: Mapping[str,
             "sources": dict(sources),
             "versions": dict(report.versions),
             "engines": {agreement.engine: agreement.program for agreement in report.engines},
+            "processor": processor,
+            "values": "as doubles compute them" if report.exactly is None else "correctly rounded",
         }
     )
 

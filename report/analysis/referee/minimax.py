@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
+from ...elementary import exp, log
 from .campaign import Array
 from .problem import Box, Problem
 
@@ -153,13 +154,13 @@ class _Counted:
     def to(self, points: Array) -> Array:
         """What is counted; what cannot move is nothing."""
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            found: Array = np.where(self.log, np.log(points), points) / self.scale
+            found: Array = np.where(self.log, log(points), points) / self.scale
         return np.where(self.scale > 0, found, 0.0)
 
     def back(self, counted: Array) -> Array:
         """What stands for it."""
         with np.errstate(over="ignore"):
-            found: Array = np.where(self.log, np.exp(counted * self.scale), counted * self.scale)
+            found: Array = np.where(self.log, exp(counted * self.scale), counted * self.scale)
         return found
 
     def slope(self, points: Array) -> Array:

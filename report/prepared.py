@@ -1,0 +1,104 @@
+"""A folder that was read, with its sheet: what engines start from, and what they make of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from .inputs import Inputs, check_cells
+
+if TYPE_CHECKING:
+    from .engines.exact import ExactValues
+    from .layout import Layout
+    from .sheet import Sheet
+    from .values import Values
+
+__all__ = ["Prepared", "given_data"]
+
+
+def given_data(inputs: Inputs) -> dict[str, Any]:
+    """The given columns in SI as exact fractions: a list for a measured column, one for a parameter."""
+    data: dict[str, Any] = {name: [p.value for p in column] for name, column in inputs.measured.items()}
+    data |= {name: printed.value for name, printed in inputs.parameters.items()}
+    return data
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A folder that was read, with its sheet, checked and ready to be computed."""
+
+    inputs: Inputs
+    sheet: Sheet
+
+    @property
+    def labels(self) -> dict[str, tuple[int, ...]]:
+        """Row numbers of the axes that come with the data."""
+        return {axis.name: self.inputs.tests for axis in self.sheet.axes if not axis.parents}
+
+    @cached_property
+    def layouts(self) -> dict[str, Layout]:
+        """The rows of every axis."""
+        from .engines.exact import laid_out
+
+        return laid_out(self.sheet, self.labels, self.exact_data)
+
+    def check_cells(self) -> Inputs:
+        """Refuse what is said of cells that there are not.
+
+        Returns
+        -------
+        Inputs
+            Those without what is said of tests that are left out.
+
+        Raises
+        ------
+        InputError
+            With every finding.
+        """
+        rows = {name: set(map(tuple, layout.labels.tolist())) for name, layout in self.layouts.items()}
+        columns = self.sheet.columns
+        return check_cells(
+            self.inputs, {c.name: (c.unit, {()} if c.axis is None else rows[c.axis.name]) for c in columns}
+        )
+
+    @property
+    def exact_data(self) -> dict[str, Any]:
+        """What the exact engine starts from."""
+        needed = {c.name for c in self.sheet.columns}
+        return {name: value for name, value in given_data(self.inputs).items() if name in needed}
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """What the other engines start from: the nearest doubles."""
+        return {
+            n: [float(x) for x in v] if isinstance(v, list) else float(v) for n, v in self.exact_data.items()
+        }
+
+    def computed(self, whole: Sheet, most: int) -> tuple[ExactValues | None, tuple[Values, Values]]:
+        """All cells at 50 digits, if they are not too many, and the values of the sheet and of more columns.
+
+        Parameters
+        ----------
+        whole : Sheet
+            With what is computed besides.
+        most : int
+            Cells.
+
+        Returns
+        -------
+        ExactValues or None
+            Of which the values then are the nearest doubles; without it, they are NumPy's.
+        tuple of Values
+            Of the sheet, and of the whole.
+        """
+        from .engines import exact
+        from .engines import numpy as engine
+        from .layout import how_large
+
+        if how_large(whole, self.layouts) <= most:
+            found = exact.evaluate(whole, self.labels, self.exact_data)
+            return found, (found.rounded(self.sheet), found.rounded(whole))
+        values = engine.evaluate(self.sheet, self.labels, self.data)
+        more = [column for column in whole.columns if column.name not in self.sheet]
+        return None, (values, engine.extend(values, more, {}))
