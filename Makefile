@@ -73,6 +73,7 @@ lock: .venv-lock/bin/uv
 	$(LOCK) pyproject.toml --group build --group test -c requirements/runtime.txt -o requirements/test.txt
 	$(LOCK) pyproject.toml --group build --group bench -c requirements/test.txt -o requirements/bench.txt
 	$(LOCK) --group crate -o requirements/crate.txt
+	$(LOCK) pyproject.toml --resolution lowest-direct -o requirements/floors.txt
 
 .venv-lock/bin/uv:
 	$(PYTHON) -m venv --clear .venv-lock

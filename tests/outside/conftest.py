@@ -1,8 +1,9 @@
-"""What the tests beside it share: npm packages."""
+"""What the tests beside it share: npm packages, environments of Python."""
 
 import fcntl
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -34,3 +35,30 @@ def _install(npm: str, folder: Path, cache: Path, lock: str) -> None:
         run = subprocess.run(command, cwd=cache, capture_output=True, text=True, timeout=300, check=False)
         assert run.returncode == 0, run.stderr
         installed.write_text(lock, encoding="utf-8")
+
+
+@pytest.fixture(scope="session")
+def environment() -> Callable[..., Path]:
+    """Install a lock of requirements/ for an interpreter, once and outside of the checkout."""
+
+    def install(lock: str, python: str = sys.executable) -> Path:
+        """The interpreter of the environment, beside which its commands are."""
+
+        def run(*command: str | Path) -> str:
+            done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
+            assert done.returncode == 0, done.stderr
+            return done.stdout
+
+        path = Path(__file__).parents[2] / "requirements" / f"{lock}.txt"
+        asked = path.read_text(encoding="utf-8") + run(python, "-c", "import sys; print(sys.version)")
+        number = run(python, "-c", "import sys; print('%d.%d' % sys.version_info[:2])").strip()
+        home = Path.home() / ".cache" / "loopsheet" / f"{lock}-{number}"
+        own, installed = home / "bin" / "python", home / "installed.txt"
+        if not installed.exists() or installed.read_text(encoding="utf-8") != asked:
+            run(python, "-m", "venv", "--clear", home)
+            pip = (own, "-m", "pip", "--quiet", "--disable-pip-version-check")
+            run(*pip, "install", "--require-hashes", "-r", path)
+            installed.write_text(asked, encoding="utf-8")
+        return own
+
+    return install

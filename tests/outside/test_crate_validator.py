@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
-import sys
-import venv
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -16,25 +14,14 @@ import pytest
 from loopsheet.report.crate import NAME, write
 
 HERE = Path(__file__).parent
-LOCK = HERE.parent.parent / "requirements" / "crate.txt"
 
 Judge = Callable[[Path], dict[str, Any]]
 
 
 @pytest.fixture(scope="session")
-def judge() -> Judge:
-    """Install the pinned judge, once and outside of the checkout."""
-    home = Path.home() / ".cache" / "loopsheet" / "crate"
-    python, installed = home / "bin" / "python", home / "crate.txt"
-    lock = LOCK.read_text(encoding="utf-8") + sys.version
-    if not installed.exists() or installed.read_text(encoding="utf-8") != lock:
-        shutil.rmtree(home, ignore_errors=True)
-        venv.create(home, with_pip=True)
-        command = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-        command += ["--require-hashes", "-r", LOCK]
-        run = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
-        assert run.returncode == 0, run.stderr
-        installed.write_text(lock, encoding="utf-8")
+def judge(environment: Callable[..., Path]) -> Judge:
+    """The pinned judge."""
+    python = environment("crate")
 
     def ask(folder: Path) -> dict[str, Any]:
         run = subprocess.run(
