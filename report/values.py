@@ -293,12 +293,14 @@ class Values:
         if isinstance(rule, Root) and status is Status.NOROOT:
             return f"{column.source} has no root here: {rule.none}"
         if isinstance(rule, Root) and status is Status.TWOROOTS:
-            found = " and ".join(f"{root:.6g}" for root in self.roots.get(column.name, {}).get(row, ()))
+            unit = "" if column.unit == "1" else f" {column.unit}"
+            found = " and ".join(f"{root:.6g}{unit}" for root in self.roots.get(column.name, {}).get(row, ()))
             return f"{column.source} has more than one root here: {found or rule.two}" + (
                 f" ({rule.two})" if found else ""
             )
         if isinstance(rule, Root) and status is Status.UNDECIDED:
-            ends = dict.fromkeys(f"{end:.6g}" for end in self.roots.get(column.name, {}).get(row, ()))
+            unit = "" if column.unit == "1" or rule.value != rule.unknown else f" {column.unit}"
+            ends = dict.fromkeys(f"{end:.6g}{unit}" for end in self.roots.get(column.name, {}).get(row, ()))
             where = f" near {rule.unknown} = {' to '.join(ends)}" if ends else ""
             return f"the roots of {column.source} cannot be counted{where}: {UNCERTAIN}"
         if status is Status.OVERFLOW:

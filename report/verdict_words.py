@@ -176,9 +176,9 @@ def certain(ends: tuple[str, str]) -> str:
 def together(table: TableVerdict) -> str:
     """Whether all values of a table come out of one input, without a full stop."""
     whose, off = _whose(table), "" if table.mismatch is None else _half_units(table.mismatch)
+    come = "comes" if table.values == 1 else "come"
     match table.verdict:
         case "exact":
-            come = "comes" if table.values == 1 else "come"
             return f"{whose} {come} out as printed, from the inputs exactly as they are printed"
         case "reachable":
             return f"{whose} can come out of one input that prints as given, with a worst mismatch of {off}"
@@ -187,7 +187,7 @@ def together(table: TableVerdict) -> str:
             return f"{contradiction(table)}: {evidence(table)}{because}"
         case "not found":
             return (
-                f"no input that prints as given was found from which {whose} come out; the best leaves "
+                f"no input that prints as given was found from which {whose} {come} out; the best leaves "
                 f"a mismatch of {off}. That there is none is not certain"
             )
     return "none of the published values could be asked for: their cells have no values"

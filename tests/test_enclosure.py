@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sympy import Expr, Sum, Symbol
+from sympy import Expr, Integer, Rational, Sum, Symbol, exp
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.derivations.reductions import Median
@@ -21,9 +21,10 @@ from loopsheet.report.analysis.referee.problem import Problem
 from loopsheet.report.conditions import conditions
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
+from loopsheet.report.engines.numpy_root import EnclosedRows
 from loopsheet.report.intervals import Intervals
 from loopsheet.report.quantity import Bounds
-from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
+from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
 
 
 @pytest.fixture(scope="module")
@@ -197,3 +198,27 @@ def test_a_sum_over_rows_that_may_have_no_value_is_not_known() -> None:
         for data in (low, high):
             value = engine.evaluate(sheet, labels, {"x": data}, program).scalar("total")
             assert found.low[0] <= value <= found.high[0]
+
+
+def test_a_root_over_all_rows_is_counted_once_and_not_once_a_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What its sums run over are terms: each of them as a root of its own took minutes."""
+    k, n = Symbol("k", integer=True, positive=True), Symbol("n", integer=True, positive=True)
+    x, z = Column("x", Axis("rows", k, n), Given()), Symbol("z", positive=True)
+    equation = Equation("", (Sum(x[k] * exp(-z * x[k]), (k, 1, n)) - 1, Integer(0)), "", Kind.DEFINITION)
+    root = Root(equation, equation, z, z, Rational(1, 10), Rational(10), Rational(1))
+    sheet, asked = Sheet((x, Column("rate", None, root))), []
+    program = Program.of(sheet)
+    data = np.linspace(1.0, 2.0, 40)
+    layouts = engine.evaluate(sheet, {"rows": range(40)}, {"x": data}, program).layouts
+    isolate = EnclosedRows.isolate
+
+    def counting(rows: EnclosedRows, which: Any, *ends: Any) -> Any:
+        asked.append(len(which))
+        return isolate(rows, which, *ends)
+
+    monkeypatch.setattr(EnclosedRows, "isolate", counting)
+    found = Enclosure(sheet, program, layouts, {"x": Intervals(data - 1e-3, data + 1e-3)})
+    value = engine.evaluate(sheet, {"rows": range(40)}, {"x": data}).scalar("rate")
+    assert set(asked) <= {1}
+    assert found.value["rate"].low.shape == (1,)
+    assert found.value["rate"].low[0] < value < found.value["rate"].high[0]

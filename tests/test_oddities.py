@@ -315,3 +315,19 @@ def test_a_report_without_oddities_says_nothing_of_them(tmp_path: Path) -> None:
     other = replace(report, oddities=(Check("data", "x", False, "something odd"),))
     assert "something odd" not in shown
     assert "<strong>Finding</strong>: something odd." in html.render(other, {}, "")
+
+
+AMBIGUOUS = {"v": ("2.00", "2.76", "3.87"), "e": ("0.500", "0.552", "0.621"), "x_p": ("20.0", "26.7", "27.8")}
+"""One pair without a root, and two with two roots each, which are not the same two."""
+
+
+def test_each_cause_is_told_of_its_own_cells(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    report = build.compute(write(tmp_path, AMBIGUOUS), prove=False)
+    causes = [cell.why for cell in report.values.errors() if cell.name == "alpha"]
+    said = checks(tmp_path)["data cells"].message
+    assert len(set(causes)) == 3
+    assert all(cause in said for cause in causes)
+    monkeypatch.setattr("loopsheet.report.analysis.oddities.CAUSES", 1)
+    said = checks(tmp_path)["data cells"].message
+    assert "; and 2 other causes" in said
+    assert [cause in said for cause in causes] == [True, False, False]

@@ -69,6 +69,13 @@ def test_check_counts_what_prints_the_same_in_any_notation(tmp_path: Path, check
     assert "->" not in out
 
 
+def test_check_counts_nothing_where_nothing_is_published(tmp_path: Path, check: Check) -> None:
+    end_gauge(tmp_path, "source,cell,index,value,unit\n")
+    code, out = check()
+    assert code == 0
+    assert "published" not in out
+
+
 def test_a_value_of_seventy_digits_can_be_compared(tmp_path: Path, check: Check) -> None:
     published(tmp_path, "H.1,l,1,1.5,mm")
     toml = tmp_path / "report.toml"
@@ -271,8 +278,12 @@ def test_accepting_writes_what_is_recomputed_and_shows_it(tmp_path: Path, check:
     assert code == 1
     left = [line for line in out.splitlines() if line.startswith("finding: published.csv:")]
     assert [line.split(": ")[1] for line in left] == ["published.csv:5:12", "published.csv:7:35"]
+    assert (
+        "1 more value differs and is not written: say why, with --reason 'a sentence' or in the column" in out
+    )
     code, out = check("--accept", "--reason", 'as "printed", by hand')
     assert code == 0
+    assert "not written" not in out
     quoted = '"as ""printed"", by hand"'
     assert path.read_text().splitlines()[4:7] == [
         f"H.1,theta,,0.2,K,differs,0.2 -> -0.1,{quoted}",

@@ -185,6 +185,19 @@ def test_no_root_and_two_roots_have_their_sentences() -> None:
     assert values.counted["root_sum"] == {"pairs": 1}
 
 
+def test_roots_are_told_with_their_unit() -> None:
+    z = Symbol("z", positive=True)
+    left, right, top = (Column(name, None, Given(), "m") for name in ("left", "right", "top"))
+    equation = Equation("(2)", ((z - left.symbol) * (z - right.symbol), 0 * z), "")
+    root = Root(equation, equation, z, z, Rational(0), top.symbol, top.symbol / 2)
+    sheet = Sheet((left, right, top, Column("depth", None, root, "m")))
+    values = engine.evaluate(sheet, {}, {"left": 1e-5, "right": 2e-5, "top": 1e-3})
+    assert "more than one root here: 1e-05 m and 2e-05 m (several" in values.cell("depth").reason
+    values = engine.evaluate(sheet, {}, {"left": 1e-5, "right": 1e-5, "top": 1e-3})
+    assert values.cell("depth").status is Status.UNDECIDED
+    assert "cannot be counted near z = 1e-05 m: it" in values.cell("depth").reason
+
+
 def test_a_root_is_not_sought_where_a_condition_is_broken() -> None:
     values = compute([4, 4, 4], [1000, 1, 2])
     assert reasons(values, "x0")[:2] == [

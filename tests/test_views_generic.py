@@ -3,6 +3,7 @@
 import re
 import subprocess
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import html5lib
@@ -83,3 +84,10 @@ def test_the_article_compiles(report: Report, tmp_path: Path, require: Callable[
         )
     log = (tmp_path / "report.log").read_text(encoding="latin-1")
     assert not re.search(r"^!|Overfull|undefined|multiply defined", log, re.MULTILINE)
+
+
+def test_where_nothing_is_a_result_there_is_no_chapter_of_it(report: Report) -> None:
+    chapter = re.compile('id="?result"?[ >]')
+    none = replace(report, workbook=replace(report.workbook, headline=()))
+    assert chapter.search(html.render(report, {}))
+    assert not chapter.search(html.render(none, {}))

@@ -141,11 +141,11 @@ class Enclosure:
     def _root(self, program: RootProgram, column: Column) -> tuple[Intervals, NDArray[np.bool_]]:
         fixed = self._called(program.fixed, column)
         rule, totals = program.rule, [self._rows(axis) for axis in program.totals]
-        rest = fixed[5 + len(rule.turning) :]
-        shape = np.broadcast_shapes(*(each.shape for each in fixed), (self.size(column),))
-        low, high, _, at_low, at_high, *turning = (
-            each.broadcast(shape) for each in fixed[: 5 + len(rule.turning)]
-        )
+        ends, rest = fixed[: 5 + len(rule.turning)], fixed[5 + len(rule.turning) :]
+        # What a sum runs over are its terms: such a root is one, and not one a term.
+        rows = [(*each.shape[:-1], 1) if totals else each.shape for each in rest]
+        shape = np.broadcast_shapes(*(each.shape for each in ends), *rows, (self.size(column),))
+        low, high, _, at_low, at_high, *turning = (each.broadcast(shape) for each in ends)
 
         # Generated functions are typed for arrays; intervals are as good.
         run_at: Any = program.at

@@ -28,6 +28,8 @@ CELLS, ROWS, RESULT = "cells", "rows", "result"
 """The checks of the first kind: every cell has a value, every sum is over all rows, there is a result."""
 MOST = 6
 """So many cells are named; the rest are counted."""
+CAUSES = 4
+"""And so many causes of one column."""
 
 
 def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
@@ -120,10 +122,12 @@ class _Oddities:
 
     def without_value(self, column: Column, cells: Sequence[Cell]) -> str:
         """``alpha: 4 of 10 pairs have no value: alpha[1-2] and alpha[2-3] #NOROOT!: ...``."""
-        by_code: dict[str, list[Cell]] = {}
+        by_cause: dict[str, list[Cell]] = {}
         for cell in cells:
-            by_code.setdefault(cell.status.code, []).append(cell)
-        causes = (f"{_addresses(each)} {code}: {each[0].why}" for code, each in by_code.items())
+            by_cause.setdefault(f"{cell.status.code}: {cell.why}", []).append(cell)
+        causes = [f"{_addresses(each)} {cause}" for cause, each in by_cause.items()]
+        if (more := len(causes) - CAUSES) > 0:
+            causes[CAUSES:] = [f"and {more} other causes" if more > 1 else "and another cause"]
         have = f": {len(cells)} of {self.size(column)} have" if column.axis is not None else " has"
         return f"{column.name}{have} no value: {'; '.join(causes)}"
 

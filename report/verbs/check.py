@@ -24,7 +24,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--accept",
         action="store_true",
-        help="check the published values alone, and write into FOLDER's published.csv what they differ to",
+        help="check published values and data alone, and write what is recomputed into published.csv "
+        "for those that have a reason to differ",
     )
     parser.add_argument(
         "--reason", metavar="TEXT", default="", help="with --accept: why they differ, where that is not said"
@@ -74,6 +75,7 @@ def _accept(options: argparse.Namespace) -> int:
             report = build.compared(report)
         if options.format == "text":
             _show(found)
+            _ask(report)
     left = checks(report)
     if options.format != "text":
         print_checks(left, options.format, report.title, {})
@@ -96,6 +98,16 @@ def _show(found: Accepted) -> None:
         print(f"  {found.others} more got an empty field")
 
 
+def _ask(report: Report) -> None:
+    """What was not written, for nobody said why it differs."""
+    from ..verdict import UNEXPECTED
+
+    number = sum(each.finding == UNEXPECTED and not each.published.expect for each in report.comparisons)
+    if number:
+        values = "1 more value differs and is" if number == 1 else f"{number} more values differ and are"
+        print(f"{values} not written: say why, with --reason 'a sentence' or in the column 'reason'")
+
+
 def _print(report: Report, found: Sequence[Check]) -> None:
     from ..verdict_words import lines
 
@@ -107,7 +119,10 @@ def _print(report: Report, found: Sequence[Check]) -> None:
         print(f"engine     {agreement.line}")
     same = sum(c.verdict == "same" for c in report.comparisons)
     known = sum(bool(c.published.expect) and c.as_expected for c in report.comparisons)
-    print(f"published  {len(report.comparisons)} values: {same} print the same, {known} differ as is known")
+    if report.comparisons:
+        print(
+            f"published  {len(report.comparisons)} values: {same} print the same, {known} differ as is known"
+        )
     for comparison in report.comparisons:
         if comparison.verdict != "same":
             where = f"{comparison.published.source} {comparison.cell.address}"

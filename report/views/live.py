@@ -170,6 +170,8 @@ def _column(report: Report, document: Document, column: Column, grounds: list[Gr
         entry["equations"] = head.sources
     if isinstance(column.rule, Root):
         entry |= {"none": column.rule.none, "two": column.rule.two}
+        if column.unit != "1":
+            entry["si"] = column.unit
         if column.rule.unknown.name != column.name and not column.rule.turning_by:
             entry["unknown"] = column.rule.unknown.name
     if column.requires:

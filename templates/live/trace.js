@@ -93,8 +93,9 @@ class Trace {
 
   // Why a cell where an error begins has no value.
   why(name, row) {
-    const { source, none, two, unknown, requires } = this.columns[name], status = this.sheet.status[name][row];
-    const roots = Array.from(this.sheet.roots[name]?.[row] ?? [], brief);
+    const { source, none, two, unknown, requires, si } = this.columns[name], status = this.sheet.status[name][row];
+    const told = si && !(unknown && status === STATUS.UNDECIDED) ? ` ${si}` : "";
+    const roots = Array.from(this.sheet.roots[name]?.[row] ?? [], (root) => brief(root) + told);
     if (status === STATUS.INPUT) return this.sheet.refused[name]?.[row] ?? "the datum is missing or invalid";
     if (status === STATUS.NOROOT) return `${source} has no root here: ${none}`;
     if (status === STATUS.TWOROOTS) {
