@@ -69,6 +69,27 @@ def test_check_counts_what_prints_the_same_in_any_notation(tmp_path: Path, check
     assert "->" not in out
 
 
+@pytest.mark.parametrize(
+    ("cell", "value", "verdict"), [("theta", "0.2", "unreachable"), ("theta", "-0.1", "")]
+)
+def test_one_number_without_an_index_is_judged(
+    tmp_path: Path, check: Check, cell: str, value: str, verdict: str
+) -> None:
+    """The simplest question: can this one number be right?"""
+    published(tmp_path, f"H.1,{cell},,{value},K")
+    code, out = check()
+    assert code == bool(verdict)
+    assert f"published  1 values: {0 if verdict else 1} print the same" in out
+    assert verdict in out
+
+
+def test_a_measured_nothing_is_refereed_as_any_other_number(tmp_path: Path, check: Check) -> None:
+    end_gauge(tmp_path, "source,cell,index,value,unit\nH.1,l,1,50.000700,mm\n", d="test,d [nm]\n1,0\n2,204\n")
+    code, out = check()
+    assert code == 0
+    assert " reachable" in out
+
+
 def test_check_counts_nothing_where_nothing_is_published(tmp_path: Path, check: Check) -> None:
     end_gauge(tmp_path, "source,cell,index,value,unit\n")
     code, out = check()
