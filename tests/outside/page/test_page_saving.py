@@ -26,6 +26,9 @@ def test_a_test_left_out_stays_with_its_reason(live: Live, open_page: Open, tmp_
     live.page.locator('[data-reason="3"]').click()
     live.page.keyboard.type('heard "twice", it seems')
     live.press("Tab")
+    struck = "one => getComputedStyle(one).textDecorationLine"
+    assert live.input("x_p", 3).evaluate(struck) == "line-through"
+    assert live.page.locator('[data-reason="3"]').evaluate(struck) == "none"
     live.page.locator('[data-remove="5"]').click()
     live.type("x_p", 2, "29.80")
     assert live.text("live-banner").startswith("Edited: 3 inputs differ")
