@@ -149,9 +149,9 @@ def _prepared(inputs: Inputs, ledger: Ledger) -> Prepared:
             raise  # ours, and our bug
         raise refusals.of_sheet(inputs, error) from error
     if own:
-        from .views.words import NARRATIVES
+        from .views.words import narratives
 
-        refusals.refuse_what_is_misnamed(sheet, inputs, NARRATIVES, _drawings)
+        refusals.refuse_what_is_misnamed(sheet, inputs, narratives(), _drawings)
     refusals.refuse_what_is_missing(sheet, inputs)
     return Prepared(inputs, sheet)
 

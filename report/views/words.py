@@ -24,11 +24,11 @@ from .escape import Markup, slug
 from .numbers import Figure, read
 from .parts import Head, Item, index_text
 
-__all__ = ["NARRATIVES", "TEMPLATES", "Words", "environment"]
+__all__ = ["TEMPLATES", "Words", "environment", "narratives"]
 
 TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
-NARRATIVES = ("generic", "soft_impact")
-"""The texts around tables and figures that a workbook may name, each a template under templates/prose."""
+GENERIC = "generic"
+"""The narrative of any workbook."""
 
 _PART = re.compile(
     r"(?P<number>(?<![\w.])-?\d+(?:\.\d+)?e[+-]?\d+(?!\w))"
@@ -234,6 +234,13 @@ class Words(ABC):
         for head in heads:
             refer = [self.refer(label) for label in head.sources]
             yield head, self.rich(head.meaning), self.escape(", solved as ").join(refer)
+
+
+def narratives() -> tuple[str, ...]:
+    """The texts around tables and figures that a workbook may name: the generic one and what extends it."""
+    extends = f"((* extends 'prose/{GENERIC}.j2' *))"
+    prose = sorted((TEMPLATES / "prose").glob("*.j2"))
+    return (GENERIC, *(path.stem for path in prose if extends in path.read_text(encoding="utf-8")))
 
 
 def _indices(equation: Equation) -> set[Expr]:
