@@ -15,12 +15,16 @@ from .verdict import Change, Explanation, Fit, Referee, Relabelled, TableVerdict
 __all__ = ["bounds", "certain", "data", "short"]
 
 DIGITS = 6
-"""Significant digits."""
+"""Significant digits; of a mismatch also decimals, for a search is content with a millionth."""
 
 
 def short(value: float | None) -> float | None:
-    """What was searched for: rounded to the nearest."""
-    return None if value is None else float(f"{value:.{DIGITS}g}")
+    """A mismatch that was searched for: rounded to the nearest.
+
+    >>> short(8.4199506), short(4.44089e-13)
+    (8.41995, 0.0)
+    """
+    return None if value is None else round(float(f"{value:.{DIGITS}g}"), DIGITS)
 
 
 def certain(value: float | None, upwards: bool = False) -> float | None:

@@ -101,15 +101,20 @@ def test_intervals_enclose_them() -> None:
 
 BITS = """
 import hashlib, numpy as np
-from loopsheet.report import elementary
+from loopsheet.report import build, elementary
+from loopsheet.report.engines import numpy as engine
 from loopsheet.report.provenance import processor
 rng = np.random.default_rng(3)
 x, y = rng.uniform(.01, 9, 20_000), rng.uniform(-9, 9, 20_000)
 for module in (elementary, np):
     found = (module.exp(y), module.log(x), module.power(x, y))
     print(hashlib.sha256(b"".join(each.tobytes() for each in found)).hexdigest())
+paper = build.prepare(build.PAPER)
+values = engine.evaluate(paper.sheet, paper.labels, paper.data).value
+print(hashlib.sha256(b"".join(values[name].tobytes() for name in sorted(values))).hexdigest())
 print(processor())
 """
+"""What NumPy is told to compute, what it would by itself, and what it makes of the shipped paper."""
 
 
 def test_another_processor_computes_the_same_bits() -> None:
@@ -119,8 +124,9 @@ def test_another_processor_computes_the_same_bits() -> None:
             command, env=environment, capture_output=True, text=True, check=True
         ).stdout.splitlines()
 
-    (own, numpys, processor), (again, other, lesser_one) = bits({}), bits(lesser())
+    (own, numpys, paper, processor), (again, other, paper_again, lesser_one) = bits({}), bits(lesser())
     assert own == again == PINNED
+    assert paper == paper_again
     if not lesser()["NPY_DISABLE_CPU_FEATURES"]:
         pytest.skip(f"NumPy uses nothing of {processor} that could be left out")
     assert numpys != other, "NumPy's own differ, or this test would show nothing"

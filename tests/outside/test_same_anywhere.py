@@ -6,9 +6,10 @@ import hashlib
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 from campaign_sizes import Sizes
@@ -51,10 +52,18 @@ def places() -> list[Place]:
 
 
 @pytest.fixture(scope="module")
-def locales(require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def room() -> Iterator[Path]:
+    """A folder that every user may enter; pytest's own are closed to others."""
+    with TemporaryDirectory() as name:
+        Path(name).chmod(0o755)
+        yield Path(name)
+
+
+@pytest.fixture(scope="module")
+def locales(require: Callable[..., str], room: Path) -> Path:
     """Locales that the system need not have."""
-    found = tmp_path_factory.mktemp("locales")
-    found.parent.chmod(0o755)
+    found = room / "locales"
+    found.mkdir()
     for locale in LOCALES:
         # It warns of what the fewest locales have; what matters is asked below.
         command = [require("localedef"), "-i", locale, "-f", "UTF-8", found / f"{locale}.UTF-8"]
@@ -71,18 +80,16 @@ def test_the_same_bytes_everywhere(
     require: Callable[..., str],
     locales: Path,
     issued: Path,
-    tmp_path: Path,
+    room: Path,
     sizes: Sizes,
     summary: Callable[[str], None],
 ) -> None:
     for program in ("latexmk", "setpriv"):
         require(program)
-    for folder in (tmp_path, *tmp_path.parents[:2]):
-        folder.chmod(0o755)  # another user looks in
     asked = places()[: sizes.places]
     found = {"here": digests(issued / "out")}
     for number, place in enumerate(asked):
-        home = tmp_path / str(number)
+        home = room / str(number)
         home.mkdir()
         found[place.name] = digests(built(place, home, locales))
     names = sorted({name for each in found.values() for name in each})
