@@ -99,9 +99,10 @@ def staged(
     OutputError
         It cannot be written, or something stands in the way; all is left as it was then.
     """
-    if out.exists() and not out.is_dir():
+    # Of a folder that may not be entered, nothing is known; to make it then says why it cannot be.
+    if os.path.exists(out) and not os.path.isdir(out):
         raise OutputError(diagnose("LS602", text=str(out)))
-    made = [p for p in (out, *out.parents) if not p.exists()]
+    made = [p for p in (out, *out.parents) if not os.path.exists(p)]
     stage = out
     try:
         out.mkdir(parents=True, exist_ok=True)

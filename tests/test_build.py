@@ -9,6 +9,7 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -315,3 +316,16 @@ def test_what_an_earlier_build_made_goes_unless_it_was_changed(tmp_path: Path) -
         "report.tex",
         "values.json",
     ]
+
+
+def test_a_place_that_may_not_be_entered_is_a_message(require: Callable[..., str], tmp_path: Path) -> None:
+    """Root may enter all: then another user asks, who may not enter the folders of tests."""
+    tmp_path.chmod(0o000)
+    command = [sys.executable, "-m", "loopsheet", "build", "paper", "--out", str(tmp_path / "a" / "out")]
+    if os.getuid() == 0:
+        command = [require("setpriv"), "--reuid=65534", "--regid=65534", "--clear-groups", *command]
+    done = subprocess.run(command, cwd="/", capture_output=True, text=True, check=False)
+    tmp_path.chmod(0o700)
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.startswith("error[LS601]: ")
+    assert "' cannot be written: Permission denied\n" in done.stderr
