@@ -74,11 +74,11 @@ def test_worksheets(book: Any) -> None:
 
 
 def test_every_column_is_a_defined_name_with_the_values_of_the_report(report: Report, shown: Any) -> None:
-    cells = json.loads(json_view.values(report))["cells"]
-    assert {f"ls_{name}" for name in cells} == set(shown.defined_names)
-    for name, entry in cells.items():
+    assert {f"ls_{name}" for name in json.loads(json_view.values(report))["cells"]} == set(
+        shown.defined_names
+    )
+    for name, values in report.values.value.items():
         scale = report.shown[name].scale
-        values = entry["value"] if isinstance(entry["value"], list) else [entry["value"]]
         assert [c.value * scale for c in named(shown, f"ls_{name}")] == pytest.approx(values, rel=1e-14), name
 
 
