@@ -202,6 +202,17 @@ def test_bar_says_where_a_number_comes_from(live: Live) -> None:
     assert "measurements.csv, test 2" in live.text("bar-source")
 
 
+_BROKEN = """() => Array.from(document.querySelectorAll("main math[display=block]")).filter((math) => {
+  const [first, ...others] = Array.from(math.children, (part) => part.getBoundingClientRect());
+  return others.some(({ top, bottom }) => top >= first.bottom || bottom <= first.top);
+}).map((math) => math.closest("article, section")?.id)"""
+
+
+def test_no_browser_breaks_an_equation_and_cuts_what_is_below(live: Live) -> None:
+    """It stays on its line, which scrolls where it is too long."""
+    assert live.page.evaluate(_BROKEN) == []
+
+
 _READ_ON = """async () => {
   const frame = () => new Promise(requestAnimationFrame);
   for (const one of document.querySelectorAll("main section, main h3, main .table, main figure")) {
