@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from .csvtable import Field, Row, Table, match_columns, read_table
 from .errors import Findings, Location, listing, suggest
 from .number_text import NumberError, read_number, read_printed
-from .unit_text import UnitError, examples, parse_unit
+from .unit_text import Unit, UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
     from .quantity import Printed
@@ -26,6 +27,8 @@ _INDEX = re.compile(r"[1-9][0-9]{0,8}(?:-[1-9][0-9]{0,8})?")
 _EXPECT = ("", "differs")
 _ARROW = " -> "
 _CODE = re.compile(r"#[A-Z]+!")
+_OPEN = re.compile(r"\^[^\W\d]\w*$")
+"""The end of a unit whose exponent is another cell, such as ``N/m^alpha``."""
 
 
 @dataclass(frozen=True)
@@ -191,9 +194,15 @@ def _printed(table: Table, fields: Mapping[str, Field], findings: Findings) -> P
     try:
         unit = parse_unit(written.text)
     except UnitError as error:
+        if _OPEN.search(written.text):  # the sheet knows whose it is
+            return _number(table, number, Unit(written.text, Fraction(1), ()), findings)
         at = table.at(written, error.start, len(error.text))
         known = "a unit, 1 for a pure number"
         findings.add(error.code, at, text=error.text, suggestion=error.suggestion, known=known)
+    return _number(table, number, unit, findings)
+
+
+def _number(table: Table, number: Field, unit: Unit, findings: Findings) -> Printed | None:
     try:
         return read_printed(number.text, unit, where=table.source.trace(number.offset))
     except NumberError as error:
@@ -216,7 +225,7 @@ def check_published(
         The columns that the publication does not print, with the place that says so.
     cells : mapping of str to (str, collection of tuple of int)
         For each cell its SI unit and the indices that it has: ``{()}`` for a scalar. A unit that is not
-        fixed, such as ``N/m^alpha``, is not compared.
+        fixed, such as ``N/m^alpha``, has no other that it converts to.
     findings : Findings
         Where unknown cells and indices go, and units of another dimension.
     """
@@ -243,14 +252,22 @@ def check_published(
             findings.add(
                 "LS506", value.places.get("index"), name=value.cell, text=text, known=_indices(indices)
             )
-        try:
-            expected = parse_unit(unit)
-        except UnitError:
-            continue
-        if parse_unit(value.printed.unit).dimension != expected.dimension:
+        if (others := _convertible(value.printed.unit, unit)) is not None:
             at = value.places.get("unit")
-            known = examples(expected)
-            findings.add("LS422", at, name=value.cell, text=value.printed.unit, unit=unit, known=known)
+            findings.add("LS422", at, name=value.cell, text=value.printed.unit, unit=unit, known=others)
+
+
+def _convertible(written: str, unit: str) -> str | None:
+    """None where a unit converts to that of a cell, else what does."""
+    try:
+        expected = parse_unit(unit)
+    except UnitError:
+        return None if written == unit else f"{unit} as it stands: its size hangs on the exponent"
+    try:
+        fits = parse_unit(written).dimension == expected.dimension
+    except UnitError:
+        fits = False
+    return None if fits else examples(expected)
 
 
 def _indices(indices: Collection[tuple[int, ...]]) -> str:

@@ -471,7 +471,11 @@ def test_findings_in_the_published_values(row: str, expected: list[str], finding
         ("T,alpha,,1,1,,", "LS506"),
         ("T,mean,1,1,1,,", "LS506"),
         ("T,alpha,1-2,1,mm,,", "LS422"),
-        ("T,C,1-2,1,N,,", None),
+        ("T,C,1-2,1,N/m^alpha,,", None),
+        ("T,C,1-2,1,N,,", "LS422"),
+        ("T,C,1-2,1,kg/(m s),,", "LS422"),
+        ("T,C,1-2,1,N/m^alpha_log,,", "LS422"),
+        ("T,alpha,1-2,1,N/m^alpha,,", "LS422"),
     ],
 )
 def test_published_values_against_the_sheet(row: str, code: str | None, read: Reader) -> None:

@@ -25,7 +25,16 @@ function measurementsCsv(state) {
 function savedTests(state) {
   const full = state.tests.filter(({ cells }) => Object.values(cells).some(Boolean)), labels = full.map(({ label }) => label);
   const gone = page.history.issued.tests.filter(({ label }) => !labels.includes(label));
-  return [...full, ...gone.map((test) => ({ ...test, used: false, reason: test.reason || "removed" }))];
+  const why = ({ label }) => (state.tests.some((test) => test.label === label) ? "its numbers were deleted" : "removed");
+  return [...full, ...gone.map((test) => ({ ...test, used: false, reason: test.reason || why(test) }))];
+}
+
+// The inputs that a build of the files would refuse.
+function refusedInputs(state) {
+  const refused = (name, text) => readInput(LIVE.columns[name].given, text).why;
+  const measured = savedTests(state).filter(({ used }) => used).flatMap(({ label, cells }) =>
+    Object.keys(cells).filter((name) => refused(name, cells[name])).map((name) => `${name}[${label}]`));
+  return [...measured, ...Object.keys(state.parameters).filter((name) => refused(name, state.parameters[name]))];
 }
 
 // What stands for the uncertainty of a number that came without one: half a unit of its last digit, rectangular.
@@ -52,7 +61,8 @@ function save() {
     const url = URL.createObjectURL(new Blob([text], { type: "text/plain;charset=utf-8" }));
     return make("a", { href: url, download: name }, name);
   });
-  note("Saved: ", ...links.flatMap((link, n) => (n ? [" ", link] : [link])));
+  const refused = refusedInputs(now), until = refused.length ? `. No build takes them before this is a number that is allowed: ${refused.join(", ")}.` : "";
+  note("Saved: ", ...links.flatMap((link, n) => (n ? [" ", link] : [link])), until);
   // WebKit drops a download that has not begun when the next one is asked for.
   links.forEach((link, n) => setTimeout(() => link.click(), 500 * n));
   lasting.safe = now;

@@ -102,6 +102,7 @@ function shareLink() {
 // --- closing -----------------------------------------------------------------------------------------------
 
 function onLeave(event) {
+  commit();
   if (sameState(page.history.now, page.history.issued) || page.history.now === lasting.safe) return;
   event.preventDefault();
   event.returnValue = true; // what older browsers ask for

@@ -268,6 +268,9 @@ function listen() {
     if (target.dataset.use) useTest(Number(target.dataset.use), target.checked);
     if (target.dataset.reason) giveReason(Number(target.dataset.reason), target.value);
   });
+  // A button of the bar leaves the focus where it is: what is being typed is entered by the click, not before
+  // it, or the bar would grow and take the button from under the pointer.
+  byId("live-dock").addEventListener("mousedown", (event) => event.target.closest("button") && event.preventDefault());
   addEventListener("beforeunload", onLeave);
   addEventListener("hashchange", () => followLink() && show());
   document.addEventListener("click", (event) => {
@@ -277,6 +280,7 @@ function listen() {
 }
 
 function pressed(button) {
+  commit();
   const actions = { "live-undo": undo, "live-redo": redo, "live-reset": reset, "live-save": save, "live-link": shareLink, "live-add": addTest };
   if (button.dataset.goto) goTo(button.dataset.goto);
   else if (button.matches("[data-copy]")) copyTable(button.parentElement.querySelector("table"));

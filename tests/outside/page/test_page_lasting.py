@@ -80,6 +80,14 @@ def test_edits_are_there_after_a_reload(open_page: Open, copied: Path) -> None:
     assert live.text("live-note") == ""
 
 
+def test_what_is_being_typed_is_there_after_a_reload(open_page: Open, copied: Path) -> None:
+    live = open_page(copied)
+    live.input("x_p", 2).click()
+    live.page.keyboard.type("29.99")
+    reload(live)
+    assert live.input("x_p", 2).input_value() == "29.99"
+
+
 def test_a_link_carries_the_edits(open_page: Open, copied: Path) -> None:
     live = open_page(copied)
     edit(live)

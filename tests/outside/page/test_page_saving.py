@@ -70,6 +70,24 @@ def test_an_empty_row_is_dropped(live: Live, tmp_path: Path) -> None:
     assert len(lines) == 6
 
 
+def test_what_is_being_typed_is_saved(live: Live, tmp_path: Path) -> None:
+    """Without Enter: the press on the button must not move it away from under the pointer."""
+    live.input("x_p", 2).click()
+    live.page.keyboard.type("29.99")
+    lines = (live.save(tmp_path / "saved") / "measurements.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[2] == "2,2.940,0.512,29.99"
+
+
+def test_what_no_build_would_take_is_told(live: Live, tmp_path: Path) -> None:
+    live.type("x_p", 2, "abc")
+    for name in driving.TITLES:
+        live.input(name, 3).click()
+        live.press("Delete")
+    lines = (live.save(tmp_path / "saved") / "measurements.csv").read_text(encoding="utf-8").splitlines()
+    assert "3,4.089,0.479,41.6,its numbers were deleted" in lines
+    assert live.text("live-note").endswith("a number that is allowed: x_p[2].")
+
+
 def test_a_reason_is_taken_back_and_given_again(live: Live) -> None:
     live.page.locator('[data-use="3"]').click()
     why = live.page.locator('[data-reason="3"]')
