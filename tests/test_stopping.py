@@ -53,7 +53,7 @@ def left(*folders: Path) -> list[str]:
 def named(out: Path) -> list[str]:
     """What `verify` says of the files that are there, beside the manifest that is there."""
     then = read_manifest(out)
-    return [check.message for check in _outputs(out, then, then) if not check.passed]
+    return [check.message for check in _outputs(out, then, then, "") if not check.passed]
 
 
 def outputs(**texts: str) -> dict[str, str]:

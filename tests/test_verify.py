@@ -160,6 +160,22 @@ def test_what_the_judge_of_the_engines_allows_is_rounding(
         assert found.verdict.startswith("different: nothing changed but the machine, which rounds ")
 
 
+def test_what_is_correctly_rounded_is_not_rounded_otherwise(campaign: Path) -> None:
+    """Who changes a number a little and the manifest with it is found out: nobody's processor does that."""
+    values, manifest = campaign / "out" / "values.json", campaign / "out" / "manifest.json"
+    text = values.read_text()
+    value = json.loads(text)["cells"]["alpha"]["value"][0]
+    values.write_text(text.replace(repr(value), repr(float(np.nextafter(value, 2)))))
+    was, now = (hashlib.sha256(each).hexdigest() for each in (text.encode(), values.read_bytes()))
+    manifest.write_text(
+        manifest.read_text().replace(was, now).replace(provenance.processor(), "x86_64 X86_V1")
+    )
+    found = verify(campaign / "out", campaign)
+    assert found.differences is not None
+    assert (found.differences.noise, found.differences.any) == (1, False)
+    assert failed(found)["output"] == ["values.json"]
+
+
 def test_the_folder_is_the_one_that_holds_the_report_or_where_one_stands_or_the_paper(
     issued: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
