@@ -203,8 +203,9 @@ def test_bar_says_where_a_number_comes_from(live: Live) -> None:
 
 
 _BROKEN = """() => Array.from(document.querySelectorAll("main math[display=block]")).filter((math) => {
-  const [first, ...others] = Array.from(math.children, (part) => part.getBoundingClientRect());
-  return others.some(({ top, bottom }) => top >= first.bottom || bottom <= first.top);
+  const parts = Array.from(math.children, (part) => part.getBoundingClientRect());
+  const highest = parts.reduce((one, other) => (one.height >= other.height ? one : other));
+  return parts.some(({ top, bottom }) => top >= highest.bottom || bottom <= highest.top);
 }).map((math) => math.closest("article, section")?.id)"""
 
 
