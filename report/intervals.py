@@ -10,6 +10,7 @@ NumPy's functions accept these arrays, so that a generated program runs on them 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -96,7 +97,7 @@ class Intervals(NDArrayOperatorsMixin):
         slack = size * 2.0**-52
         low, high = (np.sum(end, axis=axis, keepdims=keepdims) for end in (self.low, self.high))
         sizes = [np.sum(np.abs(end), axis=axis, keepdims=keepdims) for end in (self.low, self.high)]
-        return _cleaned(_below(low - slack * sizes[0]), _above(high + slack * sizes[1]))
+        return _outwards(low - slack * sizes[0], high + slack * sizes[1])
 
     def middle(self) -> tuple[Intervals, Intervals]:
         """The one in the middle along the last dimension, or the two there: the lower and the higher."""
@@ -154,6 +155,8 @@ def _above(value: Any) -> Array:
 def _cleaned(low: Any, high: Any) -> Intervals:
     """No number means that nothing is known."""
     unknown = np.isnan(low) | np.isnan(high)
+    if not unknown.any():
+        return Intervals(low, high)
     return Intervals(np.where(unknown, -np.inf, low), np.where(unknown, np.inf, high))
 
 
@@ -166,14 +169,29 @@ def _loosely(low: Any, high: Any) -> Intervals:
     return _outwards(low - WIDER * np.abs(low), high + WIDER * np.abs(high))
 
 
+def _at_ends(function: Callable[[Any], Any], a: Intervals) -> tuple[Any, Any]:
+    """A function of both ends, called once: what it takes is mostly the calling."""
+    if a.low is a.high:
+        found = function(a.low)
+        return found, found
+    if a.low.shape != a.high.shape:
+        return function(a.low), function(a.high)
+    low, high = function(np.stack([a.low, a.high]))
+    return low, high
+
+
 # --- operations ------------------------------------------------------------------------------------------
 
 
 def _multiply(a: Intervals, b: Intervals) -> Intervals:
-    # Nothing times anything is nothing, however large.
-    ends = [np.nan_to_num(x * y, nan=0.0, posinf=np.inf, neginf=-np.inf)
-            for x in (a.low, a.high) for y in (b.low, b.high)]  # fmt: skip
-    low, high = np.minimum.reduce(np.broadcast_arrays(*ends)), np.maximum.reduce(np.broadcast_arrays(*ends))
+    if a.low is a.high:
+        a, b = b, a
+    ends = [x * y for x in (a.low, a.high) for y in ((b.low,) if b.low is b.high else (b.low, b.high))]
+    low, high = reduce(np.minimum, ends), reduce(np.maximum, ends)
+    if np.isnan(low).any():
+        # Nothing times anything is nothing, however large.
+        ends = [np.nan_to_num(end, nan=0.0, posinf=np.inf, neginf=-np.inf) for end in ends]
+        low, high = reduce(np.minimum, ends), reduce(np.maximum, ends)
     return _outwards(low, high)
 
 
@@ -209,12 +227,12 @@ def _whole_power(base: Intervals, exponent: int) -> Intervals:
 
 
 def _exp(a: Intervals) -> Intervals:
-    found = _loosely(elementary.exp(a.low), elementary.exp(a.high))
+    found = _loosely(*_at_ends(elementary.exp, a))
     return Intervals(np.maximum(found.low, 0.0), found.high)
 
 
 def _log(a: Intervals) -> Intervals:
-    low, high = elementary.log(a.low), elementary.log(a.high)
+    low, high = _at_ends(elementary.log, a)
     return _loosely(np.where(a.low > 0, low, -np.inf), np.where(a.high > 0, high, np.nan))
 
 

@@ -74,10 +74,8 @@ def isolate(enclose: Enclose, low: Array, high: Array, signs: tuple[Array, Array
     found = Isolated([[] for _ in rows])
     if not rows.size:
         return found
-    first, last = (
-        np.where(at.sign == 0, told, at.sign)
-        for at, told in zip((enclose(rows, end, end)[0] for end in (low, high)), signs, strict=True)
-    )
+    both = enclose(np.tile(rows, 2), *[np.concatenate([low, high])] * 2)[0].sign.reshape(2, -1)
+    first, last = (np.where(at == 0, told, at) for at, told in zip(both, signs, strict=True))
     settled: list[Any] = []
     rows = np.flatnonzero(low < high)
     a, b = low[rows], high[rows]

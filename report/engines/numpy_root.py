@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -285,11 +286,22 @@ class EnclosedRows:
 
     def _block(self, rows: NDArray[np.intp], low: Array, high: Array) -> tuple[Intervals, Intervals]:
         middle = low + (high - low) / 2
+        # The middles are asked for with the parts: what it takes is mostly the calling.
+        both = np.concatenate([rows, rows])
+        at = self._run(both, np.concatenate([low, middle]), np.concatenate([high, middle]))
+        value, slope, known = (each[: len(rows)] for each in at)
+        with np.errstate(all="ignore"):
+            slope = slope.where(known.low == 1)
+            mean = at[0][len(rows) :] + slope * (Intervals(low, high) - Intervals(middle, middle))
+        return value.within(mean), slope
+
+    def _run(self, rows: NDArray[np.intp], low: Array, high: Array) -> list[Intervals]:
+        """What the kernel gives for intervals of the unknown, a row each."""
         batch = rows // self.shape[-1]
 
-        named = {reference.place: cell for reference, cell in self.cells.items()}
-
         def of_rows(end: Array) -> Array:
+            if end.size == 1:
+                return end.reshape(1, 1)
             return np.broadcast_to(end, self.shape).reshape(-1)[rows][:, None]
 
         def of_terms(end: Any) -> Any:
@@ -297,29 +309,29 @@ class EnclosedRows:
                 return end
             return np.broadcast_to(end, (*self.shape[:-1], end.shape[-1])).reshape(-1, end.shape[-1])[batch]
 
-        def cell(reference: Reference) -> Intervals | None:
-            if reference.place not in named:
-                return None  # the unknown
-            found, take = named[reference.place], of_rows if reference.over is None else of_terms
-            return Intervals(take(found.low), take(found.high))
+        def taken(reference: Reference) -> Intervals:
+            found = self._named.get(reference)
+            if found is None:
+                return Intervals(low[:, None], high[:, None])  # the unknown
+            take = of_rows if reference.over is None else of_terms
+            first = take(found.low)
+            return Intervals(first, first if found.low is found.high else take(found.high))
 
-        given = [cell(reference) for reference in self.kernel.references]
-        sums = [KeptIntervals(of_terms(self.kept[axis])) for axis in self.kernel.totals]
+        given: Any = [taken(reference) for reference in self.kernel.references]
+        sums: Any = [KeptIntervals(of_terms(self.kept[axis])) for axis in self.kernel.totals]
+        parts: Any
+        try:
+            with np.errstate(all="ignore"):
+                parts = self.kernel.run(*given, *sums)
+        except TypeError:  # intervals do not know some function
+            parts = (whole((1,)), whole((1,)), np.zeros(1))
+        return [Intervals.of(part).broadcast((len(rows), 1))[:, 0] for part in parts]
 
-        def at(left: Array, right: Array) -> list[Intervals]:
-            here = Intervals(left[:, None], right[:, None])
-            try:
-                run: Any = self.kernel.run
-                parts = run(*(here if each is None else each for each in given), *sums)
-            except TypeError:  # intervals do not know some function
-                parts = (whole((1,)), whole((1,)), 0)
-            return [Intervals.of(part).broadcast((len(rows), 1))[:, 0] for part in parts]
-
-        with np.errstate(all="ignore"):
-            value, slope, known = at(low, high)
-            slope = slope.where(known.low == 1)
-            mean = at(middle, middle)[0] + slope * (Intervals(low, high) - Intervals(middle, middle))
-        return value.within(mean), slope
+    @cached_property
+    def _named(self) -> dict[Reference, Intervals]:
+        """The cells of the kernel's references, of which more may be assumed than where they come from."""
+        places = {reference.place: cell for reference, cell in self.cells.items()}
+        return {r: places[r.place] for r in self.kernel.references if r.place in places}
 
 
 _BLOCK = 1 << 18

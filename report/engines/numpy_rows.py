@@ -70,7 +70,9 @@ class KeptIntervals:
     def total(self, terms: Any) -> Intervals:
         """The sum of the kept rows (..., 1)."""
         every = self._every(terms)
-        return Intervals(*(np.where(self.mask, end, 0.0) for end in (every.low, every.high))).total()
+        if not self.mask.all():
+            every = Intervals(*(np.where(self.mask, end, 0.0) for end in (every.low, every.high)))
+        return every.total()
 
     def median(self, terms: Any) -> Intervals:
         """The median, of all rows."""
