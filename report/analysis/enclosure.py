@@ -162,6 +162,8 @@ class Enclosure:
             one &= (turn.high <= low.low) | (turn.low >= high.high)
         if program.enclosing is not None:
             one &= self._counted(program, column, low, high, (at_low.sign, at_high.sign)) == 1
+        if not one.any():
+            return whole(shape), one
         left, right = self._bracket(at, low.low.copy(), high.high.copy(), after)
         (value,) = run_value(Intervals(left, right), *rest, *totals)
         found = Intervals.of(value).broadcast(shape)
@@ -174,7 +176,7 @@ class Enclosure:
         assert program.enclosing is not None
         cells = {r: Intervals.of(self._argument(r, column, self.value)) for r in program.fixed.references}
         kept = {axis: np.ones(self.layouts[axis].size, dtype=bool) for axis in program.enclosing.totals}
-        rows = EnclosedRows(program.enclosing, cells, kept, low.shape)
+        rows = EnclosedRows(program.enclosing, cells, kept, low.shape, moving=True)
         ends = [end.reshape(-1) for end in (low.low, high.high, *signs)]
         found = rows.isolate(np.arange(ends[0].size), ends[0], ends[1], (ends[2], ends[3]))
         number = [-1 if row in found.undecided else len(own) for row, own in enumerate(found.brackets)]

@@ -135,7 +135,7 @@ def of_arrays(kernel: Kernel, cells: Mapping[Any, Intervals], kept: Mapping[str,
 
     def enclose(low: Any, high: Any) -> tuple[int, int]:
         a, b = (np.array([float(end)]) for end in (low, high))
-        value, slope = rows.enclose(np.zeros(1, dtype=np.intp), a, b)
+        value, slope, _ = rows.enclose(np.zeros(1, dtype=np.intp), a, b)
         return int(value.sign[0]), int(slope.sign[0])
 
     return enclose

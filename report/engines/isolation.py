@@ -22,7 +22,7 @@ from ..intervals import Intervals
 __all__ = ["HALVINGS", "Doubtful", "Isolated", "crossings", "isolate"]
 
 Array = NDArray[np.float64]
-Enclose = Callable[[NDArray[np.intp], Array, Array], tuple[Intervals, Intervals]]
+Enclose = Callable[[NDArray[np.intp], Array, Array], tuple[Intervals, Intervals, NDArray[np.bool_]]]
 
 HALVINGS = 48
 """How often a part is halved before it is given up."""
@@ -65,7 +65,8 @@ def isolate(enclose: Enclose, low: Array, high: Array, signs: tuple[Array, Array
     ----------
     enclose : callable
         For numbers of rows and the ends of a part of each: an interval that holds the equation's values there
-        and one that holds its slope, all of the numbers where the equation may not be continuous.
+        and one that holds its slope, all of the numbers where the equation may not be continuous; then,
+        whether to give the row up.
     low, high : float arrays (rows,)
     signs : tuple of float array (rows,)
         The equation's signs at both ends where intervals cannot tell them; 0 where nobody can.
@@ -80,13 +81,13 @@ def isolate(enclose: Enclose, low: Array, high: Array, signs: tuple[Array, Array
     rows = np.flatnonzero(low < high)
     a, b = low[rows], high[rows]
     for _ in range(HALVINGS):
-        value, slope = enclose(rows, a, b)
+        value, slope, hopeless = enclose(rows, a, b)
         middle = a + (b - a) / 2
         done = (value.sign != 0) | (slope.sign != 0)
         settled.append([each[done] for each in (rows, a, b, value.sign, slope.sign)])
-        rows, a, b, middle = (each[~done] for each in (rows, a, b, middle))
+        rows, a, b, middle, hopeless = (each[~done] for each in (rows, a, b, middle, hopeless))
         crowded = np.bincount(rows, minlength=len(low))[rows] > CROWD
-        whole = crowded | ~((middle > a) & (middle < b))
+        whole = crowded | hopeless | ~((middle > a) & (middle < b))
         for row, left, right in zip(*(each[whole].tolist() for each in (rows, a, b)), strict=True):
             found.doubt(row, left, right)
         # Of a row that is given up nothing more is asked.

@@ -8,7 +8,8 @@ made by :mod:`~loopsheet.report.engines.numpy_code` from the sheet's own express
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -84,6 +85,13 @@ class Program:
             if column.requires:
                 conditions[column.name] = kernel([c for c, _ in column.requires], sheet.indices, functions)
         return cls(sheet, formulas, roots, conditions, guards, domains, signs)
+
+    @cached_property
+    def guessing(self) -> Program:
+        """The same without counting roots by intervals: what it finds is not known to be the only root."""
+        if all(root.enclosing is None for root in self.roots.values()):
+            return self
+        return replace(self, roots={name: replace(root, counted=False) for name, root in self.roots.items()})
 
     @property
     def source(self) -> str:

@@ -83,6 +83,9 @@ class RootProgram:
     enclosing : Kernel or None
         What intervals are put into (:func:`~loopsheet.report.engines.certified.enclosing`), where the number
         of roots is not certified for all inputs at once.
+    counted : bool
+        Whether :meth:`solve` counts the roots by these intervals before it takes one. It takes long, and a
+        search that proves nothing does without until it has found something.
     """
 
     rule: Root
@@ -94,6 +97,7 @@ class RootProgram:
     value: Function
     source: str
     enclosing: Kernel | None = None
+    counted: bool = True
 
     @classmethod
     def of(cls, sheet: Sheet, column: Column, functions: Any = SAME) -> RootProgram:
@@ -146,7 +150,7 @@ class RootProgram:
         rows = _Rows(self, fixed[len(ends) :], [totals[axis] for axis in self.totals])
         stretches, odd = self._stretches(ends, rows)
         doubts: Mapping[int, tuple[float, float]] = {}
-        if self.enclosing is not None:
+        if self.enclosing is not None and self.counted:
             thin = {
                 reference: Intervals(cell, cell)
                 for reference, cell in zip(self.fixed.references, arguments, strict=True)
@@ -255,12 +259,16 @@ class EnclosedRows:
         For the axes that it sums over, the rows that have values.
     shape : tuple of int
         Of the root's rows, batch first.
+    moving : bool
+        Whether cells are intervals: halving the unknown's then settles nothing around a point where nothing
+        is certain, and the row is given up.
     """
 
     kernel: Kernel
     cells: Mapping[Reference, Intervals]
     kept: Mapping[str, Mask]
     shape: tuple[int, ...]
+    moving: bool = False
 
     def isolate(
         self, asked: NDArray[np.intp], low: Array, high: Array, signs: tuple[Array, Array]
@@ -268,8 +276,8 @@ class EnclosedRows:
         """The roots of some rows, numbered in the flattened shape."""
         return isolate(lambda rows, a, b: self.enclose(asked[rows], a, b), low, high, signs)
 
-    def enclose(self, rows: NDArray[np.intp], low: Array, high: Array) -> tuple[Intervals, Intervals]:
-        """The equation and its slope, the slope whole where it does not tell the equation's course.
+    def enclose(self, rows: NDArray[np.intp], low: Array, high: Array) -> tuple[Intervals, Intervals, Mask]:
+        """The equation, its slope, whole where it does not tell the course, and whether to give the row up.
 
         Parameters
         ----------
@@ -281,19 +289,19 @@ class EnclosedRows:
         each = max(1, _BLOCK // max(1, terms))
         blocks = [slice(n, n + each) for n in range(0, max(len(rows), 1), each)]
         found = [self._block(rows[block], low[block], high[block]) for block in blocks]
-        values, slopes = zip(*found, strict=True)
-        return _joined(values), _joined(slopes)
+        values, slopes, hopeless = zip(*found, strict=True)
+        return _joined(values), _joined(slopes), np.concatenate(hopeless)
 
-    def _block(self, rows: NDArray[np.intp], low: Array, high: Array) -> tuple[Intervals, Intervals]:
+    def _block(self, rows: NDArray[np.intp], low: Array, high: Array) -> tuple[Intervals, Intervals, Mask]:
         middle = low + (high - low) / 2
         # The middles are asked for with the parts: what it takes is mostly the calling.
         both = np.concatenate([rows, rows])
         at = self._run(both, np.concatenate([low, middle]), np.concatenate([high, middle]))
-        value, slope, known = (each[: len(rows)] for each in at)
+        at[1] = at[1].where(at[2].low == 1)
+        (value, there), (slope, course) = ((each[: len(rows)], each[len(rows) :]) for each in at[:2])
         with np.errstate(all="ignore"):
-            slope = slope.where(known.low == 1)
-            mean = at[0][len(rows) :] + slope * (Intervals(low, high) - Intervals(middle, middle))
-        return value.within(mean), slope
+            mean = there + slope * (Intervals(low, high) - Intervals(middle, middle))
+        return value.within(mean), slope, (there.sign == 0) & (course.sign == 0) & self.moving
 
     def _run(self, rows: NDArray[np.intp], low: Array, high: Array) -> list[Intervals]:
         """What the kernel gives for intervals of the unknown, a row each."""

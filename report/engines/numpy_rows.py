@@ -52,6 +52,8 @@ class Kept:
         return bool(self.mask.all())
 
     def _every(self, terms: Any) -> Any:
+        if np.shape(terms)[-1:] == self.mask.shape[-1:]:
+            return terms
         # A term that names no row is the same for all.
         return np.broadcast_to(terms, np.broadcast_shapes(np.shape(terms), self.mask.shape[-1:]))
 

@@ -161,7 +161,11 @@ class Certificate:
         if not which.size:
             return 0.0
         try:
-            cells, slopes = self._cells[1][which], self._slopes[which]
+            slopes = self._slopes[which]
+            moves = (self._enclosed.offsets.low < 0) | (self._enclosed.offsets.high > 0)
+            if (np.isinf(slopes.low) & np.isinf(slopes.high) & moves).any():
+                return 0.0  # what may do anything over the box need not be looked at in its middle
+            cells = self._cells[1][which]
         except _NOT_POSSIBLE:
             return 0.0
         own = own[which]

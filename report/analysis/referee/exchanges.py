@@ -89,7 +89,7 @@ def orders(search: Search) -> Iterator[Explained]:
             continue
         changed, point, order = search.problem, search.problem.box.start, list(members)
         for _ in range(5):
-            cells = search.problem.evaluate(point[None])[0]
+            cells = search.problem.guessing.evaluate(point[None])[0]
             if not np.isfinite(cells).all():
                 break
             new = _assigned(search.problem, members, cells)

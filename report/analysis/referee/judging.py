@@ -34,7 +34,7 @@ from .certificate import Certificate
 from .comparison import prints_same
 from .explain import Explained, explanations
 from .labels import fits, labels
-from .minimax import Best, meet
+from .minimax import Best, counted, meet
 from .problem import Problem
 from .values import verdicts
 
@@ -143,7 +143,7 @@ def _together(
 ) -> tuple[TableVerdict, Best]:
     """Whether some of the values come out of one input."""
     problem = whole.only(which)
-    found = meet(problem)
+    found = counted(problem, meet(problem))
     if not np.isfinite(found.mismatch):
         return TableVerdict(source, len(which), NOT_CHECKABLE), found
     exact = all(

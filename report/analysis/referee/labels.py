@@ -11,7 +11,7 @@ from ...sheet import Column
 from ...verdict import Fit, Relabelled
 from ...verdict_words import mismatch as in_words
 from .explain import Explained
-from .minimax import best
+from .minimax import best, counted
 from .problem import Box, Problem
 
 __all__ = ["fits", "labels", "numbers_of"]
@@ -93,7 +93,8 @@ def _alike(one: Column, other: Column) -> bool:
 def _as(problem: Problem, members: Sequence[int], cell: str, first: Explained | None) -> float:
     """The worst mismatch of all values if some were those of another column."""
     asked = (problem if first is None else first.problem).renamed(members, cell)
-    return best(asked, _like(asked, first)).mismatch
+    box = _like(asked, first)
+    return counted(asked, best(asked, box), box).mismatch
 
 
 def _like(problem: Problem, first: Explained | None) -> Box | None:
@@ -137,7 +138,8 @@ def fits(problem: Problem, names: Sequence[str], first: Explained | None) -> tup
         for name in rivals:
             those = [*asked, replace(value, cell=name)]
             own = Problem.of(campaign, those, campaign.free, whole.conventions)
-            mismatch[name] = best(own, _like(own, first), until=PLENTY).mismatch
+            box = _like(own, first)
+            mismatch[name] = counted(own, best(own, box, until=PLENTY), box).mismatch
         # Which of two that are shown alike comes first shall not depend on their last digits.
         ranked = sorted(mismatch.items(), key=lambda item: (float(in_words(item[1])), names.index(item[0])))
         found.append(Fit(value, dict(ranked)))

@@ -17,7 +17,7 @@ from ...elementary import exp, log
 from .campaign import Array
 from .problem import Box, Problem
 
-__all__ = ["Best", "best", "meet"]
+__all__ = ["Best", "best", "counted", "meet"]
 
 STEPS = 100
 PATIENCE = 5
@@ -82,8 +82,38 @@ def best(
         Stop as soon as the derivatives promise no less than this.
     slopes : float array (published, unknowns), optional
         Derivatives near the start, if they are known.
+
+    Returns
+    -------
+    Best
+        With its roots counted where the mismatch is at most 1, and something would be claimed.
     """
-    box = box or problem.box
+    found = _sought(problem.guessing, box or problem.box, until, unless, slopes)
+    return counted(problem, found, box) if found.mismatch <= 1 else found
+
+
+def counted(problem: Problem, found: Best, box: Box | None = None) -> Best:
+    """What a search found, with its roots counted: it may be told. If they refute it, what else there is.
+
+    Parameters
+    ----------
+    problem : Problem
+    found : Best
+    box : Box, optional
+        That it was sought in.
+    """
+    if problem.guessing is problem or not np.isfinite(found.mismatch):
+        return found
+    cells = problem.evaluate(found.point[None])[0]
+    if np.isfinite(worst := _worst(problem, cells)):
+        return replace(found, cells=cells, mismatch=worst)
+    return _sought(problem, box or problem.box)
+
+
+def _sought(
+    problem: Problem, box: Box, until: float = 0.0, unless: float = np.inf, slopes: Array | None = None
+) -> Best:
+    """The best point for a problem as it is, whether it counts roots or not."""
     point = np.clip(box.start, box.low, box.high)
     cells = problem.evaluate(point[None])[0]
     worst, trust, weights = _worst(problem, cells), 1.0, np.zeros(len(cells))
@@ -202,6 +232,7 @@ def meet(problem: Problem, box: Box | None = None, found: Best | None = None, un
 
 def _starts(problem: Problem, box: Box) -> Array:
     """Points of the box that are least wrong among some that have no order; the same for the same problem."""
+    problem = problem.guessing
     printed = np.array([unknown.printed is not None for unknown in problem.unknowns], dtype=bool)
     # What is looked for in a wide range has a start of its own.
     near = printed & (box.width <= 2 * problem.box.width)

@@ -64,7 +64,7 @@ class _Cell:
 
     def units(self, problem: Problem, point: Array) -> int | None:
         """How many units further it prints at a point; None if it has no value there."""
-        value = point[self.n] if self.given else problem.evaluate(point[None])[0, self.n]
+        value = point[self.n] if self.given else problem.guessing.evaluate(point[None])[0, self.n]
         return moved(self.printed, Fraction(float(value))) if np.isfinite(value) else None
 
     def change(self, problem: Problem, would: str, also: Sequence[str], span: tuple[str, ...]) -> Change:
@@ -226,6 +226,7 @@ def _run(place: int, alive: list[int]) -> tuple[int, int]:
 
 def _promising(problem: Problem, n: int, pieces: list[Box], alive: list[int]) -> list[int]:
     """Pieces whose middle leaves least to what the other inputs can do, of neighbours the best."""
+    problem = problem.guessing
     points = problem.restarted(np.stack([pieces[place].start for place in alive]))
     off = np.abs(problem.mismatch(problem.evaluate(points)))
     slopes = np.abs(np.nan_to_num(problem.slopes(problem.box.start, problem.box)))

@@ -111,6 +111,14 @@ class Problem:
         return self.program.sheet
 
     @cached_property
+    def guessing(self) -> Problem:
+        """The same for a search: its roots are not counted, so that nothing may be told that it evaluates."""
+        program = self.program.guessing
+        if program is self.program and all(way is None or way.guessing is way for way in self.ways):
+            return self
+        return replace(self, program=program, ways=tuple(way and way.guessing for way in self.ways))
+
+    @cached_property
     def size(self) -> int:
         """How many cells its sheet has."""
         return how_large(self.sheet, self.campaign.values.layouts)
@@ -173,7 +181,7 @@ class Problem:
         given = [column.name for column in program.sheet.columns if isinstance(column.rule, Given)]
         data = {name: self.campaign.data[name] for name in given}
         data |= {name: points[..., rows] for name, rows in self.rows.items() if name in data}
-        values = evaluate(program.sheet, self.campaign.labels, data, program)
+        values = evaluate(program.sheet, self.campaign.labels, data, program.guessing)
         found = points.copy()
         for n in free:
             unknown = self.unknowns[n]

@@ -78,7 +78,7 @@ class _Alone:
         From the given corners (published, unknowns), one unknown after another goes to its other end, the
         one that leads furthest first, until none leads further.
         """
-        problem, box = self.problem, self.problem.box
+        problem, box = self.problem.guessing, self.problem.box
         known = np.array([unknown.printed is not None for unknown in problem.unknowns], dtype=bool)
         moving = np.flatnonzero(known & (box.width > 0))
         found = np.diagonal(problem.evaluate(corners)).copy()
@@ -95,6 +95,8 @@ class _Alone:
             going, best, reached = going[further], best[further], reached[further]
             corners[going] = tried[further, best]
             found[going] = reached
+        if problem is not self.problem:
+            found = np.diagonal(self.problem.evaluate(corners))
         return corners, found
 
     def _on_the_way(self, start: Array, end: Array, least: Array, largest: Array) -> Array:
@@ -105,7 +107,7 @@ class _Alone:
         asked = np.flatnonzero(share == 0.5)
         for _ in range(HALVINGS):
             points = start[asked] + share[asked, None] * (end - start)[asked]
-            cells = self.problem.evaluate(points)[np.arange(len(asked)), asked]
+            cells = self.problem.guessing.evaluate(points)[np.arange(len(asked)), asked]
             off = np.abs(cells - goal[asked]) / self.problem.half[asked]
             below = cells < goal[asked]
             low[asked] = np.where(below, share[asked], low[asked])

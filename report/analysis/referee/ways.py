@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,12 @@ class Way:
     labels: Mapping[str, Sequence[int]]
     printed: Mapping[str, Array] = field(default_factory=dict)
     rows: Mapping[str, NDArray[np.intp]] = field(default_factory=dict)
+
+    @cached_property
+    def guessing(self) -> Way:
+        """The same without counting roots."""
+        program = self.program.guessing
+        return self if program is self.program else replace(self, program=program)
 
     def evaluate(self, campaign: Campaign, data: Mapping[str, Any], plain: Values) -> Values:
         """Its columns, from the given columns of the whole sheet and what that computes."""
