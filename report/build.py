@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from . import cost
 from .background import Background
 from .crate import added
-from .errors import ForeignCode, UnknownWorkbook, UsageError, close, diagnose, listing
+from .errors import ForeignCode, LoopsheetError, UnknownWorkbook, UsageError, close, diagnose, listing
 from .folders import INPUTS, PAPER, told
 from .inputs import Find, Inputs, load
 from .own_workbook import own_workbook
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from ..derivations.proof import Proof, StepProof
     from .agreement import Agreement
     from .charts import Drawn
+    from .errors import Diagnostic
     from .grid import Grid
     from .layout import Layout
     from .result import Comparison, Report, Shown
@@ -132,8 +133,17 @@ def prepare(folder: Path, find: Find = find_workbook) -> Prepared:
     InputError
         With every finding.
     """
-    inputs = load(folder, find)
+    inputs = load(folder, find, _of_cells)
     return _prepared(inputs, inputs.workbook.ledger())
+
+
+def _of_cells(inputs: Inputs) -> Sequence[Diagnostic]:
+    """What is wrong with the cells that a folder names, if that is asked because something else is wrong."""
+    try:
+        _prepared(inputs, inputs.workbook.ledger()).check_cells()
+    except LoopsheetError as error:
+        return error.diagnostics
+    return ()
 
 
 def _prepared(inputs: Inputs, ledger: Ledger) -> Prepared:
@@ -177,7 +187,7 @@ def compute(folder: Path, step: Step = _silent, prove: bool = True, find: Find =
         As for :func:`prepare`.
     """
     step("reading the folder")
-    inputs = load(folder, find)
+    inputs = load(folder, find, _of_cells)
     ledger = inputs.workbook.ledger()
     report = _evaluated(_prepared(inputs, ledger), ledger, step)
     if not prove:
@@ -426,7 +436,7 @@ def build(
     """
     with staged(out, tell, lambda place: _of_a_crate(place, folder)) as stage, ExitStack() as running:
         step("reading the folder")
-        inputs = load(folder, find)
+        inputs = load(folder, find, _of_cells)
         tell(f"building '{inputs.title}' from {told(folder)} into {out}")
         ledger = inputs.workbook.ledger()
         # Everything that takes long has a process of its own, from when there is what it needs.

@@ -28,6 +28,7 @@ from .tomlfile import TomlFile, read_toml
 from .unit_text import parse_unit
 
 if TYPE_CHECKING:
+    from .errors import Diagnostic
     from .quantity import Printed
     from .workbook import Workbook
 
@@ -35,6 +36,9 @@ __all__ = ["Find", "Inputs", "PublishedValue", "check_cells", "load"]
 
 Find = Callable[[str, Path, bytes | None], "Workbook"]
 """Finds a workbook by its name in report.toml, the folder, and what the file of that name holds."""
+
+More = Callable[["Inputs"], Iterable["Diagnostic"]]
+"""Looks at the cells that a folder names, where what is computed is in order and something else is not."""
 
 LARGEST_TOML = 250_000
 LARGEST_TABLE = 50_000_000
@@ -136,7 +140,7 @@ class Inputs:
         return (self.parameters[name],) if name in self.parameters else ()
 
 
-def load(folder: Path, find_workbook: Find) -> Inputs:
+def load(folder: Path, find_workbook: Find, more: More = lambda _: ()) -> Inputs:
     """Read a report folder.
 
     Parameters
@@ -146,13 +150,15 @@ def load(folder: Path, find_workbook: Find) -> Inputs:
     find_workbook : callable
         Takes the name in report.toml, the folder, and what the file of this name holds if the workbook is
         the user's own; returns the workbook, or raises :class:`UnknownWorkbook` or :class:`ForeignCode`.
+    more : callable
+        Finds what is wrong with the cells, which only the sheet knows, so that it is told in the same round.
 
     Raises
     ------
     InputError
         With every finding in every file, each with its place.
     """
-    return _Reader(folder, find_workbook).read()
+    return _Reader(folder, find_workbook, more).read()
 
 
 def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]]) -> Inputs:
@@ -200,9 +206,10 @@ def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[
 class _Reader:
     """One reading of a folder: what was found and what was read, so far."""
 
-    def __init__(self, folder: Path, find_workbook: Find) -> None:
+    def __init__(self, folder: Path, find_workbook: Find, more: More) -> None:
         self.folder = folder
         self.find_workbook = find_workbook
+        self.more = more
         self.findings = Findings()
         self.files: dict[str, bytes] = {}
         self.toml: TomlFile
@@ -221,12 +228,15 @@ class _Reader:
         title = self.title()
         parameters, given = self.parameters()
         measurements = self.measurements()
+        computable = not self.findings.found
         published = self.published()
         expected = self.expected()
-        self.findings.check()
+        errata = self.errata(measurements) if measurements is not None else {}
+        if not computable:
+            self.findings.check()
         if self.workbook is None or measurements is None:
             raise AssertionError("a folder was refused without a finding")
-        return Inputs(
+        inputs = Inputs(
             self.folder,
             title or self.workbook.title,
             self.workbook,
@@ -239,10 +249,14 @@ class _Reader:
             self.files,
             self.free,
             expected,
-            self.errata(measurements),
+            errata,
             self.by_source,
             measurements.left_out,
         )
+        if self.findings.found:
+            self.findings.found.extend(self.more(inputs))
+        self.findings.check()
+        return inputs
 
     def open_toml(self) -> TomlFile | None:
         try:
@@ -441,7 +455,6 @@ class _Reader:
                 )
             except NumberError as error:
                 self.findings.add(error.code, self.toml.value(*path, address), name=address, **error.fields)
-        self.findings.check()
         return found
 
     def cell(self, address: str, measurements: Measurements, at: Location) -> tuple[str, int] | None:
@@ -466,11 +479,11 @@ class _Reader:
         if not isinstance(table, dict):
             wrong_type(self.toml, self.findings, (path,), "a table [expected]", EXAMPLE)
             return ()
+        # What has no reason is refused, and its cell is looked at all the same.
         reasons = {address: self.text((path,), address, "double bounce heard") for address in table}
         return tuple(
-            Expectation(address, reason, self.toml.key(path, address))
+            Expectation(address, reason or "", self.toml.key(path, address))
             for address, reason in reasons.items()
-            if reason is not None
         )
 
     def published(self) -> tuple[PublishedValue, ...]:

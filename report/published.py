@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from .csvtable import Field, Row, Table, match_columns, read_table
+from .csvtable import Field, Table, match_columns, read_table
 from .errors import Findings, Location, listing, suggest
 from .number_text import NumberError, read_number, read_printed
 from .unit_text import Unit, UnitError, examples, parse_unit
@@ -91,6 +91,8 @@ class PublishedValue:
         The place of each field, for findings that need the sheet.
     label : str
         What the publication calls its row, if that names an equation: ``eq. 6``.
+    unread : frozenset of str
+        Fields that are refused already; the sheet is not asked for more about them.
     """
 
     source: str
@@ -104,6 +106,7 @@ class PublishedValue:
     where: str = ""
     places: Mapping[str, Location] = field(default_factory=dict, compare=False, repr=False)
     label: str = ""
+    unread: frozenset[str] = frozenset()
 
 
 def read_published(source: Source, findings: Findings) -> tuple[PublishedValue, ...]:
@@ -129,27 +132,27 @@ def read_published(source: Source, findings: Findings) -> tuple[PublishedValue, 
         if findings.full:
             break
         fields = {name: row.fields[place] for name, place in places.items()}
-        value = _value(table, row, fields, findings)
+        values.append(_value(table, fields, findings))
         key = (fields["source"].text, fields["cell"].text, fields["index"].text)
         at = table.at(fields["cell"])
         if key in first:
             name = " ".join(filter(None, key[1:]))
             findings.add("LS504", at, text=name, source=key[0], first=first[key])
         first.setdefault(key, at.line)
-        if value is not None:
-            values.append(value)
     return tuple(values)
 
 
-def _value(table: Table, row: Row, fields: Mapping[str, Field], findings: Findings) -> PublishedValue | None:
-    before = len(findings.found)
+def _value(table: Table, fields: Mapping[str, Field], findings: Findings) -> PublishedValue:
+    unread = set()
     allowed = {"source": "where it is printed, such as Table 2", "cell": "the name of a cell, such as alpha"}
     for name, sentence in {**allowed, "unit": "a unit, 1 for a pure number"}.items():
         if not fields[name].text:
             findings.add("LS403", table.at(fields[name]), name=name, allowed=sentence)
+            unread.add(name)
     index = fields["index"]
     if index.text and not _INDEX.fullmatch(index.text):
         findings.add("LS501", table.at(index), text=index.text)
+        unread.add("index")
     words = {name: " ".join(fields[name].text.split()) if name in fields else "" for name in _OPTIONAL}
     if words["expect"] not in _EXPECT:
         at, text = table.at(fields["expect"]), words["expect"]
@@ -158,13 +161,13 @@ def _value(table: Table, row: Row, fields: Mapping[str, Field], findings: Findin
         if words[name] and not words["expect"]:
             findings.add("LS508", table.at(fields[name]), name=name)
     pin = _pin(table, fields["recomputed"], findings) if words["recomputed"] else None
-    printed = _printed(table, fields, findings)
-    if printed is None or len(findings.found) > before:
-        return None
+    printed = _printed(table, fields, unread, findings)
     return PublishedValue(
         fields["source"].text,
         fields["cell"].text,
-        tuple(int(number) for number in index.text.split("-")) if index.text else (),
+        tuple(int(number) for number in index.text.split("-"))
+        if index.text and "index" not in unread
+        else (),
         printed,
         words["expect"],
         pin,
@@ -173,6 +176,7 @@ def _value(table: Table, row: Row, fields: Mapping[str, Field], findings: Findin
         printed.where,
         {name: table.at(field) for name, field in fields.items()},
         words["label"],
+        frozenset(unread),
     )
 
 
@@ -188,7 +192,7 @@ def _pin(table: Table, field: Field, findings: Findings) -> Pin | None:
     return Pin(printed, again)
 
 
-def _printed(table: Table, fields: Mapping[str, Field], findings: Findings) -> Printed | None:
+def _printed(table: Table, fields: Mapping[str, Field], unread: set[str], findings: Findings) -> Printed:
     number, written = fields["value"], fields["unit"]
     unit = parse_unit("1")
     try:
@@ -199,15 +203,16 @@ def _printed(table: Table, fields: Mapping[str, Field], findings: Findings) -> P
         at = table.at(written, error.start, len(error.text))
         known = "a unit, 1 for a pure number"
         findings.add(error.code, at, text=error.text, suggestion=error.suggestion, known=known)
+        unread.add("unit")
     return _number(table, number, unit, findings)
 
 
-def _number(table: Table, number: Field, unit: Unit, findings: Findings) -> Printed | None:
+def _number(table: Table, number: Field, unit: Unit, findings: Findings) -> Printed:
     try:
         return read_printed(number.text, unit, where=table.source.trace(number.offset))
     except NumberError as error:
         findings.add(error.code, table.at(number), name="value", **error.fields)
-    return None
+    return read_printed("0", unit)  # it is refused, and its cell is looked at all the same
 
 
 def check_published(
@@ -236,6 +241,8 @@ def check_published(
     for value in published:
         if findings.full:
             break
+        if "cell" in value.unread:
+            continue
         if value.cell not in cells:
             at = value.places.get("cell")
             findings.add(
@@ -247,12 +254,13 @@ def check_published(
             )
             continue
         unit, indices = cells[value.cell]
-        if value.index not in indices:
+        if value.index not in indices and "index" not in value.unread:
             text = "-".join(map(str, value.index))
             findings.add(
                 "LS506", value.places.get("index"), name=value.cell, text=text, known=_indices(indices)
             )
-        if (others := _convertible(value.printed.unit, unit)) is not None:
+        others = None if "unit" in value.unread else _convertible(value.printed.unit, unit)
+        if others is not None:
             at = value.places.get("unit")
             findings.add("LS422", at, name=value.cell, text=value.printed.unit, unit=unit, known=others)
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 from collections.abc import Callable, Iterator
 from fractions import Fraction
@@ -55,6 +56,35 @@ def published(folder: Path, *rows: str, header: str = "source,cell,index,value,u
     """The end gauge with these published values: 50.000623 mm is given, 50.000838 mm is its length."""
     end_gauge(folder, "\n".join((header, *rows, "")))
     return folder / "published.csv"
+
+
+# --- what is wrong with them -------------------------------------------------------------------------------
+
+
+def test_rows_and_the_cells_that_they_name_are_told_in_one_round(tmp_path: Path, check: Check) -> None:
+    """Of a row without a number its cell is asked for too; a field that is refused is told of once."""
+    rows = (
+        "A,lenght,1,abc,mm",
+        "A,l,77,1.0,mm",
+        "A,l,x,1.0,nonsuch",
+        "A,l_S,,1.0,K",
+        ",d,1,0,m",
+        "A,l,1,1,m",
+    )
+    published(tmp_path, *rows)
+    toml = tmp_path / "report.toml"
+    expected = '[expected]\n"lenght[2]" = ""\n"test 88" = "late"\n'
+    toml.write_text(toml.read_text().replace("[published]", expected + "[published]\nfree = ['alfa']"))
+    code, said = check()
+    assert code == 2
+    found = re.findall(r"^error\[(LS\d+)\].*\n *--> ([^:]*):(\d+)", said, re.MULTILINE)
+    of_rows = sorted((int(line), code) for code, file, line in found if file.endswith("published.csv"))
+    assert of_rows == [
+        (2, "LS401"), (2, "LS505"), (3, "LS506"), (4, "LS421"), (4, "LS501"), (5, "LS422"), (6, "LS403"),
+    ]  # fmt: skip
+    assert sorted(code for code, file, _ in found if file.endswith(".toml")) == [
+        "LS403", "LS505", "LS505", "LS506",
+    ]  # fmt: skip
 
 
 # --- what prints the same ----------------------------------------------------------------------------------
