@@ -61,7 +61,10 @@ def _no_unit(declared: object) -> tuple[str, str] | None:
 
 
 def misnamed(
-    workbook: Workbook, sheet: Sheet, narratives: Collection[str], drawings: Callable[[], Collection[str]]
+    workbook: Workbook,
+    sheet: Sheet,
+    narratives: Mapping[str, Collection[str]],
+    drawings: Callable[[], Collection[str]],
 ) -> Iterator[tuple[str, str, str]]:
     """The words that name nothing: the field that each stands in, the word, and a sentence.
 
@@ -70,8 +73,8 @@ def misnamed(
     workbook : Workbook
     sheet : Sheet
         Its sheet for what was given.
-    narratives : collection of str
-        The texts there are.
+    narratives : mapping of str to collection of str
+        The texts there are, with the cells, axes and equations that each tells of.
     drawings : callable
         Returns the names of the drawings there are; asked only if the workbook has figures.
     """
@@ -84,6 +87,14 @@ def misnamed(
                 yield where, name, _unknown("cell", where, name, scalars)
     if workbook.prose not in narratives:
         yield "prose", workbook.prose, _unknown("text", "prose", workbook.prose, narratives)
+    elif told := narratives[workbook.prose]:
+        there = {*sheet.by_name, *(axis.name for axis in sheet.axes)}
+        there.update(equation.label for equation in workbook.ledger().equations())
+        if missing := [word for word in told if word not in there]:
+            where = (
+                f"the text '{workbook.prose}' tells of {listing(missing)}, which this workbook does not have"
+            )
+            yield "prose", workbook.prose, f"{where}; without prose it has the generic text"
     for figure in workbook.figures:
         if figure.draw not in (known := drawings()):
             yield "figures", figure.draw, _unknown("drawing", "figures", figure.draw, known)

@@ -107,9 +107,10 @@ def built_from(out: Path, inputs: Mapping[str, str]) -> Path:
     Returns
     -------
     Path
-        The folder above the output, its own :data:`INPUTS`, the working directory or the shipped paper,
-        whichever holds these inputs; if none does, one of the first two, whose inputs were changed then.
-        Where the report of the folder above goes, that folder is meant, and no copy of what it held once.
+        The output itself where it is a report folder too, the folder above it, its own :data:`INPUTS`, the
+        working directory or the shipped paper, whichever holds these inputs; if none does, one of the first,
+        whose inputs were changed then. Where the report of a folder goes, that folder is meant, and no copy
+        of what it held once.
 
     Raises
     ------
@@ -119,12 +120,12 @@ def built_from(out: Path, inputs: Mapping[str, str]) -> Path:
     here, above = Path.cwd(), out.resolve().parent
     above = above.relative_to(here) if above.is_relative_to(here) else above
     of_above = is_report(above) and out.resolve() == output(above).resolve()
-    places = (above, above if of_above else out / INPUTS, Path(), PAPER)
-    found = [folder for folder in places if is_report(folder)]
+    near = [out, above] if of_above or is_report(out) else [above, out / INPUTS]
+    found = [folder for folder in (*near, Path(), PAPER) if is_report(folder)]
     for folder in found:
         if holds(folder, inputs):
             return folder
-    if changed := [folder for folder in places[:2] if folder in found]:
+    if changed := [folder for folder in near if folder in found]:
         return changed[0]
     reason = f"it is not in a report folder, and is not that of the working directory or of '{WORD}'"
     raise UsageError(diagnose("LS609", text=out, reason=reason))

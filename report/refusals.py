@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 
 from ..derivations.equation import Ledger
@@ -31,7 +31,10 @@ def _own_code(inputs: Inputs) -> tuple[Path, bytes]:
 
 
 def refuse_what_is_misnamed(
-    sheet: Sheet, inputs: Inputs, narratives: Collection[str], drawings: Callable[[], Collection[str]]
+    sheet: Sheet,
+    inputs: Inputs,
+    narratives: Mapping[str, Collection[str]],
+    drawings: Callable[[], Collection[str]],
 ) -> None:
     """What a user's own workbook wants shown must be there; parameters as for :func:`~.declared.misnamed`."""
     path, code = _own_code(inputs)

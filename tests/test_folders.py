@@ -131,6 +131,17 @@ def test_verify_of_another_folders_output_is_not_that_of_where_it_lies(gauge: Pa
     )
 
 
+def test_one_word_is_enough_where_a_report_goes_into_its_own_folder(gauge: Path, run: Run) -> None:
+    assert run("build", "gauge", "--to", "json", "--out", "gauge")[0] == 0
+    for words, at in ((["gauge"], gauge.parent), (["."], gauge)):
+        code, said, err = run("verify", "--run-workbook", *words, at=at)
+        assert (code, said.splitlines()[-1:]) == (0, ["the same report again"]), err
+    assert run("crate", "gauge", "--date", "2026-03-31", "--license", "CC-BY-4.0")[0] == 0
+    (gauge / "d.csv").write_text("test,d [nm]\n1,216\n2,204\n")
+    code, said, _ = run("verify", "--run-workbook", "gauge")
+    assert (code, said.splitlines()[-1]) == (1, "different: the input (d.csv) changed")
+
+
 def test_verify_names_the_input_that_changed_since(gauge: Path, run: Run) -> None:
     assert run("build", "--to", "json", at=gauge)[0] == 0
     (gauge / "d.csv").write_text("test,d [nm]\n1,216\n2,204\n")

@@ -88,6 +88,11 @@ SHEET = "Sheet((d, *given.values(), l))"
         ),
         (shows("prose=None"), "prose", "prose is no text in quotes"),
         (
+            shows('prose="soft_impact"'),
+            '"soft_impact"',
+            "the text 'soft_impact' tells of (11), (12a), (12e), (2), (3), (4), ",
+        ),
+        (
             shows('figures=(FigureSpec("f", "1", "", "loop"),)'),
             '"loop"',
             "no drawing 'loop', which figures names; did",

@@ -149,7 +149,11 @@ def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
     """
     from ..errors import UsageError, diagnose, listing, suggest
 
-    name, _, index = address.rstrip("]").partition("[")
+    name, opened, rest = address.partition("[")
+    index = rest.removesuffix("]")
+    if opened and (not index or index == rest or "]" in index):
+        known = "a column such as alpha, or a row of it in brackets, such as alpha[1-2] or x_m[3]"
+        raise UsageError(diagnose("LS604", kind="cell", text=address, known=known, suggestion=""))
     if name not in report.sheet:
         names = [column.name for column in report.sheet.columns]
         known, hint = listing(names, most=60), suggest(name, names)

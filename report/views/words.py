@@ -236,11 +236,18 @@ class Words(ABC):
             yield head, self.rich(head.meaning), self.escape(", solved as ").join(refer)
 
 
-def narratives() -> tuple[str, ...]:
-    """The texts around tables and figures that a workbook may name: the generic one and what extends it."""
+_TOLD = re.compile(r"\b(?:m\.cell|m\.eq|m\.ref|doc\.count|doc\.counted|doc\.inside)\('([^']+)'")
+
+
+def narratives() -> dict[str, list[str]]:
+    """The texts around tables and figures that a workbook may name: the generic one and what extends it.
+
+    With the cells, axes and equations that each tells of.
+    """
     extends = f"((* extends 'prose/{GENERIC}.j2' *))"
-    prose = sorted((TEMPLATES / "prose").glob("*.j2"))
-    return (GENERIC, *(path.stem for path in prose if extends in path.read_text(encoding="utf-8")))
+    prose = {path.stem: path.read_text("utf-8") for path in sorted((TEMPLATES / "prose").glob("*.j2"))}
+    told = {name: sorted(set(_TOLD.findall(text))) for name, text in prose.items() if extends in text}
+    return {GENERIC: []} | told
 
 
 def _indices(equation: Equation) -> set[Expr]:
