@@ -159,7 +159,7 @@ def _prepared(inputs: Inputs, ledger: Ledger) -> Prepared:
             raise  # ours, and our bug
         raise refusals.of_sheet(inputs, error) from error
     if own:
-        from .views.words import narratives
+        from .document.narrative import narratives
 
         refusals.refuse_what_is_misnamed(sheet, inputs, narratives(), _drawings)
     refusals.refuse_what_is_missing(sheet, inputs)
@@ -366,11 +366,15 @@ def versions() -> dict[str, str]:
     """What computed: this program, its libraries and the interpreter's minor version."""
     from importlib.metadata import version
 
-    libraries = ("numpy", "sympy", "mpmath", "jinja2", "matplotlib", "latex2mathml", "xlsxwriter")
+    printing = ("jinja2", "markdown-it-py", "matplotlib", "latex2mathml", "xlsxwriter")
     from .. import __version__
 
     python = f"{sys.version_info.major}.{sys.version_info.minor}"
-    return {"loopsheet": __version__, "python": python, **{name: version(name) for name in libraries}}
+    return {
+        "loopsheet": __version__,
+        "python": python,
+        **{name: version(name) for name in ("numpy", "sympy", "mpmath", *printing)},
+    }
 
 
 # --- from values to files ---------------------------------------------------------------------------------

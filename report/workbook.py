@@ -120,7 +120,7 @@ class Workbook:
     drawn : callable or None
         Takes the sheet; returns the columns and charts that a view which recalculates draws itself.
     prose : str
-        Name of the narrative template under templates/prose.
+        Name of the narrative under templates/prose.
     """
 
     name: str

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loopsheet.report.views.escape import html, slug, tex, visible
+from loopsheet.report.document.parts import slug
+from loopsheet.report.views.escape import html, tex, visible
 
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃"
 

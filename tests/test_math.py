@@ -25,7 +25,7 @@ from sympy.core.parameters import evaluate
 from loopsheet.derivations import soft_impact
 from loopsheet.derivations.reductions import Median
 from loopsheet.derivations.symbols import VOCABULARY, F_of, k, q
-from loopsheet.report.views.math import Printer, latex_names, name_latex, with_index
+from loopsheet.report.document.math import Printer, latex_names, name_latex, with_index
 from loopsheet.report.views.typeset import TEXT_WIDTH, block, mathml, mathml_block, width
 
 a, b, c, x, y = symbols("a b c x y", positive=True)

@@ -6,15 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loopsheet.report.views.numbers import (
+from loopsheet.report.document.numbers import (
     decimals,
     read,
     rounded,
     shown,
     table_format,
-    unit_html,
-    unit_tex,
 )
+from loopsheet.report.views.units import unit_html, unit_tex
 
 THIN, NARROW = "\u202f", "\u00a0"
 

@@ -11,13 +11,13 @@ from sympy import Expr, Rational, Symbol, exp, log, sqrt
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.report.analysis.referee import print_as
 from loopsheet.report.build import compute, refereed
+from loopsheet.report.document.material import Material
 from loopsheet.report.published import PublishedValue
 from loopsheet.report.quantity import Printed
 from loopsheet.report.result import Comparison
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
 from loopsheet.report.values import Values
 from loopsheet.report.verdict import EXACT, REACHABLE
-from loopsheet.report.views.document import Document
 
 # --- random sheets ----------------------------------------------------------------------------------------
 
@@ -126,6 +126,6 @@ def test_the_end_gauge_lies_between_its_least_and_its_largest_length(tmp_path: P
     assert found is not None
     assert found.verdict == EXACT
     assert (found.low, found.high) == pytest.approx((0.050 * (1 - 0.325), 0.050 * (1 + 0.325)), rel=1e-4)
-    (value,) = Document(report).refereed.values
+    (value,) = Material(report).refereed.values
     shown = [value.low, value.here, value.high]
     assert [figure.plain for figure in shown if figure] == ["33.7503459", "50.0008380", "66.2513304"]

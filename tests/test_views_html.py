@@ -13,11 +13,14 @@ import pytest
 from large_campaigns import write
 
 from loopsheet.report import build
+from loopsheet.report.document import tree as tree_module
+from loopsheet.report.document.material import Material
+from loopsheet.report.document.parts import MOST, index_text
+from loopsheet.report.document.tables import Tables
+from loopsheet.report.document.tree import Node
 from loopsheet.report.result import Report
 from loopsheet.report.sheet import Given, RepeatAxis
 from loopsheet.report.views import figures, html, latex
-from loopsheet.report.views.document import Document
-from loopsheet.report.views.parts import MOST, index_text
 
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ ((( report ))) {{ 7 * 7 }}"
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="360pt" height="180pt"><path d="M0 0"/></svg>'
@@ -51,9 +54,9 @@ def large(tmp_path_factory: pytest.TempPathFactory) -> Report:
 
 def test_of_many_rows_the_first_are_shown_and_it_is_said(large: Report) -> None:
     page = html.render(large, {})
-    document = Document(large)
-    assert {len(document.tables[name].rows) for name in ("alpha", "pairs")} == {MOST}
-    assert len(document.tables["measured"].rows) == 26
+    tables = Tables(Material(large)).data
+    assert {tables[name].size for name in ("alpha", "pairs")} == {MOST}
+    assert tables["measured"].size == 26
     assert page.count("The first 300 pairs are shown; values.json has all of them.") == 2
     assert page.count(f"data-most={MOST}") + page.count(f'data-most="{MOST}"') == 2
     printed = latex.render(large, [])
@@ -63,9 +66,9 @@ def test_of_many_rows_the_first_are_shown_and_it_is_said(large: Report) -> None:
 def test_of_many_remarks_the_first_are_shown_and_links_lead_to_those(
     large: Report, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert Document(large).cut_remarks == ""
-    monkeypatch.setattr("loopsheet.report.views.document.MOST", 20)
-    document = Document(large)
+    assert Material(large).cut_remarks == ""
+    monkeypatch.setattr("loopsheet.report.document.material.MOST", 20)
+    document = Material(large)
     assert len(document.remarks) == 20
     assert document.cut_remarks.startswith("The first 20 are shown; ")
     for text in (html.render(large, {}), latex.render(large, [])):
@@ -298,27 +301,23 @@ def test_a_cell_without_a_value_shows_its_code_and_where_it_began(tmp_path: Path
     assert "over 9 of 10 pairs" in _text(by_id["result"])
 
 
-# --- templates -------------------------------------------------------------------------------------------
+# --- nodes -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("path", sorted(html.TEMPLATES.glob("prose/*.j2")), ids=lambda path: path.name)
-def test_prose_has_no_markup_of_one_format_and_no_typed_number(path: Path) -> None:
-    prose = re.sub(
-        r"\(\(\*.*?\*\)\)|\(\(\(.*?\)\)\)|\(\(#.*?#\)\)", " ", path.read_text(encoding="utf-8"), flags=re.S
-    )
-    assert not set(prose) & set("<>&%#_$~^\\{}\"'`")
-    numbers = re.findall(r"\d+(?:\.\d+)?(?:/\d+)?", prose)
-    assert set(numbers) <= {"1", "3/2"}  # the limits of (4)
-
-
-@pytest.mark.parametrize("name", ["macros.j2"])
-def test_both_formats_have_the_same_macros(name: str) -> None:
-    def macros(form: str) -> set[str]:
-        text = (html.TEMPLATES / form / name).read_text(encoding="utf-8")
-        return set(re.findall(r"\(\(\* macro (\w+)\(", text))
-
-    own = {"html": {"value", "pure"}, "latex": {"heading", "head", "rows", "legend"}}
-    assert macros("html") - own["html"] == macros("latex") - own["latex"]
+def test_both_formats_print_every_kind_of_node(report: Report) -> None:
+    kinds = {
+        name.lower()
+        for name, kind in vars(tree_module).items()
+        if isinstance(kind, type) and issubclass(kind, Node)
+    } - {"node", "block"}
+    for writer in (html.HtmlWriter, latex.LatexWriter):
+        macros = re.findall(
+            r"\(\(\* macro (\w+)\(", (html.TEMPLATES / writer.macros).read_text(encoding="utf-8")
+        )
+        entries = (
+            {"silent"} if writer is latex.LatexWriter else set()
+        )  # a cell of a table, printed by `entry`
+        assert kinds - entries <= {*macros, *vars(writer)}
 
 
 @pytest.mark.parametrize(
@@ -334,9 +333,12 @@ def test_both_formats_have_the_same_macros(name: str) -> None:
     ],
 )
 def test_sentences_of_the_checks_are_set_as_mathematics(report: Report, text: str, seen: str) -> None:
-    printed = html.HtmlWords(Document(report)).rich(text)
+    material = Material(report)
+    printed = html.HtmlWriter(material, {})(material.sentences.rich(text))
     assert "".join(html5lib.parseFragment(printed).itertext()) == seen
 
 
 def test_a_sentence_is_escaped(report: Report) -> None:
-    assert html.HtmlWords(Document(report)).rich("<div> & 'dd'") == "&lt;div&gt; &amp; &#39;dd&#39;"
+    material = Material(report)
+    printed = html.HtmlWriter(material, {})(material.sentences.rich("<div> & 'dd'"))
+    assert printed == "&lt;div&gt; &amp; &#39;dd&#39;"

@@ -15,6 +15,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
 from loopsheet.report import build
+from loopsheet.report.document.material import Material
+from loopsheet.report.document.numbers import decimals
+from loopsheet.report.document.refereed import FIGURE, Refereed, figure
 from loopsheet.report.result import Report
 from loopsheet.report.verdict import (
     INPUT,
@@ -32,9 +35,6 @@ from loopsheet.report.verdict import (
 from loopsheet.report.verdict_words import CALLED, at_least, bounds, mismatch
 from loopsheet.report.views import figures, html, latex, reach
 from loopsheet.report.views.compact_svg import inlined
-from loopsheet.report.views.document import Document
-from loopsheet.report.views.numbers import decimals
-from loopsheet.report.views.refereed import FIGURE, Refereed, figure
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ ((( report )))"
@@ -43,7 +43,7 @@ XHTML = "{http://www.w3.org/1999/xhtml}"
 
 
 def chapter_of(report: Report) -> Refereed:
-    return Document(report).refereed
+    return Material(report).refereed
 
 
 def sections_of(report: Report) -> dict[str, ET.Element]:
@@ -162,7 +162,7 @@ def test_every_value_has_its_verdict_and_its_interval_or_none(paper: Report) -> 
 def test_what_is_free_is_named(paper: Report) -> None:
     said = text_of(sections_of(paper)["referee"])
     for name in paper.referee.free:
-        assert Document(paper).head(paper.sheet[name]).meaning in said
+        assert Material(paper).head(paper.sheet[name]).meaning in said
 
 
 def test_both_formats_say_the_same(paper: Report) -> None:

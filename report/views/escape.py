@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from typing import Any
 
 from markupsafe import Markup, escape
 
-__all__ = ["Markup", "html", "html_finalize", "slug", "tex", "tex_finalize", "visible"]
+__all__ = ["Markup", "html", "tex", "visible"]
 
 # What HTML cannot carry (control characters, lone surrogates, non-characters) or what would turn the
 # text around it (directional overrides and isolates), and line ends that a parser would change.
@@ -140,25 +139,3 @@ def _one(character: str) -> str:
     if plain != character and all(c in _PRINTABLE for c in plain):
         return "".join(_one(c) for c in plain)
     return f"[U+{ord(character):04X}]"
-
-
-# --- for jinja -------------------------------------------------------------------------------------------
-
-
-def html_finalize(value: Any) -> Markup:
-    """Escape whatever a template puts out in HTML, unless it is markup already."""
-    return html(value)
-
-
-def tex_finalize(value: Any) -> Markup:
-    """Escape whatever a template puts out in LaTeX, unless it is LaTeX already."""
-    return tex(value)
-
-
-def slug(label: str) -> str:
-    """Make an identifier of a label: ``12a`` of ``(12a)``.
-
-    >>> slug("(12a)"), slug("x_m[1-2]")
-    ('12a', 'x_m-1-2')
-    """
-    return re.sub(r"[^A-Za-z0-9_.]+", "-", label).strip("-") or "x"

@@ -10,23 +10,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..charts import Curve
+from ..document.numbers import rounded
+from ..document.refereed import FIGURE
+from ..document.refereed import figures as of
 from ..result import Report, Shown
-from ..workbook import FigureSpec
-from . import drawing, reach, refereed
+from . import drawing, reach
 from .drawing import GREY, INK, LOADING, PALE, UNLOADING, Array, Labels, Place
-from .numbers import rounded
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 __all__ = ["NAMES", "draw", "of", "pdf", "svg"]
-
-
-def of(report: Report) -> tuple[FigureSpec, ...]:
-    """All figures of a report: its workbook's, and the referee's if it found something to draw."""
-    own = refereed.figure(report)
-    return report.workbook.figures if own is None else (*report.workbook.figures, own)
 
 
 def draw(report: Report, name: str) -> Figure:
@@ -400,6 +395,6 @@ NAMES: dict[str, Callable[[Report], Figure]] = {
     "lankarani": _draw_lankarani,
     "loops": _draw_loops,
     "alpha_pairs": _draw_alpha_pairs,
-    refereed.FIGURE: reach.draw,
+    FIGURE: reach.draw,
 }
 """Every drawing by its name in a workbook's FigureSpec."""

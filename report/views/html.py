@@ -7,59 +7,62 @@ import hashlib
 import re
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Any
 
 from ...derivations.equation import Equation
+from ..document.material import Material
+from ..document.numbers import is_pure
+from ..document.parts import Item, why_address
+from ..document.tables import Tables
+from ..document.tree import Column, Entry, Math, Number, Refer, Silent, Unit
 from ..result import Report
 from ..values import Cell
 from . import live
 from .compact import short_markup, short_mathml, short_style
 from .compact_svg import inlined
-from .document import Document
-from .escape import Markup, html, html_finalize
-from .numbers import Figure, is_pure, unit_html
-from .parts import Item, address
-from .typeset import mathml, mathml_block
-from .words import TEMPLATES, Words, environment
+from .escape import Markup, html
+from .typeset import block, mathml, mathml_block
+from .units import unit_html
+from .writer import TEMPLATES, Writer
 
 __all__ = ["csp", "render"]
 
 
-class HtmlWords(Words):
-    """What templates call to print something in HTML."""
+class HtmlWriter(Writer):
+    """Prints a document in HTML."""
+
+    macros = "html/blocks.j2"
 
     def escape(self, text: object) -> Markup:
         """Plain text."""
         return html(text)
 
-    def math(self, latex: str) -> Markup:
+    def math(self, node: Math) -> Markup:
         """A formula in running text."""
-        return mathml(latex)
+        return mathml(node.latex)
 
-    def number(self, figure: Figure) -> Markup:
+    def number(self, node: Number) -> Markup:
         """A number."""
-        return html(figure.text)
-
-    def signed(self, figure: Figure) -> Markup:
-        """A difference: with its sign, be it a plus."""
-        zero = not int(figure.whole + figure.fraction)
-        return html(figure.text if figure.negative or zero else f"+{figure.text}")
+        figure = node.figure
+        if node.text or figure is None:
+            return html(node.text)
+        plus = node.signed and not figure.negative and int(figure.whole + figure.fraction)
+        return html(f"+{figure.text}" if plus else figure.text)
 
     @cached_property
     def _exponents(self) -> dict[str, Markup]:
         return {name: mathml(latex) for name, latex in self.exponents().items()}
 
-    def unit(self, unit: str) -> Markup:
+    def unit(self, node: Unit) -> Markup:
         """A unit; nothing for a pure number."""
-        return Markup("") if is_pure(unit) else unit_html(unit, self._exponents)
+        return Markup("") if is_pure(node.unit) else unit_html(node.unit, self._exponents)
 
-    def refer(self, label: str) -> Markup:
+    def refer(self, node: Refer) -> Markup:
         """A link to an equation."""
-        return Markup('<a href="#{}">{}</a>').format(self.document.identifiers[label], html(label))
+        return Markup('<a href="#{}">{}</a>').format(self.material.identifiers[node.label], html(node.label))
 
-    def equation(self, label: str) -> Markup:
-        """A displayed equation."""
-        return mathml_block(self.document.block(self.document.equation(label)))
+    def displayed(self, equation: Equation) -> Markup:
+        """An equation on lines of its own."""
+        return mathml_block(block(self.material.printer, equation.members))
 
     def data(self, item: Item, identified: bool = True) -> Markup:
         """The attributes of a cell; its identifier goes to the first element that shows it in a table."""
@@ -84,15 +87,17 @@ class HtmlWords(Words):
 
     def why(self, cell: Cell) -> str:
         """The identifier of the sentence that says why a cell has no value."""
-        return address(cell.name, cell.label).replace("cell-", "why-", 1)
+        return why_address(cell)
 
-    def address(self, name: str, label: tuple[int, ...]) -> str:
-        """The identifier of a cell that has no value."""
-        return address(name, label)
+    def entry(self, column: Column, entry: Entry) -> Markup:
+        """A cell of a table: one of the sheet, or words."""
+        if isinstance(entry, Item):
+            return Markup(self._macros.box(entry))
+        return self(entry) if isinstance(entry, Silent) else Markup(self._macros.words(column, entry))
 
-    def claim(self, equation: Equation) -> Markup:
-        """A displayed equation of a derivation, which is none of the ledger."""
-        return mathml_block(self.document.block(equation))
+    def unit_of(self, item: Item) -> Markup:
+        """The unit that a cell is shown in; nothing for a pure number."""
+        return self(Unit(item.head.unit))
 
 
 _OPENING = re.compile(r"<svg\b[^>]*>")
@@ -113,54 +118,6 @@ def picture(svg: str, alt: str) -> Markup:
 
 def _pixels(found: re.Match[str]) -> str:
     return f'{found[1]}="{round(float(found[2]) * (4 / 3 if found[3] == "pt" else 1))}"'
-
-
-class Count(int):
-    """How many rows an axis has, or a column sums, marked where it stands so that it can follow."""
-
-    def __new__(cls, number: int, axis: str, column: str = "") -> Count:
-        made = super().__new__(cls, number)
-        made.axis, made.column = axis, column
-        return made
-
-    axis: str
-    column: str
-
-    def __html__(self) -> str:
-        column = Markup(' data-counted="{}"').format(self.column) if self.column else Markup()
-        return str(Markup('<span data-count="{}"{}>{}</span>').format(self.axis, column, int(self)))
-
-
-class Inside(str):
-    """How many rows lie inside of a limit, marked where it stands so that it can follow."""
-
-    margin: str
-
-    def __html__(self) -> str:
-        return str(Markup('<span data-inside="{}">{}</span>').format(self.margin, str(self)))
-
-
-class HtmlDocument(Document):
-    """A report whose counts of rows know what they count."""
-
-    def inside(self, name: str) -> str:
-        """How many cells of a column lie inside of the statement that limits them."""
-        made = Inside(super().inside(name))
-        made.margin = self.report.marks.limited(name).margin.column.name
-        return made
-
-    def count(self, axis: str) -> int:
-        """How many rows an axis has."""
-        return Count(super().count(axis), axis)
-
-    def counted(self, name: str, axis: str) -> int:
-        """Over how many rows of an axis a column sums."""
-        return Count(super().counted(name, axis), axis, name)
-
-
-def finalize(value: Any) -> Markup:
-    """Escape whatever a template puts out, unless it is markup already."""
-    return Markup(value.__html__()) if isinstance(value, (Count, Inside)) else html_finalize(value)
 
 
 def csp(style: str, script: str = "") -> str:
@@ -186,28 +143,29 @@ def render(report: Report, figures: Mapping[str, str], program: str | None = Non
     program : str or None
         The sheet as JavaScript, for a page that recalculates itself; None makes a page without a script.
     """
-    document = HtmlDocument(report)
-    words = HtmlWords(document)
-    shown = [figure for figure in document.figures if figure.name in figures]
+    material = Material(report)
+    shown = [figure for figure in material.figures if figure.name in figures]
     drawn, style_of_drawn = inlined({figure.name: figures[figure.name] for figure in shown})
     # Both are hashed as they stand in the page, where there are no empty lines.
     live_style = _text("html/live.css") if program is not None else ""
     style = short_style(_text("html/style.css") + style_of_drawn + live_style)
     script = "" if program is None else _squeezed(_script(report, program))
-    jinja = environment(finalize)
-    pictures = {figure.name: picture(drawn[figure.name], figure.alt or figure.caption) for figure in shown}
-    context = {"report": report, "doc": document, "w": words, "figures": pictures, "macros": "html/macros.j2"}
-    # The body comes first: the table of contents is made of the sections that it has.
-    body = Markup(_BETWEEN.sub("", jinja.get_template(f"prose/{report.workbook.prose}.j2").render(context)))
-    if program is not None:
-        parts = tuple(live.parts(report, document))
-        context["live"] = {
-            "data": Markup(live.data(report, document)),
-            "parts": parts,
-            "script": Markup(script),
-        }
-    page = jinja.get_template("html/page.j2")
-    whole = page.render(context, body=body, style=Markup(style), csp=Markup(csp(style, script)))
+    writer = HtmlWriter(
+        material, {figure.name: picture(drawn[figure.name], figure.alt or figure.caption) for figure in shown}
+    )
+    body = Markup(_BETWEEN.sub("", writer(writer.sections)))
+    parts = () if program is None else tuple(live.parts(report, material))
+    data = Markup("" if program is None else live.data(report, material))
+    whole = writer.render(
+        "html/page.j2",
+        body=body,
+        style=Markup(style),
+        script=Markup(script),
+        csp=Markup(csp(style, script)),
+        data=data,
+        parts=parts,
+        missing=Tables(material).missing(),
+    )
     return _squeezed(short_markup(short_mathml(whole)))
 
 

@@ -14,15 +14,17 @@ from functools import cached_property
 from pathlib import Path
 
 from ...derivations.equation import Equation
+from ..document.material import Material
+from ..document.numbers import is_pure
+from ..document.parts import Item
+from ..document.tree import Column, Entry, Formula, Math, Number, Numbered, Refer, Silent, Table, Unit
 from ..errors import LoopsheetError, diagnose
 from ..programs import ProgramFailed, run
 from ..result import Report
-from .document import Document
-from .escape import Markup, tex, tex_finalize
-from .numbers import Figure, is_pure, table_format, unit_tex
-from .parts import Head, Item
-from .typeset import TEXT_WIDTH, Block
-from .words import Words, environment
+from .escape import Markup, tex
+from .typeset import TEXT_WIDTH, block
+from .units import unit_tex
+from .writer import Writer
 
 __all__ = ["TexFailed", "TexMissing", "compile", "render"]
 
@@ -46,99 +48,118 @@ class TexFailed(RuntimeError):
     """TeX could not print the report: that is our bug, for everything foreign was escaped."""
 
 
-class LatexWords(Words):
-    """What templates call to print something in LaTeX."""
+class LatexWriter(Writer):
+    """Prints a document in LaTeX."""
+
+    macros = "latex/blocks.j2"
+    dagger = Markup(DAGGER)
 
     def escape(self, text: object) -> Markup:
         """Plain text."""
         return tex(text)
 
-    def math(self, latex: str) -> Markup:
+    def math(self, node: Math) -> Markup:
         """A formula in running text."""
-        return Markup(f"${latex}$")
+        return Markup(f"${node.latex}$")
 
-    def number(self, figure: Figure) -> Markup:
+    def number(self, node: Number) -> Markup:
         """A number."""
-        return Markup(figure.tex)
+        plain = None if node.text else self.plain(node)
+        return tex(node.text) if plain is None else Markup(rf"\num{{{plain}}}")
 
-    def signed(self, figure: Figure) -> Markup:
-        """A difference: with its sign, be it a plus."""
-        zero = not int(figure.whole + figure.fraction)
-        return Markup(figure.tex if figure.negative or zero else figure.tex.replace("{", "{+", 1))
+    @staticmethod
+    def plain(node: Number) -> str | None:
+        """A number as siunitx reads it."""
+        figure = node.figure
+        if figure is None:
+            return None
+        plus = node.signed and not figure.negative and int(figure.whole + figure.fraction)
+        return f"+{figure.plain}" if plus else figure.plain
 
     @cached_property
     def _exponents(self) -> dict[str, str]:
         return self.exponents()
 
-    def unit(self, unit: str) -> Markup:
+    def unit(self, node: Unit) -> Markup:
         """A unit; nothing for a pure number."""
-        return Markup("") if is_pure(unit) else unit_tex(unit, self._exponents)
+        return Markup("") if is_pure(node.unit) else unit_tex(node.unit, self._exponents)
 
     def label(self, label: str) -> str:
         """What a reference to an equation is called."""
-        return self.document.identifiers[label].replace("eq-", "eq:", 1)
+        return self.material.identifiers[label].replace("eq-", "eq:", 1)
 
-    def refer(self, label: str) -> Markup:
+    def refer(self, node: Refer) -> Markup:
         """A reference to an equation; to the first of a group, if that is what is meant."""
-        known = any(equation.label == label for equation in self.document.equations)
+        known = any(equation.label == node.label for equation in self.material.equations)
         if known:
-            return Markup(rf"\ref{{{self.label(label)}}}")
-        return Markup(rf"\hyperref[{self.label(label)}]{{{tex(label)}}}")
+            return Markup(rf"\ref{{{self.label(node.label)}}}")
+        return Markup(rf"\hyperref[{self.label(node.label)}]{{{tex(node.label)}}}")
 
-    def equation(self, label: str) -> Markup:
-        """A displayed equation with its number; it is labelled where it stands first."""
-        equation = self.document.equation(label)
-        number = tex(label)
-        anchor = rf"\label{{{self.label(label)}}}" if self.first(label) else ""
-        return _display(self.document.block(equation), rf"\tag*{{{number}}}{anchor}")
+    def numbered(self, node: Numbered) -> Markup:
+        """A displayed equation with its number, where it stands first."""
+        label = node.equation.label
+        if not self.first(label):
+            return Markup("")
+        return self._display(node.equation, rf"\tag*{{{tex(label)}}}\label{{{self.label(label)}}}")
+
+    def reference(self, label: str) -> Markup:
+        """A reference from a template."""
+        return self.refer(Refer(label))
+
+    def unit_of(self, item: Item) -> Markup:
+        """The unit behind a cell's number; nothing for a pure one, and behind a code."""
+        return self(Unit(item.head.unit)) if item.ok else Markup("")
 
     def shown(self, label: str) -> bool:
         """Whether an equation stands somewhere above."""
         return label in self._used
 
-    def claim(self, equation: Equation) -> Markup:
+    def formula(self, node: Formula) -> Markup:
         """A displayed equation of a derivation, which is none of the ledger."""
-        return _display(self.document.block(equation), r"\notag")
+        return self._display(node.equation, r"\notag")
 
-    def cell(self, item: Item) -> Markup:
-        """A cell of a column that aligns numbers: what is no number goes in braces."""
-        if item.figure is None:
-            return Markup(rf"{{{tex(item.printed or item.code)}}}")
-        return Markup(item.figure.plain + (rf"{{{DAGGER}}}" if item.mark else ""))
-
-    dagger = Markup(DAGGER)
+    def _display(self, equation: Equation, number: str) -> Markup:
+        """A displayed equation; one that may be too wide is shrunk to the line if it is."""
+        lines = block(self.material.printer, equation.members)
+        body = lines.aligned
+        if lines.width > _MARKED * TEXT_WIDTH:
+            body = rf"\adjustbox{{max width=0.9\linewidth}}{{$\displaystyle {body}$}}"
+        if number == r"\notag":
+            return Markup(f"\\begin{{equation*}}\n{body}\n\\end{{equation*}}\n")
+        return Markup(f"\\begin{{equation}}\n{body}\n{number}\n\\end{{equation}}\n")
 
     def quantity(self, item: Item) -> Markup:
-        """A cell's number with its unit, or the code of its error; a mark behind it."""
+        """A cell's number, or the code of its error; a mark behind it."""
         return super().quantity(item) + Markup(DAGGER if item.mark else "")
 
-    def columns(self, heads: tuple[Head, ...]) -> Markup:
-        """The columns of a table, each as wide as its numbers."""
-        return Markup("".join(f"S[table-format={head.format}]" for head in heads))
+    # --- tables
 
-    def format(self, figures: list[Figure | None], signed: bool = False) -> Markup:
-        """The ``table-format`` of some numbers."""
-        form = table_format(figures)
-        return Markup(f"-{form}" if signed and not form.startswith("-") else form)
+    def columns(self, table: Table) -> Markup:
+        """What the columns of a table are to LaTeX: aligned numbers, words that are broken, or neither."""
+        return Markup("".join(map(_column, table.columns)))
 
-    def plain(self, figure: Figure | None, text: str = "") -> Markup:
-        """A number for a column that aligns them, or a text in braces."""
-        return Markup(rf"{{{tex(text)}}}" if figure is None else figure.plain)
+    def entry(self, column: Column, entry: Entry) -> Markup:
+        """What stands in a cell; among numbers that are aligned, what is none goes in braces."""
+        if isinstance(entry, Silent):
+            return Markup(rf"{{\color{{gray}}{tex(entry.text)}}}")
+        if isinstance(entry, Item):
+            if not column.form:
+                return self.quantity(entry)
+            if entry.figure is None:
+                return Markup(rf"{{{self.quantity(entry)}}}")
+            return Markup(entry.figure.plain + (rf"{{{DAGGER}}}" if entry.mark else ""))
+        plain = self.plain(entry[0]) if len(entry) == 1 and isinstance(entry[0], Number) else None
+        if not column.form:
+            return self(entry)
+        return Markup(rf"{{{self(entry)}}}" if plain is None else plain)
 
-    def signed_plain(self, figure: Figure) -> Markup:
-        """A difference for a column that aligns numbers."""
-        zero = not int(figure.whole + figure.fraction)
-        return Markup(figure.plain if figure.negative or zero else f"+{figure.plain}")
 
-
-def _display(block: Block, number: str) -> Markup:
-    """A displayed equation; one that may be too wide is shrunk to the line if it is."""
-    body = block.aligned
-    if block.width > _MARKED * TEXT_WIDTH:
-        body = rf"\adjustbox{{max width=0.9\linewidth}}{{$\displaystyle {body}$}}"
-    if number == r"\notag":
-        return Markup(f"\\begin{{equation*}}\n{body}\n\\end{{equation*}}")
-    return Markup(f"\\begin{{equation}}\n{body}\n{number}\n\\end{{equation}}")
+def _column(column: Column) -> str:
+    if column.form:
+        return f"S[table-format={column.form}]"
+    if column.share:
+        return rf">{{\raggedright\arraybackslash}}p{{{column.share}\linewidth}}"
+    return "r" if column.kind == "number" else "l"
 
 
 def render(report: Report, figures: Collection[str]) -> str:
@@ -150,23 +171,15 @@ def render(report: Report, figures: Collection[str]) -> str:
     figures : collection of str
         Names of the figures that are there as ``figures/NAME.pdf``.
     """
-    document = Document(report)
-    words = LatexWords(document)
-    pictures = {figure.name: figure for figure in document.figures if figure.name in figures}
-    jinja = environment(tex_finalize)
-    context = {
-        "report": report,
-        "doc": document,
-        "w": words,
-        "figures": pictures,
-        "macros": "latex/macros.j2",
-    }
-    body = jinja.get_template(f"prose/{report.workbook.prose}.j2").render(context)
+    material = Material(report)
+    pictures = {figure.name: figure for figure in material.figures if figure.name in figures}
+    writer = LatexWriter(material, pictures)
+    body = str(writer(writer.sections))
     # Blank lines are paragraphs in TeX; those that templates leave behind are one.
     body = re.sub(r"\n[ \t]*(?:\n[ \t]*)+\n", "\n\n", body)
     # A displayed equation belongs to the paragraph before it, and may not part from it.
     body = re.sub(r"\n\s*\n(?=\\begin\{equation)", "\n", body)
-    return jinja.get_template("latex/article.j2").render(context, body=Markup(body))
+    return writer.render("latex/article.j2", body=Markup(body))
 
 
 def compile(folder: Path) -> None:

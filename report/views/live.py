@@ -17,19 +17,19 @@ from typing import Any
 from sympy import Indexed, Symbol
 
 from ...derivations.reductions import REDUCTIONS
+from ..document.material import Material
+from ..document.math import Printer
+from ..document.parts import index_text, slug
+from ..document.tree import Inlines, Math, Unit
 from ..quantity import Bounds, Printed
 from ..result import Report
 from ..sheet import Column, Formula, Given, Root, name_of
 from ..unit_text import parse_unit
 from ..verdict import OTHERWISE, UNEXPECTED
 from .compact import short_script
-from .document import Document
 from .drawing import unit_text
-from .escape import slug
 from .live_files import given
-from .math import Printer
-from .parts import index_text
-from .words import TEMPLATES
+from .writer import TEMPLATES
 
 __all__ = ["FIGURES", "SCRIPTS", "Part", "data", "drawn", "limits", "parts", "script"]
 
@@ -94,14 +94,14 @@ Ground = tuple[int, tuple[str, ...]]
 # --- the data --------------------------------------------------------------------------------------------
 
 
-def data(report: Report, document: Document) -> str:
+def data(report: Report, document: Material) -> str:
     """What the script must know of the report, as JSON that cannot end the element it stands in.
 
     Parameters
     ----------
     report : Report
-    document : Document
-        The same report, as the views see it.
+    document : Material
+        The same report, as its document sees it.
     """
     sheet = report.sheet
     grounds = _grounds(report)
@@ -148,7 +148,7 @@ def _fraction(value: Fraction) -> list[str]:
     return [str(value.numerator), str(value.denominator)]
 
 
-def _column(report: Report, document: Document, column: Column, grounds: list[Ground]) -> dict[str, Any]:
+def _column(report: Report, document: Material, column: Column, grounds: list[Ground]) -> dict[str, Any]:
     shown = report.shown[column.name]
     head = document.head(column)
     entry: dict[str, Any] = {
@@ -223,30 +223,37 @@ def _printed(report: Report, name: str) -> Printed | None:
 
 @dataclass(frozen=True)
 class Part:
-    """What the formula bar shows of a column, in LaTeX.
+    """What the formula bar shows of a column.
 
     Parameters
     ----------
     column : Column
-    latex : str
-        Its symbol.
-    unit : str
-        The unit it is shown in.
-    equation : str
-        Its equation with ``@n@`` for the n-th cell in it; empty if it is given or sums over rows.
+    symbol : Math
+    meaning : tuple of inlines
+    unit : Unit
+        It is shown in.
+    equation : Math or None
+        Its equation with ``@n@`` for the n-th cell in it; None if it is given or sums over rows.
     """
 
     column: Column
-    latex: str
-    unit: str
-    equation: str
+    symbol: Math
+    meaning: Inlines
+    unit: Unit
+    equation: Math | None
 
 
-def parts(report: Report, document: Document) -> Iterator[Part]:
+def parts(report: Report, document: Material) -> Iterator[Part]:
     """What the formula bar shows of every column."""
     for column in report.sheet.columns:
         equation = Put(document).equation(column)
-        yield Part(column, document.latex(column.name), report.shown[column.name].unit, equation)
+        yield Part(
+            column,
+            document.sentences.symbol(column.name),
+            document.sentences.rich(column.meaning),
+            Unit(report.shown[column.name].unit),
+            Math(equation) if equation else None,
+        )
 
 
 _BETWEEN = re.compile(
@@ -257,7 +264,7 @@ _BETWEEN = re.compile(
 class Put(Printer):
     """Prints an equation with a numbered place for every cell, size and running number in it."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Material) -> None:
         super().__init__(document.printer.names)
         self.sheet = document.report.sheet
         self.cells: list[list[str | None]] = []

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..document.math import latex_names, name_latex
+from ..document.parts import index_text
 from ..result import Comparison, Report
 from ..verdict import EXACT, REACHABLE, UNREACHABLE
 from ..verdict_words import CALLED
 from . import drawing
 from .drawing import INK, LOADING, PALE, UNLOADING
 from .escape import visible
-from .math import latex_names, name_latex
-from .parts import index_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,4 +1,4 @@
-"""Lines of an equation, and MathML: how what :mod:`~loopsheet.report.views.math` prints is set on a page."""
+"""Lines of an equation, and MathML: how :mod:`~loopsheet.report.document.math` is set on a page."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from functools import lru_cache
 
 from sympy import Expr
 
+from ..document.math import Printer
 from .escape import Markup, html
-from .math import Printer
 
 __all__ = ["TEXT_WIDTH", "Block", "block", "mathml", "mathml_block", "width"]
 
@@ -212,7 +212,7 @@ def mathml(latex: str, display: bool = False) -> Markup:
     Parameters
     ----------
     latex : str
-        As :class:`~loopsheet.report.views.math.Printer` makes it.
+        As :class:`~loopsheet.report.document.math.Printer` makes it.
     display : bool
         Whether it stands on a line of its own.
     """

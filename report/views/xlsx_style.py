@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from math import floor, log10
 from typing import Any
 
-from .math import with_index
+from ..document.math import with_index
 
 __all__ = ["Style", "fragments", "height", "number_format", "open_format", "said"]
 

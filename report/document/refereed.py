@@ -30,7 +30,7 @@ from ..workbook import FigureSpec
 from .numbers import Figure, decimals, read
 from .parts import Head, Pair
 
-__all__ = ["FIGURE", "Finding", "Refereed", "Run", "Together", "Value", "figure"]
+__all__ = ["FIGURE", "Finding", "Refereed", "Run", "Together", "Value", "figure", "figures"]
 
 GOOD = (EXACT, REACHABLE, WITHIN)
 """Verdicts that ask for no explanation."""
@@ -63,6 +63,12 @@ def figure(report: Report) -> FigureSpec | None:
         f"the printed inputs can yield, a ring for the recomputed value, and a band at zero for what "
         f"prints as published. Of the published values {said}.",
     )
+
+
+def figures(report: Report) -> tuple[FigureSpec, ...]:
+    """All figures of a report: its workbook's, and the referee's if it found something to draw."""
+    own = figure(report)
+    return report.workbook.figures if own is None else (*report.workbook.figures, own)
 
 
 @dataclass(frozen=True)

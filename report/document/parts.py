@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from ..quantity import Printed
 from ..result import Comparison
 from ..values import Cell, Status
-from ..workbook import TableSpec
-from .escape import slug
-from .numbers import Figure
+from .numbers import Figure, is_pure
 
-__all__ = ["MARK", "Group", "Head", "Item", "Pair", "Remark", "Row", "Table", "address", "index_text"]
+__all__ = [
+    "MARK", "MOST", "Group", "Head", "Item", "Pair", "Remark", "address", "described", "index_text", "slug",
+    "why_address",
+]  # fmt: skip
 
 MARK = "†"
 """What stands behind a number that lies outside of what is expected."""
 MOST = 300
 """Rows that a page shows of an index set made of others, and cells to look at: nobody reads more."""
-LONG = 30
-"""A table of more rows than this scrolls in the page and breaks over pages in print."""
 
 
 def index_text(label: tuple[int, ...]) -> str:
@@ -29,6 +29,20 @@ def index_text(label: tuple[int, ...]) -> str:
 def address(name: str, label: tuple[int, ...]) -> str:
     """The identifier of a cell: ``cell-alpha-1-2``."""
     return slug(f"cell-{name}-{index_text(label)}" if label else f"cell-{name}")
+
+
+def why_address(cell: Cell) -> str:
+    """The identifier of the sentence that says why a cell has no value."""
+    return address(cell.name, cell.label).replace("cell-", "why-", 1)
+
+
+def slug(label: str) -> str:
+    """Make an identifier of foreign text: letters, digits, ``_``, ``.`` and ``-``.
+
+    >>> slug("(12a)"), slug("x_m[1-2]")
+    ('12a', 'x_m-1-2')
+    """
+    return re.sub(r"[^A-Za-z0-9_.]+", "-", label).strip("-") or "x"
 
 
 @dataclass(frozen=True)
@@ -57,6 +71,12 @@ class Head:
     sources: tuple[str, ...]
     format: str = "1"
     places: int = 0
+
+
+def described(head: Head, label: tuple[int, ...]) -> str:
+    """What a cell is, for those who do not see where it stands."""
+    index = f", {index_text(label)}" if label else ""
+    return f"{head.meaning}{index}{'' if is_pure(head.unit) else f', in {head.unit}'}"
 
 
 @dataclass(frozen=True)
@@ -107,6 +127,11 @@ class Item:
         return "" if self.cell.value is None else repr(self.cell.value)
 
     @property
+    def described(self) -> str:
+        """What it is, for those who do not see where it stands."""
+        return described(self.head, self.cell.label)
+
+    @property
     def origin(self) -> Cell:
         """Where its error began."""
         return self.cell.culprit or self.cell
@@ -137,57 +162,6 @@ class Remark:
     def marked(self) -> bool:
         """Whether it has a mark, not an error."""
         return self.code == MARK
-
-
-@dataclass(frozen=True)
-class Row:
-    """One row of a table: what it is called, and its cells.
-
-    One that takes no part has a reason and texts in place of cells, one for each head.
-    """
-
-    label: tuple[int, ...]
-    items: tuple[Item, ...] = ()
-    texts: tuple[str, ...] = ()
-    left_out: str = ""
-
-    @property
-    def text(self) -> str:
-        """``2``, ``1–2``."""
-        return "–".join(map(str, self.label))
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table of the report.
-
-    Parameters
-    ----------
-    spec : TableSpec
-    axis : str
-        What a row is, ``test``; empty for a list of scalars, one a row.
-    heads : tuple of Head
-    rows : tuple of Row
-        Of a list of scalars: one row, an item for each head.
-    cut : str
-        A sentence about the rows that are not shown, if there are any.
-    """
-
-    spec: TableSpec
-    axis: str
-    heads: tuple[Head, ...]
-    rows: tuple[Row, ...]
-    cut: str = ""
-
-    @property
-    def marked(self) -> bool:
-        """Whether some cell of it carries a mark."""
-        return any(item.mark for row in self.rows for item in row.items)
-
-    @property
-    def long(self) -> bool:
-        """Whether it needs room of its own."""
-        return len(self.rows) > LONG
 
 
 @dataclass(frozen=True)

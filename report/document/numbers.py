@@ -7,13 +7,11 @@ and no calculation ever reads it.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
 
-from .escape import Markup, html, tex
-
-__all__ = ["Figure", "decimals", "read", "rounded", "shown", "table_format", "unit_html", "unit_tex"]
+__all__ = ["RAISED", "Figure", "decimals", "is_pure", "read", "rounded", "shown", "table_format"]
 
 _BEYOND = 2
 """An integer part with more digits than these beyond the known ones is written with a power of ten."""
@@ -23,7 +21,7 @@ _GROUPS = 5
 """From this many digits on, the integer part is grouped by three."""
 MINUS = "\u2212"
 THIN = "\u202f"
-_RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 @dataclass(frozen=True)
@@ -67,7 +65,7 @@ class Figure:
     @property
     def power(self) -> str:
         """The power of ten, `` × 10⁹``; empty if none is written."""
-        return "" if self.exponent is None else f"\u00a0×\u00a010{str(self.exponent).translate(_RAISED)}"
+        return "" if self.exponent is None else f"\u00a0×\u00a010{str(self.exponent).translate(RAISED)}"
 
     @property
     def tex(self) -> str:
@@ -178,70 +176,6 @@ def table_format(figures: Iterable[Figure | None]) -> str:
     return f"{sign}{whole}{point}{power}"
 
 
-# --- units -----------------------------------------------------------------------------------------------
-
-_TOKEN = re.compile(
-    r"(?P<name>[^\W\d⁰¹²³⁴⁵⁶⁷⁸⁹]+(?:_\w+)?|[°%])"
-    r"|(?P<power>\s*(?:\^|\*\*)\s*\(?(?P<exponent>[+-]?\w+(?:/\d+)?)\)?|(?P<raised>[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+))"
-    r"|(?P<times>\s*[*·⋅×.]\s*|\s+)|(?P<over>\s*[/∕]\s*)|(?P<other>.)"
-)
-_MICRO = re.compile(r"[uµμ](?=(?:m|g|s|N|Pa|J|A|V|K|in)$)")
-_LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻", "0123456789+-")
-
-
-def _tokens(unit: str) -> Iterable[tuple[str, str]]:
-    """Parts of a unit: (name, m), (power, 3), (times, ), (over, ), (other, ()."""
-    for match in _TOKEN.finditer(unit.strip()):
-        kind = match.lastgroup or "other"
-        if match["power"]:
-            yield "power", (match["exponent"] or match["raised"]).translate(_LOWERED).removeprefix("+")
-        elif kind == "name":
-            yield kind, _MICRO.sub("µ", match["name"])
-        else:
-            yield kind, match.group()
-
-
 def is_pure(unit: str) -> bool:
     """Whether a unit says that a number is a pure one."""
     return unit.strip() in {"", "1", "-", "–", "—", "−"}
-
-
-def unit_html(unit: str, names: Mapping[str, Markup] | None = None) -> Markup:
-    """A unit in HTML; `names` says how a name in an exponent is printed.
-
-    >>> print(unit_html("kg/m^3"), unit_html("um"))
-    kg/m³ µm
-    """
-    if is_pure(unit):
-        return Markup("1")
-    parts = []
-    for kind, text in _tokens(unit):
-        if kind == "power" and re.fullmatch(r"-?\d+", text):
-            parts.append(Markup(text.translate(_RAISED)))
-        elif kind == "power":
-            parts.append(Markup("<sup>{}</sup>").format((names or {}).get(text, html(text))))
-        else:
-            parts.append({"times": Markup("\u202f"), "over": Markup("/")}.get(kind, html(text)))
-    return Markup("").join(parts)
-
-
-def unit_tex(unit: str, names: Mapping[str, str] | None = None) -> Markup:
-    r"""A unit for siunitx; `names` says how a name in an exponent is printed, in mathematics.
-
-    >>> print(unit_tex("kg/m^3"))
-    \unit{kg/m^{3}}
-    """
-    if is_pure(unit):
-        return Markup("1")
-    parts = []
-    for kind, text in _tokens(unit):
-        if kind == "power":
-            printed = text if re.fullmatch(r"-?\d+(/\d+)?", text) else (names or {}).get(text, tex(text))
-            parts.append(f"^{{{printed}}}")
-        elif kind == "name" and text.isascii() and text.isalpha():
-            parts.append(text)
-        elif kind == "name" and text[0] == "µ":
-            parts.append(rf"\text{{\textmu}}{tex(text[1:])}")
-        else:
-            parts.append({"times": ".", "over": "/"}.get(kind, rf"\text{{{tex(text)}}}"))
-    return Markup(rf"\unit{{{''.join(parts)}}}")

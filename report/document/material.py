@@ -1,4 +1,4 @@
-"""What a report shows, ready to be set on a page: tables, references, comparisons. Both formats read this.
+"""What there is to show of a report: cells as they are shown, references, comparisons, remarks.
 
 Nothing is calculated here; what is decided is order, wording, digits and what refers to what.
 """
@@ -12,30 +12,31 @@ from itertools import chain, islice
 
 from ...derivations.equation import Derivation, Equation
 from ...derivations.proof import Proof
+from ...derivations.proof import Status as Known
 from ..diagnostics import Check
 from ..marks import Count
 from ..result import Report
 from ..sheet import Axis, Column, Given, RepeatAxis, Root
 from ..values import Cell
 from ..workbook import FigureSpec, TableSpec
-from . import figures
-from .escape import slug
 from .math import Printer, latex_names, name_latex
 from .numbers import Figure, decimals, read, shown, table_format
-from .parts import MARK, MOST, Group, Head, Item, Pair, Remark, Row, Table
-from .refereed import Refereed
-from .typeset import Block, block
+from .parts import MARK, MOST, Group, Head, Item, Pair, Remark, slug
+from .refereed import Refereed, figures
+from .rich import Sentences
+from .tree import Status
 
-__all__ = ["Document"]
+__all__ = ["Material"]
 
 
-class Document:
-    """A report as its views see it."""
+class Material:
+    """A report as its document sees it."""
 
     def __init__(self, report: Report) -> None:
         self.report = report
         self.names = latex_names(report.ledger.vocabulary, report.sheet.columns)
         self.printer = Printer(self.names)
+        self.sentences = Sentences(report.ledger.vocabulary, self.names, self.identifiers)
 
     # --- names and numbers
 
@@ -122,18 +123,16 @@ class Document:
     # --- tables
 
     @cached_property
-    def tables(self) -> Mapping[str, Table]:
-        """The workbook's tables; without any, one for the scalars and one for each axis."""
-        specs = self.report.workbook.tables or tuple(self._default_specs())
-        numbered: dict[str, Table] = {}
+    def specs(self) -> tuple[TableSpec, ...]:
+        """The workbook's tables with what the sheet has of them; without any, scalars and axes."""
+        numbered: list[TableSpec] = []
         own = 0
-        for spec in specs:
+        for spec in self.report.workbook.tables or self._default_specs():
             names = tuple(name for name in spec.columns if name in self.report.sheet)
-            if not names:
-                continue
-            own += not spec.number
-            numbered[spec.name] = self._table(replace(spec, number=spec.number or str(own)), names)
-        return numbered
+            if names:
+                own += not spec.number
+                numbered.append(replace(spec, columns=names, number=spec.number or str(own)))
+        return tuple(numbered)
 
     def _default_specs(self) -> Iterable[TableSpec]:
         sheet = self.report.sheet
@@ -157,24 +156,6 @@ class Document:
         """The names of the axes whose rows are not shown."""
         return tuple(axis.name for axis in self.report.sheet.axes if isinstance(axis, RepeatAxis))
 
-    def _table(self, spec: TableSpec, names: tuple[str, ...]) -> Table:
-        axis = self.report.sheet[names[0]].axis
-        columns = [self.items(name) for name in names]
-        heads = tuple(head for head, _ in columns)
-        if axis is None:
-            return Table(spec, "", heads, (Row((), tuple(items[0] for _, items in columns)),))
-        labels = self.report.values.labels(self.report.sheet[names[0]])
-        rows = zip(labels, zip(*(items for _, items in columns), strict=True), strict=True)
-        shown = [Row(label, items) for label, items in islice(rows, MOST if axis.parents else None)]
-        if not axis.parents and any(head.given for head in heads):
-            for each in self.report.inputs.left_out:
-                texts = tuple(each.texts.get(head.name, "") for head in heads)
-                shown.insert(each.place, Row((each.test,), texts=texts, left_out=each.reason))
-        cut = ""
-        if axis.parents and len(labels) > MOST:  # what was measured is shown whole
-            cut = f"The first {MOST} {axis.name} are shown; values.json has all of them."
-        return Table(spec, axis.row, heads, tuple(shown), cut)
-
     # --- figures
 
     def figure(self, name: str) -> FigureSpec:
@@ -184,7 +165,7 @@ class Document:
     @cached_property
     def figures(self) -> tuple[FigureSpec, ...]:
         """The workbook's figures, and the referee's."""
-        return figures.of(self.report)
+        return figures(self.report)
 
     # --- equations
 
@@ -207,10 +188,6 @@ class Document:
                 found.setdefault(equation.number, found[equation.label])
         return found
 
-    def block(self, equation: Equation) -> Block:
-        """An equation, broken into lines."""
-        return block(self.printer, equation.members)
-
     def equation(self, label: str) -> Equation:
         """An equation of the ledger."""
         return self.report.ledger[label]
@@ -222,6 +199,13 @@ class Document:
     def proof(self, equation: Equation) -> Proof | None:
         """What was found of it; None where the algebra was not checked."""
         return next((proof for proof in self.report.proofs if proof.equation == equation), None)
+
+    def status(self, equation: Equation) -> Status:
+        """What is known of it."""
+        proof = self.proof(equation)
+        if proof is None or proof.status in (Known.DEFINITION, Known.ASSUMPTION, Known.LIMIT):
+            return Status(proof.status.value if proof else "not checked", "stated")
+        return Status(proof.status.value, "holds" if proof.status.passes else "fails")
 
     @property
     def has_own_numbers(self) -> bool:

@@ -1,0 +1,418 @@
+"""What a document is made of: inlines, and the blocks that hold them. Data only; formats print them.
+
+An inline is one of the classes here, or plain text as a string; a run of them is a tuple.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from ...derivations.equation import Equation
+from ..workbook import FigureSpec
+from . import numbers
+from .parts import Item, address, index_text
+
+__all__ = [
+    "Block", "Blocks", "Claim", "Code", "Column", "Entry", "Figure", "Formula", "Headline", "Hint",
+    "Inline", "Inlines", "Inside", "Items", "Link", "Math", "Node", "Note", "Number", "Numbered", "Paragraph",
+    "Refer", "Result", "Row", "Rows", "Section", "Silent", "Size", "Status", "Strong", "Table", "Unit",
+    "Value", "Versions", "joined",
+]  # fmt: skip
+
+
+class Node:
+    """What a format prints by a rule of its own, named after the class."""
+
+
+class Block(Node):
+    """A node that stands by itself, not in a line."""
+
+
+# --- inlines ---------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Strong(Node):
+    """What stands out."""
+
+    content: Inlines
+
+
+@dataclass(frozen=True)
+class Code(Node):
+    """What is typed: a command, the name of a file."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Math(Node):
+    """A formula in running text."""
+
+    latex: str
+
+
+@dataclass(frozen=True)
+class Number(Node):
+    """A number that is no cell.
+
+    Parameters
+    ----------
+    figure : Figure or None
+        None if it is no plain number.
+    text : str
+        As its author printed it, if anybody did.
+    signed : bool
+        Whether a plus is shown as well: a difference.
+    """
+
+    figure: numbers.Figure | None
+    text: str = ""
+    signed: bool = False
+
+
+@dataclass(frozen=True)
+class Unit(Node):
+    """A unit; of a pure number nothing is shown."""
+
+    unit: str
+
+
+@dataclass(frozen=True)
+class Value(Node):
+    """A cell in running text, with its unit; the page keeps it up to date."""
+
+    item: Item
+
+
+@dataclass(frozen=True)
+class Refer(Node):
+    """A reference to an equation by its label."""
+
+    label: str
+
+
+@dataclass(frozen=True)
+class Link(Node):
+    """A reference to a chapter, a table or a figure."""
+
+    kind: str
+    name: str
+    content: Inlines
+
+
+@dataclass(frozen=True)
+class Hint(Node):
+    """Something short, and what it means."""
+
+    content: Inlines
+    title: str
+
+
+@dataclass(frozen=True)
+class Status(Node):
+    """What is known of an equation; the kind is ``stated``, ``holds`` or ``fails``."""
+
+    word: str
+    kind: str
+
+
+@dataclass(frozen=True)
+class Size(Node):
+    """How many rows an axis has, or of them a column sums; the page counts again."""
+
+    rows: int
+    axis: str
+    column: str = ""
+
+
+@dataclass(frozen=True)
+class Inside(Node):
+    """How many cells lie inside of a limit, ``10 of 10 pairs``; the page counts again."""
+
+    text: str
+    margin: str
+
+
+Inline = str | Strong | Code | Math | Number | Unit | Value | Refer | Link | Hint | Status | Size | Inside
+Inlines = tuple[Inline, ...]
+
+
+def joined(parts: Iterable[Inlines], between: str, last: str = "") -> Inlines:
+    """Runs in a row.
+
+    >>> joined([("a",), ("b",), ("c",)], ", ", " and ")
+    ('a', ', ', 'b', ' and ', 'c')
+    """
+    runs = list(parts)
+    signs = [between] * (len(runs) - 2) + [last or between] * (len(runs) > 1)
+    return tuple(one for n, run in enumerate(runs) for one in ((signs[n - 1], *run) if n else run))
+
+
+# --- tables ----------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Silent(Node):
+    """What was printed in a cell of a row that is left out: it has no value."""
+
+    name: str
+    label: tuple[int, ...]
+    text: str
+    described: str
+    """What it is, for an input of it; empty for what is computed."""
+
+    @property
+    def index(self) -> str:
+        """``2``."""
+        return index_text(self.label)
+
+    @property
+    def identifier(self) -> str:
+        """Its name in the page."""
+        return address(self.name, self.label)
+
+
+Entry = Inlines | Item | Silent
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table.
+
+    Parameters
+    ----------
+    head : tuple of inlines
+    kind : str
+        ``left`` or ``number`` (on the right), ``words`` (broken into lines), ``row``, ``symbol``,
+        ``unitcell``, ``verdict`` (stands out in a row that is a finding).
+    form : str
+        The ``table-format`` of siunitx, where numbers stand below one another in print.
+    share : float
+        The part of a line that words take in print.
+    unit : tuple of inlines
+        What stands below the head.
+    tip : str
+        What the head means, where no legend tells it.
+    """
+
+    head: Inlines
+    kind: str = "left"
+    form: str = ""
+    share: float = 0
+    unit: Inlines = ()
+    tip: str = ""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of a table; its state is ``excluded``, ``unexpected`` or nothing."""
+
+    cells: tuple[Entry, ...]
+    state: str = ""
+    identifier: str = ""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Rows that belong together, below a title of their own if they have one."""
+
+    rows: tuple[Row, ...]
+    title: Inlines = ()
+
+
+LONG = 30
+"""A table of more rows than this scrolls in the page and breaks over pages in print."""
+
+
+@dataclass(frozen=True)
+class Table(Block):
+    """A table.
+
+    Parameters
+    ----------
+    name : str
+        Its identifier.
+    caption : tuple of inlines
+    columns : tuple of Column
+    groups : tuple of Rows
+    number : str
+        That it is referred to by; one without a number stands where it is mentioned.
+    look : str
+        ``list`` (no sheet of rows), ``compared`` (live beside what was published) or nothing.
+    legend : tuple of inlines
+        What stands below it.
+    limits : tuple of inlines
+        What a mark in it means.
+    cut : str
+        A sentence about rows that are not shown.
+    wide : bool
+        Whether it takes more room than text does.
+    whole : bool
+        Whether it is always seen whole, however long it is.
+    """
+
+    name: str
+    caption: Inlines
+    columns: tuple[Column, ...]
+    groups: tuple[Rows, ...]
+    number: str = ""
+    look: str = ""
+    legend: Inlines = ()
+    limits: Inlines = ()
+    cut: str = ""
+    wide: bool = False
+    whole: bool = False
+
+    @property
+    def identifier(self) -> str:
+        """What a reference leads to."""
+        return f"table-{self.name}" if self.number else self.name
+
+    @property
+    def rows(self) -> Iterator[Row]:
+        """All rows."""
+        return (row for group in self.groups for row in group.rows)
+
+    @cached_property
+    def size(self) -> int:
+        """How many rows it has."""
+        return sum(len(group.rows) for group in self.groups)
+
+    @property
+    def long(self) -> bool:
+        """Whether it needs room of its own."""
+        return self.size > LONG and not self.whole
+
+    @property
+    def marked(self) -> bool:
+        """Whether some cell of it carries a mark."""
+        return any(isinstance(cell, Item) and cell.mark for row in self.rows for cell in row.cells)
+
+    @property
+    def filled(self) -> Table:
+        """Without the columns in which no row says anything, for a format whose columns nobody counts."""
+        said = [any(row.cells[n] for row in self.rows) for n in range(len(self.columns))]
+
+        def kept(cells: tuple[Entry, ...]) -> tuple[Entry, ...]:
+            return tuple(cell for cell, says in zip(cells, said, strict=True) if says)
+
+        groups = (
+            replace(g, rows=tuple(replace(r, cells=kept(r.cells)) for r in g.rows)) for g in self.groups
+        )
+        columns = tuple(column for column, says in zip(self.columns, said, strict=True) if says)
+        return self if all(said) else replace(self, columns=columns, groups=tuple(groups))
+
+
+Blocks = tuple[Block, ...]
+
+# --- other blocks ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Paragraph(Block):
+    """Running text; an aside is set smaller."""
+
+    content: Inlines
+    aside: bool = False
+
+
+@dataclass(frozen=True)
+class Note(Block):
+    """What must not be overlooked."""
+
+    content: Inlines
+
+
+@dataclass(frozen=True)
+class Items(Block):
+    """A list."""
+
+    items: tuple[Inlines, ...]
+
+
+@dataclass(frozen=True)
+class Versions(Block):
+    """What computed the report."""
+
+    items: tuple[Inlines, ...]
+
+
+@dataclass(frozen=True)
+class Result:
+    """A cell that is a result: its symbol, what it is, how many rows it rests on where that is not all."""
+
+    symbol: Math
+    meaning: Inlines
+    item: Item
+    rows: tuple[str, ...]
+    marks: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Headline(Block):
+    """The results."""
+
+    results: tuple[Result, ...]
+
+
+@dataclass(frozen=True)
+class Figure(Block):
+    """A picture that was drawn."""
+
+    spec: FigureSpec
+    caption: Inlines
+
+
+@dataclass(frozen=True)
+class Numbered(Block):
+    """A displayed equation with its number."""
+
+    equation: Equation
+
+
+@dataclass(frozen=True)
+class Formula(Block):
+    """A displayed equation without a number."""
+
+    equation: Equation
+
+
+@dataclass(frozen=True)
+class Claim(Block):
+    """An equation with what is known of it.
+
+    Parameters
+    ----------
+    equation : Equation
+    title : tuple of inlines
+    status : Status
+    because : tuple of inlines
+        Why it holds, and where.
+    grounds : tuple of inlines
+        What it finally rests on, if it was proved.
+    summary : str
+        Of its derivation.
+    steps : tuple of tuple of blocks
+        The derivation.
+    """
+
+    equation: Equation
+    title: Inlines
+    status: Status
+    because: Inlines
+    grounds: Inlines
+    summary: str
+    steps: tuple[Blocks, ...]
+
+
+@dataclass(frozen=True)
+class Section(Block):
+    """A chapter; what one says that was `issued` is not computed again when data are edited."""
+
+    name: str
+    title: str
+    blocks: Blocks
+    issued: bool = False

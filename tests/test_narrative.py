@@ -1,0 +1,181 @@
+"""Narratives: what a report says, from Markdown with roles and conditions; and the shipped ones."""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report.build import find_workbook
+from loopsheet.report.document import narrative
+from loopsheet.report.document.material import Material
+from loopsheet.report.document.narrative import NarrativeError, narratives, sections
+from loopsheet.report.document.said import _SAID, Said
+from loopsheet.report.document.tree import (
+    Code,
+    Figure,
+    Items,
+    Link,
+    Math,
+    Note,
+    Numbered,
+    Paragraph,
+    Refer,
+    Section,
+    Size,
+    Strong,
+    Table,
+    Value,
+)
+from loopsheet.report.result import Report
+from loopsheet.report.workbooks import SHIPPED
+
+Reads = Callable[..., tuple[Section, ...]]
+
+
+@pytest.fixture
+def reads(report: Report, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Reads:
+    """Reads a text as the narrative of the paper."""
+    monkeypatch.setattr(narrative, "FOLDER", tmp_path)
+    narrative._lines.cache_clear()
+
+    def read(text: str, drawn: tuple[str, ...] = ("loops",), **parts: str) -> tuple[Section, ...]:
+        (tmp_path / "parts").mkdir(exist_ok=True)
+        (tmp_path / "own.md").write_text(text, encoding="utf-8")
+        for name, part in parts.items():
+            (tmp_path / "parts" / f"{name}.md").write_text(part, encoding="utf-8")
+        narrative._lines.cache_clear()
+        return sections("own", Said(Material(report), drawn))
+
+    return read
+
+
+def test_a_narrative_is_chapters_of_blocks(reads: Reads) -> None:
+    first, second = reads(
+        "# One {#one}\n\nSome **strong words** and `code`,\nand [more](#two).\n\n"
+        "> A note\n> of two lines.\n\n- an item\n- another\n\n# Two {#two .issued}\n"
+    )
+    assert (first.name, first.title, first.issued) == ("one", "One", False)
+    assert (second.name, second.blocks, second.issued) == ("two", (), True)
+    paragraph, note, items = first.blocks
+    assert isinstance(paragraph, Paragraph)
+    assert paragraph.content[0] == "Some "
+    assert isinstance(paragraph.content[1], Strong)
+    assert paragraph.content[2:] == (
+        " and ", Code("code"), ",", " ", "and ", Link("section", "two", ("more",)), "."
+    )  # fmt: skip
+    assert note == Note(("A note", " ", "of two lines."))
+    assert items == Items((("an item",), ("another",)))
+
+
+def test_a_role_is_shown_where_it_is_alone_and_else_referred_to(reads: Reads) -> None:
+    (chapter,) = reads(
+        "# One {#one}\n\n{eq}`(11)`\n\n{table}`alpha`\n\n{fig}`loops`\n\n"
+        "{eq}`(11)`, {table}`alpha`, {fig}`loops`, {cell}`alpha_mean`, {sym}`x_m`, {count}`tests`\n"
+    )
+    equation, table, figure, text = chapter.blocks
+    assert isinstance(equation, Numbered)
+    assert isinstance(table, Table)
+    assert isinstance(figure, Figure)
+    assert isinstance(text, Paragraph)
+    assert [type(part) for part in text.content if part != ", "] == [Refer, Link, Link, Value, Math, Size]
+
+
+def test_what_a_report_does_not_have_is_left_out(reads: Reads) -> None:
+    (chapter,) = reads("# One {#one}\n\n{fig}`loops`\n\nBefore {fig}`loops`after.\n", drawn=())
+    assert chapter.blocks == (Paragraph(("Before ", "after.")),)
+
+
+@pytest.mark.parametrize(
+    ("condition", "said"),
+    [
+        ("{fig}`loops`", "It is drawn, so."),
+        ("{fig}`loops` {cell}`beta`", "It is drawn, so."),
+        ("{fig}`lankarani`", "It is not drawn."),
+        ("{fig}`loops` {fig}`lankarani`", "It is not drawn."),
+    ],
+)
+def test_a_condition_may_lie_inside_of_a_paragraph(reads: Reads, condition: str, said: str) -> None:
+    (chapter,) = reads(
+        f"# One {{#one}}\n\nIt is\n:::{{if}} {condition}\ndrawn\n, so\n:::{{else}}\nnot drawn\n:::\n.\n"
+    )
+    (paragraph,) = chapter.blocks
+    assert isinstance(paragraph, Paragraph)
+    assert "".join(map(str, paragraph.content)) == said
+
+
+def test_conditions_hold_each_other_and_parts_are_put_in(reads: Reads) -> None:
+    inner = ":::{if} {fig}`lankarani`\n:::{if} {fig}`loops`\nno\n:::{else}\nno\n:::\n:::{else}\nyes\n:::\n"
+    (chapter,) = reads("# One {#one}\n\n:::{include} inner\n", inner=inner)
+    assert chapter.blocks == (Paragraph(("yes",)),)
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        (
+            "{cell}`alpha_maen`",
+            "prose/own.md:5: no column is called 'alpha_maen'; did you mean 'alpha_mean'?",
+        ),
+        ("and {tabel}`alpha`", "prose/own.md:5: no role is called {tabel}; there are cell, count, eq, "),
+        ("{eq}`(99)`", "prose/own.md:5: no equation is called '(99)'; "),
+        ("{count}`test`", "prose/own.md:5: no axis is called 'test'; did you mean 'tests'?"),
+        ("{say}`taly`", "prose/own.md:5: no sentence is called 'taly'; did you mean 'tally'?"),
+        ("{say}`exactly`", "prose/own.md:5: {say}`exactly` is a condition: there is nothing to show"),
+        ("## No name", "prose/own.md:5: a heading is '# Title {#name}'"),
+        (":::{if} {say}`taly`", "prose/own.md:5: no sentence is called 'taly'"),
+        (":::{if} {say}`exactly`", "prose/own.md:5: this condition does not end"),
+        (":::", "prose/own.md:5: nothing is open that ::: could belong to"),
+        ("two\nlines and {eq}`(0)`", "prose/own.md:6: no equation is called '(0)'"),
+    ],
+)
+def test_what_is_unknown_is_told_with_its_place(reads: Reads, line: str, says: str) -> None:
+    with pytest.raises(NarrativeError, match=re.escape(says)):
+        reads(f"# One {{#one}}\n\nText.\n\n{line}\n")
+
+
+FILES = sorted(path.relative_to(narrative.FOLDER).as_posix() for path in narrative.FOLDER.rglob("*.md"))
+
+
+def test_the_shipped_narratives() -> None:
+    told = narratives()
+    assert told["generic"] == []
+    assert {"(11)", "alpha_mean", "pairs", "beta"} <= set(told["soft_impact"])
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_a_shipped_narrative_names_tables_figures_and_symbols_of_its_workbook(name: str) -> None:
+    workbook = find_workbook(name, Path())
+    text = "".join(line.text for line in narrative._lines(workbook.prose))
+    assert set(re.findall(r"\{table\}`([^`]*)`", text)) <= {spec.name for spec in workbook.tables}
+    assert set(re.findall(r"\{fig\}`([^`]*)`", text)) <= {
+        "referee",
+        *(spec.name for spec in workbook.figures),
+    }
+    assert set(re.findall(r"\{sym\}`([^`]*)`", text)) <= set(workbook.ledger().vocabulary) | {
+        column.name for column in workbook.sheet(frozenset(one.name for one in workbook.parameters)).columns
+    }
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_prose_has_no_markup_of_one_format_and_no_typed_number(name: str) -> None:
+    text = (narrative.FOLDER / name).read_text(encoding="utf-8")
+    assert set(re.findall(r"\{say\}`(\w+)`", text)) <= set(_SAID)
+    prose = re.sub(r"(?m)^:::.*$|^# |^> |\{\w+\}`[^`]*`|`[^`]*`|\{#[^}]*\}|\]\(#\w+\)|\*\*", " ", text)
+    assert not set(prose) & set("<>&%#_$~^\\{}\"'`")
+    numbers = re.findall(r"\d+(?:\.\d+)?(?:/\d+)?", prose)
+    assert set(numbers) <= {"1", "3/2"}  # the limits of (4)
+
+
+def test_every_sentence_that_can_be_named_is_named() -> None:
+    text = "".join((narrative.FOLDER / name).read_text(encoding="utf-8") for name in FILES)
+    assert set(_SAID) == set(re.findall(r"\{say\}`(\w+)`", text))
+
+
+def test_every_chapter_comes_where_there_is_something_to_tell(report: Report) -> None:
+    said = Said(Material(report), ())
+    names = [section.name for section in sections("generic", said)]
+    assert {"result", "values", "published", "equations", "derivations", "errata", "reproduce"} == set(names)
+    bare = replace(report, comparisons=(), errata=(), engines=(), proofs=())
+    assert "published" not in [section.name for section in sections("generic", Said(Material(bare), ()))]
