@@ -21,7 +21,7 @@ from .evaluation import UNDEFINED, NotEvaluable, Program
 from .reductions import REDUCTIONS
 from .sums import in_terms
 
-__all__ = ["circle", "is_assumed", "says", "stated", "supported"]
+__all__ = ["behind", "circle", "is_assumed", "says", "stated", "supported"]
 
 _DIGITS, _POINTS = 30, 3
 _ALIKE = mpmath.mpf(10) ** -20
@@ -152,6 +152,20 @@ def supported(equation: Equation, by: Equation, ledger: Ledger) -> bool:
             left += [premise.origin for premise in steps[each].premises]
         seen.add(each)
     return False
+
+
+def behind(equations: Iterable[Equation], ledger: Ledger) -> set[Equation]:
+    """Some equations and all that a ledger derives them from, however far back."""
+    chains = {entry.claim: entry.steps for entry in ledger.entries if isinstance(entry, Derivation)}
+    ends = {step.claim: claim for claim, steps in chains.items() for step in steps}
+    found: set[Equation] = set()
+    left = list(equations)
+    while left:
+        if (each := left.pop()) not in found:
+            found.add(each)
+            whole = ends.get(each, each)  # a step inside of a chain comes with all of it
+            left += [whole, *(premise.origin for step in chains.get(whole, ()) for premise in step.premises)]
+    return found
 
 
 def _steps(entries: Iterable[Equation | Derivation]) -> dict[Equation, Step]:

@@ -10,7 +10,7 @@ different dimension, or that cannot hold together with the others is refused.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import lru_cache
@@ -20,7 +20,7 @@ from sympy import Expr, Indexed, Symbol
 from .dimensions import mixed
 from .equation import Derivation, Equation, Kind, Ledger, Step
 from .evaluation import NotEvaluable
-from .grounds import circle, is_assumed
+from .grounds import behind, circle, is_assumed
 from .sampling import DIGITS, POINTS, examine
 from .space import said
 from .system import Refused, prepare
@@ -245,23 +245,48 @@ def _verdict(entry: Derivation, steps: list[StepProof], ledger: Ledger) -> tuple
     return Status.PROVED, ""
 
 
-def prove(ledger: Ledger, begin: Callable[[Equation], None] | None = None) -> tuple[Proof, ...]:
-    """Decide every equation of a ledger, in its order; nothing may rest on what comes later.
+def prove(
+    ledger: Ledger, begin: Callable[[Equation], None] | None = None, only: Collection[str] | None = None
+) -> tuple[Proof, ...]:
+    """Decide the equations of a ledger, in its order; nothing may rest on what comes later.
 
     Parameters
     ----------
     ledger : Ledger
     begin : callable, optional
         Told of each equation before it is decided: all of them take a second or two.
+    only : collection of str, optional
+        The labels of those that are asked for: what they do not rest on is not derived then. What is assumed
+        is looked at in any case, for they have to hold together with all of it.
     """
+    needed = None if only is None else behind((ledger[label] for label in only), ledger)
     proofs: list[Proof] = []
     known: Grounds = {}
     for entry in ledger.entries:
+        claim = entry.claim if isinstance(entry, Derivation) else entry
+        if needed is not None and isinstance(entry, Derivation) and claim not in needed:
+            continue
         if begin is not None:
-            begin(entry.claim if isinstance(entry, Derivation) else entry)
+            begin(claim)
         proof, known = _prove_entry(entry, known, ledger)
         proofs.append(proof)
-    return tuple(_refuse_conflicts(ledger, proofs, known))
+    if needed is None or not _holds_together(ledger, proofs):
+        proofs = _refuse_conflicts(ledger, proofs, known)
+    return tuple(proof for proof in proofs if only is None or proof.equation.label in only)
+
+
+def _holds_together(ledger: Ledger, proofs: Collection[Proof]) -> bool:
+    """Whether a point was found at which a ledger holds, with all that it claims, proved or not.
+
+    Then it holds there with fewer claims too, for which a point is harder to find.
+    """
+    refused = {proof.equation for proof in proofs if not proof.status.passes}
+    standing = frozenset(ledger.equations()) - refused
+    claimed = {entry.claim for entry in ledger.entries if isinstance(entry, Derivation)} & standing
+    claims = frozenset(
+        claim for claim in claimed if not any(e.kind is Kind.LIMIT for e in behind([claim], ledger))
+    )
+    return conflict(ledger, standing, claims) is None
 
 
 def _refuse_conflicts(ledger: Ledger, proofs: list[Proof], known: Grounds) -> list[Proof]:

@@ -489,6 +489,23 @@ def test_a_premise_may_not_contradict_what_stands() -> None:
     assert found["(3)"].remark == "twice cannot hold together with (1)"
 
 
+def test_one_equation_is_proved_as_with_all_others() -> None:
+    """With what it rests on, and no more; what the whole ledger does not agree with is refused here too."""
+    told: list[str] = []
+    ledger = Ledger((FIRST, SECOND_HOLDS, THIRD_HOLDS, said("(4)", c, b), said("(5)", c, 2 * b)))
+    for entries in (ledger.entries[:4], ledger.entries):
+        some = replace(ledger, entries=entries)
+        whole = {proof.equation.label: proof for proof in prove(some)}
+        assert all(prove(some, only=[label]) == (proof,) for label, proof in whole.items())
+    assert whole["(5)"].status is Status.REFUSED
+    prove(ledger, lambda equation: told.append(equation.label), only=["(2)"])
+    assert told == ["(1)", "(2)", "(4)", "(5)"]
+    alone = [prove(model.LEDGER, only=[label]) for label in ("(11)", "(12e)")]
+    assert [proof for (proof,) in alone] == [
+        p for p in prove(model.LEDGER) if p.equation.label in ("(11)", "(12e)")
+    ]
+
+
 def limit(*members: Expr) -> Equation:
     return Equation("", members, "", Kind.LIMIT, "none")
 
