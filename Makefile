@@ -43,7 +43,7 @@ test: $(VENV)/.test .mypy_root/loopsheet
 campaigns: $(VENV)/.test
 	$(PYTEST) -m campaigns --campaigns all
 
-bench: $(VENV)/.bench
+bench: $(VENV)/.test $(VENV)/.bench
 	set -e; for script in benchmarks/bench_*.py; do echo "== $$script"; $(BIN)/python "$$script"; done
 
 # The stamps: an environment is set up once, and again when what it was made from has changed.

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 import random
 import statistics
+import tempfile
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
+import kernel
 import numpy as np
 from sympy import Symbol, lambdify
 
@@ -34,6 +37,9 @@ PLAIN = {
     for cell, name in zip((model.beta, V[1], V[2], E[1], E[2], XP[1], XP[2]), NAMES, strict=True)
 }
 RULE = alpha_rule(PLAIN)
+OWN = "generated: decided, bracketed, checked"
+NEWTON = "lambdify(cse=True), four Newton steps, 8k blocks"
+C = "C, four Newton steps"
 
 
 def pairs(count: int, seed: int = 1) -> dict[str, Any]:
@@ -106,25 +112,30 @@ def medians(variants: dict[str, Callable[[], Any]]) -> dict[str, float]:
     return {name: statistics.median(times) for name, times in found.items()}
 
 
-def solvers(count: int) -> None:
+def solvers(count: int, in_c: Callable[[dict[str, Any]], Any] | None) -> None:
     """Compare the ways to solve (11) for many pairs."""
     data = pairs(count)
     ways: dict[str, Callable[[dict[str, Any]], Any]] = {
-        "generated: decided, bracketed, checked": generated,
+        OWN: generated,
         "the same, the same bits on every processor": lambda data: generated(data, PROGRAM),
         "lambdify(cse=True), two order-4 steps, 8k blocks": lambdified(4, 2, True, 1 << 13),
         "lambdify(cse=True), four order-4 steps, 8k blocks": lambdified(4, 4, True, 1 << 13),
-        "lambdify(cse=True), four Newton steps, 8k blocks": lambdified(2, 4, True, 1 << 13),
+        NEWTON: lambdified(2, 4, True, 1 << 13),
         "lambdify, four Newton steps, 8k blocks": lambdified(2, 4, False, 1 << 13),
         "lambdify(cse=True), four order-4 steps, whole arrays": lambdified(4, 4, True, count),
     }
+    if in_c is not None:
+        ways[C] = in_c
     reference = generated(data)
     print(f"\n{count} pairs: ns a root, ratio to the generated one, largest difference")
     found = medians({name: (lambda way=way: way(data)) for name, way in ways.items()})  # type: ignore[misc]
-    own = found["generated: decided, bracketed, checked"]
+    own = found[OWN]
     for name, seconds in found.items():
         apart = np.nanmax(abs(ways[name](data) / reference - 1))
         print(f"  {seconds / count * 1e9:8.1f}  {seconds / own:5.2f}  {apart:.0e}  {name}")
+    for name in (NEWTON, C):
+        if name in found:
+            print(f"generated / {name}: {own / found[name]:.2f}")
 
 
 def sheets() -> None:
@@ -160,7 +171,11 @@ def preparation() -> None:
 
 
 if __name__ == "__main__":
-    for size in (100_000, 1_000_000):
-        solvers(size)
+    with tempfile.TemporaryDirectory() as folder:
+        in_c = kernel.built(RULE, list(PLAIN.values()), Path(folder))
+        if in_c is None:
+            print("no C compiler was found: there is no kernel to compare with")
+        for size in (100_000, 1_000_000):
+            solvers(size, in_c)
     sheets()
     preparation()

@@ -14,8 +14,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-from loopsheet.report import build
-from loopsheet.report.engines import javascript
+from loopsheet.report import stages
+from loopsheet.report.folders import PAPER
+from loopsheet.report.study import Study
 from loopsheet.report.views import figures, html
 
 EDITS = 50
@@ -59,9 +60,9 @@ def campaign(folder: Path, tests: int) -> Path:
 
 def page(folder: Path, target: Path) -> Path:
     """The page of a report folder, as a file."""
-    report = build.compute(folder, prove=False)
-    drawn = {figure.name: figures.svg(report, figure.name) for figure in report.workbook.figures}
-    target.write_text(html.render(report, drawn, program=javascript.program(report.sheet)), encoding="utf-8")
+    report = Study(folder).computed
+    drawn = {figure.name: figures.svg(report, figure.draw) for figure in report.workbook.figures}
+    target.write_text(html.render(report, drawn, stages.program(report)), encoding="utf-8")
     return target
 
 
@@ -70,10 +71,13 @@ def main() -> int:
     from playwright.sync_api import sync_playwright
 
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    if chromium is None:
+        print("no Chromium was found: the page is not measured")
+        return 0
     with tempfile.TemporaryDirectory() as name, sync_playwright() as playwright:
         here = Path(name)
         pages = {
-            "5 tests (the paper)": page(build.PAPER, here / "paper.html"),
+            "5 tests (the paper)": page(PAPER, here / "paper.html"),
             "40 tests": page(campaign(here / "forty", 40), here / "forty.html"),
         }
         browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])

@@ -17,7 +17,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
 from forged_campaigns import Campaign, honest, reprinted
 
-from loopsheet.report import build
+from loopsheet.report import stages
+from loopsheet.report.folders import PAPER
+from loopsheet.report.study import Study
 
 ROUNDS = 3
 
@@ -33,8 +35,8 @@ def of_size(tests: int, misprinted: bool) -> Campaign:
 
 
 def main() -> None:
-    paper = build.compute(build.PAPER, prove=False)
-    runs: dict[str, Callable[[], object]] = {"the shipped paper": lambda: build.refereed(paper)}
+    paper = Study(PAPER).computed
+    runs: dict[str, Callable[[], object]] = {"the shipped paper": lambda: stages.refereed(paper)}
     for tests in (5, 10, 20, 40):
         for misprinted in (False, True):
             name = f"{tests} tests, {'one cell misprinted' if misprinted else 'honest'}"

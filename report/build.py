@@ -1,383 +1,35 @@
-"""The one visible place where the parts are wired: inputs -> sheet -> values -> proofs -> views -> files."""
+"""From a study to files: what is written, where it goes, and that it is there as a whole."""
 
 from __future__ import annotations
 
-import importlib
-import sys
+from base64 import b64decode, b64encode
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import cost
+from . import stages
 from .background import Background
 from .crate import added
-from .errors import ForeignCode, LoopsheetError, UnknownWorkbook, UsageError, close, diagnose, listing
-from .folders import INPUTS, PAPER, told
-from .inputs import Find, Inputs, load
-from .own_workbook import own_workbook
-from .prepared import Prepared, given_data
+from .errors import UsageError, close, diagnose, listing
+from .folders import INPUTS, told
 from .provenance import processor, sources
+from .stages import Step, book, program, refuse_too_many_rows, silent
 from .staging import put, staged
-from .unit_text import UnitError as NotAUnit
-from .unit_text import parse_unit
-from .workbooks import SHIPPED
+from .timing import timed
 
 if TYPE_CHECKING:
-    from ..derivations.equation import Erratum, Ledger
-    from ..derivations.proof import Proof, StepProof
-    from .agreement import Agreement
-    from .charts import Drawn
-    from .errors import Diagnostic
-    from .grid import Grid
-    from .layout import Layout
-    from .result import Comparison, Report, Shown
-    from .sheet import Column, Sheet
-    from .values import Values
+    from .prepared import Prepared
+    from .result import Comparison, Report
+    from .study import Study
     from .verdict import Referee
-    from .workbook import FigureSpec, Workbook
+    from .workbook import FigureSpec
 
-__all__ = [
-    "FORMATS",
-    "PAPER",
-    "Prepared",
-    "Step",
-    "build",
-    "checked",
-    "compared",
-    "compute",
-    "find_workbook",
-    "given_data",
-    "judged",
-    "prepare",
-    "refereed",
-    "shipped_workbook",
-    "versions",
-]
+__all__ = ["FORMATS", "Built", "build", "built", "parse_formats"]
 
 FORMATS = ("html", "latex", "xlsx", "json", "pdf")
 DEFAULT_FORMATS = ("html", "latex", "xlsx", "json")
-
-Step = Callable[[str], None]
-"""Told what is begun, for whoever watches."""
-
-_Found = tuple[dict[str, Any], list[dict[str, Any]]]
-"""A proof without its equation, and its steps without theirs."""
-
-EXACTLY = 20_000
-"""Up to so many cells, a sheet is evaluated at 50 digits, which takes .3 ms a cell, and its values are those,
-correctly rounded; of a larger one, some of its tests are."""
-
-
-def _silent(_: str) -> None:
-    """Nobody watches."""
-
-
-# --- workbooks -------------------------------------------------------------------------------------------
-
-
-def find_workbook(name: str, folder: Path, code: bytes | None = None) -> Workbook:
-    """The workbook of a name: a shipped one, or the user's own ``NAME.py`` in the folder.
-
-    Parameters
-    ----------
-    name : str
-    folder : Path
-    code : bytes, optional
-        What that file held when it was read. It is run: whoever names a folder to be computed asks for it.
-
-    Raises
-    ------
-    UnknownWorkbook
-        With the names there are.
-    InputError
-        The user's own workbook cannot be run, or declares none.
-    """
-    if name in SHIPPED:
-        workbook: Workbook = importlib.import_module(SHIPPED[name]).WORKBOOK
-        return workbook
-    if code is None:
-        raise UnknownWorkbook([*SHIPPED, *sorted(p.name for p in folder.glob("*.py"))])
-    return own_workbook(folder / name, code)
-
-
-def shipped_workbook(name: str, folder: Path, code: bytes | None = None) -> Workbook:
-    """The same, for whoever did not ask to run what is in the folder.
-
-    Raises
-    ------
-    ForeignCode
-        The workbook is code of the folder.
-    """
-    if name not in SHIPPED and code is not None:
-        raise ForeignCode(name)
-    return find_workbook(name, folder, code)
-
-
-# --- from inputs to values --------------------------------------------------------------------------------
-
-
-def prepare(folder: Path, find: Find = find_workbook) -> Prepared:
-    """Read a folder, lay out its sheet, check dimensions and published cells.
-
-    Parameters
-    ----------
-    folder : Path
-        A report folder.
-    find : callable
-        :func:`find_workbook`, or :func:`shipped_workbook` if nobody asked to run the folder's own code.
-
-    Raises
-    ------
-    InputError
-        With every finding.
-    """
-    inputs = load(folder, find, _of_cells)
-    return _prepared(inputs, inputs.workbook.ledger())
-
-
-def _of_cells(inputs: Inputs) -> Sequence[Diagnostic]:
-    """What is wrong with the cells that a folder names, if that is asked because something else is wrong."""
-    try:
-        _prepared(inputs, inputs.workbook.ledger()).check_cells()
-    except LoopsheetError as error:
-        return error.diagnostics
-    return ()
-
-
-def _prepared(inputs: Inputs, ledger: Ledger) -> Prepared:
-    from . import refusals
-    from .sheet import SheetError
-
-    own = inputs.workbook.name not in SHIPPED
-    try:
-        sheet = inputs.workbook.sheet(inputs.given)
-        refusals.refuse_what_is_not_stated(sheet, ledger)
-    except SheetError as error:
-        if not own:
-            raise  # ours, and our bug
-        raise refusals.of_sheet(inputs, error) from error
-    if own:
-        from .document.narrative import narratives
-
-        refusals.refuse_what_is_misnamed(sheet, inputs, narratives(), _drawings)
-    refusals.refuse_what_is_missing(sheet, inputs)
-    return Prepared(inputs, sheet)
-
-
-def _drawings() -> Collection[str]:
-    from .views import figures
-
-    return figures.NAMES
-
-
-def compute(folder: Path, step: Step = _silent, prove: bool = True, find: Find = find_workbook) -> Report:
-    """Compute a whole report.
-
-    Parameters
-    ----------
-    folder : Path
-        A report folder.
-    step : callable
-        Told what is begun.
-    prove : bool
-        Whether to check the algebra too.
-    find : callable
-        As for :func:`prepare`.
-    """
-    step("reading the folder")
-    inputs = load(folder, find, _of_cells)
-    ledger = inputs.workbook.ledger()
-    report = _evaluated(_prepared(inputs, ledger), ledger, step)
-    if not prove:
-        return report
-    proofs, errata = checked(report.inputs, report.ledger, step)
-    return replace(report, proofs=proofs, errata=errata)
-
-
-def _evaluated(prepared: Prepared, ledger: Ledger, step: Step) -> Report:
-    """Everything but the proofs."""
-    inputs, sheet = prepared.inputs, prepared.sheet
-    from .analysis.oddities import oddities
-    from .analysis.referee import compare
-    from .layout import how_large
-    from .marks import Marks, margins, with_margins
-    from .result import Report
-
-    step(f"computing {how_large(sheet, prepared.layouts)} cells")
-    inputs = prepared.check_cells()
-    workbook, limits = inputs.workbook, margins(sheet)
-    exactly, (values, whole) = prepared.computed(with_margins(sheet), EXACTLY)
-    report = Report(
-        title=inputs.title,
-        workbook=workbook,
-        inputs=inputs,
-        sheet=sheet,
-        values=values,
-        marks=Marks(whole, limits),
-        exactly=exactly,
-        shown={column.name: shown(column, sheet, inputs) for column in sheet.columns},
-        ledger=ledger,
-        proofs=(),
-        errata=(),
-        comparisons=compare(inputs.published, values),
-        curves=workbook.curves(sheet, values) if workbook.curves is not None else (),
-        versions=versions(),
-    )
-    return replace(report, oddities=oddities(report))
-
-
-def checked(
-    inputs: Inputs, ledger: Ledger, step: Step = _silent
-) -> tuple[tuple[Proof, ...], tuple[Erratum, ...]]:
-    """What is known of the algebra: a proof of each equation, and the errata of the print it is about."""
-    from ..derivations.proof import prove
-
-    proofs = prove(ledger, lambda equation: step(f"proving {equation.label}"))
-    checks = ledger.checks if inputs.about_source else ()
-    return proofs, tuple(found for check in checks if (found := check(ledger)) is not None)
-
-
-def _checked_plainly(inputs: Inputs, ledger: Ledger) -> tuple[list[_Found], tuple[Erratum, ...]]:
-    """The same without equations, for another process: an expression that is sent arrives evaluated."""
-    proofs, errata = checked(inputs, ledger)
-    return [(_but(p, "equation", "steps"), [_but(s, "step") for s in p.steps]) for p in proofs], errata
-
-
-def _but(found: Proof | StepProof, *names: str) -> dict[str, Any]:
-    return {name: value for name, value in vars(found).items() if name not in names}
-
-
-def _with_equations(ledger: Ledger, found: Sequence[_Found]) -> tuple[Proof, ...]:
-    """The proofs again, of a ledger's own equations and steps."""
-    from ..derivations.equation import Derivation
-    from ..derivations.proof import Proof, StepProof
-
-    proofs = []
-    for entry, (own, rests) in zip(ledger.entries, found, strict=True):
-        equation, steps = (entry.claim, entry.steps) if isinstance(entry, Derivation) else (entry, ())
-        told = tuple(StepProof(step=step, **rest) for step, rest in zip(steps, rests, strict=True))
-        proofs.append(Proof(equation=equation, steps=told, **own))
-    return tuple(proofs)
-
-
-def judged(report: Report, every: bool = True, step: Step = _silent) -> Report:
-    """The report with its engines compared with 50 digits.
-
-    Parameters
-    ----------
-    report : Report
-    every : bool
-        Whether to run what else is installed too: JavaScript, and the workbook in LibreOffice.
-    step : callable
-        Told what is begun.
-    """
-    from .analysis import sample
-    from .engines.numpy import evaluate
-    from .layout import how_large
-
-    step("judging the engines at 50 digits")
-    whole = report.marks.values
-    inputs = sample.part(report.inputs, whole, EXACTLY)
-    prepared = Prepared(inputs, report.sheet)
-    computed = evaluate(whole.sheet, prepared.labels, prepared.data)
-    if inputs is report.inputs:
-        return replace(report, engines=_agreements(report, computed, every))
-    few = _evaluated(prepared, report.ledger, _silent)
-    found = _agreements(few, sample.with_own(computed, whole), every)
-    rows = next(axis.name for axis in report.sheet.axes if not axis.parents)
-    told = f"{len(inputs.tests)} of {len(report.inputs.tests)} {rows}"
-    of = how_large(whole.sheet, whole.layouts)
-    return replace(report, engines=tuple(replace(each, of=of, sample=told) for each in found))
-
-
-def _agreements(report: Report, values: Values, every: bool) -> tuple[Agreement, ...]:
-    """How NumPy's values agree with 50 digits; and what else is installed here, if that is wanted."""
-    from .analysis import engines
-    from .analysis.readers import Book, of_values
-
-    prepared = Prepared(report.inputs, report.sheet)
-    labels, exactly = prepared.labels, prepared.exact_data
-    judge = engines.Judge.of(values.sheet, values.layouts, labels, exactly, report.exactly)
-    if not every:
-        return (judge.agreement(of_values(values)),)
-    try:
-        grid, content = _workbook(report)
-        book = Book(content, grid)
-    except UsageError:
-        book = None  # there is no such workbook, and nothing to judge
-    return engines.compare_all(judge, values, labels, prepared.data, book)
-
-
-def refereed(report: Report, step: Step = _silent) -> Report:
-    """The report with every published value judged: whether the printed inputs can yield it.
-
-    Parameters
-    ----------
-    report : Report
-    step : callable
-        Told what is begun.
-    """
-    from .analysis import referee
-
-    data = Prepared(report.inputs, report.sheet).data
-    found = referee.referee(report.sheet, report.inputs, report.values, data, step)
-    return replace(report, referee=found, comparisons=referee.refereed(report.comparisons, found))
-
-
-def compared(report: Report) -> Report:
-    """The report with published.csv read again, after only what is known of differences has changed."""
-    from .analysis import referee
-
-    inputs = load(report.inputs.folder, find_workbook)
-    comparisons = referee.refereed(referee.compare(inputs.published, report.values), report.referee)
-    return replace(report, inputs=inputs, comparisons=comparisons)
-
-
-def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
-    """In which unit a column is shown, and with how many digits.
-
-    What was printed is shown in the unit it was printed in, whatever the workbook would show it in.
-    The digits follow from the inputs: one more than the least precise measured number that the column
-    rests on, so that rounding for the reader loses nothing that was measured.
-    """
-    from .result import Shown
-    from .sheet import Given
-
-    unit = column.display or column.unit
-    like = column.name if isinstance(column.rule, Given) else ""
-    if unit.startswith("like "):
-        like = like or unit.removeprefix("like ")
-    if printed := inputs.printed(like):
-        unit = printed[0].unit
-    try:
-        scale = float(parse_unit(unit).scale)
-    except NotAUnit:
-        unit, scale = column.unit, 1.0  # an exponent that is a symbol: SI
-    digits = []
-    for given in (*sheet.ancestors(column), column):
-        if isinstance(given.rule, Given) and not given.exact:
-            digits.append(min(printed.digits for printed in inputs.printed(given.name)))
-    return Shown(unit, scale, min(digits, default=5) + 1)
-
-
-def versions() -> dict[str, str]:
-    """What computed: this program, its libraries and the interpreter's minor version."""
-    from importlib.metadata import version
-
-    printing = ("jinja2", "markdown-it-py", "matplotlib", "latex2mathml", "xlsxwriter")
-    from .. import __version__
-
-    python = f"{sys.version_info.major}.{sys.version_info.minor}"
-    return {
-        "loopsheet": __version__,
-        "python": python,
-        **{name: version(name) for name in ("numpy", "sympy", "mpmath", *printing)},
-    }
-
-
-# --- from values to files ---------------------------------------------------------------------------------
 
 
 def parse_formats(words: str) -> tuple[str, ...]:
@@ -399,14 +51,72 @@ def parse_formats(words: str) -> tuple[str, ...]:
     return tuple(f for f in FORMATS if f in wanted)
 
 
+@dataclass(frozen=True)
+class Built:
+    """What was built.
+
+    Parameters
+    ----------
+    files : tuple of Path
+        Where they are now.
+    told : anything that JSON can hold
+        What there is to tell of the report.
+    """
+
+    files: tuple[Path, ...]
+    told: Any
+
+
+def built(
+    study: Study,
+    out: Path,
+    formats: Collection[str] | None,
+    every_engine: bool,
+    tell: Step,
+    of: Callable[[Report], Any],
+) -> Built:
+    """Write a report as :func:`build` does, or the very files that were written of the same folder before.
+
+    Parameters
+    ----------
+    study, out, formats, every_engine, tell
+        As for :func:`build`.
+    of : callable
+        What there is to tell of the report, as data that JSON can hold.
+    """
+    with staged(out, tell, lambda place: _of_a_crate(place, study.folder)) as stage:
+        said: list[str] = []
+
+        def say(sentence: str) -> None:
+            said.append(sentence)
+            tell(sentence)
+
+        def make() -> dict[str, Any]:
+            report = _made(study, stage, out, formats, every_engine, say)
+            files = {name: b64encode((stage / name).read_bytes()).decode() for name in _names(stage)}
+            return {"title": report.title, "said": said[1:], "files": files, "told": of(report)}
+
+        # What other programs made of it hangs on them, too.
+        if every_engine or "pdf" in (formats or ()):
+            found = make()
+        else:
+            wanted = "default" if formats is None else " ".join(formats)
+            found = study.kept("outputs", make, wanted, processor(), str(study.folder))
+        if not said:
+            for sentence in (_begun(found["title"], study, out), *found["said"]):
+                tell(sentence)
+            for name, content in found["files"].items():
+                put(stage / name, b64decode(content))
+        names = _names(stage)
+    return Built(tuple(out / name for name in names), found["told"])
+
+
 def build(
-    folder: Path,
+    study: Study,
     out: Path,
     formats: Collection[str] | None = None,
-    step: Step = _silent,
     every_engine: bool = False,
-    find: Find = find_workbook,
-    tell: Step = _silent,
+    tell: Step = silent,
 ) -> tuple[Report, list[Path]]:
     """Compute a report and write it.
 
@@ -415,18 +125,14 @@ def build(
 
     Parameters
     ----------
-    folder : Path
-        A report folder.
+    study : Study
+        Of a report folder.
     out : Path
         Where the report goes; made if it does not exist. Other files in it are left alone.
     formats : collection of str, optional
         Of :data:`FORMATS`. Without it, :data:`DEFAULT_FORMATS`, but no workbook that would be too large.
-    step : callable
-        Told what is begun.
     every_engine : bool
         Whether JavaScript and the workbook are judged too, by the programs that are installed here.
-    find : callable
-        As for :func:`prepare`.
     tell : callable
         Told what is built from where once the folder was read and found right, what is left out, and what it
         takes if that is long; which files that somebody had changed are kept; and what a crate of the report
@@ -438,19 +144,37 @@ def build(
     list of Path
         The files that were written.
     """
-    with staged(out, tell, lambda place: _of_a_crate(place, folder)) as stage, ExitStack() as running:
-        step("reading the folder")
-        inputs = load(folder, find, _of_cells)
-        tell(f"building '{inputs.title}' from {told(folder)} into {out}")
-        ledger = inputs.workbook.ledger()
+    with staged(out, tell, lambda place: _of_a_crate(place, study.folder)) as stage:
+        report = _made(study, stage, out, formats, every_engine, tell)
+        names = _names(stage)
+    return report, [out / name for name in names]
+
+
+def _names(stage: Path) -> list[str]:
+    return sorted(p.relative_to(stage).as_posix() for p in stage.rglob("*") if p.is_file())
+
+
+def _begun(title: str, study: Study, out: Path) -> str:
+    return f"building '{title}' from {told(study.folder)} into {out}"
+
+
+def _made(
+    study: Study, stage: Path, out: Path, formats: Collection[str] | None, every_engine: bool, tell: Step
+) -> Report:
+    """Compute a report and write its files into a folder."""
+    from . import cost
+
+    step = study.step
+    with ExitStack() as running:
+        tell(_begun(study.inputs.title, study, out))
         # Everything that takes long has a process of its own, from when there is what it needs.
-        proving = running.enter_context(Background(lambda: _checked_plainly(inputs, ledger)))
-        prepared = _prepared(inputs, ledger)
+        proving = None if study.are_proved() else running.enter_context(Background(study.proofs_quietly))
+        prepared = study.prepared
         formats = _possible(prepared, formats, tell)
         if long := cost.told(prepared.sheet, prepared.layouts, formats):
             tell(long)
-        report = _evaluated(prepared, ledger, step)
-        judging = running.enter_context(Background(lambda: judged(report, every_engine).engines))
+        report = study.computed
+        judging = running.enter_context(Background(lambda: stages.judged(report, every_engine).engines))
         refereeing, drawing, workbook = None, None, None
         if report.inputs.published:
             refereeing = running.enter_context(Background(lambda: _refereed(report, formats)))
@@ -458,26 +182,31 @@ def build(
             drawing = running.enter_context(
                 Background(lambda: _pictures(report, report.workbook.figures, formats))
             )
-        program = _program(report) if "html" in formats else ""
-        step("proving the equations")
-        found, errata = proving.result()
-        proved = replace(report, proofs=_with_equations(ledger, found), errata=errata)
+        source = program(report) if "html" in formats else ""
+        if proving is not None:
+            step("proving the equations")
+            with timed("waiting for proofs"):
+                study.proof_data = proving.result()
+        proved = study.proved
         if "xlsx" in formats:
-            workbook = running.enter_context(Background(lambda: _workbook(proved)[1]))
+            workbook = running.enter_context(Background(lambda: book(proved)[1]))
         step("judging the engines at 50 digits")
-        finished = replace(proved, engines=judging.result())
+        with timed("waiting for the judge"):
+            finished = replace(proved, engines=judging.result())
         pictures: dict[str, bytes] = {}
         if drawing is not None:
             step("drawing the figures")
-            pictures = drawing.result()
+            with timed("waiting for figures"):
+                pictures = drawing.result()
         if refereeing is not None:
             step("refereeing what was published")
-            referee, comparisons, its_pictures = refereeing.result()
+            with timed("waiting for the referee"):
+                referee, comparisons, its_pictures = refereeing.result()
             finished = replace(finished, referee=referee, comparisons=comparisons)
             pictures |= its_pictures
-        _write(finished, stage, formats, pictures, program, workbook, step)
-        names = sorted(p.relative_to(stage) for p in stage.rglob("*") if p.is_file())
-    return finished, [out / name for name in names]
+        with timed("writing"):
+            _write(finished, stage, formats, pictures, source, workbook, step)
+    return finished
 
 
 def _of_a_crate(out: Path, folder: Path) -> dict[Path, str]:
@@ -508,7 +237,7 @@ def _refereed(
     report: Report, formats: Collection[str]
 ) -> tuple[Referee, tuple[Comparison, ...], dict[str, bytes]]:
     """What the referee found, and its own picture."""
-    found = refereed(report)
+    found = stages.refereed(report)
     pictures: dict[str, bytes] = {}
     if _WITH_FIGURES & set(formats):
         from .views import figures
@@ -518,22 +247,12 @@ def _refereed(
     return found.referee, found.comparisons, pictures
 
 
-def _program(report: Report) -> str:
-    """The sheet as the page's program, with the curves that the page draws."""
-    from .engines import javascript
-
-    drawn, sheet = _drawn(report), report.marks.values.sheet
-    if drawn is None:
-        return javascript.program(sheet)
-    return javascript.program(drawn.with_curves(sheet), drawn.given)
-
-
 def _write(
     report: Report,
     stage: Path,
     formats: Collection[str],
     pictures: Mapping[str, bytes],
-    program: str,
+    source: str,
     workbook: Background[bytes] | None,
     step: Step,
 ) -> None:
@@ -558,7 +277,7 @@ def _write(
             for name, content in pictures.items()
             if name.endswith(".svg")
         }
-        put(stage / "report.html", html.render(report, svg, program))
+        put(stage / "report.html", html.render(report, svg, source))
     if workbook is not None:
         step("writing report.xlsx")
         put(stage / "report.xlsx", workbook.result())
@@ -576,7 +295,7 @@ def _possible(prepared: Prepared, formats: Collection[str] | None, tell: Step) -
     wanted = DEFAULT_FORMATS if formats is None else formats
     if "xlsx" in wanted:
         try:
-            _refuse_too_many_rows(prepared.layouts)
+            refuse_too_many_rows(prepared.layouts)
         except UsageError as refused:
             if formats is not None:
                 raise
@@ -584,37 +303,3 @@ def _possible(prepared: Prepared, formats: Collection[str] | None, tell: Step) -
             tell(f"{reason.message}; {reason.allowed}")
             return [each for each in wanted if each != "xlsx"]
     return wanted
-
-
-def _refuse_too_many_rows(layouts: Mapping[str, Layout]) -> None:
-    """Before anything long is begun."""
-    from .engines.excel_grid import MOST_ROWS, TooManyRows, check_rows
-
-    try:
-        check_rows(layouts)
-    except TooManyRows as error:
-        known = f"at most {MOST_ROWS} rows in a worksheet; fewer points_per_pair make fewer rows"
-        raise UsageError(diagnose("LS606", reason=error, known=known)) from error
-
-
-def _drawn(report: Report) -> Drawn | None:
-    """What the page and the workbook draw themselves."""
-    return None if report.workbook.drawn is None else report.workbook.drawn(report.sheet)
-
-
-def _workbook(report: Report) -> tuple[Grid, bytes]:
-    """The sheet as a workbook with live formulas: where its cells are, and the file."""
-    _refuse_too_many_rows(report.values.layouts)
-    from .engines import excel_grid
-    from .engines.excel import NotPrintable
-    from .views import xlsx
-
-    units = {name: how.unit for name, how in report.shown.items()}
-    try:
-        first, values = report.workbook.headline, report.marks.values
-        grid = excel_grid.grid(report.sheet, values, units, first, _drawn(report))
-    except NotPrintable as error:
-        raise UsageError(
-            diagnose("LS606", reason=error, known="functions that every spreadsheet has")
-        ) from error
-    return grid, xlsx.render(report, grid)

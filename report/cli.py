@@ -9,12 +9,13 @@ import re
 import signal
 import sys
 from collections.abc import Sequence
-from contextlib import redirect_stdout
+from contextlib import AbstractContextManager, nullcontext, redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn, TextIO, cast
 
 from .diagnostics import VisibleStream
 from .stopping import heeded, stoppable
+from .timing import RUN
 from .verbs import VERBS
 from .verbs.common import BUG, OK, print_checks
 
@@ -36,6 +37,8 @@ exit codes:
   1  findings: a proof fails, a published value differs unexpectedly, two reports are not the same
   2  the input or the command line is wrong; the message says where
   3  a bug of loopsheet
+
+what was made of the same inputs before is not made again (--no-cache does); --timing tells where time goes
 
 examples:
   loopsheet build paper                the report of the shipped paper, in out/
@@ -83,7 +86,7 @@ def _parser() -> argparse.ArgumentParser:
         text = verb.HELP
         sub = verbs.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
         verb.arguments(sub)
-        sub.set_defaults(run=verb.run, options=re.findall(r"--[a-z]+", sub.format_usage()))
+        sub.set_defaults(run=verb.run, options=re.findall(r"--[a-z-]+", sub.format_usage()))
     return parser
 
 
@@ -133,9 +136,11 @@ def _run(arguments: Sequence[str] | None) -> int:
     options = argparse.Namespace(traceback=False)
     try:
         options = _parse(sys.argv[1:] if arguments is None else arguments)
-        with heeded():
+        with heeded(), _kept(options):
             code: int = options.run(options)
         sys.stdout.flush()
+        if getattr(options, "timing", False):
+            print(*RUN.lines(), sep="\n", file=sys.stderr)
     except LoopsheetError as error:
         return _refuse(error, options)
     except BrokenPipeError:
@@ -155,6 +160,15 @@ def _run(arguments: Sequence[str] | None) -> int:
         )
         return BUG
     return code
+
+
+def _kept(options: argparse.Namespace) -> AbstractContextManager[None]:
+    """What a run may take from another one, and leave for it."""
+    if not getattr(options, "no_cache", False):
+        return nullcontext()
+    from .kept import nothing_kept
+
+    return nothing_kept()
 
 
 def _refuse(error: LoopsheetError, options: argparse.Namespace) -> int:

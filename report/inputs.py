@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from .errors import (
@@ -140,7 +141,12 @@ class Inputs:
         return (self.parameters[name],) if name in self.parameters else ()
 
 
-def load(folder: Path, find_workbook: Find, more: More = lambda _: ()) -> Inputs:
+def load(
+    folder: Path,
+    find_workbook: Find,
+    more: More = lambda _: (),
+    read: Mapping[str, bytes] = MappingProxyType({}),
+) -> Inputs:
     """Read a report folder.
 
     Parameters
@@ -152,13 +158,15 @@ def load(folder: Path, find_workbook: Find, more: More = lambda _: ()) -> Inputs
         the user's own; returns the workbook, or raises :class:`UnknownWorkbook` or :class:`ForeignCode`.
     more : callable
         Finds what is wrong with the cells, which only the sheet knows, so that it is told in the same round.
+    read : mapping of str to bytes
+        Files that were read already, as :func:`~loopsheet.report.sources.read_bytes` does.
 
     Raises
     ------
     InputError
         With every finding in every file, each with its place.
     """
-    return _Reader(folder, find_workbook, more).read()
+    return _Reader(folder, find_workbook, more, read).read()
 
 
 def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]]) -> Inputs:
@@ -206,8 +214,9 @@ def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[
 class _Reader:
     """One reading of a folder: what was found and what was read, so far."""
 
-    def __init__(self, folder: Path, find_workbook: Find, more: More) -> None:
+    def __init__(self, folder: Path, find_workbook: Find, more: More, before: Mapping[str, bytes]) -> None:
         self.folder = folder
+        self.before = before
         self.find_workbook = find_workbook
         self.more = more
         self.findings = Findings()
@@ -276,13 +285,20 @@ class _Reader:
         return None
 
     def source(self, name: str, limit: int, wanted: str, asked: Location | None = None) -> Source | None:
-        data = read_bytes(self.folder, name, limit, self.findings, asked)
+        data = self.bytes_of(name, limit, asked)
         if data is None:
             return None
-        self.files[Path(name).as_posix()] = data
         return open_source(
             (self.folder / name).as_posix(), Path(name).as_posix(), data, wanted, self.findings
         )
+
+    def bytes_of(self, name: str, limit: int, asked: Location | None = None) -> bytes | None:
+        data = self.before.get(Path(name).as_posix())
+        if data is None or len(data) > limit:
+            data = read_bytes(self.folder, name, limit, self.findings, asked)
+        if data is not None:
+            self.files[Path(name).as_posix()] = data
+        return data
 
     # ------------------------------------------------------------------ report.toml
 
@@ -360,10 +376,9 @@ class _Reader:
         at = self.toml.value("workbook")
         data = None
         if name.endswith(".py"):  # the user's own code: it is part of what the report was made from
-            data = read_bytes(self.folder, name, LARGEST_TOML, self.findings, at)
+            data = self.bytes_of(name, LARGEST_TOML, at)
             if data is None:
                 return None
-            self.files[Path(name).as_posix()] = data
         try:
             return self.find_workbook(name, self.folder, data if Path(name).name == name else None)
         except UnknownWorkbook as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import sys
 import types
@@ -17,7 +18,11 @@ if TYPE_CHECKING:
     from ..derivations.equation import Ledger
     from .workbook import Workbook
 
-__all__ = ["own_workbook", "place_of", "place_of_column"]
+__all__ = ["follows_from_its_bytes", "own_workbook", "place_of", "place_of_column"]
+
+_PURE = {"__future__", "collections", "dataclasses", "fractions", "functools", "itertools", "math", "typing"}
+_PURE |= {"loopsheet", "mpmath", "sympy"}
+"""What a workbook may import and still be the same whenever it is run."""
 
 
 def own_workbook(path: Path, code: bytes) -> Workbook:
@@ -60,6 +65,27 @@ def own_workbook(path: Path, code: bytes) -> Workbook:
         curves=found.curves and own.guarded("what curves() returns", found.curves),
         drawn=found.drawn and own.guarded("what drawn() returns", found.drawn),
     )
+
+
+def follows_from_its_bytes(code: bytes) -> bool:
+    """Whether all that a workbook says follows from its code, as far as its author did not hide it.
+
+    What reads files, or uses what loopsheet does not know the version of, is run whenever it is asked for.
+    """
+    try:
+        tree = ast.parse(code)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return False
+    imported = {
+        name.partition(".")[0]
+        for node in ast.walk(tree)
+        if isinstance(node, (ast.Import, ast.ImportFrom))
+        for name in (
+            [node.module or ""] if isinstance(node, ast.ImportFrom) else [a.name for a in node.names]
+        )
+    }
+    named = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    return imported <= _PURE and named.isdisjoint({"open", "exec", "eval", "compile", "__import__"})
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import platform
+import sys
 from pathlib import Path
 
-__all__ = ["PARTS", "ROOT", "files", "processor", "sources"]
+from .. import __version__
+
+__all__ = ["PARTS", "ROOT", "files", "processor", "sources", "versions"]
 
 ROOT = Path(__file__).resolve().parent.parent
 """The folder of the package."""
@@ -54,6 +57,19 @@ def files(place: Path) -> set[Path]:
 def _is_made(name: Path) -> bool:
     """Whether it is hidden or a cache: nothing that a wheel holds."""
     return any(part.startswith(".") or part == "__pycache__" for part in name.parts)
+
+
+def versions() -> dict[str, str]:
+    """What computed: this program, its libraries and the interpreter's minor version."""
+    from importlib.metadata import version
+
+    printing = ("jinja2", "markdown-it-py", "matplotlib", "latex2mathml", "xlsxwriter")
+    python = f"{sys.version_info.major}.{sys.version_info.minor}"
+    return {
+        "loopsheet": __version__,
+        "python": python,
+        **{name: version(name) for name in ("numpy", "sympy", "mpmath", *printing)},
+    }
 
 
 def processor() -> str:

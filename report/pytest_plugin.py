@@ -10,7 +10,6 @@ import re
 import tomllib
 import warnings
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,7 +20,7 @@ from _pytest.mark.expression import Expression
 if TYPE_CHECKING:
     from .errors import Diagnostic
     from .findings import Check
-    from .result import Report
+    from .study import Study
 
 __all__ = [
     "CheckItem",
@@ -105,18 +104,21 @@ class Campaign:
     """
 
     def __init__(self, folder: Path, own_code: bool) -> None:
-        from . import build
+        from .which_workbook import find_workbook, shipped_workbook
 
         self._folder = folder
-        self._find = build.find_workbook if own_code else build.shipped_workbook
+        self._find = find_workbook if own_code else shipped_workbook
         self._engines: dict[str, Check] = {}
         self._refused: Diagnostic | None = None
 
-    @property
-    def folder(self) -> Path:
-        """The folder as a user would write it, from wherever the run is now."""
+    @cached_property
+    def study(self) -> Study:
+        """The folder as a user would write it, from where the run is when it is first asked for."""
+        from .study import Study
+
         here = Path.cwd()
-        return self._folder.relative_to(here) if self._folder.is_relative_to(here) else self._folder
+        folder = self._folder.relative_to(here) if self._folder.is_relative_to(here) else self._folder
+        return Study(folder, self._find)
 
     def plan(self) -> dict[str, list[str]]:
         """The names of all checks, by kind, without computing anything.
@@ -126,13 +128,12 @@ class Campaign:
         InputError
             The folder is not as it must be.
         """
-        from . import build
         from .analysis import oddities
         from .errors import InputError
         from .findings import ENGINES, names_of, table_names
 
         try:
-            prepared = build.prepare(self.folder, self._find)
+            prepared = self.study.prepared
         except InputError as error:
             (*others, last) = error.diagnostics
             if others or last.code != "LS214":
@@ -156,29 +157,21 @@ class Campaign:
             return self._engine(name, every_engine)
         if kind == "proof":
             return self._proofs[name]
-        own = (check for check in self._report.oddities if (check.kind, check.name) == (kind, name))
+        own = (check for check in self.study.computed.oddities if (check.kind, check.name) == (kind, name))
         return next(own, None) or self._refereed[kind, name]
 
     @cached_property
-    def _report(self) -> Report:
-        from . import build
-
-        return build.compute(self.folder, prove=False, find=self._find)
-
-    @cached_property
     def _refereed(self) -> dict[tuple[str, str], Check]:
-        from . import build
         from .findings import checks
 
-        return {(check.kind, check.name): check for check in checks(build.refereed(self._report))}
+        return {(check.kind, check.name): check for check in checks(self.study.refereed)}
 
     @cached_property
     def _proofs(self) -> dict[str, Check]:
-        from ..derivations.proof import prove
         from .findings import of_proof
 
-        found = prove(self._report.ledger)
-        return {proof.equation.label: of_proof(proof, self._report.inputs) for proof in found}
+        found, _ = self.study.algebra
+        return {proof.equation.label: of_proof(proof, self.study.inputs) for proof in found}
 
     def _not_run(self, name: str) -> Check:
         from .findings import Check
@@ -188,12 +181,11 @@ class Campaign:
         return Check("workbook", name, True, said, self._refused.at, skipped=True)
 
     def _engine(self, name: str, every: bool) -> Check:
-        from . import build
         from .findings import Check, of_engine
 
         if name not in self._engines:
-            judged = build.judged(replace(self._report, engines=()), every).engines
-            self._engines |= {each.engine: of_engine(each, self._report.inputs) for each in judged}
+            judged = self.study.engines if every else self.study.numpy
+            self._engines |= {each.engine: of_engine(each, self.study.inputs) for each in judged}
         nothing = Check(
             "engine", name, True, f"{name} was not compared: it cannot hold this sheet", skipped=True
         )

@@ -7,17 +7,20 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from . import build
 from .agreement import LIMIT
+from .build import FORMATS, build
 from .differences import EPS, Differences, compare
 from .errors import InputError
 from .findings import Check
 from .folders import built_from
 from .inputs import Find
+from .kept import nothing_kept
 from .result import Report
 from .results import Index, Manifest, read_manifest, read_result
 from .scratch import scratch
 from .staging import half_moved
+from .study import Study
+from .which_workbook import shipped_workbook
 
 __all__ = ["Verification", "verify"]
 
@@ -57,7 +60,7 @@ def verify(
     out: Path,
     folder: Path | None,
     step: Callable[[str], None] = lambda _: None,
-    find: Find = build.shipped_workbook,
+    find: Find = shipped_workbook,
 ) -> Verification:
     """Build a report again in a temporary folder and compare it with what is there, which stays as it is.
 
@@ -70,7 +73,7 @@ def verify(
     step : callable
         Told what is begun.
     find : callable
-        As for :func:`loopsheet.report.build.prepare`: without it, code that came with the folder is not run.
+        As for :class:`~loopsheet.report.study.Study`: without it, code that came with the folder is not run.
 
     Raises
     ------
@@ -81,10 +84,10 @@ def verify(
     """
     then = read_manifest(out)
     folder = built_from(out, then.inputs) if folder is None else folder
-    with scratch() as place:
+    with scratch() as place, nothing_kept():
         again = place / "out"
-        formats = [format for format in build.FORMATS if _FORMATS[format] in then.outputs]
-        report, _ = build.build(folder, again, formats, step, len(then.engines) > 1, find)
+        formats = [format for format in FORMATS if _FORMATS[format] in then.outputs]
+        report, _ = build(Study(folder, find, step), again, formats, len(then.engines) > 1)
         now = read_manifest(again)
         differences = _numbers(out, again, report) if "values.json" in then.outputs else None
         # What is correctly rounded is the same on every processor.

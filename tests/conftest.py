@@ -40,6 +40,10 @@ def constants() -> Constants:
     return found
 
 
+os.environ["LOOPSHEET_CACHE"] = ""
+"""Nothing is kept from one test to another, by no process: what a test looks at was made for it."""
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _examples_whoever_ran_before() -> Iterator[None]:
     """Hypothesis likes to draw constants of modules, but takes those that happen to be loaded."""
@@ -72,43 +76,46 @@ def require() -> Callable[..., str]:
 @pytest.fixture(scope="session")
 def report() -> "Report":
     """The report of the shipped paper, computed and proved."""
-    from loopsheet.report import build
+    from loopsheet.report.folders import PAPER
+    from loopsheet.report.study import Study
 
-    return build.compute(build.PAPER)
+    return Study(PAPER).proved
 
 
 @pytest.fixture(scope="session")
 def paper(report: "Report") -> "Report":
     """The report of the shipped paper, refereed too."""
-    from loopsheet.report import build
+    from loopsheet.report import stages
 
-    return build.refereed(report)
+    return stages.refereed(report)
 
 
 @pytest.fixture(scope="session")
 def issued(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the shipped paper, and in `out` its report as `loopsheet build` writes it."""
     from loopsheet.report import build
+    from loopsheet.report.folders import PAPER
+    from loopsheet.report.study import Study
 
-    folder = shutil.copytree(build.PAPER, tmp_path_factory.mktemp("issued") / "steel")
-    build.build(folder, folder / "out")
+    folder = shutil.copytree(PAPER, tmp_path_factory.mktemp("issued") / "steel")
+    build.build(Study(folder), folder / "out")
     return folder
 
 
 @pytest.fixture
 def unrefereed(monkeypatch: pytest.MonkeyPatch) -> None:
     """No referee, who takes longer than all else."""
-    from loopsheet.report import build
+    from loopsheet.report import stages
 
-    monkeypatch.setattr(build, "refereed", lambda report, *_: report)
+    monkeypatch.setattr(stages, "refereed", lambda report, *_: report)
 
 
 @pytest.fixture
 def unjudged(report: "Report", unrefereed: None, monkeypatch: pytest.MonkeyPatch) -> None:
     """No judge of the engines either, and the proofs are known: for tests of how files are written."""
-    from loopsheet.report import build
+    from loopsheet.report import stages
 
-    monkeypatch.setattr(build, "judged", lambda report, *_: report)
+    monkeypatch.setattr(stages, "judged", lambda report, *_: report)
 
 
 # --- campaigns that are drawn at random ---

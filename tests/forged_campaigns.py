@@ -19,7 +19,8 @@ from statistics import median
 from typing import Any
 
 from loopsheet.report import verdict_words as words
-from loopsheet.report.analysis.referee import print_as, referee
+from loopsheet.report.analysis.referee import print_as
+from loopsheet.report.analysis.referee.judging import referee
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.errors import Location

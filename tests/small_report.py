@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from loopsheet.derivations.equation import Ledger
-from loopsheet.report.analysis.referee import compare, referee, refereed
+from loopsheet.report.analysis.referee import compare, refereed
+from loopsheet.report.analysis.referee.judging import referee
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.inputs import Inputs
 from loopsheet.report.published import PublishedValue

@@ -12,13 +12,15 @@ from typing import Any
 import mpmath
 import pytest
 
-from loopsheet.report import build
 from loopsheet.report.analysis import engines, readers
 from loopsheet.report.analysis.readers import Book, Reading
 from loopsheet.report.engines import exact, excel_grid
 from loopsheet.report.engines import numpy as engine
+from loopsheet.report.folders import PAPER
 from loopsheet.report.grid import Place, checked
+from loopsheet.report.prepared import Prepared
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.values import Values
 from loopsheet.report.views import xlsx
 
@@ -26,17 +28,17 @@ CELLS = 2117
 
 
 @pytest.fixture(scope="module")
-def prepared() -> build.Prepared:
-    return build.prepare(build.PAPER)
+def prepared() -> Prepared:
+    return Study(PAPER).prepared
 
 
 @pytest.fixture(scope="module")
-def judge(report: Report, prepared: build.Prepared) -> engines.Judge:
+def judge(report: Report, prepared: Prepared) -> engines.Judge:
     return engines.Judge.of(prepared.sheet, report.values.layouts, prepared.labels, prepared.exact_data)
 
 
 @pytest.fixture(scope="module")
-def computed(prepared: build.Prepared) -> Values:
+def computed(prepared: Prepared) -> Values:
     """What NumPy computes; what is reported has no error."""
     return engine.evaluate(prepared.sheet, prepared.labels, prepared.data)
 
@@ -61,9 +63,7 @@ def test_numpy(computed: Values, judge: engines.Judge) -> None:
     assert json.loads(json.dumps(agreement.data))["eps_condition"] == agreement.units
 
 
-def test_javascript_in_node(
-    require: Callable[..., str], judge: engines.Judge, prepared: build.Prepared
-) -> None:
+def test_javascript_in_node(require: Callable[..., str], judge: engines.Judge, prepared: Prepared) -> None:
     require("node")
     agreement = judge.agreement(readers.run_javascript(prepared.sheet, prepared.labels, prepared.data))
     assert honest(agreement), agreement
@@ -74,7 +74,7 @@ def test_javascript_in_node(
 def test_javascript_in_chromium(
     require: Callable[..., str],
     judge: engines.Judge,
-    prepared: build.Prepared,
+    prepared: Prepared,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     require(*readers._BROWSERS)
@@ -85,7 +85,7 @@ def test_javascript_in_chromium(
 
 
 def test_the_workbook_in_libreoffice(
-    require: Callable[..., str], judge: engines.Judge, prepared: build.Prepared, book: Book
+    require: Callable[..., str], judge: engines.Judge, prepared: Prepared, book: Book
 ) -> None:
     require("soffice", "libreoffice")
     agreement = judge.agreement(readers.run_workbook(prepared.sheet, book))
@@ -169,7 +169,7 @@ def test_a_missing_program_is_told_and_is_no_finding(
     monkeypatch: pytest.MonkeyPatch,
     judge: engines.Judge,
     computed: Values,
-    prepared: build.Prepared,
+    prepared: Prepared,
     book: Book,
 ) -> None:
     monkeypatch.setattr(readers, "_find", lambda *names: None)
@@ -195,7 +195,7 @@ def test_a_program_that_fails_is_a_finding(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     judge: engines.Judge,
-    prepared: build.Prepared,
+    prepared: Prepared,
     script: str,
     said: str,
 ) -> None:
@@ -213,7 +213,7 @@ def test_a_program_that_fails_is_a_finding(
 
 
 def test_an_office_that_makes_no_file_is_a_finding(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, prepared: build.Prepared, book: Book
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, prepared: Prepared, book: Book
 ) -> None:
     program = tmp_path / "soffice"
     program.write_text(f"#!{sys.executable}\n")

@@ -9,23 +9,25 @@ from pathlib import Path
 import pytest
 from large_campaigns import write
 
-from loopsheet.report import build
+from loopsheet.report import stages
 from loopsheet.report.analysis import sample
 from loopsheet.report.cli import main
 from loopsheet.report.layout import how_large
+from loopsheet.report.prepared import Prepared
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 
 MOST = 400
 
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Report:
-    return build.compute(write(tmp_path_factory.mktemp("twelve"), 12), prove=False)
+    return Study(write(tmp_path_factory.mktemp("twelve"), 12)).computed
 
 
 @pytest.fixture(autouse=True)
 def few(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(build, "EXACTLY", MOST)
+    monkeypatch.setattr(stages, "EXACTLY", MOST)
 
 
 def drawn(report: Report, most: int = MOST) -> tuple[int, ...]:
@@ -40,7 +42,7 @@ def test_as_many_tests_are_drawn_as_there_is_room_for(report: Report) -> None:
     assert numbers[cells - 1] == 11
     assert 2 < numbers[MOST] < 11
     part = sample.part(report.inputs, report.marks.values, MOST)
-    found = build._evaluated(build.Prepared(part, report.sheet), report.ledger, build._silent).marks.values
+    found = stages.evaluated(Prepared(part, report.sheet), report.ledger, stages.silent).marks.values
     assert how_large(found.sheet, found.layouts) <= MOST
 
 
@@ -59,7 +61,7 @@ def test_what_was_measured_draws_them_and_nothing_else(report: Report) -> None:
 def test_it_says_of_how_many_cells_they_are(
     report: Report, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    (found,) = build.judged(report, every=False).engines
+    (found,) = stages.judged(report, every=False).engines
     cells = how_large(report.marks.values.sheet, report.marks.values.layouts)
     assert found.findings == ()
     assert (found.of, found.sample) == (cells, f"{len(drawn(report))} of 12 tests")
@@ -84,6 +86,6 @@ def test_the_numbers_that_are_written_are_judged(report: Report) -> None:
     values = report.marks.values
     wrong = values.value["alpha"] * (1 + 1e-9)
     marks = replace(report.marks, values=replace(values, value={**values.value, "alpha": wrong}))
-    (found,) = build.judged(replace(report, marks=marks), every=False).engines
+    (found,) = stages.judged(replace(report, marks=marks), every=False).engines
     assert found.findings
     assert all(said.startswith("alpha[") or "more cells differ" in said for said in found.findings)

@@ -19,12 +19,14 @@ from loopsheet.report import build, cost
 from loopsheet.report.cli import main
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.errors import InputError, OutputError, UsageError
+from loopsheet.report.folders import PAPER
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 
 
 def copy_paper(folder: Path) -> Path:
     """A folder of one's own, a copy of the shipped one."""
-    shutil.copytree(build.PAPER, folder)
+    shutil.copytree(PAPER, folder)
     return folder
 
 
@@ -60,7 +62,7 @@ def test_too_many_rows_for_a_worksheet_are_refused_before_anything_is_written(tm
     more = "".join(f"{n},{n}.1,0.{500 - 10 * n},{9 * n}.3\n" for n in (6, 7))
     table.write_text(table.read_text() + more)
     with pytest.raises(UsageError) as refused:
-        build.build(folder, tmp_path / "out", ("json", "xlsx"))
+        build.build(Study(folder), tmp_path / "out", ("json", "xlsx"))
     (finding,) = refused.value.diagnostics
     assert finding.code == "LS606"
     assert "points has 210000 rows" in finding.message
@@ -72,7 +74,7 @@ def test_a_workbook_that_nobody_asked_for_is_left_out_where_it_would_be_too_larg
 ) -> None:
     monkeypatch.setattr(excel_grid, "MOST_ROWS", 499)
     told: list[str] = []
-    _, files = build.build(issued, tmp_path / "out", tell=told.append)
+    _, files = build.build(Study(issued), tmp_path / "out", tell=told.append)
     assert {"report.html", "report.tex", "values.json", "manifest.json"} == {
         p.name for p in files if p.suffix in {".html", ".tex", ".json", ".xlsx"}
     }
@@ -85,7 +87,7 @@ def test_what_a_long_build_takes_is_told_before_it_begins(
     issued: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unjudged: None
 ) -> None:
     """By what there is to compute, the same on every machine."""
-    prepared = build.prepare(issued)
+    prepared = Study(issued).prepared
     formats = ("html", "json")
     assert cost.told(prepared.sheet, prepared.layouts, formats) == ""
     counts = {name: replace(layout, size=500 * layout.size) for name, layout in prepared.layouts.items()}
@@ -98,7 +100,7 @@ def test_what_a_long_build_takes_is_told_before_it_begins(
         told.append(begun)
 
     monkeypatch.setattr(cost, "LONG", 0.0)
-    build.build(issued, tmp_path / "out", formats, step, tell=step)
+    build.build(Study(issued, step=step), tmp_path / "out", formats, tell=step)
     line = "5 tests, 10 pairs, 500 points: this takes about 6 s, without what the referee needs"
     assert told.index(line) < next(
         n for n, said in enumerate(told) if re.fullmatch("computing [0-9]+ cells", said)
@@ -124,7 +126,7 @@ def test_same_bytes_everywhere(issued: Path, tmp_path: Path) -> None:
 def test_proofs_from_a_process_of_their_own_are_of_the_ledgers_own_equations(
     report: Report, tmp_path: Path
 ) -> None:
-    built, _ = build.build(build.PAPER, tmp_path / "out", ("json",))
+    built, _ = build.build(Study(PAPER), tmp_path / "out", ("json",))
     assert (built.proofs, built.errata) == (report.proofs, report.errata)
     assert any(proof.remark for proof in built.proofs)
     for proof, entry in zip(built.proofs, built.ledger.entries, strict=True):
@@ -140,12 +142,12 @@ def test_outputs_name_no_place_of_the_machine(issued: Path) -> None:
 
 @pytest.mark.usefixtures("unjudged")
 def test_manifest_names_every_output_by_its_content(tmp_path: Path) -> None:
-    _, files = build.build(build.PAPER, tmp_path / "out", ("json",))
+    _, files = build.build(Study(PAPER), tmp_path / "out", ("json",))
     assert files == [tmp_path / "out" / name for name in ("manifest.json", "values.json")]
     manifest = json.loads((tmp_path / "out" / "manifest.json").read_text())
     assert manifest["outputs"] == {"values.json": hashes(tmp_path / "out")["values.json"]}
     assert set(manifest["inputs"]) == {"report.toml", "measurements.csv", "published.csv"}
-    assert manifest["inputs"] == hashes(build.PAPER)
+    assert manifest["inputs"] == hashes(PAPER)
     assert manifest["versions"]["loopsheet"]
 
 
@@ -154,7 +156,7 @@ def test_other_files_in_the_output_folder_stay(tmp_path: Path) -> None:
     out = tmp_path / "out"
     out.mkdir()
     (out / "notes.txt").write_text("mine")
-    build.build(build.PAPER, out, ("json",))
+    build.build(Study(PAPER), out, ("json",))
     assert (out / "notes.txt").read_text() == "mine"
     assert sorted(p.name for p in out.iterdir()) == ["manifest.json", "notes.txt", "values.json"]
 
@@ -166,7 +168,7 @@ def test_a_failure_while_writing_leaves_everything_as_it_was(
     from loopsheet.report.views import json as view
 
     out = tmp_path / "out"
-    build.build(build.PAPER, out, ("json",))
+    build.build(Study(PAPER), out, ("json",))
     before = hashes(out)
 
     def breaks(*_: object) -> str:
@@ -174,10 +176,10 @@ def test_a_failure_while_writing_leaves_everything_as_it_was(
 
     monkeypatch.setattr(view, "manifest", breaks)
     with pytest.raises(RuntimeError, match="while writing"):
-        build.build(build.PAPER, out, ("json",))
+        build.build(Study(PAPER), out, ("json",))
     assert hashes(out) == before
     with pytest.raises(RuntimeError, match="while writing"):
-        build.build(build.PAPER, tmp_path / "fresh" / "deep", ("json",))
+        build.build(Study(PAPER), tmp_path / "fresh" / "deep", ("json",))
     assert not (tmp_path / "fresh").exists()
 
 
@@ -185,12 +187,12 @@ def test_an_output_that_cannot_be_written_is_refused_before_any_work(tmp_path: P
     taken = tmp_path / "taken"
     taken.write_text("a file")
     with pytest.raises(OutputError, match="LS602"):
-        build.build(build.PAPER, taken)
+        build.build(Study(PAPER), taken)
     with pytest.raises(OutputError, match="LS60"):
-        build.build(build.PAPER, taken / "below")
+        build.build(Study(PAPER), taken / "below")
     assert taken.read_text() == "a file"
     with pytest.raises(OutputError, match="LS601"):
-        build.build(build.PAPER, Path("/proc/loopsheet"))
+        build.build(Study(PAPER), Path("/proc/loopsheet"))
 
 
 def test_a_workbook_whose_columns_go_in_a_circle_shows_the_path(tmp_path: Path) -> None:
@@ -210,7 +212,7 @@ def test_a_workbook_whose_columns_go_in_a_circle_shows_the_path(tmp_path: Path) 
         "WORKBOOK = replace(paper, name='own', sheet=lambda given: own[0](own[1]))\n"
     )
     with pytest.raises(InputError, match="a -> b -> a"):
-        build.compute(folder)
+        assert Study(folder).proved
 
 
 def test_other_units_other_masses_and_other_numbers_of_tests(report: Report, tmp_path: Path) -> None:
@@ -225,7 +227,7 @@ def test_other_units_other_masses_and_other_numbers_of_tests(report: Report, tmp
     for number, v, e, x in rows[:3]:
         lines.append(f"{int(number) * 10},{float(x) / 1000:.6f},{float(e) * 100:.4f},{float(v) * 100:.4f}")
     (folder / "m.csv").write_text("\n".join(lines) + "\n")
-    other = build.compute(folder, prove=False)
+    other = Study(folder).computed
     assert [c.label for c in other.values.cells("alpha")] == [(10, 20), (10, 30), (20, 30)]
     for mine, theirs in (((10, 20), (1, 2)), ((10, 30), (1, 3)), ((20, 30), (2, 3))):
         a, b = other.values.cell("alpha", mine).value, report.values.cell("alpha", theirs).value
@@ -253,7 +255,7 @@ def test_a_digit_more_is_shown_than_the_least_precise_measured_number_has(
     assert change[0] in tests.read_text()
     tests.write_text(tests.read_text().replace(*change))
     toml.write_text(toml.read_text().partition("[published]")[0])
-    report = build.compute(folder, prove=False)
+    report = Study(folder).computed
     shown = report.shown
     assert {shown[name].digits for name in ("alpha", "alpha_mean", "x_m", "Cprime_eq7")} == {digits}
     assert (shown["v"].digits, shown["e"].digits, shown["x_p"].digits) == tuple(
@@ -274,7 +276,7 @@ def test_a_move_that_fails_half_way_is_taken_back(tmp_path: Path, monkeypatch: p
     import os as system
 
     folder, out = copy_paper(tmp_path / "in"), tmp_path / "out"
-    build.build(folder, out, ("json",))
+    build.build(Study(folder), out, ("json",))
     before = hashes(out)
     toml = folder / "report.toml"
     toml.write_text(toml.read_text().replace("Soft steel", "Other steel"))
@@ -290,7 +292,7 @@ def test_a_move_that_fails_half_way_is_taken_back(tmp_path: Path, monkeypatch: p
         with monkeypatch.context() as patch:
             patch.setattr(system, "replace", breaks)
             with pytest.raises(OutputError, match="No space left"):
-                build.build(folder, out, ("json",))
+                build.build(Study(folder), out, ("json",))
         assert hashes(out) == before, fatal
 
 
@@ -300,7 +302,7 @@ def test_what_is_in_the_way_is_named_and_nothing_is_touched(tmp_path: Path) -> N
     (out / "values.json").mkdir(parents=True)
     (out / "manifest.json").write_text("mine")
     with pytest.raises(OutputError, match=r"values\.json"):
-        build.build(build.PAPER, out, ("json",))
+        build.build(Study(PAPER), out, ("json",))
     assert (out / "manifest.json").read_text() == "mine"
     assert sorted(p.name for p in out.iterdir()) == ["manifest.json", "values.json"]
 
@@ -308,9 +310,9 @@ def test_what_is_in_the_way_is_named_and_nothing_is_touched(tmp_path: Path) -> N
 @pytest.mark.usefixtures("unjudged")
 def test_what_an_earlier_build_made_goes_unless_it_was_changed(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    build.build(build.PAPER, out, ("json", "latex"))
+    build.build(Study(PAPER), out, ("json", "latex"))
     (out / "report.tex").write_text("changed by hand")
-    build.build(build.PAPER, out, ("json",))
+    build.build(Study(PAPER), out, ("json",))
     assert sorted(p.name for p in out.rglob("*") if p.is_file()) == [
         "manifest.json",
         "report.tex",

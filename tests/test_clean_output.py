@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 import pytest
 from small_report import FILES, SOURCE, end_gauge
 
-from loopsheet.report import build
+from loopsheet.report import stages
 from loopsheet.report.cli import main
 from loopsheet.report.diagnostics import VisibleStream
 
@@ -87,7 +87,7 @@ def test_a_bug_is_told_to_machines(
     def fail(*_: object, **__: object) -> None:
         raise RuntimeError(f"x{FOREIGN}")
 
-    monkeypatch.setattr(build, "compute", fail)
+    monkeypatch.setattr(stages, "evaluated", fail)
     assert main(["check", "paper", "--format", form]) == 3
     out, err = capsys.readouterr()
     assert "bug: RuntimeError: xa\\u202eb" in err

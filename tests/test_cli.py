@@ -14,10 +14,10 @@ from xml.etree import ElementTree
 
 import pytest
 
-from loopsheet.report import build
-from loopsheet.report.build import PAPER
+from loopsheet.report import stages
 from loopsheet.report.cli import main
 from loopsheet.report.engines import javascript
+from loopsheet.report.folders import PAPER
 from loopsheet.report.result import Report
 from loopsheet.report.verbs import VERBS
 
@@ -208,7 +208,7 @@ def test_a_known_difference_that_vanishes_is_a_finding(
 ) -> None:
     path = campaign / "published.csv"
     path.write_text(path.read_text().replace("1-2,1.234,", "1-2,1.258,"))
-    monkeypatch.setattr(build, "judged", lambda report, step: report)  # the engines are as they were
+    monkeypatch.setattr(stages, "judged", lambda report, step: report)  # the engines are as they were
     assert main(["check", str(campaign)]) == 1
     out = capsys.readouterr().out
     assert "published.csv:2" in out
@@ -232,9 +232,9 @@ def test_an_unexpected_difference_is_a_finding_in_every_format(
     path = campaign / "published.csv"
     path.write_text(re.sub(r"(?m)^(Table 2,alpha,2-4,1\.315,1,.*?)differs,.*$", r"\1,,", path.read_text()))
     monkeypatch.chdir(campaign.parent)
-    monkeypatch.setattr(build, "judged", lambda report, step: report)  # the engines are as they were
-    for slow in ("compute", "refereed"):
-        monkeypatch.setattr(build, slow, once(getattr(build, slow)))
+    monkeypatch.setattr(stages, "judged", lambda report, step: report)  # the engines are as they were
+    for slow in ("evaluated", "refereed"):
+        monkeypatch.setattr(stages, slow, once(getattr(stages, slow)))
     found = {}
     for form in ("text", "json", "junit", "github", "markdown"):
         assert main(["check", "campaign", "--format", form]) == 1
@@ -286,7 +286,7 @@ def test_our_own_bug_is_told_from_the_users_error(
     def broken(*_: object, **__: object) -> None:
         raise RuntimeError("a wheel came off")
 
-    monkeypatch.setattr(build, "compute", broken)
+    monkeypatch.setattr(stages, "evaluated", broken)
     assert main(["show", "alpha", "paper"]) == 3
     assert "bug: RuntimeError: a wheel came off" in capsys.readouterr().err
 

@@ -11,11 +11,14 @@ from sympy import Expr, IndexedBase, Integer, Max, Piecewise, Sum, Symbol, floor
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.derivations.reductions import Median
-from loopsheet.report import build, conditions
+from loopsheet.report import conditions
 from loopsheet.report.analysis import bounds as numbers
 from loopsheet.report.engines import exact
 from loopsheet.report.engines.numpy import evaluate
+from loopsheet.report.folders import PAPER
+from loopsheet.report.prepared import Prepared
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
+from loopsheet.report.study import Study
 
 k, n = Symbol("k", integer=True, positive=True), Symbol("n", integer=True, positive=True)
 ROWS = Axis("rows", k, n)
@@ -156,7 +159,7 @@ def test_names_that_are_taken_stay_free() -> None:
 # --- the paper --------------------------------------------------------------------------------------------
 
 
-def slopes_of(prepared: build.Prepared, name: str, row: int) -> tuple[dict[Any, float], float]:
+def slopes_of(prepared: Prepared, name: str, row: int) -> tuple[dict[Any, float], float]:
     """The derivatives of a cell by every measured datum, by differences at 50 digits; and their sum."""
     step, found, size = Fraction(1, 10**15), {}, 0.0
     for given in ("v", "e", "x_p"):
@@ -172,11 +175,11 @@ def slopes_of(prepared: build.Prepared, name: str, row: int) -> tuple[dict[Any, 
 
 
 @pytest.fixture(scope="module")
-def prepared() -> build.Prepared:
-    return build.prepare(build.PAPER)
+def prepared() -> Prepared:
+    return Study(PAPER).prepared
 
 
-def spread_of(prepared: build.Prepared, monkeypatch: pytest.MonkeyPatch) -> Any:
+def spread_of(prepared: Prepared, monkeypatch: pytest.MonkeyPatch) -> Any:
     """The derivatives behind the bounds of the first two tests."""
     data = {c: v[:2] if isinstance(v, list) else v for c, v in prepared.data.items()}
     values = evaluate(prepared.sheet, {"tests": [1, 2]}, data)
@@ -189,7 +192,7 @@ def spread_of(prepared: build.Prepared, monkeypatch: pytest.MonkeyPatch) -> Any:
 
 @pytest.mark.parametrize("name", ["alpha", "x_m1", "C", "alpha_log", "C_lin", "alpha_lin"])
 def test_the_paper_against_differences(
-    prepared: build.Prepared, monkeypatch: pytest.MonkeyPatch, name: str
+    prepared: Prepared, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     spread, (known, size) = spread_of(prepared, monkeypatch), slopes_of(prepared, name, 0)
     for (given, test), slope in known.items():
@@ -201,7 +204,7 @@ def test_the_paper_against_differences(
         assert own * spread.found.value[given][test] == pytest.approx(slope, rel=1e-7, abs=1e-9 * size)
 
 
-def test_a_term_that_is_dropped_is_noticed(prepared: build.Prepared, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_term_that_is_dropped_is_noticed(prepared: Prepared, monkeypatch: pytest.MonkeyPatch) -> None:
     """A derivative that forgets one of the form's terms: the differences do not fit any more."""
     whole = conditions.diff
 
@@ -214,7 +217,7 @@ def test_a_term_that_is_dropped_is_noticed(prepared: build.Prepared, monkeypatch
         test_the_paper_against_differences(prepared, monkeypatch, "alpha")
 
 
-def test_bounds_of_the_paper(prepared: build.Prepared) -> None:
+def test_bounds_of_the_paper(prepared: Prepared) -> None:
     """At least the cell, and at least what the data's own roundings amount to; not a thousand times that."""
     values = evaluate(prepared.sheet, prepared.labels, prepared.data)
     found = numbers.bounds(prepared.sheet, values.layouts, values.value)

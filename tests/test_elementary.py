@@ -101,15 +101,17 @@ def test_intervals_enclose_them() -> None:
 
 BITS = """
 import hashlib, numpy as np
-from loopsheet.report import build, elementary
+from loopsheet.report import elementary
 from loopsheet.report.engines import numpy as engine
+from loopsheet.report.folders import PAPER
 from loopsheet.report.provenance import processor
+from loopsheet.report.study import Study
 rng = np.random.default_rng(3)
 x, y = rng.uniform(.01, 9, 20_000), rng.uniform(-9, 9, 20_000)
 for module in (elementary, np):
     found = (module.exp(y), module.log(x), module.power(x, y))
     print(hashlib.sha256(b"".join(each.tobytes() for each in found)).hexdigest())
-paper = build.prepare(build.PAPER)
+paper = Study(PAPER).prepared
 values = engine.evaluate(paper.sheet, paper.labels, paper.data).value
 print(hashlib.sha256(b"".join(values[name].tobytes() for name in sorted(values))).hexdigest())
 print(processor())

@@ -12,7 +12,6 @@ from sympy import Expr, Integer, Rational, Sum, Symbol, exp
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.derivations.reductions import Median
-from loopsheet.report import build
 from loopsheet.report.analysis.enclosure import Enclosure, slope_kernels
 from loopsheet.report.analysis.referee.campaign import Campaign
 from loopsheet.report.analysis.referee.certificate import Certificate
@@ -22,14 +21,16 @@ from loopsheet.report.conditions import conditions
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.engines.numpy_root import EnclosedRows
+from loopsheet.report.folders import PAPER
 from loopsheet.report.intervals import Intervals
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
+from loopsheet.report.study import Study
 
 
 @pytest.fixture(scope="module")
 def campaign() -> Campaign:
-    prepared = build.prepare(build.PAPER)
+    prepared = Study(PAPER).prepared
     values = engine.evaluate(prepared.sheet, prepared.labels, prepared.data)
     return Campaign(prepared.sheet, prepared.inputs, values, prepared.data, prepared.inputs.free)
 

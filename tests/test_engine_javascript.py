@@ -14,11 +14,12 @@ from sympy import Max, Piecewise, Sum, Symbol, exp, log, pi, sqrt
 
 from loopsheet.derivations.equation import Equation
 from loopsheet.derivations.reductions import Median
-from loopsheet.report import build
 from loopsheet.report.engines import javascript
 from loopsheet.report.engines.javascript import RUNTIME, Printer
 from loopsheet.report.engines.numpy import Program, evaluate
+from loopsheet.report.folders import PAPER
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Sheet
+from loopsheet.report.study import Study
 from loopsheet.report.values import Status
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
@@ -159,7 +160,7 @@ def _same_exponents(sheet: Sheet, tests: list[int], data: Any, program: Program,
 
 
 def test_the_paper_in_node(node: Callable[[list[Any]], list[Any]], tmp_path: Path) -> None:
-    prepared = build.prepare(build.PAPER)
+    prepared = Study(PAPER).prepared
     data = {n: v if isinstance(v, list) else [v] for n, v in prepared.data.items()}
     data["ball_mass"] = [float(evaluate(prepared.sheet, prepared.labels, prepared.data).scalar("ball_mass"))]
     (found,) = node([[[1, 2, 3, 4, 5], data]])

@@ -22,8 +22,8 @@ from matplotlib.patches import PathPatch
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-from loopsheet.report.build import compute
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.views import figures
 from loopsheet.report.views.drawing import evenly
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
@@ -83,7 +83,7 @@ def report_of(report: Report, tmp_path_factory: pytest.TempPathFactory) -> Calla
         ]
         (folder / "measurements.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
         (folder / "report.toml").write_text(TOML, encoding="utf-8")
-        return compute(folder, prove=False)
+        return Study(folder).computed
 
     return report_of
 
@@ -171,10 +171,11 @@ def test_every_figure_of_the_workbook_has_its_drawing() -> None:
 
 DIGEST = """
 import hashlib
-from loopsheet.report.build import PAPER, compute
+from loopsheet.report.folders import PAPER
+from loopsheet.report.study import Study
 from loopsheet.report.views import figures
 import sys
-report = compute(PAPER, prove=False)
+report = Study(PAPER).computed
 for name in figures.NAMES:
     svg, pdf = figures.svg(report, name).encode(), figures.pdf(report, name)
     print(name, hashlib.sha256(svg).hexdigest(), hashlib.sha256(pdf).hexdigest())

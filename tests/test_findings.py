@@ -7,11 +7,11 @@ from small_report import end_gauge
 
 from loopsheet.derivations.equation import Step
 from loopsheet.derivations.proof import Proof, Status, StepProof
-from loopsheet.report import build
 from loopsheet.report import verdict_words as words
 from loopsheet.report.agreement import Agreement
 from loopsheet.report.findings import ENGINES, Check, checks, names_of, of_engine, table_names
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.verdict import (
     REACHABLE,
     UNAMENDED,
@@ -35,7 +35,7 @@ MISPRINT = Explanation((Change("misprint", "theta", (), "input", "-0.1", "-0.2")
 @pytest.fixture(scope="module")
 def small(tmp_path_factory: pytest.TempPathFactory) -> Report:
     folder = end_gauge(tmp_path_factory.mktemp("gauge"), "\n".join((KNOWN, *ROWS, "")))
-    return build.compute(folder, prove=False)
+    return Study(folder).computed
 
 
 def of_kind(report: Report, kind: str) -> list[Check]:

@@ -13,8 +13,8 @@ import pytest
 from small_report import FILES, end_gauge
 
 from loopsheet.report import folders
-from loopsheet.report.build import PAPER
 from loopsheet.report.cli import main
+from loopsheet.report.folders import PAPER
 from loopsheet.report.verbs import VERBS
 
 Run = Callable[..., tuple[int, str, str]]

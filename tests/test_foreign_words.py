@@ -15,7 +15,9 @@ from test_toy_workbook import FILES
 
 from loopsheet.report import build
 from loopsheet.report.cli import main
+from loopsheet.report.folders import PAPER
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.views import html, live
 
 
@@ -33,7 +35,7 @@ def folder_of(place: Path, kind: str) -> Path:
 def other(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
     """The outputs of another workbook."""
     place = folder_of(tmp_path_factory.mktemp("other") / request.param, request.param)
-    build.build(place, place / "out", ("html", "xlsx"))
+    build.build(Study(place), place / "out", ("html", "xlsx"))
     return request.param, place / "out"
 
 
@@ -62,14 +64,14 @@ def test_no_workbook_names_a_cell_that_it_does_not_have(other: tuple[str, Path])
 @pytest.fixture
 def client(tmp_path: Path) -> Path:
     """The paper's method with other measurements, which somebody else published."""
-    folder = shutil.copytree(build.PAPER, tmp_path / "mine")
+    folder = shutil.copytree(PAPER, tmp_path / "mine")
     toml = folder / "report.toml"
     toml.write_text(re.sub(r"(?m)^by = .*\n", "", toml.read_text()))
     return folder
 
 
 def test_the_errata_of_the_paper_are_told_where_it_is_compared_with(report: Report, client: Path) -> None:
-    inputs = build.prepare(client).inputs
+    inputs = Study(client).prepared.inputs
     told = [html.render(each, {}) for each in (report, replace(report, inputs=inputs, errata=()))]
     assert len(report.errata) >= 5
     assert ["Errata of equations" in page for page in told] == [True, False]
@@ -95,7 +97,7 @@ def test_who_published_is_the_source_or_not_said(client: Path, capsys: pytest.Ca
 
 
 def test_a_workbook_that_comes_along_has_its_own_errata_told(client: Path) -> None:
-    inputs = build.prepare(client).inputs
+    inputs = Study(client).prepared.inputs
     assert not inputs.about_source
     assert replace(inputs, files={"workbook.py": b""}).about_source
 

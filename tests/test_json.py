@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from loopsheet.report import build
 from loopsheet.report.agreement import Agreement
+from loopsheet.report.folders import PAPER
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.views import json as view
 
 
@@ -92,12 +93,12 @@ def test_published(values: dict) -> None:  # type: ignore[type-arg]
 
 def test_an_error_is_null_with_its_code(tmp_path: Path) -> None:
     """A pair without a root is a cell's error; the mean goes on and says over how many."""
-    folder = shutil.copytree(build.PAPER, tmp_path / "f")
+    folder = shutil.copytree(PAPER, tmp_path / "f")
     table = folder / "measurements.csv"
     table.write_text(table.read_text().replace("29.7", "23.4"))
     toml = folder / "report.toml"
     toml.write_text(toml.read_text().partition("[published]")[0])  # the last table: nothing to compare with
-    cells = json.loads(view.values(build.compute(folder, prove=False)))["cells"]
+    cells = json.loads(view.values(Study(folder).computed))["cells"]
     assert cells["alpha"]["value"][0] is None
     assert cells["alpha"]["status"][0] == "#NOROOT!"
     assert cells["C"]["status"][0] == "#NOROOT!"

@@ -9,9 +9,10 @@ from pathlib import Path
 import openpyxl
 import pytest
 
-from loopsheet.report import build
 from loopsheet.report.cli import main
 from loopsheet.report.errors import InputError
+from loopsheet.report.folders import PAPER
+from loopsheet.report.study import Study
 from loopsheet.report.views import html, latex
 from loopsheet.report.views.checks import FORMATS
 
@@ -28,7 +29,7 @@ test,v [m/s],e [1],x_p [um],left out
 
 def campaign(folder: Path, table: str = LEFT_OUT, published: bool = True, more: str = "") -> Path:
     """The paper with another table of the tests."""
-    shutil.copytree(build.PAPER, folder)
+    shutil.copytree(PAPER, folder)
     (folder / "measurements.csv").write_text(table, encoding="utf-8")
     toml = (folder / "report.toml").read_text(encoding="utf-8")
     if not published:
@@ -39,14 +40,14 @@ def campaign(folder: Path, table: str = LEFT_OUT, published: bool = True, more: 
 
 def refused(folder: Path) -> list[str]:
     with pytest.raises(InputError) as told:
-        build.compute(folder, prove=False)
+        assert Study(folder).computed
     return [f"{d.code} {d.at.line}:{d.at.column} {d.message}" for d in told.value.diagnostics]
 
 
 def test_it_takes_part_in_nothing(tmp_path: Path) -> None:
-    report = build.compute(campaign(tmp_path / "left", published=False), prove=False)
+    report = Study(campaign(tmp_path / "left", published=False)).computed
     removed = "\n".join(re.sub(r",[^,]*$", "", line) for line in LEFT_OUT.splitlines() if "n/a" not in line)
-    without = build.compute(campaign(tmp_path / "without", removed, published=False), prove=False)
+    without = Study(campaign(tmp_path / "without", removed, published=False)).computed
     assert report.inputs.tests == without.inputs.tests == (1, 2, 4, 5)
     for column in report.sheet.columns:
         ours, theirs = report.values.cells(column.name), without.values.cells(column.name)
@@ -59,7 +60,7 @@ def test_it_takes_part_in_nothing(tmp_path: Path) -> None:
 
 def test_what_rests_on_it_is_set_aside_and_counted(tmp_path: Path) -> None:
     more = '"x_p[3]" = "41.7"\n[expected]\n"test 3" = "double bounce"\n"alpha[2-3]" = "one height"\n'
-    report = build.compute(campaign(tmp_path / "left", more=more), prove=False)
+    report = Study(campaign(tmp_path / "left", more=more)).computed
     assert len(report.comparisons) == len(report.inputs.published) == 20
     assert all(3 in value.index for value in report.inputs.aside)
     assert len(report.inputs.aside) == 7
@@ -117,7 +118,7 @@ def test_every_output_tells_it(tmp_path: Path, unjudged: None, capsys: pytest.Ca
 
 @pytest.mark.parametrize("form", FORMATS)
 def test_every_format_of_check_tells_it(tmp_path: Path, form: str) -> None:
-    report = build.compute(campaign(tmp_path / "left", published=False), prove=False)
+    report = Study(campaign(tmp_path / "left", published=False)).computed
     assert all(check.passed for check in report.oddities)
     assert f"test 3, {REASON}" in markup.unescape(FORMATS[form](report.oddities, "", {}))
 
@@ -125,7 +126,7 @@ def test_every_format_of_check_tells_it(tmp_path: Path, form: str) -> None:
 def test_hostile_texts_of_it_are_text(tmp_path: Path) -> None:
     nasty = "<script>alert(1)</script> & \\input{x} $y$ %"
     table = LEFT_OUT.replace("n/a", f'"{nasty}"').replace(REASON, nasty)
-    report = build.compute(campaign(tmp_path / "left", table, published=False), prove=False)
+    report = Study(campaign(tmp_path / "left", table, published=False)).computed
     assert "<script>alert" not in html.render(report, {})
     assert "\\input{x}" not in latex.render(report, {})
 

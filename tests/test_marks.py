@@ -19,6 +19,7 @@ from loopsheet.report.marks import Marks, margins, with_margins
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.result import Report
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Limit, Sheet, SheetError
+from loopsheet.report.study import Study
 from loopsheet.report.views import html, latex
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
@@ -129,7 +130,7 @@ def slipped(tmp_path_factory: pytest.TempPathFactory) -> Path:
     scaffold.new(folder, WORKBOOK)
     table = folder / "measurements.csv"
     table.write_text(table.read_text(encoding="utf-8").replace("3.100", "4.000"), encoding="utf-8")
-    build.build(folder, folder / "out", ("html", "latex", "xlsx", "json"))
+    build.build(Study(folder), folder / "out", ("html", "latex", "xlsx", "json"))
     return folder
 
 
@@ -225,7 +226,7 @@ def test_what_no_drop_test_gives(
         toml.write_text(
             toml.read_text(encoding="utf-8").replace('ball_mass = "8.366 g"', given), encoding="utf-8"
         )
-    report = build.compute(folder, prove=False)
+    report = Study(folder).computed
     told = [margin.limit.says for margin in report.marks.margins if report.marks.outside(margin).any()]
     assert said in told
     assert any(said in mark for mark in report.marks.of(name)) or report.values.status[name].any()

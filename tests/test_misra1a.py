@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from loopsheet.report import build
+from loopsheet.report import stages
 from loopsheet.report.analysis.referee.campaign import Campaign
 from loopsheet.report.analysis.referee.problem import Problem
 from loopsheet.report.cli import main
+from loopsheet.report.study import Study
 from loopsheet.report.verdict import NOT_FOUND, UNREACHABLE
 
 SOURCE = """\
@@ -76,7 +77,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_the_certified_values_come_out(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    report = build.compute(folder)
+    report = Study(folder).proved
     for name, certified in CERTIFIED.items():
         assert report.values.scalar(name) == pytest.approx(certified, rel=5e-11)
     assert [comparison.verdict for comparison in report.comparisons] == ["same", "same"]
@@ -88,7 +89,7 @@ def test_the_referee_ends_and_names_the_x_that_was_changed(folder: Path) -> None
     data = folder / "data.csv"
     data.write_text(data.read_text().replace("760.0", "790.0"))
     (folder / "published.csv").write_text(PUBLISHED.replace("8.94212918", "8.9").replace("15643181", "02"))
-    report = build.refereed(build.compute(folder, prove=False))
+    report = stages.refereed(Study(folder).computed)
     assert [comparison.verdict for comparison in report.comparisons] == ["differs", "differs"]
     assert all(c.refereed and c.refereed.verdict in (UNREACHABLE, NOT_FOUND) for c in report.comparisons)
     changed = {(change.cell, change.index) for each in report.referee.explanations for change in each.changes}
@@ -118,7 +119,7 @@ def test_a_search_that_counts_no_roots_claims_nothing(folder: Path) -> None:
     (folder / "workbook.py").write_text(FOLD)
     (folder / "data.csv").write_text("test,x [1]\n1,0.4\n2,0.4\n")
     (folder / "published.csv").write_text("source,cell,index,value,unit\nA,u,1,3.150,1\n")
-    report = build.refereed(build.compute(folder, prove=False))
+    report = stages.refereed(Study(folder).computed)
     problem = Problem.of(
         Campaign(report.sheet, report.inputs, report.values, report.values.value), report.inputs.published
     )

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from loopsheet.report.build import find_workbook
 from loopsheet.report.document import narrative
 from loopsheet.report.document.material import Material
 from loopsheet.report.document.narrative import NarrativeError, narratives, sections
@@ -29,6 +28,7 @@ from loopsheet.report.document.tree import (
     Value,
 )
 from loopsheet.report.result import Report
+from loopsheet.report.which_workbook import find_workbook
 from loopsheet.report.workbooks import SHIPPED
 
 Reads = Callable[..., tuple[Section, ...]]

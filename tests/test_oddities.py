@@ -5,7 +5,6 @@ import random
 import re
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -14,10 +13,11 @@ import pytest
 from campaign_sizes import Sizes
 from slipped_campaigns import PAPER, Slip, Texts, campaign, slips, write
 
-from loopsheet.report import build
+from loopsheet.report import stages
 from loopsheet.report.cli import main
 from loopsheet.report.diagnostics import Check
 from loopsheet.report.errors import InputError
+from loopsheet.report.study import Study
 from loopsheet.report.views import html, latex
 from loopsheet.report.views.checks import FORMATS
 
@@ -28,7 +28,7 @@ BACKWARDS = {**TWO, "x_p": ("29.7", "23.5")}
 
 def checks(folder: Path) -> dict[str, Check]:
     """What was checked, by kind and name."""
-    found = build.compute(folder, prove=False).oddities
+    found = Study(folder).computed.oddities
     assert len({(check.kind, check.name) for check in found}) == len(found)
     return {f"{check.kind} {check.name}": check for check in found}
 
@@ -105,10 +105,10 @@ def test_of_several_tests_that_may_be_wrong_the_one_that_moves_the_result_most(t
         "warning: alpha: 1 of 10 pairs outside (4)",
         "warning: alpha: 1 of 10 pairs: e rises with the speed",
     ]
-    whole, means = build.compute(tmp_path, prove=False).values.scalar("alpha_mean"), {}
+    whole, means = Study(tmp_path).computed.values.scalar("alpha_mean"), {}
     for test in (4, 5):
         left = {name: [n for at, n in enumerate(column, 1) if at != test] for name, column in texts.items()}
-        report = build.compute(write(tmp_path / str(test), left), prove=False)
+        report = Study(write(tmp_path / str(test), left)).computed
         means[test] = report.values.scalar("alpha_mean")
     worst = max(means, key=lambda test: abs(means[test] - whole))
     goes = f"without it alpha_mean goes from {whole:.4g} to {means[worst]:.4g}, further than without another"
@@ -229,7 +229,7 @@ def test_to_expect_what_does_not_happen_is_a_finding(tmp_path: Path, address: st
 )
 def test_a_wrong_expectation_is_told_with_its_line(tmp_path: Path, line: str, code: str, says: str) -> None:
     with pytest.raises(InputError) as refused:
-        build.compute(expecting(tmp_path, PAPER, line), prove=False)
+        assert Study(expecting(tmp_path, PAPER, line)).computed
     (finding,) = refused.value.diagnostics
     assert finding.code == code
     assert says in str(refused.value)
@@ -241,7 +241,7 @@ def test_what_is_expected_stands_in_a_table(tmp_path: Path) -> None:
     folder = write(tmp_path, PAPER)
     (folder / "report.toml").write_text('expected = "test 2"\n' + (folder / "report.toml").read_text())
     with pytest.raises(InputError, match=r"LS205.*\n(.*\n)*.*a table \[expected\]"):
-        build.compute(folder, prove=False)
+        assert Study(folder).computed
 
 
 # --- where it is told
@@ -274,8 +274,8 @@ def test_build_tells_what_is_expected_and_ends_well(
 def test_every_format_of_check_tells_it(
     tmp_path: Path, form: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(build, "judged", lambda report, step: report)
-    monkeypatch.setattr(build, "compute", partial(build.compute, prove=False))
+    monkeypatch.setattr(stages, "judged", lambda report, step: report)
+    monkeypatch.setattr(Study, "algebra", ((), ()))
     folder = write(tmp_path, changed("v", 1, "0.0235", SLIPPED))
     assert main(["check", str(folder), "--format", form]) == 1
     out = capsys.readouterr().out
@@ -297,10 +297,10 @@ def test_the_report_tells_findings_and_reasons(tmp_path: Path) -> None:
         (SLIPPED, (), "look at test 2 first"),
         (SLIPPED, ('"test 2" = "the dial was read in <cm>"',), "the dial was read in "),
     ):
-        report = build.compute(expecting(tmp_path, texts, *lines), prove=False)
+        report = Study(expecting(tmp_path, texts, *lines)).computed
         assert says in html.render(report, {}, "")
         assert says in latex.render(report, [])
-        content = build._workbook(report)[1]
+        content = stages.book(report)[1]
         (tmp_path / "report.xlsx").write_bytes(content)
         sheet = openpyxl.load_workbook(tmp_path / "report.xlsx").worksheets[0]
         cells = [str(cell.value) for row in sheet.iter_rows() for cell in row if cell.value]
@@ -310,7 +310,7 @@ def test_the_report_tells_findings_and_reasons(tmp_path: Path) -> None:
 
 
 def test_a_report_without_oddities_says_nothing_of_them(tmp_path: Path) -> None:
-    report = build.compute(write(tmp_path, PAPER), prove=False)
+    report = Study(write(tmp_path, PAPER)).computed
     shown = html.render(report, {}, "")
     other = replace(report, oddities=(Check("data", "x", False, "something odd"),))
     assert "something odd" not in shown
@@ -322,7 +322,7 @@ AMBIGUOUS = {"v": ("2.00", "2.76", "3.87"), "e": ("0.500", "0.552", "0.621"), "x
 
 
 def test_each_cause_is_told_of_its_own_cells(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    report = build.compute(write(tmp_path, AMBIGUOUS), prove=False)
+    report = Study(write(tmp_path, AMBIGUOUS)).computed
     causes = [cell.why for cell in report.values.errors() if cell.name == "alpha"]
     said = checks(tmp_path)["data cells"].message
     assert len(set(causes)) == 3

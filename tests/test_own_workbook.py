@@ -17,7 +17,9 @@ from loopsheet.report import build
 from loopsheet.report.cli import main
 from loopsheet.report.errors import InputError
 from loopsheet.report.inputs import load
+from loopsheet.report.study import Study
 from loopsheet.report.verification import verify
+from loopsheet.report.which_workbook import find_workbook
 
 RAN = "from pathlib import Path\nPath(__file__).with_name('ran').touch()\n"
 """Leaves a file beside the workbook."""
@@ -153,9 +155,9 @@ def test_the_bytes_that_were_read_are_run_and_nothing_else(folder: Path) -> None
 
     def swapped(name: str, place: Path, code: bytes | None) -> object:
         own(place, RAN)
-        return build.find_workbook(name, place, code)
+        return find_workbook(name, place, code)
 
-    assert build.prepare(folder).inputs.workbook.name == "end_gauge"
+    assert Study(folder).prepared.inputs.workbook.name == "end_gauge"
     inputs = load(folder, swapped)
     assert inputs.workbook.name == "end_gauge"
     assert inputs.files["workbook.py"] == held
@@ -163,13 +165,13 @@ def test_the_bytes_that_were_read_are_run_and_nothing_else(folder: Path) -> None
     own(folder, SOURCE)
     cache.unlink()
     cache.parent.rmdir()
-    build.prepare(folder)
+    assert Study(folder).prepared
     assert not cache.parent.exists()
 
 
 def test_verify_runs_it_if_it_is_told_to(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     own(folder, SOURCE + RAN)
-    build.build(folder, folder / "out", ("json",))
+    build.build(Study(folder), folder / "out", ("json",))
     (folder / "ran").unlink()
     for given in (None, folder):
         with pytest.raises(InputError) as refused:

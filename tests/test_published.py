@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from small_report import end_gauge
 
-from loopsheet.report import build
+from loopsheet.report import stages
 from loopsheet.report.analysis.referee import compare, refereed
 from loopsheet.report.cli import main
 from loopsheet.report.csvtable import read_table
@@ -21,8 +21,11 @@ from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.errors import Findings
 from loopsheet.report.findings import of_comparison
+from loopsheet.report.folders import PAPER
+from loopsheet.report.prepared import Prepared
 from loopsheet.report.published import PublishedValue, read_published
 from loopsheet.report.sources import Source
+from loopsheet.report.study import Study
 from loopsheet.report.verdict import (
     OTHERWISE,
     UNEXPECTED,
@@ -40,7 +43,7 @@ Check = Callable[..., tuple[int, str]]
 @pytest.fixture
 def check(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Check:
     """Give a function that runs `check` in the folder; the engines are judged elsewhere."""
-    monkeypatch.setattr(build, "judged", lambda report, step: report)
+    monkeypatch.setattr(stages, "judged", lambda report, step: report)
     monkeypatch.chdir(tmp_path)
 
     def run(*arguments: str) -> tuple[int, str]:
@@ -199,10 +202,10 @@ def test_a_known_difference_that_is_none_is_a_finding(tmp_path: Path, check: Che
 def test_a_cell_without_a_value_may_be_known(tmp_path: Path) -> None:
     """Then it is the code that is pinned; the sheet of the paper has a pair without an exponent here."""
     folder = tmp_path / "campaign"
-    shutil.copytree(build.PAPER, folder)
+    shutil.copytree(PAPER, folder)
     tests = folder / "measurements.csv"
     tests.write_text(tests.read_text().replace("5,4.993,0.453,51.03", "5,4.993,0.453,23.03"))
-    report = build.compute(folder, prove=False)
+    report = Study(folder).computed
     assert report.values.cell("alpha", (1, 5)).status.code == "#NOROOT!"
     path = folder / "published.csv"
     for again, finding, said in (
@@ -210,7 +213,7 @@ def test_a_cell_without_a_value_may_be_known(tmp_path: Path) -> None:
         ("1.294", OTHERWISE, "cannot be checked: #NOROOT! alpha[1-5]: (11) has no root here: "),
     ):
         path.write_text(f"{KNOWN}\nT,alpha,1-5,1.299,1,differs,1.299 -> {again},,a slip\n")
-        (comparison,) = build.compute(folder, prove=False).comparisons
+        (comparison,) = Study(folder).computed.comparisons
         assert comparison.finding == finding
         assert of_comparison(comparison, "alpha[1-5]").message.startswith(f"T alpha[1-5] {said}")
 
@@ -236,7 +239,7 @@ def test_the_referee_excuses_no_known_difference(tmp_path: Path) -> None:
         "H.1,l_S,,51.2,mm,differs,51.2 -> 50.0,label x (T),a slip",
         header=KNOWN,
     )
-    comparisons = build.compute(tmp_path, prove=False).comparisons
+    comparisons = Study(tmp_path).computed.comparisons
     assert [c.finding for c in comparisons] == [UNEXPECTED, UNPINNED, ""]
     said = Referee((Verdict("reachable"), Verdict("reachable"), Verdict("unreachable")))
     assert [c.finding for c in refereed(comparisons, said)] == ["", UNPINNED, UNEXPLAINED]
@@ -261,10 +264,10 @@ def test_every_digit_of_the_paper_is_pinned() -> None:
 
     That is seen before the referee is asked, and the referee excuses no known difference.
     """
-    report = build.compute(build.PAPER, prove=False)
-    program, prepared = Program.of(report.sheet), build.Prepared(report.inputs, report.sheet)
+    report = Study(PAPER).computed
+    program, prepared = Program.of(report.sheet), Prepared(report.inputs, report.sheet)
     assert all(c.published.pin is not None and c.as_expected for c in report.comparisons)
-    rows = (build.PAPER / "published.csv").read_text().splitlines()
+    rows = (PAPER / "published.csv").read_text().splitlines()
     tried = 0
     for line, row in enumerate(rows[1:], start=1):
         cells = row.split(",")
@@ -442,13 +445,13 @@ def test_accepting_leaves_a_file_alone_that_has_changed_meanwhile(
     tmp_path: Path, check: Check, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = published(tmp_path, *ROWS, header=HEADER)
-    honest = build.refereed
+    honest = stages.refereed
 
     def meanwhile(*arguments):  # type: ignore[no-untyped-def]
         path.write_text("somebody else's\n")
         return honest(*arguments)
 
-    monkeypatch.setattr(build, "refereed", meanwhile)
+    monkeypatch.setattr(stages, "refereed", meanwhile)
     code, out = check("--accept")
     assert code == 2
     assert "somebody has changed it meanwhile" in out

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from loopsheet.report.build import PAPER
 from loopsheet.report.findings import ENGINES, names_of
+from loopsheet.report.folders import PAPER
 from loopsheet.report.inputs import PublishedValue
 from loopsheet.report.pytest_plugin import _is_ours
 

@@ -16,14 +16,16 @@ from sympy import Symbol
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.report.analysis.referee import print_as, prints_same
-from loopsheet.report.build import PAPER, compute, prepare, refereed
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.errors import InputError
 from loopsheet.report.findings import checks
+from loopsheet.report.folders import PAPER
 from loopsheet.report.published import PublishedValue
 from loopsheet.report.quantity import Printed
 from loopsheet.report.result import Report
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
+from loopsheet.report.stages import refereed
+from loopsheet.report.study import Study
 from loopsheet.report.verdict import REACHABLE, UNREACHABLE, WITHIN, Referee
 
 
@@ -127,7 +129,7 @@ def test_two_pairs_are_out_of_reach_by_themselves(paper: Report) -> None:
 
 def test_every_witness_prints_as_given_and_yields_what_is_published(paper: Report) -> None:
     """Put into the sheet again, it gives the published cell in its digits."""
-    prepared = prepare(PAPER)
+    prepared = Study(PAPER).prepared
     tried = 0
     for comparison in paper.comparisons:
         found, published = comparison.refereed, comparison.published
@@ -214,7 +216,7 @@ def changed(tmp_path: Path, file: str, before: str, after: str) -> Report:
     text = (folder / file).read_text(encoding="utf-8")
     assert before in text
     (folder / file).write_text(text.replace(before, after), encoding="utf-8")
-    return refereed(compute(folder, prove=False))
+    return refereed(Study(folder).computed)
 
 
 @pytest.mark.parametrize(

@@ -10,12 +10,13 @@ from sympy import Expr, Rational, Symbol, exp, log, sqrt
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.report.analysis.referee import print_as
-from loopsheet.report.build import compute, refereed
 from loopsheet.report.document.material import Material
 from loopsheet.report.published import PublishedValue
 from loopsheet.report.quantity import Printed
 from loopsheet.report.result import Comparison
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
+from loopsheet.report.stages import refereed
+from loopsheet.report.study import Study
 from loopsheet.report.values import Values
 from loopsheet.report.verdict import EXACT, REACHABLE
 
@@ -120,7 +121,7 @@ def test_the_end_gauge_lies_between_its_least_and_its_largest_length(tmp_path: P
     The length is least and largest at corners of what prints as given, which can all be tried; theta and the
     difference of the coefficients matter most, as a product of what is -0.65 to 0.45 K and -0.5 to 0.5 / K.
     """
-    report = refereed(compute(end_gauge(tmp_path), prove=False))
+    report = refereed(Study(end_gauge(tmp_path)).computed)
     (comparison,) = report.comparisons
     found = comparison.refereed
     assert found is not None

@@ -107,9 +107,10 @@ print([(c.name, found.named(c)) for c in found.order])
 print(Program.of(found).source)
 """
 CELLS = """\
-from loopsheet.report import build
 from loopsheet.report.engines import excel_grid
-r = build.compute(build.PAPER, prove=False)
+from loopsheet.report.folders import PAPER
+from loopsheet.report.study import Study
+r = Study(PAPER).computed
 units = {n: s.unit for n, s in r.shown.items()}
 print(excel_grid.grid(r.sheet, r.values, units, r.workbook.headline).blocks)
 """

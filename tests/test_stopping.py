@@ -23,8 +23,7 @@ import pytest
 from campaign_sizes import Sizes
 from small_report import end_gauge
 
-from loopsheet.report import build as building
-from loopsheet.report import staging
+from loopsheet.report import stages, staging
 from loopsheet.report.background import Background
 from loopsheet.report.cli import main
 from loopsheet.report.errors import OutputError
@@ -199,7 +198,7 @@ def test_a_build_stopped_at_any_moment(
 STEPS = """
 import json, os, signal, sys
 from pathlib import Path
-from loopsheet.report import staging
+from loopsheet.report import stages, staging
 from loopsheet.report.stopping import stoppable
 fatal, number, out = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
 taken = 0
@@ -369,7 +368,7 @@ def test_memory_that_is_short_is_no_bug(
     def fail(*_: object, **__: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr(building, "compute", fail)
+    monkeypatch.setattr(stages, "evaluated", fail)
     assert main(["show", "alpha", "paper"]) == 2
     assert "the machine refuses: no memory is left" in capsys.readouterr().err
     killed = Background(lambda: os.kill(os.getpid(), signal.SIGKILL))
@@ -458,7 +457,7 @@ def test_an_import_that_a_signal_ends_is_no_bug(
         except KeyboardInterrupt:
             raise ImportError("initialization failed") from None
 
-    monkeypatch.setattr(building, "compute", compute)
+    monkeypatch.setattr(stages, "evaluated", compute)
     assert main(["check", "paper"]) == 128 + signal.SIGTERM
     assert capsys.readouterr().err.endswith("stopped; nothing was half-written\n")
 

@@ -14,14 +14,15 @@ import pytest
 
 from loopsheet.derivations.proof import Status as Verdict
 from loopsheet.derivations.proof import prove
-from loopsheet.report import units
+from loopsheet.report import build, units
 from loopsheet.report.analysis import engines
-from loopsheet.report.build import build, compute, find_workbook
 from loopsheet.report.cli import main
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.result import Report
 from loopsheet.report.sheet import Sheet
+from loopsheet.report.study import Study
+from loopsheet.report.which_workbook import find_workbook
 from loopsheet.report.workbook import Workbook
 
 SOURCE = """\
@@ -106,7 +107,7 @@ def sheet(workbook: Workbook) -> Sheet:
 
 @pytest.fixture(scope="module")
 def report(folder: Path) -> Report:
-    return compute(folder)
+    return Study(folder).proved
 
 
 def data(ecc: float = 0.0934) -> dict[str, object]:
@@ -164,7 +165,7 @@ def test_it_is_computed_from_its_folder(report: Report) -> None:
 
 def test_it_is_written_as_a_page_a_paper_and_data(folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    build(folder, out, ("html", "latex", "json"))
+    build.build(Study(folder), out, ("html", "latex", "json"))
     page, paper = ((out / name).read_text(encoding="utf-8") for name in ("report.html", "report.tex"))
     # The script of every page can draw the figures of the shipped workbook; what is read must not show it.
     page = re.sub(r"<script(?: [^>]*)?>.*?</script>", "", page, flags=re.DOTALL)

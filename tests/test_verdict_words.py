@@ -10,11 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loopsheet.report import build, verdict_data
+from loopsheet.report import stages, verdict_data
 from loopsheet.report import verdict_words as words
 from loopsheet.report.findings import checks
+from loopsheet.report.folders import PAPER
 from loopsheet.report.quantity import Printed
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.verbs import check
 from loopsheet.report.verdict import UNREACHABLE, Verdict
 from loopsheet.report.views import checks as formats
@@ -26,7 +28,7 @@ UM = Fraction(1, 10**6)
 
 @pytest.fixture(scope="module")
 def paper() -> Report:
-    return build.refereed(build.compute(build.PAPER, prove=False))
+    return stages.refereed(Study(PAPER).computed)
 
 
 @given(st.floats(-1e3, 1e3), st.floats(0, 1e3), st.integers(0, 6), st.sampled_from([Fraction(1), UM]))

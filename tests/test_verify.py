@@ -15,10 +15,12 @@ import numpy as np
 import pytest
 from processors import lesser
 
-from loopsheet.report import build, provenance, verification
+from loopsheet.report import build, provenance, stages, verification
 from loopsheet.report.cli import main
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.errors import InputError, UsageError
+from loopsheet.report.folders import PAPER
+from loopsheet.report.study import Study
 from loopsheet.report.verification import Verification, verify
 
 
@@ -33,10 +35,10 @@ def hashes(folder: Path) -> dict[str, str]:
 @pytest.fixture(scope="module")
 def unpublished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A campaign with its report inside, and nothing for the referee, who takes longer than all the rest."""
-    folder = shutil.copytree(build.PAPER, tmp_path_factory.mktemp("verify") / "steel")
+    folder = shutil.copytree(PAPER, tmp_path_factory.mktemp("verify") / "steel")
     toml = folder / "report.toml"
     toml.write_text(toml.read_text().partition("[published]")[0])
-    build.build(folder, folder / "out", ("json",))
+    build.build(Study(folder), folder / "out", ("json",))
     return folder
 
 
@@ -89,8 +91,8 @@ def test_an_input_that_changed_and_what_it_moves(campaign: Path, capsys: pytest.
 
 
 def test_a_library_and_a_source_that_changed(campaign: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    versions, sums = build.versions(), provenance.sources()
-    monkeypatch.setattr(build, "versions", lambda: versions | {"numpy": "99.0"})
+    versions, sums = provenance.versions(), provenance.sources()
+    monkeypatch.setattr(stages, "versions", lambda: versions | {"numpy": "99.0"})
     monkeypatch.setattr(build, "sources", lambda: sums | {"method": "0" * 64})
     found = verify(campaign / "out", None)
     names = failed(found)
@@ -141,7 +143,7 @@ def test_what_the_judge_of_the_engines_allows_is_rounding(
     by: float, noise: bool, another: bool, campaign: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The condition of alpha[1-2] is 121: a hundred eps are rounding, a billionth is not."""
-    monkeypatch.setattr(build, "EXACTLY", 0)  # a sheet too large for 50 digits
+    monkeypatch.setattr(stages, "EXACTLY", 0)  # a sheet too large for 50 digits
     monkeypatch.setattr(engine, "evaluate", rounds(by))
     manifest = campaign / "out" / "manifest.json"
     if another:
@@ -181,11 +183,11 @@ def test_the_folder_is_the_one_that_holds_the_report_or_where_one_stands_or_the_
 ) -> None:
     asked = []
 
-    def stop(folder: Path, *_: object, **__: object) -> None:
-        asked.append(folder)
+    def stop(study: Study, *_: object, **__: object) -> None:
+        asked.append(study.folder)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(build, "build", stop)
+    monkeypatch.setattr(verification, "build", stop)
     monkeypatch.chdir(issued)
     elsewhere = shutil.copytree(issued / "out", tmp_path / "elsewhere")
     for arguments in ((Path("out"), None), (elsewhere, None), (elsewhere, issued)):
@@ -194,7 +196,7 @@ def test_the_folder_is_the_one_that_holds_the_report_or_where_one_stands_or_the_
     monkeypatch.chdir(tmp_path)
     with pytest.raises(KeyboardInterrupt):
         verify(elsewhere, None)
-    assert asked == [Path(), Path(), issued, build.PAPER]
+    assert asked == [Path(), Path(), issued, PAPER]
     manifest = json.loads((elsewhere / "manifest.json").read_text())
     manifest["inputs"]["report.toml"] = "00"
     (elsewhere / "manifest.json").write_text(json.dumps(manifest))

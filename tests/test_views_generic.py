@@ -9,8 +9,8 @@ from pathlib import Path
 import html5lib
 import pytest
 
-from loopsheet.report import build
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.views import html, latex
 
 WORKBOOK = """
@@ -49,7 +49,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Report:
     )
     rows = "".join(f"{n},{n}.00,0.{n:03}\n" for n in range(1, 36))
     (folder / "m.csv").write_text("test,volts [1],amps [1]\n" + rows, encoding="utf-8")
-    return build.compute(folder)
+    return Study(folder).proved
 
 
 def test_the_page(report: Report) -> None:

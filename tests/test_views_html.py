@@ -12,14 +12,15 @@ import html5lib
 import pytest
 from large_campaigns import write
 
-from loopsheet.report import build
 from loopsheet.report.document import tree as tree_module
 from loopsheet.report.document.material import Material
 from loopsheet.report.document.parts import MOST, index_text
 from loopsheet.report.document.tables import Tables
 from loopsheet.report.document.tree import Node
+from loopsheet.report.folders import PAPER
 from loopsheet.report.result import Report
 from loopsheet.report.sheet import Given, RepeatAxis
+from loopsheet.report.study import Study
 from loopsheet.report.views import figures, html, latex
 
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ ((( report ))) {{ 7 * 7 }}"
@@ -49,7 +50,7 @@ def large(tmp_path_factory: pytest.TempPathFactory) -> Report:
     rows = file.read_text().splitlines()
     rows[1] = "1,2.000,0.5500,60.00"  # deeper than the fastest, so that no pair of it has a root
     file.write_text("\n".join(rows))
-    return build.compute(folder, prove=False)
+    return Study(folder).computed
 
 
 def test_of_many_rows_the_first_are_shown_and_it_is_said(large: Report) -> None:
@@ -288,9 +289,9 @@ def test_a_hostile_title_and_a_hostile_reason_are_text(report: Report) -> None:
 
 def test_a_cell_without_a_value_shows_its_code_and_where_it_began(tmp_path: Path) -> None:
     for name in ("report.toml", "measurements.csv"):
-        text = (build.PAPER / name).read_text(encoding="utf-8").replace("29.7", "19.7")
+        text = (PAPER / name).read_text(encoding="utf-8").replace("29.7", "19.7")
         (tmp_path / name).write_text(text.partition("[published]")[0], encoding="utf-8")
-    tree = html5lib.parse(html.render(build.compute(tmp_path, prove=False), {}))
+    tree = html5lib.parse(html.render(Study(tmp_path).computed, {}))
     by_id = {element.get("id"): element for element in tree.iter() if element.get("id")}
     for cell in ("cell-alpha-1-2", "cell-C-1-2"):
         assert by_id[cell].get("data-status") == "#NOROOT!"

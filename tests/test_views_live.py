@@ -20,16 +20,17 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from loopsheet.report import build
 from loopsheet.report.analysis.referee import print_as, prints_same
 from loopsheet.report.document.material import Material
 from loopsheet.report.document.numbers import decimals, rounded, shown
 from loopsheet.report.document.tree import Math
 from loopsheet.report.engines import javascript
 from loopsheet.report.errors import Findings, Location
+from loopsheet.report.folders import PAPER
 from loopsheet.report.number_text import NumberError, read_printed, read_value
 from loopsheet.report.quantity import Bounds, Printed
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.unit_text import parse_unit
 from loopsheet.report.views import compact, compact_svg, figures, html, live
 
@@ -169,8 +170,8 @@ def test_foreign_text_cannot_end_the_element(tmp_path: Path) -> None:
         '[measurements]\nfile = "measurements.csv"\n# </script>\n',
         encoding="utf-8",
     )
-    (tmp_path / "measurements.csv").write_bytes((build.PAPER / "measurements.csv").read_bytes())
-    strange = build.compute(tmp_path, prove=False)
+    (tmp_path / "measurements.csv").write_bytes((PAPER / "measurements.csv").read_bytes())
+    strange = Study(tmp_path).computed
     text = live.data(strange, Material(strange))
     assert "<" not in text
     assert json.loads(text)["toml"][-1].endswith("# </script>\n")

@@ -14,11 +14,12 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
-from loopsheet.report import build
+from loopsheet.report import stages
 from loopsheet.report.document.material import Material
 from loopsheet.report.document.numbers import decimals
 from loopsheet.report.document.refereed import FIGURE, Refereed, figure
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.verdict import (
     INPUT,
     NOT_CHECKABLE,
@@ -216,7 +217,7 @@ def campaign(folder: Path, published: Sequence[str]) -> Report:
         )
         toml += '[published]\nfile = "published.csv"\n'
     (folder / "report.toml").write_text(toml, encoding="utf-8")
-    return build.refereed(build.compute(folder, prove=False))
+    return stages.refereed(Study(folder).computed)
 
 
 PAIRS = ((1, 2), (1, 3), (2, 3))

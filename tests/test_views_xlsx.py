@@ -14,11 +14,12 @@ import openpyxl
 import pytest
 from openpyxl.worksheet.formula import ArrayFormula
 
-from loopsheet.report import build
 from loopsheet.report.engines import excel_grid
+from loopsheet.report.folders import PAPER
 from loopsheet.report.grid import Grid
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.views import json as json_view
 from loopsheet.report.views import xlsx
 from loopsheet.report.views.xlsx_style import (
@@ -287,13 +288,13 @@ def test_charts_are_native_and_drawn_from_cells(content: bytes) -> None:
 
 
 def test_what_has_no_value_is_left_out_of_a_chart(tmp_path: Path) -> None:
-    shutil.copytree(build.PAPER, tmp_path / "in")
+    shutil.copytree(PAPER, tmp_path / "in")
     table = tmp_path / "in" / "measurements.csv"
     table.write_text(table.read_text().replace("0.479", "0.9"))
     (tmp_path / "in" / "published.csv").unlink()
     toml = tmp_path / "in" / "report.toml"
     toml.write_text(toml.read_text().partition("[published]")[0])
-    report = build.compute(tmp_path / "in", prove=False)
+    report = Study(tmp_path / "in").computed
     assert (report.values.status["alpha"] != 0).any()
     content = xlsx.render(report, grid_of(report))
     shown = openpyxl.load_workbook(io.BytesIO(content), data_only=True)
@@ -317,7 +318,7 @@ def test_no_clock_and_no_place(content: bytes) -> None:
     core = files(content)["docProps/core.xml"].decode()
     assert "2000-01-01T00:00:00Z" in core
     for name, text in files(content).items():
-        assert str(build.PAPER).encode() not in text, name
+        assert str(PAPER).encode() not in text, name
         assert b"/tmp" not in text, name
 
 

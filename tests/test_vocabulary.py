@@ -15,6 +15,7 @@ from loopsheet.derivations.text import text
 from loopsheet.derivations.vocabulary import NO_WORDS, Quantity, Vocabulary
 from loopsheet.report import build
 from loopsheet.report.cli import main
+from loopsheet.report.study import Study
 
 # Every symbol is called as one of the paper's, and means something else.
 WORKBOOK = """
@@ -77,7 +78,7 @@ def read(out: Path) -> Iterator[tuple[str, str]]:
 @pytest.fixture(scope="module", params=["", WORDS], ids=["without words", "with words of its own"])
 def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     place = folder(tmp_path_factory.mktemp("ohm"), request.param)
-    build.build(place, place / "out")
+    build.build(Study(place), place / "out")
     return place, request.param
 
 

@@ -9,15 +9,18 @@ import mpmath
 import numpy as np
 import pytest
 
-from loopsheet.report import build
+from loopsheet.report import stages
 from loopsheet.report.analysis.referee.campaign import Campaign
 from loopsheet.report.analysis.referee.problem import Problem
 from loopsheet.report.engines import exact
 from loopsheet.report.findings import checks
+from loopsheet.report.folders import PAPER
+from loopsheet.report.prepared import Prepared
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.verdict import EXACT
 
-FOLDER = build.PAPER.parent / "worked_example"
+FOLDER = PAPER.parent / "worked_example"
 PRINTED = (
     ("Table A", "alpha", "1", 0, 4),
     ("Table A", "x_m1", "um", -6, 2),
@@ -37,8 +40,8 @@ PRINTED = (
 
 def made() -> str:
     """published.csv as it follows from the inputs at 50 digits."""
-    report = build.compute(FOLDER, prove=False)
-    prepared = build.Prepared(report.inputs, report.sheet)
+    report = Study(FOLDER).computed
+    prepared = Prepared(report.inputs, report.sheet)
     found, values = exact.evaluate(report.sheet, prepared.labels, prepared.exact_data), report.values
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
@@ -60,7 +63,7 @@ def printed(value: mpmath.mpf, power: int, decimals: int, truncated: bool) -> st
 
 @pytest.fixture(scope="module")
 def example() -> Report:
-    return build.refereed(build.compute(FOLDER, prove=False))
+    return stages.refereed(Study(FOLDER).computed)
 
 
 def test_what_is_published_follows_from_the_inputs() -> None:
@@ -78,7 +81,7 @@ def test_every_column_behind_it_is_held(example: Report) -> None:
     """A hundredth more in every other cell of any column shows, but for the units of the fits."""
     sheet = example.sheet
     behind = {a.name for c in example.comparisons for a in sheet.ancestors(sheet[c.cell.name]) if not a.exact}
-    data, held = build.Prepared(example.inputs, sheet).data, set()
+    data, held = Prepared(example.inputs, sheet).data, set()
     for name in behind:
         campaign = Campaign(sheet, example.inputs, example.values, data, (name,))
         problem = Problem.of(campaign, example.inputs.published)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from .common import Progress, folder_argument, named, outcome, tell
+from .common import FINDINGS, OK, Progress, folder_argument, keeping_arguments, named, told
 
 if TYPE_CHECKING:
     from ..result import Report
@@ -30,14 +30,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="judge JavaScript and the workbook too, and put that into the report",
     )
+    keeping_arguments(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Build, and tell the result and what is not as expected."""
     from .. import build
     from ..diagnostics import visible
-    from ..findings import checks
     from ..folders import output, report_folder
+    from ..study import Study
 
     formats = None if options.to is None else build.parse_formats(options.to)
     folder = report_folder(options.folder)
@@ -47,22 +48,31 @@ def run(options: argparse.Namespace) -> int:
         print(visible(sentence), flush=True)
 
     with Progress(sys.stderr) as progress:
-        report, files = build.build(folder, out, formats, progress, options.engines, tell=say)
-    for name in report.workbook.headline:
-        print(_line(report, name))
-    for agreement in report.engines:
-        if agreement.sample:
-            print(f"{agreement.engine}: {agreement.counted}, judged at 50 digits")
-    found = checks(report)
-    tell(found)
-    names = {path.name: path for path in files}
+        found = build.built(Study(folder, step=progress), out, formats, options.engines, say, _told)
+    for line in found.told["lines"]:
+        print(line)
+    names = {path.name: path for path in found.files}
     first = next(
         names[n]
         for n in ("report.html", "report.pdf", "report.tex", "report.xlsx", "values.json", "manifest.json")
         if n in names
     )
-    print(f"{len(files)} files in {out}; look at {first}")
-    return outcome(found)
+    print(f"{len(found.files)} files in {out}; look at {first}")
+    return OK if found.told["passed"] else FINDINGS
+
+
+def _told(report: Report) -> dict[str, Any]:
+    """The result, and what is not as expected."""
+    from ..findings import checks
+
+    lines = [_line(report, name) for name in report.workbook.headline]
+    lines += [
+        f"{agreement.engine}: {agreement.counted}, judged at 50 digits"
+        for agreement in report.engines
+        if agreement.sample
+    ]
+    found = checks(report)
+    return {"lines": [*lines, *told(found)], "passed": all(check.passed for check in found)}
 
 
 def _line(report: Report, name: str) -> str:

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from .common import Progress, folder_argument, format_argument, outcome, print_checks, tell
+from .common import Progress, folder_argument, format_argument, keeping_arguments, outcome, print_checks, tell
 
 if TYPE_CHECKING:
     from ..accepting import Accepted
@@ -30,20 +30,19 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--reason", metavar="TEXT", default="", help="with --accept: why they differ, where that is not said"
     )
+    keeping_arguments(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Check everything and print it in the format that is asked for."""
-    from .. import build
     from ..findings import checks
     from ..folders import report_folder
+    from ..study import Study
 
     if options.accept or options.reason:
         return _accept(options)
     with Progress(sys.stderr) as progress:
-        report = build.compute(report_folder(options.folder), progress)
-        report = build.judged(report, step=progress)
-        report = build.refereed(report, progress)
+        report = Study(report_folder(options.folder), step=progress).report
     found = checks(report)
     if options.format == "text":
         _print(report, found)
@@ -54,12 +53,13 @@ def run(options: argparse.Namespace) -> int:
 
 def _accept(options: argparse.Namespace) -> int:
     """Write the known differences of a folder, show what was written, and print what is left to find."""
-    from .. import build
     from ..accepting import accepted
     from ..errors import UsageError, diagnose
     from ..findings import checks
     from ..folders import PAPER, report_folder
+    from ..stages import compared
     from ..staging import replaced
+    from ..study import Study
 
     reason, folder = " ".join(options.reason.split()), report_folder(options.folder)
     if not options.accept or folder == PAPER or not reason.isprintable():
@@ -67,12 +67,12 @@ def _accept(options: argparse.Namespace) -> int:
         said = "--accept needs a FOLDER of your own, --reason a sentence and --accept"
         raise UsageError(diagnose("LS614", reason=said, known=known))
     with Progress(sys.stderr) as progress:
-        report = build.refereed(build.compute(folder, progress, prove=False), progress)
+        report = Study(folder, step=progress).refereed
     if report.comparisons:
         found = accepted(report, reason)
         if found.after != found.before:
             replaced(found.path, found.before, found.after)
-            report = build.compared(report)
+            report = compared(report)
         if options.format == "text":
             _show(found)
             _ask(report)

@@ -25,12 +25,14 @@ __all__ = [
     "find",
     "folder_argument",
     "format_argument",
+    "keeping_arguments",
     "named",
     "outcome",
     "print_checks",
     "result_argument",
     "source_argument",
     "tell",
+    "told",
 ]
 
 OK, FINDINGS, USAGE, BUG = 0, 1, 2, 3
@@ -40,6 +42,14 @@ def folder_argument(parser: argparse.ArgumentParser) -> None:
     """Take a FOLDER: a word for :func:`~loopsheet.report.folders.report_folder`."""
     said = f"a folder with a report.toml (default: the working directory), or '{WORD}' for the shipped paper"
     parser.add_argument("folder", metavar="FOLDER", nargs="?", type=named, help=said)
+
+
+def keeping_arguments(parser: argparse.ArgumentParser) -> None:
+    """Take what hangs on what is kept from run to run, and on what takes how long."""
+    parser.add_argument(
+        "--no-cache", action="store_true", help="make everything again, and keep nothing for the next run"
+    )
+    parser.add_argument("--timing", action="store_true", help="tell at the end where the time went")
 
 
 def result_argument(parser: argparse.ArgumentParser, name: str = "out") -> None:
@@ -97,11 +107,16 @@ def print_checks(checks: tuple[Check, ...], form: str, title: str, more: Mapping
     print(FORMATS[form](checks, title, more), end="")
 
 
+def told(checks: Iterable[Check]) -> list[str]:
+    """What there is to tell of checks, a line each; findings last."""
+    some = sorted((check for check in checks if check.word), key=lambda check: not check.passed)
+    return [f"{check.word}: {check.sentence}" for check in some]
+
+
 def tell(checks: Iterable[Check]) -> None:
-    """Print what there is to tell of checks, a line each; findings last."""
-    told = [check for check in checks if check.word]
-    for check in sorted(told, key=lambda check: not check.passed):
-        print(f"{check.word}: {check.sentence}")
+    """Print what there is to tell of checks."""
+    for line in told(checks):
+        print(line)
 
 
 class Progress:

@@ -23,13 +23,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the folder and name its files."""
-    from .. import build, scaffold
+    from .. import scaffold
     from ..errors import UnknownWorkbook, UsageError, diagnose, listing, suggest
     from ..folders import written
+    from ..which_workbook import find_workbook
     from ..workbooks import SHIPPED
 
     try:
-        workbook = build.find_workbook(options.workbook, Path())
+        workbook = find_workbook(options.workbook, Path())
     except UnknownWorkbook as error:
         known, hint = listing(SHIPPED), suggest(options.workbook, SHIPPED)
         raise UsageError(

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .common import FINDINGS, OK, Progress, folder_argument
+from .common import FINDINGS, OK, Progress, folder_argument, keeping_arguments
 
 if TYPE_CHECKING:
     from ...derivations.proof import Proof
@@ -20,19 +20,21 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     parser.add_argument("equation", metavar="EQUATION", nargs="?", help="its number, for example (11) or 12a")
     folder_argument(parser)
+    keeping_arguments(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Prove, and print one line an equation, or all steps of one."""
-    from .. import build
     from ..errors import UsageError, diagnose, suggest
     from ..folders import WORD, is_report, report_folder
+    from ..study import Study
 
     word = options.equation
     if word and options.folder is None and (word == WORD or is_report(Path(word))):
         options.equation, options.folder = None, word  # no equation has such a name
-    inputs = build.prepare(report_folder(options.folder)).inputs
-    ledger = inputs.workbook.ledger()
+    study = Study(report_folder(options.folder))
+    assert study.prepared  # whoever asks for the algebra of a folder hears of what is wrong with it
+    ledger = study.ledger
     labels = [equation.label for equation in ledger.equations()]
     wanted: list[str] = labels
     if options.equation:
@@ -44,12 +46,12 @@ def run(options: argparse.Namespace) -> int:
                 diagnose("LS604", kind="equation", text=options.equation, known=known, suggestion=hint)
             )
     with Progress(sys.stderr) as progress:
-        proofs, errata = build.checked(inputs, ledger, progress)
-    shown = [proof for proof in proofs if proof.equation.label in wanted]
+        study.step = progress
+        shown = study.proofs(map(ledger.__getitem__, wanted)) if options.equation else study.algebra[0]
     for proof in shown:
         _print(proof, ledger.vocabulary, steps=bool(options.equation))
     if not options.equation:
-        for erratum in errata:
+        for erratum in study.algebra[1]:
             print(f"erratum: {erratum.sentence}")
             if erratum.evidence:
                 print(f"         {erratum.evidence}")

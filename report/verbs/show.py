@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
-from .common import OK, find, folder_argument
+from .common import OK, find, folder_argument, keeping_arguments
+
+if TYPE_CHECKING:
+    from ..result import Report
 
 HELP = "show a cell: its value, its equation, what it is computed from"
 
@@ -13,29 +18,35 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     parser.add_argument("cell", metavar="CELL", help="alpha, alpha[1-2], x_m[3] or alpha_mean")
     folder_argument(parser)
+    keeping_arguments(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Print a column's equation, and the cells that are asked for."""
-    from ...derivations.text import text_of_equation
-    from .. import build
     from ..folders import report_folder
+    from ..study import Study
 
-    report = build.compute(report_folder(options.folder), prove=False)
-    column, labels = find(report, options.cell)
+    study = Study(report_folder(options.folder))
+    print(study.kept("show", lambda: "\n".join(_lines(study.computed, options.cell)), options.cell))
+    return OK
+
+
+def _lines(report: Report, address: str) -> Iterator[str]:
+    from ...derivations.text import text_of_equation
+
+    column, labels = find(report, address)
     name = column.name
-    print(f"{name}  {column.meaning}  [{report.shown[name].unit}]  {column.source}")
+    yield f"{name}  {column.meaning}  [{report.shown[name].unit}]  {column.source}"
     if column.equation is not None:
-        print(f"  {text_of_equation(column.equation, report.ledger.vocabulary)}")
+        yield f"  {text_of_equation(column.equation, report.ledger.vocabulary)}"
         precedents = ", ".join(precedent.name for precedent in report.sheet.precedents(column))
-        print(f"  computed from {precedents or 'nothing'}")
+        yield f"  computed from {precedents or 'nothing'}"
     wanted_labels, marks = set(labels), report.marks.of(name)
     for cell, mark in zip(report.values.cells(name), marks, strict=True):
         if cell.label in wanted_labels:
             scale = report.shown[name].scale
             value = cell.reason if cell.value is None else repr(cell.value / scale)
-            print(f"  {cell.address:16} {value}{mark and f'  {mark}'}")
+            yield f"  {cell.address:16} {value}{mark and f'  {mark}'}"
     for count in report.marks.behind(column):
         if count.number or count.margin.limit.source:
-            print(f"  {count.said}")
-    return OK
+            yield f"  {count.said}"

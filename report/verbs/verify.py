@@ -29,12 +29,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Verify, and print what differs; exit code 1 if anything does."""
-    from .. import build
     from ..folders import report_folder, result
     from ..verification import verify
+    from ..which_workbook import find_workbook, shipped_workbook
 
     folder = report_folder(options.folder) if options.folder else None
-    find = build.find_workbook if options.run_workbook else build.shipped_workbook
+    find = find_workbook if options.run_workbook else shipped_workbook
     with Progress(sys.stderr) as progress:
         found = verify(result(options.out), folder, progress, find)
     if options.format == "text":

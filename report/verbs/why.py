@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import argparse
 import sys
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from .common import OK, Progress, find, folder_argument
+from .common import OK, Progress, find, folder_argument, keeping_arguments
+
+if TYPE_CHECKING:
+    from ..study import Study
 
 HELP = "tell where one number comes from and what is computed from it"
 
@@ -14,20 +19,27 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     parser.add_argument("cell", metavar="CELL", help="alpha[1-2], x_m[3] or alpha_mean")
     folder_argument(parser)
+    keeping_arguments(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Print what the formula bar of the page tells of a cell."""
-    from .. import build
-    from ..errors import UsageError, diagnose, listing
     from ..folders import report_folder
-    from ..views.why import why
+    from ..study import Study
 
     with Progress(sys.stderr) as progress:
-        report = build.compute(report_folder(options.folder), progress)
-    column, labels = find(report, options.cell)
+        study = Study(report_folder(options.folder), step=progress)
+        told = study.kept("why", lambda: _told(study, options.cell), options.cell)
+    print(told)
+    return OK
+
+
+def _told(study: Study, address: str) -> str:
+    from ..errors import UsageError, diagnose, listing
+    from ..views.why import equations_of, why
+
+    column, labels = find(report := study.computed, address)
     if len(labels) != 1:
         known = listing(report.values.cell(column.name, label).address for label in labels)
-        raise UsageError(diagnose("LS604", kind="single cell", text=options.cell, known=known, suggestion=""))
-    print(why(report, column.name, labels[0]))
-    return OK
+        raise UsageError(diagnose("LS604", kind="single cell", text=address, known=known, suggestion=""))
+    return why(replace(report, proofs=study.proofs(equations_of(column))), column.name, labels[0])

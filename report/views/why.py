@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from sympy import Expr, Symbol
 
+from ...derivations.equation import Equation
 from ...derivations.reductions import REDUCTIONS
 from ...derivations.text import Writer, text_of_equation
 from ..result import Report
@@ -13,7 +14,7 @@ from ..sheet import Column, Formula, Given, Root, name_of
 from ..trace import Group, dependents_of, precedents_of
 from ..values import Cell
 
-__all__ = ["why"]
+__all__ = ["equations_of", "why"]
 
 MOST = 12
 """Cells of one column that are told one by one."""
@@ -27,7 +28,7 @@ def why(report: Report, name: str, label: tuple[int, ...] = ()) -> str:
     Parameters
     ----------
     report : Report
-        With its proofs.
+        With the proofs of :func:`equations_of` the column.
     name : str
         Of a column.
     label : tuple of int
@@ -109,11 +110,17 @@ def _where(report: Report, name: str, row: int) -> str:
 # --- equations -------------------------------------------------------------------------------------------
 
 
-def _sources(report: Report, column: Column) -> Iterator[str]:
-    """The numbers of its equations with what the proofs say of them."""
+def equations_of(column: Column) -> list[Equation]:
+    """The equations that a column comes from: its own, and the one that its root is sought in."""
     equations = [column.equation] if column.equation is not None else []
     if isinstance(column.rule, Root) and column.rule.form.label != column.rule.equation.label:
         equations.append(column.rule.form)
+    return equations
+
+
+def _sources(report: Report, column: Column) -> Iterator[str]:
+    """The numbers of its equations with what the proofs say of them."""
+    equations = equations_of(column)
     statuses = {proof.equation.label: proof.status.value for proof in report.proofs}
     told = [f"{e.label} {statuses[e.label]}" for e in equations if e.label in statuses]
     yield _line("from", ", solved as ".join(told) or column.source)

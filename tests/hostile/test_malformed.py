@@ -18,11 +18,13 @@ from campaign_sizes import Sizes
 from malformed_folders import malformed
 from small_report import end_gauge
 
-from loopsheet.report import build
+from loopsheet.report import build, stages, verification
 from loopsheet.report.cli import main
 from loopsheet.report.errors import LoopsheetError
 from loopsheet.report.findings import checks
+from loopsheet.report.folders import PAPER
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.views import html, latex
 from loopsheet.report.views import json as data
 from loopsheet.report.views.checks import FORMATS
@@ -30,11 +32,11 @@ from loopsheet.report.views.checks import FORMATS
 
 def shown(report: Report) -> None:
     """All that is made of a report; its 50 digits too."""
-    report = build.judged(report, every=False)
+    report = stages.judged(report, every=False)
     data.values(report)
     latex.render(report, [])
-    html.render(report, {}, build._program(report))
-    build._workbook(report)
+    html.render(report, {}, stages.program(report))
+    stages.book(report)
     found = checks(report)
     for form in FORMATS.values():
         form(found, report.title, {})
@@ -44,12 +46,12 @@ def ends(folder: Path, further: bool) -> str:
     """Where the way of a folder ends."""
     stage = "the reader"
     try:
-        prepared = build.prepare(folder)
+        prepared = Study(folder).prepared
         stage = "the sheet"
-        report = build._evaluated(prepared, prepared.inputs.workbook.ledger(), lambda _: None)
+        report = stages.evaluated(prepared, prepared.inputs.workbook.ledger(), lambda _: None)
         if further:
             stage = "the referee"
-            report = build.refereed(report)
+            report = stages.refereed(report)
             stage = "the views"
             shown(report)
     except LoopsheetError as error:
@@ -63,10 +65,10 @@ def ends(folder: Path, further: bool) -> str:
 
 
 def test_empty_brackets_are_a_pure_number(tmp_path: Path) -> None:
-    for path in build.PAPER.iterdir():
+    for path in PAPER.iterdir():
         text = path.read_text(encoding="utf-8")
         (tmp_path / path.name).write_text(text.replace("e [1]", "e []"))
-    report = build.compute(tmp_path, prove=False)
+    report = Study(tmp_path).computed
     assert report.inputs.header_units["e"] == report.shown["e"].unit == "1"
 
 
@@ -86,7 +88,7 @@ def test_a_difference_that_no_double_holds_is_one(tmp_path: Path) -> None:
     end_gauge(tmp_path, "source,cell,index,value,unit\nH.1,l,1,1e-290,mm\n")
     toml = tmp_path / "report.toml"
     toml.write_text(toml.read_text().replace('"50.000623 mm"', '"1e150 mm"'))
-    (comparison,) = build.compute(tmp_path, prove=False).comparisons
+    (comparison,) = Study(tmp_path).computed.comparisons
     assert comparison.verdict == "differs"
     assert comparison.distance == sys.float_info.max
 
@@ -181,14 +183,14 @@ def test_a_malformed_result_is_read_or_refused(
     """By diff, by verify (which finds the same built again) and by crate."""
     end_gauge(tmp_path)
     kept, out, found = tmp_path / "kept", tmp_path / "out", Counter[str]()
-    report, _ = build.build(tmp_path, kept, ("json",))
+    report, _ = build.build(Study(tmp_path), kept, ("json",))
     whole = {name: json.loads((kept / name).read_text()) for name in ("values.json", "manifest.json")}
 
-    def again(_: Path, place: Path, *__: object) -> tuple[Report, list[Path]]:
+    def again(_: Study, place: Path, *__: object) -> tuple[Report, list[Path]]:
         shutil.copytree(kept, place)
         return report, []
 
-    monkeypatch.setattr(build, "build", again)
+    monkeypatch.setattr(verification, "build", again)
     for turn in range(sizes.malformed // 2):
         dice = random.Random(f"{sizes.seed} {turn}")
         shutil.rmtree(out, ignore_errors=True)

@@ -16,14 +16,15 @@ from typing import Any
 
 import numpy as np
 
-from loopsheet.report import build
 from loopsheet.report.analysis.readers import ALWAYS_RECALCULATE
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.certified import certified
+from loopsheet.report.folders import PAPER
 from loopsheet.report.grid import Grid, checked
 from loopsheet.report.result import Report
 from loopsheet.report.sheet import Given, RepeatAxis, Root, Sheet
+from loopsheet.report.study import Study
 from loopsheet.report.values import CODES, Status, Values
 from loopsheet.report.views import xlsx
 
@@ -127,9 +128,9 @@ def _number(value: Typed, scale: Fraction) -> float:
     return float(Fraction(repr(value)) * scale)
 
 
-def deliver(folder: Path = build.PAPER, drawn: bool = True) -> Delivered:
+def deliver(folder: Path = PAPER, drawn: bool = True) -> Delivered:
     """Compute a folder and make its workbook."""
-    report = build.compute(folder, prove=False)
+    report = Study(folder).computed
     charts = report.workbook.drawn(report.sheet) if drawn and report.workbook.drawn else None
     units = {name: shown.unit for name, shown in report.shown.items()}
     grid = excel_grid.grid(report.sheet, report.marks.values, units, report.workbook.headline, charts)

@@ -14,7 +14,7 @@ import spreadsheets
 from small_report import end_gauge
 from test_toy_workbook import FILES
 
-from loopsheet.report import build
+from loopsheet.report.folders import PAPER
 
 HERE = Path(__file__).parent
 OFFICES = ("Office2016", "Microsoft365")
@@ -97,8 +97,8 @@ def no_exponent(folder: Path) -> Path:
 
 
 FOLDERS: dict[str, Callable[[Path], Path]] = {
-    "paper": lambda _: build.PAPER,
-    "worked example": lambda _: build.PAPER.parent / "worked_example",
+    "paper": lambda _: PAPER,
+    "worked example": lambda _: PAPER.parent / "worked_example",
     "errors in cells": no_exponent,
     "end gauge": end_gauge,
     "orbit of long words": lambda place: told_at_length(place, "0.0934"),

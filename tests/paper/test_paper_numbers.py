@@ -10,10 +10,11 @@ from mpmath import mpf
 from scipy.optimize import least_squares
 
 from loopsheet.report.analysis import engines
-from loopsheet.report.build import PAPER, compute, prepare
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
+from loopsheet.report.folders import PAPER
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.values import Status, Values
 
 PAIRS = [(i, j) for i in range(1, 6) for j in range(i + 1, 6)]
@@ -38,7 +39,7 @@ def values(report: Report) -> Values:
 
 @pytest.fixture(scope="module")
 def judged() -> exact.ExactValues:
-    prepared = prepare(PAPER)
+    prepared = Study(PAPER).prepared
     return exact.evaluate(prepared.sheet, prepared.labels, prepared.exact_data)
 
 
@@ -110,7 +111,7 @@ def test_the_papers_fit_is_the_log_log_one() -> None:
     Table 1 cannot give Table 2 (see the known differences in published.csv). With x_p of test 2 free it
     can: the inputs nearest to the printed ones, counted in half units of their last digits, are sought.
     """
-    prepared = prepare(PAPER)
+    prepared = Study(PAPER).prepared
     program = engine.Program.of(prepared.sheet)
     printed = np.concatenate([np.array(prepared.data[name]) for name in ("v", "e", "x_p")])
     half = np.array([5e-4] * 10 + [5e-8, 5e-8, 5e-8, 5e-9, 5e-9])
@@ -135,7 +136,7 @@ def test_the_papers_fit_is_the_log_log_one() -> None:
 
 
 def test_both_engines_agree_on_every_cell_of_the_paper(values: Values) -> None:
-    prepared = prepare(PAPER)
+    prepared = Study(PAPER).prepared
     agreement = engines.compare(values, prepared.labels, prepared.exact_data)
     assert agreement.findings == ()
     assert agreement.cells == 2117
@@ -160,7 +161,7 @@ def test_other_units_and_the_mass_for_the_diameter_change_nothing(tmp_path: Path
         "4,450.4,46.7,0.04597\n5,499.3,45.3,0.05103\n",
         f'ball_mass = "{values.scalar("ball_mass") * 1e3:.15g} g"',
     )
-    again = compute(folder, prove=False).values
+    again = Study(folder).computed.values
     for name in ("alpha", "alpha_mean", "alpha_log", "C_log", "x_m", "Cprime_eq7", "Cprime_eq9"):
         np.testing.assert_allclose(again.value[name], values.value[name], rtol=1e-13)
 
@@ -168,7 +169,7 @@ def test_other_units_and_the_mass_for_the_diameter_change_nothing(tmp_path: Path
 def test_a_finite_target_changes_the_forces_and_no_exponent(tmp_path: Path, values: Values) -> None:
     measurements = (PAPER / "measurements.csv").read_text(encoding="utf-8")
     parameters = 'ball_diameter = "12.7 mm"\nball_density = "7800 kg/m^3"\ntarget_mass = "2 kg"'
-    again = compute(write(tmp_path / "light", measurements, parameters), prove=False).values
+    again = Study(write(tmp_path / "light", measurements, parameters)).computed.values
     np.testing.assert_array_equal(again.value["alpha"], values.value["alpha"])
     assert again.scalar("m_red") == pytest.approx(
         values.scalar("m_red") / (1 + values.scalar("ball_mass") / 2)

@@ -15,9 +15,11 @@ from typing import Any
 import numpy as np
 from playwright.sync_api import Download, Locator, Page
 
-from loopsheet.report import build
 from loopsheet.report.engines import numpy as engine
+from loopsheet.report.folders import PAPER
+from loopsheet.report.prepared import given_data
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.values import CODES, Status, Values
 from loopsheet.report.views import html
 
@@ -192,7 +194,7 @@ TITLES = {"v": "v [m/s]", "e": "e [1]", "x_p": "x_p [um]"}
 
 def paper() -> dict[int, dict[str, str]]:
     """The measurements as they are shipped."""
-    rows = csv.DictReader(io.StringIO((build.PAPER / "measurements.csv").read_text(encoding="utf-8")))
+    rows = csv.DictReader(io.StringIO((PAPER / "measurements.csv").read_text(encoding="utf-8")))
     return {int(row["test"]): {name: row[title] for name, title in TITLES.items()} for row in rows}
 
 
@@ -209,14 +211,14 @@ def write(folder: Path, tests: Tests, published: bool = False) -> Path:
     lines = [",".join(["test", *TITLES.values()])]
     lines += [",".join([str(test), *(cells[name] for name in TITLES)]) for test, cells in tests.items()]
     (folder / "measurements.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    (folder / "report.toml").write_bytes((build.PAPER / "report.toml").read_bytes())
+    (folder / "report.toml").write_bytes((PAPER / "report.toml").read_bytes())
     return compared(folder, published)
 
 
 def compared(folder: Path, published: bool) -> Path:
     """Give a folder the published values of the paper, or take the word of them out of it."""
     if published:
-        (folder / "published.csv").write_bytes((build.PAPER / "published.csv").read_bytes())
+        (folder / "published.csv").write_bytes((PAPER / "published.csv").read_bytes())
     else:
         toml = (folder / "report.toml").read_text(encoding="utf-8")
         toml = re.sub(r"^\[published\].*", "", toml, flags=re.MULTILINE | re.DOTALL)
@@ -225,7 +227,7 @@ def compared(folder: Path, published: bool) -> Path:
 
 
 def built(folder: Path, tests: Tests, published: bool = False) -> Report:
-    return build.compute(write(folder, tests, published), prove=False)
+    return Study(write(folder, tests, published)).computed
 
 
 def static(report: Report, path: Path) -> Path:
@@ -236,7 +238,7 @@ def static(report: Report, path: Path) -> Path:
 
 def with_missing(report: Report, *refused: tuple[str, int]) -> Values:
     """The same values where some data are refused, each by its name and its test."""
-    data: dict[str, Any] = dict(build.given_data(report.inputs))
+    data: dict[str, Any] = dict(given_data(report.inputs))
     for name, test in refused:
         data[name] = np.array(data[name], dtype=float)
         data[name][report.inputs.tests.index(test)] = math.nan

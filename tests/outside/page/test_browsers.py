@@ -12,10 +12,11 @@ import mpmath
 import pytest
 from driving import Live
 
-from loopsheet.report import build
 from loopsheet.report.analysis.engines import EPS, LIMIT, Judge
 from loopsheet.report.engines import exact
+from loopsheet.report.prepared import Prepared
 from loopsheet.report.result import Report
+from loopsheet.report.study import Study
 
 DEEPER = {("x_p", 2): "29.8"}
 LIVELIER = {("e", 2): ".900"}
@@ -97,7 +98,7 @@ def test_edit_is_recalculated_within_what_rounding_may_do(
     live.type("x_p", 2, "29.8")
     report = built(driving.edited(DEEPER))
     assert same(live, report)
-    prepared = build.Prepared(report.inputs, report.sheet)
+    prepared = Prepared(report.inputs, report.sheet)
     judge = Judge.of(report.sheet, report.values.layouts, prepared.labels, prepared.exact_data)
     worst, where = 0.0, ""
     with mpmath.workdps(exact.DIGITS):
@@ -236,6 +237,6 @@ def test_saved_files_give_the_numbers_of_the_page(live: Live, tmp_path: Path) ->
     live.type("beta", "", "1.4")
     live.page.locator('[data-use="4"]').click()
     folder = driving.compared(live.save(tmp_path / "saved"), published=False)
-    report = build.compute(folder, prove=False)
+    report = Study(folder).computed
     assert report.inputs.parameters["beta"].text == "1.4"
     assert same(live, report)

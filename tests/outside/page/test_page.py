@@ -10,8 +10,9 @@ import pytest
 from campaign_sizes import SEED, Sizes
 from driving import Live
 
-from loopsheet.report import build
 from loopsheet.report.errors import InputError
+from loopsheet.report.folders import PAPER
+from loopsheet.report.study import Study
 from loopsheet.report.views import live as live_view
 
 Open = Callable[..., Live]
@@ -110,7 +111,7 @@ def test_cells_outside_of_what_is_expected_are_marked_and_counted(
     folder = driving.write(tmp_path / "folder", driving.edited(FASTER), published=True)
     toml = folder / "report.toml"
     toml.write_text(toml.read_text(encoding="utf-8").replace("12.7 mm", ".05 mm"), encoding="utf-8")
-    report = build.compute(folder, prove=False)
+    report = Study(folder).computed
     cells = live.cells()
     assert driving.differences(cells, report.values) == []
     for name in ("alpha", "x_p", "alpha_mean", "alpha_lin", "v"):
@@ -205,7 +206,7 @@ def test_parameters_are_edited_too(live: Live, tmp_path: Path) -> None:
     folder = driving.write(tmp_path / "folder", driving.paper())
     toml = folder / "report.toml"
     toml.write_text(toml.read_text(encoding="utf-8").replace('"1.5"', '"1.25"'), encoding="utf-8")
-    assert driving.differences(live.cells(), build.compute(folder, prove=False).values) == []
+    assert driving.differences(live.cells(), Study(folder).computed.values) == []
     assert live.input("beta").input_value() == "1.25"
 
 
@@ -383,9 +384,9 @@ def test_saved_files_give_the_numbers_of_the_page(live: Live, tmp_path: Path) ->
         "3,4.089,0.479,41.6,", "4,4.504,0.467,45.97,no reason was given", "5,4.993,0.453,51.03,",
     ]  # fmt: skip
     toml = (folder / "report.toml").read_text(encoding="utf-8")
-    assert toml == (build.PAPER / "report.toml").read_text(encoding="utf-8").replace('"1.5"', '"1.4"')
-    assert (folder / "published.csv").read_bytes() == (build.PAPER / "published.csv").read_bytes()
-    assert driving.differences(live.cells(), build.compute(folder, prove=False).values) == []
+    assert toml == (PAPER / "report.toml").read_text(encoding="utf-8").replace('"1.5"', '"1.4"')
+    assert (folder / "published.csv").read_bytes() == (PAPER / "published.csv").read_bytes()
+    assert driving.differences(live.cells(), Study(folder).computed.values) == []
 
 
 # --- what a page must not do --------------------------------------------------------------------------------

@@ -11,7 +11,9 @@ import pytest
 from driving import Live
 from test_foreign_words import folder_of
 
-from loopsheet.report import build
+from loopsheet.report import build, stages
+from loopsheet.report.folders import PAPER
+from loopsheet.report.study import Study
 
 Open = Callable[..., Live]
 
@@ -278,10 +280,10 @@ def pages(issued: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[[s
     def page(name: str) -> Path:
         if name not in made:
             out = tmp_path_factory.mktemp(name)
-            folder = build.PAPER.parent / name if name == "worked_example" else folder_of(out, name)
+            folder = PAPER.parent / name if name == "worked_example" else folder_of(out, name)
             with pytest.MonkeyPatch.context() as patch:  # the paper's has a referee, who takes long
-                patch.setattr(build, "refereed", lambda report, *_: report)
-                build.build(folder, out / "out", ("html",))
+                patch.setattr(stages, "refereed", lambda report, *_: report)
+                build.build(Study(folder), out / "out", ("html",))
             made[name] = out / "out" / "report.html"
         return made[name]
 

@@ -9,7 +9,7 @@ import driving
 import pytest
 from driving import Live
 
-from loopsheet.report import build
+from loopsheet.report.study import Study
 
 Open = Callable[..., Live]
 
@@ -90,7 +90,7 @@ def test_page_shows_what_a_build_of_its_files_shows(
     issued = live.state()
     edits.make(live)
     folder = driving.compared(live.save(tmp_path / "saved"), edits.keeps_the_tests and not edits.added)
-    report = build.compute(folder, prove=False)
+    report = Study(folder).computed
     fresh = open_page(driving.static(report, tmp_path / "built.html"))
     ours, theirs = (
         [cell for cell in page.cells() if cell.status or cell.value]  # what is left out says nothing

@@ -13,6 +13,7 @@ from driving import Live
 from playwright.sync_api import Dialog
 
 from loopsheet.report import build
+from loopsheet.report.study import Study
 
 Open = Callable[..., Live]
 
@@ -220,7 +221,7 @@ def test_edits_of_an_older_issue_stay_where_they_are(open_page: Open, copied: Pa
     live = open_page(copied)
     live.type("x_p", 2, "29.8")
     folder = driving.write(tmp_path / "folder", driving.edited({("x_p", 2): "29.9"}))
-    build.build(folder, tmp_path / "out", ("html",))
+    build.build(Study(folder), tmp_path / "out", ("html",))
     copied.write_bytes((tmp_path / "out" / "report.html").read_bytes())
     reload(live)
     assert OTHER_ISSUE in live.text("live-note")

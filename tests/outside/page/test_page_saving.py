@@ -8,7 +8,9 @@ import driving
 import pytest
 from driving import Live
 
-from loopsheet.report import build
+from loopsheet.report import build, stages
+from loopsheet.report.folders import PAPER
+from loopsheet.report.study import Study
 
 Open = Callable[..., Live]
 
@@ -16,7 +18,7 @@ HEAD = "test,v [m/s],e [1],x_p [um]"
 
 
 def page_of(folder: Path, place: Path) -> Path:
-    build.build(folder, place, ("html",))
+    build.build(Study(folder), place, ("html",))
     return place / "report.html"
 
 
@@ -41,8 +43,8 @@ def test_a_test_left_out_stays_with_its_reason(live: Live, open_page: Open, tmp_
         "4,4.504,0.467,45.97,",
         "5,4.993,0.453,51.03,removed",
     ]
-    assert (folder / "published.csv").read_bytes() == (build.PAPER / "published.csv").read_bytes()
-    report = build.compute(folder, prove=False)
+    assert (folder / "published.csv").read_bytes() == (PAPER / "published.csv").read_bytes()
+    report = Study(folder).computed
     assert report.inputs.tests == (1, 2, 4)
     assert driving.differences(live.cells(), report.values) == []
     # In the page of what was saved they are left out, and can be taken in again.
@@ -107,15 +109,15 @@ def test_files_keep_their_names_and_a_workbook_comes_along(open_page: Open, tmp_
     folder = tmp_path / "own"
     (folder / "data").mkdir(parents=True)
     (folder / "workbook.py").write_bytes(
-        (Path(build.__file__).parent / "workbooks" / "soft_impact.py")
+        (Path(stages.__file__).parent / "workbooks" / "soft_impact.py")
         .read_bytes()
         .replace(b"from ..", b"from loopsheet.report.")
         .replace(b"from loopsheet.report..", b"from loopsheet.")
         .replace(b"from .", b"from loopsheet.report.workbooks.")
     )
-    (folder / "data" / "drops, 2.csv").write_bytes((build.PAPER / "measurements.csv").read_bytes())
-    (folder / "printed.csv").write_bytes((build.PAPER / "published.csv").read_bytes())
-    toml = (build.PAPER / "report.toml").read_text(encoding="utf-8")
+    (folder / "data" / "drops, 2.csv").write_bytes((PAPER / "measurements.csv").read_bytes())
+    (folder / "printed.csv").write_bytes((PAPER / "published.csv").read_bytes())
+    toml = (PAPER / "report.toml").read_text(encoding="utf-8")
     toml = toml.replace('"soft_impact"', '"workbook.py"').replace('"published.csv"', '"printed.csv"')
     toml = toml.replace('"measurements.csv"', '"data/drops, 2.csv"').replace('by = "source"', "")
     (folder / "report.toml").write_text(toml, encoding="utf-8")
@@ -126,7 +128,7 @@ def test_files_keep_their_names_and_a_workbook_comes_along(open_page: Open, tmp_
     assert "given, in data-drops, 2.csv, test 2" in live.text("bar-source")
     live.type("x_p", 2, "29.8")
     saved = live.save(tmp_path / "saved", "workbook.py", "printed.csv", file="data-drops, 2.csv")
-    report = build.compute(saved, prove=False)
+    report = Study(saved).computed
     assert driving.differences(live.cells(), report.values) == []
     assert len(report.inputs.published) == 27
     assert (saved / "workbook.py").read_bytes() == (folder / "workbook.py").read_bytes()

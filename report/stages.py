@@ -1,0 +1,267 @@
+"""What is made of a report folder, stage by stage: values, judges, and what several views and judges need."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from .errors import LoopsheetError, UsageError, diagnose
+from .inputs import Inputs, load
+from .prepared import Prepared
+from .provenance import versions
+from .unit_text import UnitError as NotAUnit
+from .unit_text import parse_unit
+from .which_workbook import find_workbook
+from .workbooks import SHIPPED
+
+if TYPE_CHECKING:
+    from ..derivations.equation import Ledger
+    from .agreement import Agreement
+    from .charts import Drawn
+    from .errors import Diagnostic
+    from .grid import Grid
+    from .layout import Layout
+    from .result import Report, Shown
+    from .sheet import Column, Sheet
+    from .values import Values
+
+__all__ = [
+    "Step",
+    "book",
+    "compared",
+    "drawn",
+    "evaluated",
+    "judged",
+    "of_cells",
+    "prepared",
+    "program",
+    "refereed",
+    "refuse_too_many_rows",
+    "shown",
+    "silent",
+]
+
+Step = Callable[[str], None]
+"""Told what is begun, for whoever watches."""
+
+EXACTLY = 20_000
+"""Up to so many cells, a sheet is evaluated at 50 digits, which takes .3 ms a cell, and its values are those,
+correctly rounded; of a larger one, some of its tests are."""
+
+
+def silent(_: str) -> None:
+    """Nobody watches."""
+
+
+def prepared(inputs: Inputs, ledger: Ledger) -> Prepared:
+    """The inputs with their sheet, of which dimensions and names are in order."""
+    from . import refusals
+    from .sheet import SheetError
+
+    own = inputs.workbook.name not in SHIPPED
+    try:
+        sheet = inputs.workbook.sheet(inputs.given)
+        refusals.refuse_what_is_not_stated(sheet, ledger)
+    except SheetError as error:
+        if not own:
+            raise  # ours, and our bug
+        raise refusals.of_sheet(inputs, error) from error
+    if own:
+        from .document.narrative import narratives
+
+        refusals.refuse_what_is_misnamed(sheet, inputs, narratives(), _drawings)
+    refusals.refuse_what_is_missing(sheet, inputs)
+    return Prepared(inputs, sheet)
+
+
+def of_cells(inputs: Inputs) -> Sequence[Diagnostic]:
+    """What is wrong with the cells that a folder names, if that is asked because something else is wrong."""
+    try:
+        prepared(inputs, inputs.workbook.ledger()).check_cells()
+    except LoopsheetError as error:
+        return error.diagnostics
+    return ()
+
+
+def _drawings() -> Collection[str]:
+    from .views import figures
+
+    return figures.NAMES
+
+
+def evaluated(made: Prepared, ledger: Ledger, step: Step) -> Report:
+    """Everything but the proofs."""
+    inputs, sheet = made.inputs, made.sheet
+    from .analysis.oddities import oddities
+    from .analysis.referee import compare
+    from .layout import how_large
+    from .marks import Marks, margins, with_margins
+    from .result import Report
+
+    step(f"computing {how_large(sheet, made.layouts)} cells")
+    inputs = made.check_cells()
+    workbook, limits = inputs.workbook, margins(sheet)
+    exactly, (values, whole) = made.computed(with_margins(sheet), EXACTLY)
+    report = Report(
+        title=inputs.title,
+        workbook=workbook,
+        inputs=inputs,
+        sheet=sheet,
+        values=values,
+        marks=Marks(whole, limits),
+        exactly=exactly,
+        shown={column.name: shown(column, sheet, inputs) for column in sheet.columns},
+        ledger=ledger,
+        proofs=(),
+        errata=(),
+        comparisons=compare(inputs.published, values),
+        curves=workbook.curves(sheet, values) if workbook.curves is not None else (),
+        versions=versions(),
+    )
+    return replace(report, oddities=oddities(report))
+
+
+def judged(report: Report, every: bool = True, step: Step = silent) -> Report:
+    """The report with its engines compared with 50 digits.
+
+    Parameters
+    ----------
+    report : Report
+    every : bool
+        Whether to run what else is installed too: JavaScript, and the workbook in LibreOffice.
+    step : callable
+        Told what is begun.
+    """
+    from .analysis import sample
+    from .engines.numpy import evaluate
+    from .layout import how_large
+
+    step("judging the engines at 50 digits")
+    whole = report.marks.values
+    inputs = sample.part(report.inputs, whole, EXACTLY)
+    made = Prepared(inputs, report.sheet)
+    computed = evaluate(whole.sheet, made.labels, made.data)
+    if inputs is report.inputs:
+        return replace(report, engines=_agreements(report, computed, every))
+    few = evaluated(made, report.ledger, silent)
+    found = _agreements(few, sample.with_own(computed, whole), every)
+    rows = next(axis.name for axis in report.sheet.axes if not axis.parents)
+    told = f"{len(inputs.tests)} of {len(report.inputs.tests)} {rows}"
+    of = how_large(whole.sheet, whole.layouts)
+    return replace(report, engines=tuple(replace(each, of=of, sample=told) for each in found))
+
+
+def _agreements(report: Report, values: Values, every: bool) -> tuple[Agreement, ...]:
+    """How NumPy's values agree with 50 digits; and what else is installed here, if that is wanted."""
+    from .analysis import engines
+    from .analysis.readers import Book, of_values
+
+    made = Prepared(report.inputs, report.sheet)
+    labels, exactly = made.labels, made.exact_data
+    judge = engines.Judge.of(values.sheet, values.layouts, labels, exactly, report.exactly)
+    if not every:
+        return (judge.agreement(of_values(values)),)
+    try:
+        grid, content = book(report)
+        written = Book(content, grid)
+    except UsageError:
+        written = None  # there is no such workbook, and nothing to judge
+    return engines.compare_all(judge, values, labels, made.data, written)
+
+
+def refereed(report: Report, step: Step = silent) -> Report:
+    """The report with every published value judged: whether the printed inputs can yield it.
+
+    Parameters
+    ----------
+    report : Report
+    step : callable
+        Told what is begun.
+    """
+    from .analysis import referee
+    from .analysis.referee.judging import referee as judge
+
+    data = Prepared(report.inputs, report.sheet).data
+    found = judge(report.sheet, report.inputs, report.values, data, step)
+    return replace(report, referee=found, comparisons=referee.refereed(report.comparisons, found))
+
+
+def compared(report: Report) -> Report:
+    """The report with published.csv read again, after only what is known of differences has changed."""
+    from .analysis import referee
+
+    inputs = load(report.inputs.folder, find_workbook)
+    comparisons = referee.refereed(referee.compare(inputs.published, report.values), report.referee)
+    return replace(report, inputs=inputs, comparisons=comparisons)
+
+
+def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
+    """In which unit a column is shown, and with how many digits.
+
+    What was printed is shown in the unit it was printed in, whatever the workbook would show it in.
+    The digits follow from the inputs: one more than the least precise measured number that the column
+    rests on, so that rounding for the reader loses nothing that was measured.
+    """
+    from .result import Shown
+    from .sheet import Given
+
+    unit = column.display or column.unit
+    like = column.name if isinstance(column.rule, Given) else ""
+    if unit.startswith("like "):
+        like = like or unit.removeprefix("like ")
+    if printed := inputs.printed(like):
+        unit = printed[0].unit
+    try:
+        scale = float(parse_unit(unit).scale)
+    except NotAUnit:
+        unit, scale = column.unit, 1.0  # an exponent that is a symbol: SI
+    digits = []
+    for given in (*sheet.ancestors(column), column):
+        if isinstance(given.rule, Given) and not given.exact:
+            digits.append(min(printed.digits for printed in inputs.printed(given.name)))
+    return Shown(unit, scale, min(digits, default=5) + 1)
+
+
+def refuse_too_many_rows(layouts: Mapping[str, Layout]) -> None:
+    """Before anything long is begun."""
+    from .engines.excel_grid import MOST_ROWS, TooManyRows, check_rows
+
+    try:
+        check_rows(layouts)
+    except TooManyRows as error:
+        known = f"at most {MOST_ROWS} rows in a worksheet; fewer points_per_pair make fewer rows"
+        raise UsageError(diagnose("LS606", reason=error, known=known)) from error
+
+
+def drawn(report: Report) -> Drawn | None:
+    """What the page and the workbook draw themselves."""
+    return None if report.workbook.drawn is None else report.workbook.drawn(report.sheet)
+
+
+def book(report: Report) -> tuple[Grid, bytes]:
+    """The sheet as a workbook with live formulas: where its cells are, and the file."""
+    refuse_too_many_rows(report.values.layouts)
+    from .engines import excel_grid
+    from .engines.excel import NotPrintable
+    from .views import xlsx
+
+    units = {name: how.unit for name, how in report.shown.items()}
+    try:
+        first, values = report.workbook.headline, report.marks.values
+        grid = excel_grid.grid(report.sheet, values, units, first, drawn(report))
+    except NotPrintable as error:
+        raise UsageError(
+            diagnose("LS606", reason=error, known="functions that every spreadsheet has")
+        ) from error
+    return grid, xlsx.render(report, grid)
+
+
+def program(report: Report) -> str:
+    """The sheet as the page's program, with the curves that the page draws."""
+    from .engines import javascript
+
+    curves, sheet = drawn(report), report.marks.values.sheet
+    if curves is None:
+        return javascript.program(sheet)
+    return javascript.program(curves.with_curves(sheet), curves.given)

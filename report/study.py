@@ -1,0 +1,206 @@
+"""One report folder as a graph of what can be known of it: each part is made when somebody asks, and once.
+
+Verbs, the pytest plugin, `verify` and users of the package ask a :class:`Study`. What it gives to views is
+finished data, a :class:`~loopsheet.report.result.Report`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from . import stages
+from .errors import Findings
+from .inputs import LARGEST_TABLE, Find, Inputs, load
+from .kept import kept
+from .own_workbook import follows_from_its_bytes
+from .sources import read_bytes
+from .timing import timed
+from .which_workbook import find_workbook
+
+if TYPE_CHECKING:
+    from ..derivations.equation import Equation, Ledger
+    from ..derivations.proof import Proof
+    from .agreement import Agreement
+    from .prepared import Prepared
+    from .proofs import Algebra
+    from .result import Report
+
+__all__ = ["Study"]
+
+T = TypeVar("T")
+
+
+def _part(name: str) -> Callable[[Callable[[Any], T]], cached_property[T]]:
+    """A part of a study: made once, and its time is counted."""
+
+    def of(make: Callable[[Any], T]) -> cached_property[T]:
+        def made(study: Study) -> T:
+            with timed(name):
+                return make(study)
+
+        made.__doc__ = make.__doc__
+        return cached_property(made)
+
+    return of
+
+
+class Study:
+    """What can be known of a report folder.
+
+    Parameters
+    ----------
+    folder : Path
+    find : callable
+        :func:`~loopsheet.report.which_workbook.find_workbook`, or, if nobody asked to run the folder's own
+        code, :func:`~loopsheet.report.which_workbook.shipped_workbook`.
+    step : callable
+        Told what is begun.
+
+    Notes
+    -----
+    Every part raises InputError, with every finding, if the folder is not as it must be.
+    """
+
+    def __init__(self, folder: Path, find: Find = find_workbook, step: stages.Step = stages.silent) -> None:
+        self.folder, self.find, self.step = folder, find, step
+        self._read: dict[str, bytes] = {}
+
+    # --- what was read ---
+
+    @cached_property
+    def files(self) -> dict[str, bytes]:
+        """The files that the folder is read from, by name; which these are hangs on report.toml alone."""
+        toml = read_bytes(self.folder, "report.toml", LARGEST_TABLE, Findings())
+        if toml is None:
+            return self.inputs.files  # which tells why
+        self._read = {"report.toml": toml}
+        names = kept("names of files", [toml], lambda: sorted(self.inputs.files))
+        if "inputs" in vars(self):
+            return self.inputs.files
+        for name in names:
+            data = read_bytes(self.folder, name, LARGEST_TABLE, Findings()) if name != "report.toml" else toml
+            if data is None:
+                return self.inputs.files
+            self._read[name] = data
+        return self._read
+
+    @_part("inputs")
+    def inputs(self) -> Inputs:
+        """What the folder says, checked."""
+        self.step("reading the folder")
+        return load(self.folder, self.find, stages.of_cells, self._read)
+
+    @_part("ledger")
+    def ledger(self) -> Ledger:
+        """The equations of its workbook."""
+        return self.inputs.workbook.ledger()
+
+    @_part("sheet")
+    def prepared(self) -> Prepared:
+        """The inputs with their sheet, dimensions and names checked."""
+        return stages.prepared(self.inputs, self.ledger)
+
+    # --- what is computed ---
+
+    @_part("values")
+    def computed(self) -> Report:
+        """All cells, without proofs, engines and referee."""
+        return stages.evaluated(self.prepared, self.ledger, self.step)
+
+    @_part("proofs")
+    def proof_data(self) -> dict[str, Any]:
+        """The same as data: what another process may tell."""
+        from .proofs import as_data, proved
+
+        about = self.inputs.about_source
+        return self.kept("proofs", lambda: as_data(proved(self.ledger, about, self.step)), by="workbook")
+
+    def proofs_quietly(self) -> dict[str, Any]:
+        """The same for a process beside this one, of which nobody is told."""
+        self.step = stages.silent
+        return self.proof_data
+
+    @_part("proofs")
+    def algebra(self) -> Algebra:
+        """A proof of every equation, and the errata of the print it is about."""
+        from .proofs import of_data
+
+        return of_data(self.proof_data, self.ledger)
+
+    def are_proved(self) -> bool:
+        """Whether all proofs are known already."""
+        if "proof_data" not in vars(self):
+            found: dict[str, Any] | None = self.kept("proofs", None, by="workbook")
+            if found is None:
+                return False
+            self.proof_data = found
+        return True
+
+    def proofs(self, equations: Iterable[Equation]) -> tuple[Proof, ...]:
+        """The proofs of some equations: of these and what they rest on, if not all are known."""
+        from ..derivations.proof import prove
+
+        labels = {equation.label for equation in equations} & {e.label for e in self.ledger.equations()}
+        if not self.are_proved():
+            with timed("proofs"):
+                return prove(self.ledger, only=labels)
+        return tuple(proof for proof in self.algebra[0] if proof.equation.label in labels)
+
+    @cached_property
+    def proved(self) -> Report:
+        """All cells and proofs."""
+        proofs, errata = self.algebra
+        return replace(self.computed, proofs=proofs, errata=errata)
+
+    @_part("referee")
+    def refereed(self) -> Report:
+        """All cells, and every published value judged."""
+        return stages.refereed(self.computed, self.step)
+
+    @_part("judge of the engines")
+    def engines(self) -> tuple[Agreement, ...]:
+        """How every engine that is installed here agrees with 50 digits."""
+        return stages.judged(self.computed, step=self.step).engines
+
+    @_part("judge of NumPy")
+    def numpy(self) -> tuple[Agreement, ...]:
+        """The same of NumPy alone."""
+        return stages.judged(self.computed, False, self.step).engines
+
+    @cached_property
+    def report(self) -> Report:
+        """All that there is to know."""
+        proofs, errata = self.algebra
+        engines = self.engines
+        return replace(self.refereed, proofs=proofs, errata=errata, engines=engines)
+
+    # --- what is kept ---
+
+    def kept(self, what: str, make: Callable[[], T] | None, *parts: str, by: str = "folder") -> T:
+        """What is made of the folder's files, or of its workbook alone, now or before.
+
+        Parameters
+        ----------
+        what : str
+            What it is.
+        make : callable or None
+            As for :func:`~loopsheet.report.kept.kept`.
+        *parts : str
+            What it hangs on besides.
+        by : str
+            ``workbook`` if it hangs on that alone.
+        """
+        files = self.files
+        own = {name: content for name, content in files.items() if name.endswith(".py")}
+        if not all(map(follows_from_its_bytes, own.values())):
+            return make() if make is not None else None  # type: ignore[return-value]
+        if by == "workbook":
+            files = own
+            parts = (*parts, self.inputs.workbook.name, str(self.inputs.about_source))
+        named = (part for name, content in sorted(files.items()) for part in (name, content))
+        found: T = kept(what, [*parts, *named], make)
+        return found

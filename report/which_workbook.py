@@ -1,0 +1,54 @@
+"""The workbook that a report folder names: a shipped one, or the user's own code."""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .errors import ForeignCode, UnknownWorkbook
+from .own_workbook import own_workbook
+from .workbooks import SHIPPED
+
+if TYPE_CHECKING:
+    from .workbook import Workbook
+
+__all__ = ["find_workbook", "shipped_workbook"]
+
+
+def find_workbook(name: str, folder: Path, code: bytes | None = None) -> Workbook:
+    """The workbook of a name: a shipped one, or the user's own ``NAME.py`` in the folder.
+
+    Parameters
+    ----------
+    name : str
+    folder : Path
+    code : bytes, optional
+        What that file held when it was read. It is run: whoever names a folder to be computed asks for it.
+
+    Raises
+    ------
+    UnknownWorkbook
+        With the names there are.
+    InputError
+        The user's own workbook cannot be run, or declares none.
+    """
+    if name in SHIPPED:
+        workbook: Workbook = importlib.import_module(SHIPPED[name]).WORKBOOK
+        return workbook
+    if code is None:
+        raise UnknownWorkbook([*SHIPPED, *sorted(p.name for p in folder.glob("*.py"))])
+    return own_workbook(folder / name, code)
+
+
+def shipped_workbook(name: str, folder: Path, code: bytes | None = None) -> Workbook:
+    """The same, for whoever did not ask to run what is in the folder.
+
+    Raises
+    ------
+    ForeignCode
+        The workbook is code of the folder.
+    """
+    if name not in SHIPPED and code is not None:
+        raise ForeignCode(name)
+    return find_workbook(name, folder, code)

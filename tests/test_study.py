@@ -1,0 +1,76 @@
+"""A study makes each part once, when it is asked for, and nothing that was not asked for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from small_report import end_gauge
+
+from loopsheet.derivations import proof
+from loopsheet.report import stages
+from loopsheet.report.cli import main
+from loopsheet.report.errors import InputError
+from loopsheet.report.folders import PAPER
+from loopsheet.report.result import Report
+from loopsheet.report.study import Study
+
+
+def parts(study: Study) -> set[str]:
+    """What was made of it."""
+    return set(vars(study)) - {"folder", "find", "step", "_read"}
+
+
+def test_nothing_is_made_that_was_not_asked_for(tmp_path: Path) -> None:
+    study = Study(end_gauge(tmp_path))
+    assert parts(study) == set()
+    assert study.inputs.title
+    assert parts(study) == {"inputs"}
+    assert study.computed.proofs == ()
+    assert parts(study) == {"inputs", "ledger", "prepared", "computed"}
+    assert study.algebra is study.algebra
+    assert study.proved.proofs == study.algebra[0]
+    assert study.report.engines == study.engines
+    assert study.report.referee == study.refereed.referee
+
+
+def test_a_folder_is_read_once(tmp_path: Path) -> None:
+    """What is kept of it and what is computed are of the same bytes, however soon it is edited."""
+    study = Study(end_gauge(tmp_path))
+    read = dict(study.files)
+    (tmp_path / "d.csv").write_text("somebody edits it")
+    assert study.inputs.files == study.files == read
+    with pytest.raises(InputError):
+        assert Study(tmp_path).files
+
+
+def test_a_proof_that_was_made_elsewhere_is_the_same(report: Report) -> None:
+    study, other = Study(PAPER), Study(PAPER)
+    other.proof_data = study.proof_data
+    assert (other.proved.proofs, other.proved.errata) == (report.proofs, report.errata)
+    assert other.proofs([report.ledger["(11)"]]) == (report.proof("(11)"),)
+    assert report.errata
+
+
+def test_why_proves_what_a_number_comes_from_and_show_nothing(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    proved: list[str] = []
+    real = proof._prove_entry
+
+    def counted(entry, known, ledger):  # type: ignore[no-untyped-def]
+        if hasattr(entry, "steps"):
+            proved.append(entry.claim.label)
+        return real(entry, known, ledger)
+
+    monkeypatch.setattr(proof, "_prove_entry", counted)
+    monkeypatch.setattr(stages, "judged", None)
+    monkeypatch.setattr(stages, "refereed", None)
+    assert main(["show", "alpha", "paper"]) == 0
+    assert proved == []
+    assert main(["why", "C[1-2]", "paper"]) == 0
+    assert "from      (12c) proved" in capsys.readouterr().out
+    assert 0 < len(proved) < 6, proved
+    proved.clear()
+    assert main(["prove", "(7)", "paper"]) == 0
+    assert proved == ["(7)"]
