@@ -112,8 +112,25 @@ def test_every_output_tells_it(tmp_path: Path, unjudged: None, capsys: pytest.Ca
     book = openpyxl.load_workbook(out / "report.xlsx")
     told = [str(cell.value) for sheet in book for row in sheet.iter_rows() for cell in row if cell.value]
     assert f"Left out: {said}." in told
+    rows = [
+        [cell.value for cell in row if cell.value is not None] for row in book["tests"].iter_rows(min_row=11)
+    ]
+    assert ["left out, and in no formula:"] in rows
+    assert ["3", "4.089 [m/s]", "n/a [1]", "41.6 [um]", REASON] in rows, "texts, which no formula counts"
+    assert "is dropped on the target 4 times; left out besides: 1. Each" in tex
+    prose = re.sub("<[^>]*>", "", page)
+    assert "is dropped on the target 4 times; left out besides: 1. Each" in prose
     known = json.loads((out / "values.json").read_text(encoding="utf-8"))
     assert [each["sentence"] for each in known["oddities"] if each["kind"] == "left out"] == [said]
+
+
+def test_no_name_in_the_workbook_is_clipped(tmp_path: Path, unjudged: None) -> None:
+    folder, out = campaign(tmp_path / "left", published=False), tmp_path / "out"
+    assert main(["build", str(folder), "--out", str(out), "--to", "xlsx"]) == 0
+    sheet = openpyxl.load_workbook(out / "report.xlsx")["report"]
+    names = [cell.value for cell in sheet["A"] if cell.font.b and str(cell.value).isidentifier()]
+    assert "alpha_median_margin" in names
+    assert sheet.column_dimensions["A"].width > 1.1 * max(map(len, names)), "letters are bold"
 
 
 @pytest.mark.parametrize("form", FORMATS)

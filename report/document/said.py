@@ -168,6 +168,12 @@ class Said:
         )
 
     @_says
+    def _left_out(self) -> Inlines:
+        """How many rows of the measurements are left out."""
+        left_out = self.report.inputs.left_out
+        return (Size(len(left_out), "left out"),) if left_out else ()
+
+    @_says
     def _data(self) -> Blocks:
         """All tables, and all figures of the workbook."""
         figures = (one for spec in self.report.workbook.figures for one in self._figure(spec.name))

@@ -15,7 +15,7 @@ from ..quantity import Printed
 from ..result import Report
 from ..sheet import RepeatAxis
 from ..values import CODES, Status
-from .xlsx_style import Style, open_format
+from .xlsx_style import Style, open_format, said
 
 __all__ = ["Inputs"]
 
@@ -93,6 +93,20 @@ class Inputs:
         for row in range(note.rows):
             style.formula(sheet, note.row + row, note.column, self.told(blocks, row), _FINE, style("aside"))
         style.formula(sheet, _ROWS_TOLD, 0, self._rows(blocks, note), "", style("error"))
+
+    def write_left_out(self, sheet: Any, style: Style, blocks: Sequence[Block], note: Place) -> int:
+        """Write those that are left out below, as texts that no formula counts; how many rows that takes."""
+        if not (left_out := self.report.inputs.left_out):
+            return 0
+        first = note.row + note.rows + 1
+        style.text(sheet, first, 0, "left out, and in no formula:", "subtitle")
+        for row, each in enumerate(left_out, start=first + 1):
+            style.text(sheet, row, 0, str(each.test), "index")
+            for block in blocks:
+                text, unit = each.texts[block.name], self.report.inputs.header_units[block.name]
+                style.text(sheet, row, block.place.column, text + said(unit), "aside")
+            style.text(sheet, row, note.column, each.reason, "aside")
+        return 2 + len(left_out)
 
     def told(self, blocks: Sequence[Block], row: int = 0) -> str:
         """The formula that tells which given cells of a row are refused, and what they must be."""

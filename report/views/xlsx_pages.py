@@ -24,13 +24,15 @@ __all__ = ["write_equations", "write_published", "write_report"]
 
 def write_report(sheet: Any, style: Style, report: Report, grid: Grid, inputs: Inputs) -> None:
     """Write the first worksheet: what came out, what went in, how to use the workbook."""
-    for column, width in enumerate((18, 17, 15, 52, 12, 10, 22, 40)):
+    scalars = grid.on(SCALARS, "given", "computed", "margin")
+    names = max(18, *(1.15 * len(block.name) for block in scalars))
+    for column, width in enumerate((names, 17, 15, 52, 12, 10, 22, 40)):
         sheet.set_column(column, column, width)
     style.text(sheet, 0, 0, report.title, "title")
     style.text(sheet, 1, 0, report.workbook.title, "subtitle")
     style.formula(sheet, 2, 0, inputs.summary(), "", style("error"))
     row = 0
-    for group in _groups(grid.on(SCALARS, "given", "computed", "margin")):
+    for group in _groups(scalars):
         row, given = group[0].place.row, group[0].kind == "given"
         for at in range(7):
             style.text(sheet, row - 2, at, _title(report, group) if not at else "", "section")

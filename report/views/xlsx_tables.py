@@ -62,7 +62,7 @@ def _number_format(report: Report, block: Block) -> str:
 
 def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, inputs: Inputs) -> None:
     """Write the worksheet that holds the rows of an axis."""
-    axis, blocks = grid.axes[name], grid.on(name)
+    axis, blocks, below = grid.axes[name], grid.on(name), 0
     main = [b for b in blocks if b.kind in ("given", "computed")] or list(blocks)
     style.text(sheet, 0, 0, f"{name}: {_described(axis)}", "title")
     if name in grid.notes:
@@ -71,6 +71,7 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
         given = [b for b in blocks if b.kind == "given" and b.place.row == FIRST_ROW]
         _write_note(sheet, style, grid.notes[name].column)
         inputs.write_told(sheet, style, given, grid.notes[name])
+        below = inputs.write_left_out(sheet, style, given, grid.notes[name])
     for block in blocks:
         if block.place.row == FIRST_ROW:
             _write_header(sheet, style, report, block)
@@ -90,7 +91,7 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
     sheet.set_paper(9)
     sheet.fit_to_pages(1, 0)
     sheet.repeat_rows(_NAME, _SYMBOL)
-    sheet.print_area(0, 0, FIRST_ROW + size - 1, max(b.place.column for b in main))
+    sheet.print_area(0, 0, FIRST_ROW + size - 1 + below, max(b.place.column for b in main))
 
 
 def mark_errors(

@@ -124,7 +124,8 @@ const INPUT_ATTRIBUTES = {
 function writeCounts(look) {
   for (const element of all("[data-count]")) {
     const { count, counted } = element.dataset;
-    setText(element, String(look.trace.sheet.counted[counted]?.[count] || look.trace.sheet.layouts[count].size));
+    const rows = count === "left out" ? page.history.now.tests.filter(({ used }) => !used).length : look.trace.sheet.layouts[count].size;
+    setText(element, String(look.trace.sheet.counted[counted]?.[count] || rows));
   }
   for (const element of all("[data-inside]")) {
     const { axis } = look.trace.declared[element.dataset.inside], [outside, size] = howMany(look, element.dataset.inside);
