@@ -1,6 +1,6 @@
 // The formula bar: what a number is, where it comes from, and what is computed from it.
 
-const bar = { name: null, index: "", open: true };
+const bar = { name: null, index: "", open: true, hint: byId("bar-hint").textContent };
 const MOST_BUTTONS = 12;
 
 function showCell(name, index) {
@@ -22,7 +22,7 @@ function writeBar(look) {
   byId("bar-hint").hidden = row >= 0;
   byId("bar-cell").hidden = row < 0;
   for (const id of ["reason", "source", "put", "precedents", "dependents"]) byId(`bar-${id}`).hidden = true;
-  if (name !== null && row < 0) byId("bar-hint").textContent = `${name}[${index}] has no place in the sheet now: its ${ROW} is left out or removed.`;
+  byId("bar-hint").textContent = name === null ? bar.hint : `${name}[${index}] has no place in the sheet now: its ${ROW} is left out or removed.`;
   if (row >= 0) fillBar(look, name, row, index);
   markCells(look, name, row, index);
 }

@@ -193,7 +193,9 @@ function onPaste(event) {
   if (!isText(element) || !/[\t\n\r]/.test(text.trim())) return;
   event.preventDefault();
   if (editing) cancel();
-  const rows = text.replace(/[\r\n]+$/, "").split(/\r\n|\r|\n/).map((line) => line.split("\t").map(normalised));
+  const block = text.replace(/[\r\n]+$/, "").split(/\r\n|\r|\n/).map((line) => line.split("\t"));
+  const commas = block.flat().some((one) => !one.includes(".") && one.includes(",") && NUMBER.test(normalised(one)));
+  const rows = block.map((fields) => fields.map((one) => normalised(one, commas)));
   if (rows.length > 1 && isHead(rows[0])) rows.shift();
   pasteBlock(element, rows);
 }

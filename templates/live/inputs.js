@@ -2,11 +2,14 @@
 // Nothing in this file knows the page.
 
 // What people write for a number, in our notation: a decimal comma becomes a point, a real minus a hyphen.
-function normalised(text) {
+// Nobody knows whether 1,234 is a little more than one or a thousand, unless the other numbers of a block tell.
+const EITHER = /^[+-]?[1-9][0-9]{0,2},[0-9]{3}$/;
+
+function normalised(text, commas = false) {
   // A blank or a mark groups digits by three, or it is no part of a number.
   const plain = text.trim().replace(/([0-9])[\s\u00a0\u2007\u202f'_](?=[0-9]{3}(?![0-9]))/g, "$1").replace(/[\u2212\u2013]/g, "-");
   const comma = plain.lastIndexOf(","), point = plain.lastIndexOf(".");
-  if (comma < 0 || plain.indexOf(",") !== comma && point < 0) return plain;
+  if (comma < 0 || plain.indexOf(",") !== comma && point < 0 || !commas && EITHER.test(plain)) return plain;
   // Of comma and point together, the last is the decimal sign and the others group digits.
   return comma > point ? plain.replace(/\./g, "").replace(",", ".") : plain.replace(/,/g, "");
 }
@@ -20,7 +23,8 @@ function readInput(given, text) {
   const allowed = `it must be ${given.allowed}`;
   if (text === "") return { why: `the datum is missing; ${allowed}` };
   const found = NUMBER.exec(text);
-  if (!found) return { why: `“${text}” is not a number; ${allowed}` };
+  const meant = EITHER.test(text) ? `: write ${text.replace(",", ".")} or ${text.replace(",", "")}, whichever is meant` : "";
+  if (!found) return { why: `“${text}” is not a number${meant}; ${allowed}` };
   if (text.length > 100 || Math.abs(Number(found[5] ?? 0)) > 300) return { why: `“${text}” is out of all range; ${allowed}` };
   const exact = readExact(text), scale = { n: BigInt(given.scale[0]), d: BigInt(given.scale[1]) };
   const value = { n: exact.n * scale.n, d: exact.d * scale.d };

@@ -3,7 +3,7 @@
 
 const OURS = `loopsheet ${location.pathname} `, MINE = OURS + LIVE.issue, IN_LINK = "#edits=";
 const MOST_MORE = 300; // tests that a link may add: the work grows with the square of their number
-const lasting = { safe: null, warned: false }; // the state that was saved or copied; whether the browser keeps none
+const lasting = { safe: null }; // the state that was saved or copied
 
 // What foreign text holds as a state of this report; null if it is none.
 function readState(read, most = Infinity) {
@@ -45,10 +45,7 @@ function keepState(state, edited) {
     else memory.removeItem(MINE);
     return true;
   });
-  if (edited && !done && !lasting.warned) {
-    lasting.warned = true;
-    note("This browser keeps no edits of this page. Save them, or copy a link to them, before you close it.");
-  }
+  if (edited && !done) note("This browser keeps no edits of this page. Save them, or copy a link to them, before you close it.");
 }
 
 function recall() {

@@ -19,7 +19,14 @@ const note = (...words) => byId("live-note").replaceChildren(...words);
 
 function change(edit) {
   const state = copied(page.history.now);
-  if (edit(state) !== false && page.history.push(state)) show();
+  moved(edit(state) !== false && page.history.push(state));
+}
+
+// What the bar said was of the state before.
+function moved(really) {
+  if (!really) return;
+  note();
+  show();
 }
 
 function setCell(name, index, text) {
@@ -92,18 +99,12 @@ function pasteBlock(element, rows) {
   enter(element);
 }
 
-function undo() {
-  if (page.history.move(-1)) show();
-}
-
-function redo() {
-  if (page.history.move(1)) show();
-}
+const undo = () => moved(page.history.move(-1));
+const redo = () => moved(page.history.move(1));
 
 function reset() {
-  if (!page.history.push(copied(page.history.issued))) return;
   hideCell();
-  show();
+  moved(page.history.push(copied(page.history.issued)));
 }
 
 // --- showing a state -------------------------------------------------------------------------------------

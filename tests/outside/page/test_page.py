@@ -201,6 +201,23 @@ def test_a_line_without_data_keeps_its_row(open_page: Open, first: str) -> None:
     assert live.input("v", 3).input_value() == "4.089"
 
 
+def test_a_comma_that_may_group_digits_is_not_guessed(open_page: Open) -> None:
+    """As the reader of a folder: 1,234 is a little more than one, or a thousand."""
+    live = open_page(permissions=["clipboard-read", "clipboard-write"])
+    live.type("v", 2, "2,940", key="Enter")
+    assert live.input("v", 2).input_value() == "2,940"
+    assert live.cell("v", "2").status == "#INPUT!"
+    live.input("v", 2).click()
+    assert "“2,940” is not a number: write 2.940 or 2940, whichever is meant" in live.text("bar-reason")
+    live.paste("2,940\t0.512\n")
+    assert live.cell("v", "2").status == "#INPUT!"
+    live.press("Control+z")
+    live.input("v", 2).click()
+    live.paste("2,940\t0,512\n")  # here the block tells
+    assert live.input("v", 2).input_value() == "2.940"
+    assert live.input("e", 2).input_value() == "0.512"
+
+
 def test_parameters_are_edited_too(live: Live, tmp_path: Path) -> None:
     live.type("beta", "", "1,25")
     folder = driving.write(tmp_path / "folder", driving.paper())

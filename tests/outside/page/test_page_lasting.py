@@ -4,6 +4,7 @@ import base64
 import json
 import re
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,9 @@ def copied(issued: Path, tmp_path: Path) -> Path:
     path = tmp_path / "report.html"
     path.write_bytes(issued.read_bytes())
     return path
+
+
+WAYS = ("undo", "redo", "reset")
 
 
 def leave(dialog: Dialog) -> None:
@@ -76,9 +80,29 @@ def test_edits_are_there_after_a_reload(open_page: Open, copied: Path) -> None:
     assert (live.around(), live.paths("loops")) == (around, paths)
     live.click("live-reset")
     assert as_issued(live)
+    assert live.text("live-note") == ""
     reload(live)
     assert as_issued(live)
     assert live.text("live-note") == ""
+
+
+def test_what_was_said_of_edits_goes_with_the_next(open_page: Open, copied: Path) -> None:
+    live = open_page(copied)
+    live.type("x_p", 2, "29.8")
+    for do in (lambda: live.type("e", 1, "0.52"), *(partial(live.click, f"live-{word}") for word in WAYS)):
+        link(live)
+        assert live.text("live-note") != ""
+        do()
+        assert live.text("live-note") == ""
+
+
+def test_what_was_said_of_a_cell_without_a_place_goes_with_a_reset(live: Live) -> None:
+    hint = live.page.locator("#bar-hint").text_content()
+    live.page.locator("#cell-alpha-1-3").click()
+    live.page.locator('[data-use="3"]').click()
+    assert "no place in the sheet now" in live.text("bar-hint")
+    live.click("live-reset")
+    assert live.page.locator("#bar-hint").text_content() == hint
 
 
 def test_what_is_being_typed_is_there_after_a_reload(open_page: Open, copied: Path) -> None:

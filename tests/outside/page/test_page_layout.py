@@ -47,6 +47,32 @@ def test_the_result_is_on_the_screen_while_the_tests_are_edited(open_page: Open,
     assert cells == ["", "1.303"]
 
 
+@pytest.mark.parametrize("height", [664, 844])
+def test_most_of_a_phone_is_left_to_the_table(open_page: Open, height: int) -> None:
+    live = open_page(viewport={"width": 390, "height": height})
+    live.type("x_p", 2, "29.8")
+    size = "id => document.getElementById(id).getBoundingClientRect().height"
+    taken = [live.page.evaluate(size, part) for part in ("live-panel", "live-dock")]
+    assert min(taken) > 0
+    assert sum(taken) <= 0.4 * height
+    assert seen(live, "#cell-x_p-3") == [True]
+
+
+def test_nothing_shows_through_the_head_of_a_long_table(open_page: Open) -> None:
+    live = open_page(permissions=["clipboard-read", "clipboard-write"])
+    live.input("v", 5).click()
+    live.paste("\n".join(f"{5 + n / 10}\t0.453\t{51 + n}" for n in range(40)))
+    for down in range(40, 200, 20):
+        live.page.evaluate("down => document.querySelector('.tall').scrollTo(0, down)", down)
+        over: list[bool] = live.page.evaluate(
+            """() => Array.from(document.querySelector(".tall thead tr").cells, (cell) => {
+              const { left, right, top, bottom } = cell.getBoundingClientRect();
+              return cell.contains(document.elementFromPoint((left + right) / 2, (top + bottom) / 2));
+            })"""
+        )
+        assert all(over), down
+
+
 def test_a_cell_without_a_value_shows_its_code_there(live: Live) -> None:
     live.type("beta", "", "x")
     assert "#INPUT!" in live.page.locator("#live-panel").inner_text()
