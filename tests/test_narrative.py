@@ -10,19 +10,19 @@ import pytest
 from loopsheet.report.document import narrative
 from loopsheet.report.document.material import Material
 from loopsheet.report.document.narrative import NarrativeError, narratives, sections
-from loopsheet.report.document.said import _SAID, Said
+from loopsheet.report.document.said import SAID, Said
 from loopsheet.report.document.tree import (
     Code,
+    Count,
     Figure,
+    Formula,
     Items,
     Link,
     Math,
     Note,
-    Numbered,
     Paragraph,
     Refer,
     Section,
-    Size,
     Strong,
     Table,
     Value,
@@ -75,11 +75,11 @@ def test_a_role_is_shown_where_it_is_alone_and_else_referred_to(reads: Reads) ->
         "{eq}`(11)`, {table}`alpha`, {fig}`loops`, {cell}`alpha_mean`, {sym}`x_m`, {count}`tests`\n"
     )
     equation, table, figure, text = chapter.blocks
-    assert isinstance(equation, Numbered)
+    assert isinstance(equation, Formula)
     assert isinstance(table, Table)
     assert isinstance(figure, Figure)
     assert isinstance(text, Paragraph)
-    assert [type(part) for part in text.content if part != ", "] == [Refer, Link, Link, Value, Math, Size]
+    assert [type(part) for part in text.content if part != ", "] == [Refer, Link, Link, Value, Math, Count]
 
 
 def test_what_a_report_does_not_have_is_left_out(reads: Reads) -> None:
@@ -161,7 +161,7 @@ def test_a_shipped_narrative_names_tables_figures_and_symbols_of_its_workbook(na
 @pytest.mark.parametrize("name", FILES)
 def test_prose_has_no_markup_of_one_format_and_no_typed_number(name: str) -> None:
     text = (narrative.FOLDER / name).read_text(encoding="utf-8")
-    assert set(re.findall(r"\{say\}`(\w+)`", text)) <= set(_SAID)
+    assert set(re.findall(r"\{say\}`(\w+)`", text)) <= set(SAID)
     prose = re.sub(r"(?m)^:::.*$|^# |^> |\{\w+\}`[^`]*`|`[^`]*`|\{#[^}]*\}|\]\(#\w+\)|\*\*", " ", text)
     assert not set(prose) & set("<>&%#_$~^\\{}\"'`")
     numbers = re.findall(r"\d+(?:\.\d+)?(?:/\d+)?", prose)
@@ -170,7 +170,7 @@ def test_prose_has_no_markup_of_one_format_and_no_typed_number(name: str) -> Non
 
 def test_every_sentence_that_can_be_named_is_named() -> None:
     text = "".join((narrative.FOLDER / name).read_text(encoding="utf-8") for name in FILES)
-    assert set(_SAID) == set(re.findall(r"\{say\}`(\w+)`", text))
+    assert set(SAID) == set(re.findall(r"\{say\}`(\w+)`", text))
 
 
 def test_every_chapter_comes_where_there_is_something_to_tell(report: Report) -> None:

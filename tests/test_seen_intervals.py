@@ -127,6 +127,6 @@ def test_the_end_gauge_lies_between_its_least_and_its_largest_length(tmp_path: P
     assert found is not None
     assert found.verdict == EXACT
     assert (found.low, found.high) == pytest.approx((0.050 * (1 - 0.325), 0.050 * (1 + 0.325)), rel=1e-4)
-    (value,) = Material(report).refereed.values
+    (value,) = Material(report).refereed
     shown = [value.low, value.here, value.high]
     assert [figure.plain for figure in shown if figure] == ["33.7503459", "50.0008380", "66.2513304"]

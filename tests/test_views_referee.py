@@ -17,7 +17,8 @@ from matplotlib.text import Text
 from loopsheet.report import stages
 from loopsheet.report.document.material import Material
 from loopsheet.report.document.numbers import decimals
-from loopsheet.report.document.refereed import FIGURE, Refereed, figure
+from loopsheet.report.document.refereed import FIGURE, Value, figure
+from loopsheet.report.document.said import Said
 from loopsheet.report.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.verdict import (
@@ -33,7 +34,7 @@ from loopsheet.report.verdict import (
     TableVerdict,
     Verdict,
 )
-from loopsheet.report.verdict_words import CALLED, at_least, bounds, mismatch
+from loopsheet.report.verdict_words import CALLED, at_least, bounds, mismatch, together
 from loopsheet.report.views import figures, html, latex, reach
 from loopsheet.report.views.compact_svg import inlined
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
@@ -43,8 +44,9 @@ SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="360pt" height="180pt"><pat
 XHTML = "{http://www.w3.org/1999/xhtml}"
 
 
-def chapter_of(report: Report) -> Refereed:
-    return Material(report).refereed
+def out_of(report: Report) -> list[Value]:
+    """The published values that are out of reach by themselves."""
+    return [value for value in Material(report).refereed if value.verdict == UNREACHABLE]
 
 
 def sections_of(report: Report) -> dict[str, ET.Element]:
@@ -70,9 +72,7 @@ def rows_of(element: ET.Element) -> list[list[str]]:
 
 
 def test_two_pairs_are_out_of_reach_by_themselves(paper: Report) -> None:
-    out = [
-        (v.pair.comparison.published.cell, v.pair.comparison.published.index) for v in chapter_of(paper).out
-    ]
+    out = [(v.pair.comparison.published.cell, v.pair.comparison.published.index) for v in out_of(paper)]
     assert out == [("alpha", (2, 4)), ("alpha", (2, 5))]
     found = sections_of(paper)
     assert "Out of reach by themselves: α 2–4 and α 2–5." in text_of(found["referee"])
@@ -111,8 +111,8 @@ def test_three_explanations_and_no_other(paper: Report) -> None:
 
 
 def test_the_fit_is_the_log_log_one(paper: Report) -> None:
-    fit, mean = chapter_of(paper).fits
-    assert chapter_of(paper).fit_of("alpha_log") == fit
+    fits = Said(Material(paper), ()).fits()
+    fit, mean = fits["alpha_log"], fits["alpha_mean"]
     assert fit.endswith("Only the exponent of the log-log fit goes with what is published")
     assert mean.endswith("the mean exponent from the exponent of the log-log fit")
     assert "Only the exponent of the log-log fit goes with what is published." in text_of(
@@ -132,8 +132,8 @@ def test_the_ledger_has_errata_of_equations_and_of_data(paper: Report) -> None:
     assert named == ["Named after (6), but comes out of (7).", "Named after (8), but comes out of (9)."]
     assert all(row[0].startswith("Table 3, C(") for row in rows if row[1] == "label")
     unreachable = next(row for row in rows if row[1] == "unreachable")
-    out = chapter_of(paper).out[0]
-    ends = bounds(out.verdict, out.pair.printed)
+    out = out_of(paper)[0]
+    ends = bounds(out.found, out.pair.printed)
     assert ends is not None
     assert unreachable[0] == "Table 2, α 2–4"
     assert f"at most {ends[1]}" in unreachable[3]
@@ -168,9 +168,9 @@ def test_what_is_free_is_named(paper: Report) -> None:
 
 def test_both_formats_say_the_same(paper: Report) -> None:
     article = latex.render(paper, [spec.name for spec in figures.of(paper)])
-    joint = chapter_of(paper).joint
+    joint = paper.referee.joint
     assert joint is not None
-    assert joint.sentence[1:] in article
+    assert together(joint)[1:] in article
     for words in (
         r"\section{The referee}",
         r"\includegraphics[max width=0.85\linewidth]{figures/referee.pdf}",
@@ -256,7 +256,7 @@ def test_what_comes_out_exactly_needs_few_words(tmp_path: Path) -> None:
 
 def test_without_published_values_there_is_no_chapter(tmp_path: Path) -> None:
     report = campaign(tmp_path, [])
-    assert not chapter_of(report).present
+    assert not Material(report).refereed
     assert figure(report) is None
     found = sections_of(report)
     assert "referee" not in found

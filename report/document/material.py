@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import cached_property
 from itertools import chain, islice
 
-from ...derivations.equation import Derivation, Equation
+from ...derivations.equation import Equation
 from ...derivations.proof import Proof
 from ...derivations.proof import Status as Known
 from ..diagnostics import Check
@@ -22,7 +22,7 @@ from ..workbook import FigureSpec, TableSpec
 from .math import Printer, latex_names, name_latex
 from .numbers import Figure, decimals, read, shown, table_format
 from .parts import MARK, MOST, Group, Head, Item, Pair, Remark, slug
-from .refereed import Refereed, figures
+from .refereed import Value, figures
 from .rich import Sentences
 from .tree import Status
 
@@ -111,10 +111,6 @@ class Material:
         counts = self.report.marks.behind(self.report.sheet[name])
         return tuple(count for count in counts if count.number)
 
-    def inside(self, name: str) -> str:
-        """How many cells of a column lie inside of the statement that limits them: ``10 of 10 pairs``."""
-        return self.report.marks.limited(name).inside
-
     def limits(self, heads: Iterable[Head]) -> tuple[str, ...]:
         """What a mark in a table may mean, each once."""
         columns = (self.report.sheet[head.name] for head in heads)
@@ -158,10 +154,6 @@ class Material:
 
     # --- figures
 
-    def figure(self, name: str) -> FigureSpec:
-        """A figure by its name."""
-        return next(figure for figure in self.figures if figure.name == name)
-
     @cached_property
     def figures(self) -> tuple[FigureSpec, ...]:
         """The workbook's figures, and the referee's."""
@@ -188,14 +180,6 @@ class Material:
                 found.setdefault(equation.number, found[equation.label])
         return found
 
-    def equation(self, label: str) -> Equation:
-        """An equation of the ledger."""
-        return self.report.ledger[label]
-
-    def derivation(self, equation: Equation) -> Derivation | None:
-        """How it follows."""
-        return self.report.ledger.derivation(equation)
-
     def proof(self, equation: Equation) -> Proof | None:
         """What was found of it; None where the algebra was not checked."""
         return next((proof for proof in self.report.proofs if proof.equation == equation), None)
@@ -206,11 +190,6 @@ class Material:
         if proof is None or proof.status in (Known.DEFINITION, Known.ASSUMPTION, Known.LIMIT):
             return Status(proof.status.value if proof else "not checked", "stated")
         return Status(proof.status.value, "holds" if proof.status.passes else "fails")
-
-    @property
-    def has_own_numbers(self) -> bool:
-        """Whether some equations carry numbers that their source does not have."""
-        return any(equation.own for equation in self.equations)
 
     # --- published values
 
@@ -229,41 +208,11 @@ class Material:
         titles = self.report.workbook.published_as if self.report.inputs.about_source else {}
         return tuple(Group(source, titles.get(source, ""), tuple(pairs)) for source, pairs in found.items())
 
-    def published(self, cell: str, index: tuple[int, ...] = ()) -> Pair | None:
-        """The published value of a cell, if there is one."""
-        for group in self.groups:
-            for pair in group.pairs:
-                if (pair.comparison.published.cell, pair.comparison.published.index) == (cell, index):
-                    return pair
-        return None
-
-    def _verdicts(self, verdict: str) -> int:
-        return sum(comparison.verdict == verdict for comparison in self.report.comparisons)
-
-    @property
-    def same(self) -> int:
-        """How many published values come out as printed."""
-        return self._verdicts("same")
-
-    @property
-    def differing(self) -> int:
-        """How many do not."""
-        return self._verdicts("differs")
-
-    @property
-    def unchecked(self) -> int:
-        """How many could not be compared, because their cell has no value."""
-        return self._verdicts("not-checkable")
-
-    @property
-    def unexpected(self) -> int:
-        """How many findings the published values did not announce."""
-        return sum(not comparison.as_expected for comparison in self.report.comparisons)
-
     @cached_property
-    def refereed(self) -> Refereed:
-        """What the referee found of them."""
-        return Refereed(self.report, [pair for group in self.groups for pair in group.pairs])
+    def refereed(self) -> tuple[Value, ...]:
+        """Those that the referee was asked about."""
+        pairs = (pair for group in self.groups for pair in group.pairs)
+        return tuple(Value(pair, pair.comparison.refereed) for pair in pairs if pair.comparison.refereed)
 
     # --- errors
 

@@ -144,24 +144,12 @@ class Item:
 
 @dataclass(frozen=True)
 class Remark:
-    """A cell to look at: one without a value, or one with a mark.
-
-    Parameters
-    ----------
-    cell : Cell
-    code : str
-        Of its error, or :data:`MARK`.
-    why : str
-    """
+    """A cell to look at: one without a value, or one with a mark."""
 
     cell: Cell
     code: str
+    """Of its error, or :data:`MARK`."""
     why: str
-
-    @property
-    def marked(self) -> bool:
-        """Whether it has a mark, not an error."""
-        return self.code == MARK
 
 
 @dataclass(frozen=True)
@@ -191,9 +179,10 @@ class Pair:
         return f"{self.axis} {self.index}" if self.index else ""
 
     @property
-    def verdict(self) -> str:
-        """The finding in a word."""
-        return {"same": "same", "differs": "differs", "not-checkable": "no value"}[self.comparison.verdict]
+    def finding(self) -> str:
+        """Whether it prints the same, and what there is to find of that."""
+        verdict = self.comparison.verdict.replace("not-checkable", "no value")
+        return f"{verdict}, {self.comparison.finding}" if self.comparison.finding else verdict
 
 
 @dataclass(frozen=True)

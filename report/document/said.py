@@ -9,44 +9,43 @@ from sympy import Expr, Indexed, Integer
 
 from ...derivations.equation import Derivation, Equation, Step
 from ...derivations.proof import IDENTITY, Proof
+from .. import verdict_words as words
 from ..agreement import Agreement
 from ..errors import suggest
+from ..verdict import NOT_CHECKABLE, UNREACHABLE
+from ..workbook import FigureSpec
 from .material import Material
 from .numbers import is_pure
 from .parts import Group
-from .refereed import Value as Refereed
+from .refereed import GOOD
 from .tables import Tables
 from .tree import (
     Blocks,
     Claim,
     Code,
+    Count,
     Figure,
     Formula,
     Headline,
     Inlines,
-    Inside,
     Items,
     Link,
     Math,
     Note,
     Number,
-    Numbered,
     Paragraph,
     Refer,
     Result,
-    Size,
     Strong,
     Table,
     Unit,
     Value,
-    Versions,
     joined,
 )  # fmt: skip
 
-__all__ = ["Role", "Said", "Unknown"]
+__all__ = ["SAID", "Role", "Said", "Unknown"]
 
 Answer = Inlines | Blocks | bool
-_NOTHING: Inlines = ()
 
 
 class Unknown(LookupError):
@@ -58,15 +57,6 @@ class Role(NamedTuple):
 
     inline: Callable[[str], Answer]
     alone: Callable[[str], Answer] | None = None
-
-
-_SAID: dict[str, Callable[[Said], Answer]] = {}
-
-
-def _says(method: Callable[[Said], Answer]) -> Callable[[Said], Answer]:
-    """Let narratives name what a method returns: inlines, blocks, or whether something is so."""
-    _SAID[method.__name__.lstrip("_")] = method
-    return method
 
 
 class Said:
@@ -82,18 +72,18 @@ class Said:
     def __init__(self, material: Material, drawn: Collection[str]) -> None:
         self.material, self.report, self.drawn = material, material.report, drawn
         self.rich, self.sentence = material.sentences.rich, material.sentences.sentence
-        self.refereed, self.tables = material.refereed, Tables(material)
+        self.referee, self.tables = material.report.referee, Tables(material)
         self.roles: Mapping[str, Role] = {
-            "cell": Role(self._cell),
+            "cell": Role(lambda name: (Value(self.material.item(self._column(name))),)),
             "count": Role(self._count),
             "eq": Role(lambda label: (Refer(self._label(label)),), self._numbered),
-            "fig": Role(self._figure_link, self._figure),
+            "fig": Role(lambda name: _links("figure", self._spec(name)), self._figure),
             "inside": Role(self._inside),
             "math": Role(lambda latex: (Math(latex),)),
             "published": Role(self._printed),
-            "say": Role(lambda name: _SAID[_known("sentence", name, _SAID)](self)),
+            "say": Role(lambda name: SAID[_known("sentence", name, SAID)](self)),
             "sym": Role(lambda name: (self.material.sentences.symbol(name),)),
-            "table": Role(self._table_link, self._table),
+            "table": Role(lambda name: _links("table", self._table(name)), self._table),
         }
 
     # --- cells, counts, references
@@ -104,246 +94,185 @@ class Said:
     def _label(self, label: str) -> str:
         return _known("equation", label, self.material.identifiers)
 
-    def _cell(self, name: str) -> Inlines:
-        return (Value(self.material.item(self._column(name))),)
-
     def _count(self, what: str) -> Inlines:
         """``tests``: how many there are; ``alpha_mean pairs``: over how many of them a column sums."""
         *column, axis = what.split()
         _known("axis", axis, self.report.values.layouts)
         if not column:
-            return (Size(self.material.count(axis), axis),)
+            return (Count(str(self.material.count(axis)), "count", axis),)
         name = self._column(column[0])
-        return (Size(self.material.counted(name, axis), axis, name),)
+        return (Count(str(self.material.counted(name, axis)), "count", axis, name),)
 
     def _inside(self, name: str) -> Inlines:
         limited = self.report.marks.limited(self._column(name))
-        return (Inside(limited.inside, limited.margin.column.name),)
+        return (Count(limited.inside, "inside", limited.margin.column.name),)
 
     def _printed(self, cell: str) -> Inlines:
-        pair = self.material.published(self._column(cell))
-        return (
-            () if pair is None else (Number(pair.published, pair.printed.text), *_behind(pair.printed.unit))
-        )
+        self._column(cell)
+        for one in self.report.comparisons:
+            if (one.published.cell, one.published.index) == (cell, ()):
+                printed = one.published.printed
+                unit = () if is_pure(printed.unit) else ("\u00a0", Unit(printed.unit))
+                return Number(None, printed.text), *unit
+        return ()
 
     def _numbered(self, label: str) -> Blocks:
-        return (Numbered(self.report.ledger[self._label(label)]),)
+        return (Formula(self.report.ledger[self._label(label)], numbered=True),)
 
     def _table(self, name: str) -> tuple[Table, ...]:
         return (self.tables.data[name],) if name in self.tables.data else ()
 
-    def _table_link(self, name: str) -> Inlines:
-        return tuple(Link("table", name, (f"Table\u00a0{one.number}",)) for one in self._table(name))
+    def _spec(self, name: str) -> tuple[FigureSpec, ...]:
+        return tuple(one for one in self.material.figures if one.name == name and name in self.drawn)
 
     def _figure(self, name: str) -> tuple[Figure, ...]:
-        specs = (spec for spec in self.material.figures if spec.name == name and name in self.drawn)
-        return tuple(Figure(spec, self.rich(spec.caption)) for spec in specs)
+        return tuple(Figure(spec, self.rich(spec.caption)) for spec in self._spec(name))
 
-    def _figure_link(self, name: str) -> Inlines:
-        return tuple(Link("figure", name, (f"Figure\u00a0{one.spec.number}",)) for one in self._figure(name))
+    # --- sentences
 
-    # --- the result
+    def told(self, sentence: str) -> Inlines:
+        """A sentence with its full stop; nothing of nothing."""
+        return (*self.sentence(sentence), ".") if sentence else ()
 
-    @_says
-    def _results(self) -> bool:
-        return bool(self.report.workbook.headline or self.material.oddities or self.material.groups)
+    def listed(self, sentences: Iterable[str]) -> Blocks:
+        """A list of sentences."""
+        return _listed(map(self.told, sentences))
 
-    @_says
-    def _headline(self) -> Blocks:
-        names = [name for name in self.report.workbook.headline if self.material.has(name)]
+    def headline(self) -> Blocks:
+        """The results."""
+        names = [name for name in self.report.workbook.headline if name in self.report.sheet]
         return (Headline(tuple(map(self._result, names))),) if names else ()
 
     def _result(self, name: str) -> Result:
-        item = self.material.item(name)
-        left_out = (f"over {rows} of {size} {axis}" for axis, rows, size in self.material.left_out(name))
-        marks = (count.said for count in self.material.marked(name))
+        material, item = self.material, self.material.item(name)
+        counted = self.report.values.counted.get(name, {}).items()
+        left_out = ((axis, rows, material.count(axis)) for axis, rows in counted)
+        rows = tuple(f"over {rows} of {size} {axis}" for axis, rows, size in left_out if rows != size)
+        marks = (count for count in self.report.marks.behind(self.report.sheet[name]) if count.number)
         meaning = self.rich(item.head.meaning)
-        return Result(Math(item.head.latex), meaning, item, tuple(left_out), tuple(marks))
+        return Result(Math(item.head.latex), meaning, item, rows, tuple(count.said for count in marks))
 
-    @_says
-    def _oddities(self) -> Blocks:
+    def oddities(self) -> Blocks:
+        """What there is to tell of the data themselves."""
         return tuple(
             Note((Strong((check.word.capitalize(),)), ": ", *self.rich(check.message), "."))
             for check in self.material.oddities
         )
 
-    @_says
-    def _left_out(self) -> Inlines:
+    def left_out(self) -> Inlines:
         """How many rows of the measurements are left out."""
         left_out = self.report.inputs.left_out
-        return (Size(len(left_out), "left out"),) if left_out else ()
+        return (Count(str(len(left_out)), "count", "left out"),) if left_out else ()
 
-    @_says
-    def _data(self) -> Blocks:
+    def data(self) -> Blocks:
         """All tables, and all figures of the workbook."""
         figures = (one for spec in self.report.workbook.figures for one in self._figure(spec.name))
         return (*self.tables.data.values(), *figures)
 
-    @_says
-    def _missing(self) -> Blocks:
-        return (self.tables.missing(),) if self.material.remarks else ()
-
-    # --- what is published
-
-    @_says
-    def _tally(self) -> Inlines:
-        material, verb = self.material, "differs" if self.material.differing == 1 else "differ"
-        if not material.groups:
+    def tally(self) -> Inlines:
+        """How many published values come out."""
+        found = self.report.comparisons
+        if not found:
             return ()
-        said = f"Of {len(self.report.comparisons)} published values, {_come(material.same)}"
-        said += f" and {material.differing} {verb}" if material.differing else ""
-        said += f"; {material.unchecked} could not be compared" if material.unchecked else ""
+        same, differing, missing = (
+            sum(one.verdict == word for one in found) for word in ("same", "differs", "not-checkable")
+        )
+        said = f"Of {len(found)} published values, {_come(same)}"
+        said += f" and {differing} differ{'s' * (differing == 1)}" if differing else ""
+        said += f"; {missing} could not be compared" if missing else ""
         link = Link("section", "published", ("Each is shown beside its recomputation.",))
-        were = "was" if material.unexpected == 1 else "were"
-        found = Strong((f"{material.unexpected} of these findings {were} not expected.",))
-        return (f"{said}. ", link, *((" ", found) if material.unexpected else ()))
+        odd = sum(not one.as_expected for one in found)
+        odd_ones = Strong((f"{odd} of these findings {'was' if odd == 1 else 'were'} not expected.",))
+        return (f"{said}. ", link, *((" ", odd_ones) if odd else ()))
 
-    @_says
-    def _groups(self) -> Blocks:
-        """How much of each place of the source comes out."""
-        return _listed(map(self._group, self.material.groups))
-
-    def _group(self, group: Group) -> Inlines:
+    def group(self, group: Group) -> Inlines:
+        """How much of one place of the source comes out."""
         title = (", ", *self.rich(group.title)) if group.title else ()
-        far, off = group.furthest, _NOTHING
-        if far is not None and group.same < len(group.pairs):
+        off: Inlines = ()
+        if (far := group.furthest) is not None and group.same < len(group.pairs):
             again, of = far.comparison.again, f" of {far.row}" if far.row else ""
             beside = f" units, {again} against the published {far.printed.text}{of}"
             off = "; the furthest is off by ", Number(far.distance, signed=True), beside
         come = f": of {len(group.pairs)} values {_come(group.same)}"
         return Strong((group.source,)), *title, come, *off, "."
 
-    @_says
-    def _published(self) -> Blocks:
-        return tuple(map(self.tables.published, self.material.groups))
-
     # --- the referee
 
-    @_says
-    def _referee(self) -> bool:
-        return self.refereed.present
+    def free(self) -> Inlines:
+        """What the publication does not print."""
+        columns = (self.report.sheet[name] for name in self.referee.free if name in self.report.sheet)
+        symbol = self.material.sentences.symbol
+        return joined((("the ", *self.rich(c.meaning), " ", symbol(c.name)) for c in columns), ", ", " and ")
 
-    @_says
-    def _free(self) -> Inlines:
-        columns = ((name, self.rich(self.report.sheet[name].meaning)) for name in self.refereed.free)
-        said = (("the ", *meaning, " ", self.material.sentences.symbol(name)) for name, meaning in columns)
-        return joined(said, ", ", " and ")
-
-    @_says
-    def _verdict(self) -> Inlines:
-        if self.refereed.joint is None:
+    def verdict(self) -> Inlines:
+        """Whether everything published can come out of one input."""
+        if self.referee.joint is None:
             return ()
-        said = (*self.sentence(self.refereed.joint.sentence), ".")
-        out = self.refereed.out
+        said = self.told(f"{words.together(self.referee.joint)}.")
+        out = [value.pair for value in self.material.refereed if value.verdict == UNREACHABLE]
         if not out:
             return said
-        cells = joined((self._refereed(value) for value in out), ", ", " and ")
-        return *said, f" Out of reach by {'itself' if len(out) == 1 else 'themselves'}: ", *cells, "."
+        cells = ((Math(pair.head.latex), f" {pair.index}" if pair.index else "") for pair in out)
+        own = "itself" if len(out) == 1 else "themselves"
+        return *said, f" Out of reach by {own}: ", *joined(cells, ", ", " and "), "."
 
-    def _refereed(self, value: Refereed) -> Inlines:
-        return Math(value.pair.head.latex), f" {value.pair.index}" if value.pair.index else ""
-
-    @_says
-    def _together(self) -> Blocks:
-        return (self.tables.together(),)
-
-    @_says
-    def _each_refereed(self) -> Blocks:
-        return (self.tables.refereed(),)
-
-    @_says
-    def _without(self) -> Inlines:
+    def without(self) -> Inlines:
         """How many values have no interval, and why."""
-        number, all_of = self.refereed.without, len(self.refereed.values)
+        values = self.material.refereed
+        number = sum(one.found.low is None and one.verdict != NOT_CHECKABLE for one in values)
         rests, own, they = ("rests", "itself", "it") if number == 1 else ("rest", "themselves", "they")
-        said = f"{number} of the {all_of} values {rests} on what is not printed: "
+        said = f"{number} of the {len(values)} values {rests} on what is not printed: "
         said += f"by {own} {they} can have any size, so there is no interval to show, "
         said += f"and only together with the others can {they} be refuted."
         return (said,) if number else ()
 
-    @_says
-    def _asked_why(self) -> bool:
-        return self.refereed.asked_why
+    def amended(self) -> Inlines:
+        """What comes out with the known misprints put right: what they are, then what comes out."""
+        if self.referee.amended is None:
+            return ()
+        sentences = (words.amended(self.referee), *map(words.explained, self.referee.misprints))
+        return joined(map(self.told, sentences), " ")
 
-    @_says
-    def _possible(self) -> bool:
-        return self.refereed.possible
-
-    @_says
-    def _explained(self) -> Inlines:
-        """What is said above explanations."""
-        return (*self.sentence(self.refereed.headline), ".") if self.refereed.explanations else ()
-
-    @_says
-    def _explanations(self) -> Blocks:
-        return self._sentences(self.refereed.explanations)
-
-    @_says
-    def _nothing_explains(self) -> Inlines:
-        return (*self.sentence(self.refereed.nothing), ".")
-
-    @_says
-    def _tried(self) -> Inlines:
-        return (*self.sentence(self.refereed.tried), ".") if self.refereed.tried else ()
-
-    @_says
-    def _amended(self) -> Inlines:
-        return joined(((*self.sentence(each), ".") for each in self.refereed.amended), " ")
-
-    @_says
-    def _fits(self) -> Blocks:
-        return self._sentences(self.refereed.fits)
-
-    @_says
-    def _fit_of_alpha_log(self) -> Inlines:
-        said = self.refereed.fit_of("alpha_log")
-        return (*self.sentence(said), ".") if said else ()
-
-    def _sentences(self, sentences: Iterable[str]) -> Blocks:
-        return _listed((*self.sentence(each), ".") for each in sentences)
+    def fits(self) -> dict[str, str]:
+        """What is said of the published value of each average and fit, by its cell."""
+        sheet = self.report.sheet
+        return {
+            found.published.cell: words.fit(found, lambda name: sheet[name].meaning)
+            for found in self.referee.fits
+        }
 
     # --- equations
 
-    @_says
-    def _own_numbers(self) -> bool:
-        return self.material.has_own_numbers
-
-    @_says
-    def _ledger(self) -> Blocks:
-        return (self.tables.ledger(),) if self.material.equations else ()
-
-    @_says
-    def _claims(self) -> Blocks:
-        return tuple(map(self._claim, self.material.equations))
-
-    def _claim(self, equation: Equation) -> Claim:
-        proof, derivation = self.material.proof(equation), self.material.derivation(equation)
-        because: Inlines = (*self.sentence(equation.because), ".")
+    def claim(self, equation: Equation) -> Claim:
+        """An equation with what is known of it."""
+        material, ledger = self.material, self.report.ledger
+        proof, derivation = material.proof(equation), ledger.derivation(equation)
+        because = self.told(equation.because)
         if equation.conditions:
             because += (" Holds where ", *joined(map(self._formula, equation.conditions), " and "), ".")
         if proof and proof.remark:
-            because += (" ", *self.sentence(proof.remark), ".")
+            because += (" ", *self.told(proof.remark))
         steps = tuple(self._steps(derivation, proof)) if derivation else ()
-        many = f"{len(steps)} step{'s' * (len(steps) > 1)}"
         return Claim(
             equation,
             self.sentence(equation.title),
-            self.material.status(equation),
+            material.status(equation),
             because,
             self._grounds(proof) if proof and derivation and proof.status.passes else (),
-            f"Derivation, {many}{', with its evidence' if proof else ''}",
+            f"Derivation, {len(steps)} step{'s' * (len(steps) > 1)}{', with its evidence' * bool(proof)}",
             steps,
         )
 
     def _formula(self, expression: Expr) -> Inlines:
         return (Math(self.material.printer.doprint(expression)),)
 
-    def _named(self, label: str) -> Inlines:
-        return (Refer(label),) if label in self.material.identifiers else self.rich(label)
+    def _named(self, label: str, title: str) -> Inlines:
+        return (Refer(label),) if label in self.material.identifiers else self.rich(title)
 
     def _grounds(self, proof: Proof) -> Inlines:
         """What a claim finally rests on: numbers, and titles of what has none."""
-        return ("Rests on: ", *(joined(map(self._named, proof.rests_on), "; ") or (IDENTITY,)), ".")
+        grounds = joined((self._named(label, label) for label in proof.rests_on), "; ")
+        return ("Rests on: ", *(grounds or (IDENTITY,)), ".")
 
     def _steps(self, derivation: Derivation, proof: Proof | None) -> Iterator[Blocks]:
         shown: set[Equation] = set()
@@ -356,9 +285,8 @@ class Said:
                     title, why = self.rich(premise.title), self.rich(premise.because)
                     blocks += (Paragraph(("Premise: ", *title, " – ", *why, ":")), Formula(premise))
             shown.add(step.claim.origin)
-            evidence = self.rich(proof.steps[number].sentence) if proof else ()
-            said = self._rests_on(step) + (("Evidence: ", *evidence, ".") if proof else ())
-            yield *blocks, Paragraph(said, aside=True)
+            evidence = ("Evidence: ", *self.rich(proof.steps[number].sentence), ".") if proof else ()
+            yield *blocks, Paragraph((*self._rests_on(step), *evidence), aside=True)
 
     def _rests_on(self, step: Step) -> Inlines:
         if not step.premises:
@@ -370,67 +298,68 @@ class Said:
 
     def _premise(self, equation: Equation) -> Inlines:
         """What a step rests on: its number or its name, and of which test it speaks."""
-        named = (
-            self._named(equation.label)
-            if equation.label in self.material.identifiers
-            else self.rich(equation.title)
-        )
+        named = self._named(equation.label, equation.title)
         own, general = _indices(equation), _indices(equation.origin)
         if len(own) == len(general) == 1 and own != general and isinstance(next(iter(own)), Integer):
             return (*named, " for ", Math(f"{general.pop()} = {own.pop()}"))
         return named
 
-    # --- how it was checked
+    def versions(self) -> Blocks:
+        """What computed the report."""
+        versions = self.report.versions.items()
+        return (Items(tuple((f"{name}\u00a0{number}",) for name, number in versions), "versions"),)
 
-    @_says
-    def _errata(self) -> Blocks:
-        return (self.tables.errata(),) if self.refereed.errata else ()
 
-    @_says
-    def _errata_of_equations(self) -> bool:
-        return bool(self.report.errata)
-
-    @_says
-    def _sample(self) -> Inlines:
-        """Which cells were judged, if not all were."""
-        return tuple(engine.sample for engine in self.report.engines[:1] if engine.sample)
-
-    @_says
-    def _engines(self) -> Blocks:
-        return _listed(map(_agreement, self.report.engines))
-
-    @_says
-    def _other_engines(self) -> bool:
-        return len(self.report.engines) > 1
-
-    @_says
-    def _files(self) -> Inlines:
-        return joined(((Code(name),) for name in self.report.inputs.files), ", ")
-
-    @_says
-    def _untold(self) -> Inlines:
-        """The axes whose rows are not shown."""
-        return joined(((name,) for name in self.material.untold), " and ")
-
-    @_says
-    def _exactly(self) -> bool:
-        return bool(self.report.exactly)
-
-    @_says
-    def _versions(self) -> Blocks:
-        return (Versions(tuple((f"{name}\u00a0{number}",) for name, number in self.report.versions.items())),)
+SAID: dict[str, Callable[[Said], Answer]] = {
+    "results": lambda s: bool(s.report.workbook.headline or s.material.oddities or s.report.comparisons),
+    "headline": Said.headline,
+    "oddities": Said.oddities,
+    "data": Said.data,
+    "left_out": Said.left_out,
+    "missing": lambda s: (s.tables.missing(),) if s.material.remarks else (),
+    "tally": Said.tally,
+    "groups": lambda s: _listed(map(s.group, s.material.groups)),
+    "published": lambda s: tuple(map(s.tables.published, s.material.groups)),
+    "referee": lambda s: bool(s.referee.values),
+    "free": Said.free,
+    "verdict": Said.verdict,
+    "together": lambda s: (s.tables.together(),),
+    "each_refereed": lambda s: (s.tables.refereed(),),
+    "without": Said.without,
+    "asked_why": lambda s: s.referee.asked_why,
+    "possible": lambda s: s.referee.joint is not None and s.referee.joint.verdict in GOOD,
+    "explained": lambda s: s.told(words.headline(s.referee.explanations)),
+    "explanations": lambda s: s.listed(map(words.explained, s.referee.explanations)),
+    "nothing_explains": lambda s: s.told(words.NOTHING_EXPLAINS),
+    "tried": lambda s: s.told("" if s.referee.tried is None else words.tried(s.referee.tried)),
+    "amended": Said.amended,
+    "fits": lambda s: s.listed(s.fits().values()),
+    "fit_of_alpha_log": lambda s: s.told(s.fits().get("alpha_log", "")),
+    "own_numbers": lambda s: any(equation.own for equation in s.material.equations),
+    "ledger": lambda s: (s.tables.ledger(),) if s.material.equations else (),
+    "claims": lambda s: tuple(map(s.claim, s.material.equations)),
+    "errata": lambda s: tuple(table for table in (s.tables.errata(),) if table.size),
+    "errata_of_equations": lambda s: bool(s.report.errata),
+    "sample": lambda s: tuple(engine.sample for engine in s.report.engines[:1] if engine.sample),
+    "engines": lambda s: _listed(map(_agreement, s.report.engines)),
+    "other_engines": lambda s: len(s.report.engines) > 1,
+    "files": lambda s: joined(((Code(name),) for name in s.report.inputs.files), ", "),
+    "untold": lambda s: joined(((name,) for name in s.material.untold), " and "),
+    "exactly": lambda s: s.report.exactly is not None,
+    "versions": Said.versions,
+}
+"""What ``{say}`` names: inlines, blocks, or whether something is so."""
 
 
 def _known(what: str, name: str, known: Collection[str]) -> str:
     if name not in known:
-        raise Unknown(
-            f"no {what} is called '{name}'; {suggest(name, known) or 'there are ' + ', '.join(known)}"
-        )
+        there = suggest(name, known) or f"there are {', '.join(known)}"
+        raise Unknown(f"no {what} is called '{name}'; {there}")
     return name
 
 
-def _behind(unit: str) -> Inlines:
-    return () if is_pure(unit) else ("\u00a0", Unit(unit))
+def _links(kind: str, shown: Iterable[Table | FigureSpec]) -> Inlines:
+    return tuple(Link(kind, one.name, (f"{kind.capitalize()}\u00a0{one.number}",)) for one in shown)
 
 
 def _come(number: int) -> str:

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from itertools import islice
+from itertools import groupby, islice
+from typing import Any, NamedTuple
 
+from .. import verdict_words as words
 from ..measurements import LeftOut
+from ..published import PublishedValue
 from ..sheet import Axis
+from ..verdict import ALL, INPUT, UNREACHABLE, TableVerdict
 from ..workbook import TableSpec
 from .material import Material
-from .numbers import Figure, is_pure, table_format
-from .parts import MOST, Group, Head, Pair, Remark, described, index_text, slug, why_address
-from .refereed import Finding, Run, Together, Value
+from .numbers import is_pure, read, table_format
+from .parts import MOST, Group, Head, Pair, described, index_text, slug, why_address
+from .refereed import GOOD, Value, shown_mismatch
 from .tree import (
     Code,
     Column,
     Hint,
     Inlines,
     Math,
+    Node,
     Number,
     Refer,
     Row,
@@ -35,6 +40,51 @@ __all__ = ["Tables"]
 OFF_BY = "recomputed minus published, in units of the last published digit"
 
 
+class _Made(NamedTuple):
+    """A column and what it says of a row: text, a node, a run of inlines, a cell of the sheet, or nothing."""
+
+    head: str
+    cell: Callable[[Any], Any]
+    kind: str = "left"
+    """As of :class:`Column`; of a column ``aligned`` the numbers stand below one another."""
+    share: float = 0
+    tip: str = ""
+
+
+def _table(
+    name: str,
+    caption: Inlines,
+    made: Sequence[_Made],
+    groups: Iterable[tuple[Inlines, Iterable[Any]]],
+    row: Callable[[Any], Mapping[str, str]] = lambda _: {},
+    **more: Any,
+) -> Table:
+    """A table from its columns and what its rows are made of; `row` tells of one what a Row has besides."""
+    listed = tuple(
+        Rows(tuple(Row(tuple(_run(one.cell(each)) for one in made), **row(each)) for each in group), title)
+        for title, group in groups
+    )
+    rows = [row.cells for group in listed for row in group.rows]
+    columns = tuple(_column(one, [cells[n] for cells in rows]) for n, one in enumerate(made))
+    return Table(name, caption, columns, listed, **more)
+
+
+def _run(said: Any) -> Any:
+    if said is None or said == "":
+        return ()
+    return (said,) if isinstance(said, (str, Node)) else said
+
+
+def _column(made: _Made, cells: Iterable[Any]) -> Column:
+    head, kind = (made.head,), made.kind
+    if kind != "aligned":
+        return Column(head, kind, share=made.share, tip=made.tip)
+    numbers = [one for cell in cells for one in cell if isinstance(one, Number)]
+    form = table_format(one.figure for one in numbers)
+    signed = any(one.signed for one in numbers) and form[0] != "-"
+    return Column(head, "number", f"-{form}" if signed else form, tip=made.tip)
+
+
 class Tables:
     """Makes the tables of a report.
 
@@ -45,7 +95,7 @@ class Tables:
 
     def __init__(self, material: Material) -> None:
         self.material, self.report = material, material.report
-        self.rich = material.sentences.rich
+        self.rich, self.sentence = material.sentences.rich, material.sentences.sentence
 
     # --- the sheet
 
@@ -59,61 +109,47 @@ class Tables:
         }
 
     def _scalars(self, spec: TableSpec) -> Table:
+        made = (
+            _Made("quantity", lambda item: self._meaning(item.head), "words", 0.42),
+            _Made("symbol", lambda item: Math(item.head.latex), "symbol"),
+            _Made("value", lambda item: item, "number"),
+            _Made("unit", lambda item: _unit(item.head.unit), "unitcell"),
+            _Made("from", lambda item: _refers(item.head, ", ") or "given", "words"),
+        )
         items = [self.material.item(name) for name in spec.columns]
-        columns = (
-            Column(("quantity",), "words", share=0.42),
-            Column(("symbol",), "symbol"),
-            Column(("value",), "number"),
-            Column(("unit",), "unitcell"),
-            Column(("from",), "words"),
-        )
-        rows = tuple(
-            Row((*self._named(item.head), item, _unit(item.head.unit), _from(item.head))) for item in items
-        )
-        return Table(
-            spec.name,
-            self.rich(spec.title),
-            columns,
-            (Rows(rows),),
-            spec.number,
-            "list",
-            legend=self.rich(spec.note),
-            limits=self._limits(item.head for item in items),
-        )
+        legend, limits = self.rich(spec.note), self._limits(item.head for item in items)
+        told: dict[str, Any] = {"number": spec.number, "look": "list", "legend": legend, "limits": limits}
+        return _table(spec.name, self.rich(spec.title), made, [((), items)], **told)
 
-    def _named(self, head: Head) -> tuple[Inlines, Inlines]:
-        return (head.name,) if head.meaning == head.name else self.rich(head.meaning), (Math(head.latex),)
+    def _meaning(self, head: Head) -> Inlines:
+        return (head.name,) if head.meaning == head.name else self.rich(head.meaning)
 
     def _rows(self, spec: TableSpec, axis: Axis) -> Table:
         heads, columns = zip(*map(self.material.items, spec.columns), strict=True)
         labels = self.report.values.labels(self.report.sheet[spec.columns[0]])
         most = MOST if axis.parents else len(labels)  # what was measured is shown whole
-        rows = list(islice(zip(labels, *columns, strict=True), most))
+        rows = islice(zip(labels, *columns, strict=True), most)
         shown = [Row(((_dashed(label),), *items)) for label, *items in rows]
         if not axis.parents and any(head.given for head in heads):
             for each in self.report.inputs.left_out:
                 shown.insert(each.place, _left_out(each, heads))
-        cut = ""
-        if len(labels) > most:
-            cut = f"The first {most} {axis.name} are shown; values.json has all of them."
-        told = joined((self._legend(head) for head in heads), "; ")
-        note = (" ", *self.rich(spec.note)) if spec.note else ()
+        legend = joined((self._legend(head) for head in heads), "; ")
+        cut = f"The first {most} {axis.name} are shown; values.json has all of them."
         return Table(
             spec.name,
             self.rich(spec.title),
             (Column((axis.row,)), *map(_headed, heads)),
             (Rows(tuple(shown)),),
             spec.number,
-            legend=(*told, ".", *note),
+            legend=(*legend, ".", *((" ", *self.rich(spec.note)) if spec.note else ())),
             limits=self._limits(heads),
-            cut=cut,
+            cut=cut if len(labels) > most else "",
             wide=len(heads) > 5,
         )
 
     def _legend(self, head: Head) -> Inlines:
         sources = ", given" if head.given else ", from " if head.sources else ""
-        refers = joined(((Refer(label),) for label in head.sources), ", solved as ")
-        return (Math(head.latex), "\u00a0", *self.rich(head.meaning), sources, *refers)
+        return (Math(head.latex), "\u00a0", *self.rich(head.meaning), sources, *_refers(head, ", solved as "))
 
     def _limits(self, heads: Iterable[Head]) -> Inlines:
         told = self.material.limits(heads)
@@ -123,185 +159,157 @@ class Tables:
 
     def published(self, group: Group) -> Table:
         """The published values of one place of the source, beside those that are recomputed."""
+        made = (
+            _Made("cell", lambda pair: _symbol(pair.head)),
+            _Made("index", lambda pair: pair.index),
+            _Made("published", _printed, "aligned"),
+            _Made("recomputed", lambda pair: Number(pair.again, pair.comparison.again), "aligned"),
+            _Made("unit", lambda pair: _unit(pair.printed.unit)),
+            _Made("off by", lambda pair: _number(pair.distance, signed=True), "aligned", tip=OFF_BY),
+            _Made("finding", lambda pair: pair.finding, "verdict"),
+            _Made("known reason", lambda pair: pair.comparison.published.reason, share=0.34),
+        )
         title = (", ", *self.rich(group.title)) if group.title else ()
-        pairs = group.pairs
-        return Table(
-            f"published-{slug(group.source)}",
-            (Strong((group.source,)), *title, ": published beside recomputed"),
-            (
-                Column(("cell",)),
-                Column(("index",)),
-                _numbers("published", (pair.published for pair in pairs)),
-                _numbers("recomputed", (pair.again for pair in pairs)),
-                Column(("unit",)),
-                _numbers("off by", (pair.distance for pair in pairs), OFF_BY, signed=True),
-                Column(("finding",), "verdict"),
-                Column(("known reason",), share=0.34),
-            ),
-            (Rows(tuple(map(self._published, pairs))),),
-            look="compared",
-            wide=True,
-        )
+        caption = (Strong((group.source,)), *title, ": published beside recomputed")
+        name = f"published-{slug(group.source)}"
 
-    def _published(self, pair: Pair) -> Row:
-        comparison = pair.comparison
-        finding = f", {comparison.finding}" if comparison.finding else ""
-        cells: tuple[Inlines, ...] = (
-            _symbol(pair.head),
-            (pair.index,),
-            (Number(pair.published, pair.printed.text),),
-            (Number(pair.again, comparison.again),),
-            _unit(pair.printed.unit),
-            _off(pair),
-            (pair.verdict + finding,),
-            _text(comparison.published.reason),
-        )
-        return Row(cells, "" if comparison.as_expected else "unexpected")
+        def row(pair: Any) -> dict[str, str]:
+            return {"state": "" if pair.comparison.as_expected else "unexpected"}
+
+        return _table(name, caption, made, [((), group.pairs)], row, look="compared", wide=True)
 
     def together(self) -> Table:
         """What the referee says of all values of a table, and of all tables."""
-        columns = (
-            Column(("source",), share=0.3),
-            Column(("values",), "number"),
-            Column(("verdict",), "verdict"),
-            Column(("mismatch",), "number"),
-            Column(("at least",), "number", tip="what no input that prints as given can fall below"),
-            Column(("presses most",)),
+        least = "what no input that prints as given can fall below"
+        made = (
+            _Made("source", _source, share=0.3),
+            _Made("values", lambda table: str(table.values), "number"),
+            _Made("verdict", lambda table: words.CALLED[table.verdict], "verdict"),
+            _Made("mismatch", lambda table: _number(shown_mismatch(table.mismatch)), "number"),
+            _Made("at least", lambda table: _number(_least(table)), "number", tip=least),
+            _Made("presses most", self._worst),
         )
         said = "asked for together: the worst mismatch for the best input that was found"
         caption = (Strong(("All values of a table",)), f", {said}")
-        rows = tuple(map(self._together, self.material.refereed.tables))
-        return Table("refereed-tables", caption, columns, (Rows(rows),))
+        return _table("refereed-tables", caption, made, [((), self._tables())], _refused)
 
-    @staticmethod
-    def _together(one: Together) -> Row:
-        worst: Inlines = ()
-        if one.worst is not None:
-            worst = (Math(one.worst.head.latex), f"\u00a0{one.worst.index}" if one.worst.index else "")
-        cells = (
-            (one.name,),
-            (str(one.table.values),),
-            (one.called,),
-            _number(one.mismatch),
-            _number(one.at_least),
-            worst,
-        )
-        return Row(cells, "" if one.good else "unexpected")
+    def _tables(self) -> tuple[TableVerdict, ...]:
+        """Each table, and all of them together if there are several."""
+        found = self.report.referee
+        return (*found.tables, found.joint) if found.joint and len(found.tables) > 1 else found.tables
+
+    def _worst(self, table: TableVerdict) -> Inlines:
+        if table.worst is None or table.verdict in GOOD:
+            return ()
+        symbol = self.material.sentences.symbol(table.worst.cell)
+        return (symbol, f"\u00a0{_dashed(table.worst.index)}") if table.worst.index else (symbol,)
 
     def refereed(self) -> Table:
         """What the referee says of every value by itself."""
-        values = self.material.refereed.values
-        pairs = [value.pair for value in values]
         tip = "the least that was found, in half units of the last published digit"
-        columns = (
-            Column(("value",)),
-            _numbers("published", (pair.published for pair in pairs)),
-            _numbers("recomputed", (value.here for value in values)),
-            _numbers("off by", (pair.distance for pair in pairs), OFF_BY, signed=True),
-            _numbers("least", (value.low for value in values)),
-            _numbers("largest", (value.high for value in values)),
-            _numbers("mismatch", (value.mismatch for value in values), tip),
-            Column(("verdict",), "verdict"),
+        made = (
+            _Made("value", lambda value: value.pair.index or _symbol(value.pair.head)),
+            _Made(
+                "published", lambda value: Number(value.pair.published, value.pair.printed.text), "aligned"
+            ),
+            _Made("recomputed", lambda value: _number(value.here, value.pair.comparison.again), "aligned"),
+            _Made("off by", lambda value: _number(value.pair.distance, signed=True), "aligned", tip=OFF_BY),
+            _Made("least", lambda value: _number(value.low), "aligned"),
+            _Made("largest", lambda value: _number(value.high), "aligned"),
+            _Made("mismatch", lambda value: _number(shown_mismatch(value.mismatch)), "aligned", tip=tip),
+            _Made("verdict", lambda value: words.CALLED[value.verdict], "verdict"),
         )
         said = " Least and largest were seen from inputs that print as given"
         caption = (Strong(("Every published value by itself.",)), said)
-        groups = tuple(map(self._run, self.material.refereed.runs))
-        return Table("refereed-values", caption, columns, groups, wide=True)
+        runs = groupby(self.material.refereed, lambda value: value.run)
+        groups = [(self._run(*run), list(values)) for run, values in runs]
+        return _table("refereed-values", caption, made, groups, _refused, wide=True)
 
-    def _run(self, run: Run) -> Rows:
-        unit = () if is_pure(run.unit) else (", in ", Unit(run.unit))
-        title = (Strong((run.source,)), ", ", Math(run.head.latex), " ", *self.rich(run.head.meaning), *unit)
-        return Rows(tuple(self._refereed(run, value) for value in run.values), title)
-
-    @staticmethod
-    def _refereed(run: Run, value: Value) -> Row:
-        pair = value.pair
-        cells = (
-            (pair.index,) if pair.index else _symbol(run.head),
-            (Number(pair.published, pair.printed.text),),
-            (Number(value.here, "" if value.here else pair.comparison.again),),
-            _off(pair),
-            _number(value.low),
-            _number(value.high),
-            _number(value.mismatch),
-            (value.called,),
-        )
-        return Row(cells, "" if value.good else "unexpected")
+    def _run(self, source: str, head: Head, unit: str) -> Inlines:
+        behind = () if is_pure(unit) else (", in ", Unit(unit))
+        return (Strong((source,)), ", ", Math(head.latex), " ", *self.rich(head.meaning), *behind)
 
     # --- what is known
 
     def ledger(self) -> Table:
         """Every equation and what is known of it."""
-        columns = (Column(("number",)), Column(("claim",), share=0.5), Column(("status",), share=0.3))
+        made = (
+            _Made("number", lambda equation: Refer(equation.label)),
+            _Made("claim", lambda equation: self.rich(equation.title), share=0.5),
+            _Made("status", self.material.status, share=0.3),
+        )
         said = " Every equation, and what is known of it; why it holds is said at its number"
-        rows = tuple(
-            Row(((Refer(one.label),), self.rich(one.title), (self.material.status(one),)))
-            for one in self.material.equations
-        )
-        return Table(
-            "ledger", (Strong(("Ledger.",)), said), columns, (Rows(rows),), look="list", wide=True, whole=True
-        )
+        caption, rows = (Strong(("Ledger.",)), said), [((), self.material.equations)]
+        return _table("ledger", caption, made, rows, look="list", wide=True, whole=True)
 
     def errata(self) -> Table:
-        """What was found in equations and data."""
-        names = {"about": 0.13, "kind": 0.13, "finding": 0.37, "evidence": 0.29}
-        columns = tuple(Column((name,), share=share) for name, share in names.items())
-        rows = tuple(map(self._erratum, self.material.refereed.errata))
+        """What the checks of the equations found, then what the referee found in the data."""
+        made = (
+            _Made("about", lambda one: one[0], share=0.13),
+            _Made("kind", lambda one: one[1], share=0.13),
+            _Made("finding", lambda one: self._told(one[2]), share=0.37),
+            _Made("evidence", lambda one: self._told(one[3]), share=0.29),
+        )
         caption = (Strong(("Ledger of errata",)), ", of equations and data alike")
-        return Table("errata-ledger", caption, columns, (Rows(rows),), look="list", wide=True, whole=True)
+        rows = [((), self._errata())]
+        return _table("errata-ledger", caption, made, rows, look="list", wide=True, whole=True)
 
-    def _erratum(self, one: Finding) -> Row:
-        about = self.rich(one.about) or _text(one.source)
-        if one.cell:
-            index = f"\u00a0{_dashed(one.index)}" if one.index else ""
-            about += (", " if one.source else "", *self._cell(one.cell), index)
-        sentence = self.material.sentences.sentence
-        evidence = (*sentence(one.evidence), ".") if one.evidence else ()
-        return Row((about, (one.kind,), (*sentence(one.finding), "."), evidence))
+    def _told(self, sentence: str) -> Inlines:
+        return (*self.sentence(sentence), ".") if sentence else ()
 
-    def _cell(self, name: str) -> Inlines:
-        return _symbol(self.material.head(self.report.sheet[name]))
+    def _errata(self) -> Iterator[tuple[Inlines, str, str, str]]:
+        """What each is about, its kind, the finding and the evidence."""
+        found = self.report.referee
+        for erratum in self.report.errata:
+            yield self.rich(erratum.about), erratum.kind, erratum.sentence, erratum.evidence
+        for label in found.labels:
+            finding = f"named after {label.printed}, but comes out of {label.right}"
+            yield self._place(label.source, label.cell), "label", finding, words.because(label)
+        for table in self._tables():
+            if table.verdict == UNREACHABLE:
+                yield (_source(table),), "contradiction", words.contradiction(table), words.evidence(table)
+        for value in self.material.refereed:
+            if value.verdict == UNREACHABLE:
+                printed: PublishedValue = value.pair.comparison.published
+                ends = words.bounds(value.found, printed.printed)
+                finding = f"{printed.printed.text} cannot come out of inputs that print as given"
+                about = self._place(printed.source, printed.cell, printed.index)
+                yield about, "unreachable", finding, words.certain(ends) if ends else ""
+        for each in found.explanations:
+            if not each.as_printed:  # then something that is printed needs to be otherwise
+                source = "" if each.first.source == INPUT else each.first.source
+                about = self._place(source, each.first.cell, each.first.index)
+                yield about, words.POSSIBLE[each.first.kind], words.suggested(each), words.follows(each)
+
+    def _place(self, source: str, cell: str, index: tuple[int, ...] = ()) -> Inlines:
+        """A place in the data: ``Table 2, alpha 1-2``."""
+        if not cell:
+            return (source,)
+        symbol = _symbol(self.material.head(self.report.sheet[cell]))
+        return *((source, ", ") if source else ()), symbol, *((f"\u00a0{_dashed(index)}",) if index else ())
 
     def missing(self) -> Table:
         """The cells without a value, and those outside of what is expected."""
-        columns = (
-            Column(("cell",)),
-            Column(("index",), "row"),
-            Column(("code",), "words"),
-            Column(("why",), "words", share=0.6),
+        made = (
+            _Made("cell", lambda one: _symbol(self.material.head(self.report.sheet[one.cell.name]))),
+            _Made("index", lambda one: _dashed(one.cell.label), "row"),
+            _Made("code", lambda one: Code(one.code), "words"),
+            _Made("why", lambda one: self.rich(one.why), "words", share=0.6),
         )
         said = (
             " What is computed from one without a value has none either; a † is outside of what is expected"
         )
-        return Table(
-            "missing-cells",
-            (Strong(("Cells to look at.",)), said),
-            columns,
-            (Rows(tuple(map(self._remark, self.material.remarks))),),
-            look="list",
-            cut=self.material.cut_remarks,
-        )
+        caption, rows = (Strong(("Cells to look at.",)), said), [((), self.material.remarks)]
 
-    def _remark(self, remark: Remark) -> Row:
-        cell = remark.cell
-        cells = (
-            self._cell(cell.name),
-            (_dashed(cell.label),),
-            (Code(remark.code),),
-            self.rich(remark.why),
-        )
-        return Row(cells, identifier=why_address(cell) if cell.why else "")
+        def row(one: Any) -> dict[str, str]:
+            return {"identifier": why_address(one.cell) if one.cell.why else ""}
+
+        return _table("missing-cells", caption, made, rows, row, look="list", cut=self.material.cut_remarks)
 
 
 def _headed(head: Head) -> Column:
     """A column of the sheet."""
-    return Column(_symbol(head), "number", head.format, unit=_unit(head.unit))
-
-
-def _numbers(head: str, figures: Iterable[Figure | None], tip: str = "", signed: bool = False) -> Column:
-    """A column of numbers, aligned at their decimal signs."""
-    form = table_format(figures)
-    return Column((head,), "number", f"-{form}" if signed and form[0] != "-" else form, tip=tip)
+    return Column((_symbol(head),), "number", head.format, unit=(_unit(head.unit),))
 
 
 def _left_out(test: LeftOut, heads: Iterable[Head]) -> Row:
@@ -314,8 +322,20 @@ def _left_out(test: LeftOut, heads: Iterable[Head]) -> Row:
     return Row(((_dashed(label),), *cells), "excluded")
 
 
-def _symbol(head: Head) -> Inlines:
-    return (Hint((Math(head.latex),), head.meaning),)
+def _refused(found: TableVerdict | Value) -> dict[str, str]:
+    return {"state": "" if found.verdict in GOOD else "unexpected"}
+
+
+def _source(table: TableVerdict) -> str:
+    return "all together" if table.source == ALL else table.source
+
+
+def _least(table: TableVerdict) -> Any:
+    return None if table.at_least is None else read(words.at_least(table.at_least))
+
+
+def _symbol(head: Head) -> Hint:
+    return Hint((Math(head.latex),), head.meaning)
 
 
 def _dashed(label: tuple[int, ...]) -> str:
@@ -323,21 +343,17 @@ def _dashed(label: tuple[int, ...]) -> str:
     return index_text(label).replace("-", "–")
 
 
-def _text(text: str) -> Inlines:
-    return (text,) if text else ()
+def _printed(pair: Pair) -> Number:
+    return Number(pair.published, pair.printed.text)
 
 
-def _number(figure: Figure | None) -> Inlines:
-    return () if figure is None else (Number(figure),)
+def _number(figure: Any, otherwise: str = "", signed: bool = False) -> Number | str:
+    return otherwise if figure is None else Number(figure, signed=signed)
 
 
-def _off(pair: Pair) -> Inlines:
-    return () if pair.distance is None else (Number(pair.distance, signed=True),)
+def _unit(unit: str) -> Hint | Unit:
+    return Hint(("–",), "a pure number") if is_pure(unit) else Unit(unit)
 
 
-def _unit(unit: str) -> Inlines:
-    return (Hint(("–",), "a pure number"),) if is_pure(unit) else (Unit(unit),)
-
-
-def _from(head: Head) -> Inlines:
-    return joined(((Refer(label),) for label in head.sources), ", ") or ("given",)
+def _refers(head: Head, between: str) -> Inlines:
+    return joined(((Refer(label),) for label in head.sources), between)

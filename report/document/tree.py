@@ -15,10 +15,9 @@ from . import numbers
 from .parts import Item, address, index_text
 
 __all__ = [
-    "Block", "Blocks", "Claim", "Code", "Column", "Entry", "Figure", "Formula", "Headline", "Hint",
-    "Inline", "Inlines", "Inside", "Items", "Link", "Math", "Node", "Note", "Number", "Numbered", "Paragraph",
-    "Refer", "Result", "Row", "Rows", "Section", "Silent", "Size", "Status", "Strong", "Table", "Unit",
-    "Value", "Versions", "joined",
+    "Block", "Blocks", "Claim", "Code", "Column", "Count", "Entry", "Figure", "Formula", "Headline", "Hint",
+    "Inline", "Inlines", "Items", "Link", "Math", "Node", "Note", "Number", "Paragraph", "Refer", "Result",
+    "Row", "Rows", "Section", "Silent", "Status", "Strong", "Table", "Unit", "Value", "joined",
 ]  # fmt: skip
 
 
@@ -56,17 +55,7 @@ class Math(Node):
 
 @dataclass(frozen=True)
 class Number(Node):
-    """A number that is no cell.
-
-    Parameters
-    ----------
-    figure : Figure or None
-        None if it is no plain number.
-    text : str
-        As its author printed it, if anybody did.
-    signed : bool
-        Whether a plus is shown as well: a difference.
-    """
+    """A number that is no cell; `text` is what its author printed, `signed` a difference, with its plus."""
 
     figure: numbers.Figure | None
     text: str = ""
@@ -88,6 +77,19 @@ class Value(Node):
 
 
 @dataclass(frozen=True)
+class Count(Node):
+    """How many rows there are, which the page counts again.
+
+    Of an axis (`kind` is ``count``), or of them in a column's sum; or inside of a margin (``inside``).
+    """
+
+    text: str
+    kind: str
+    name: str
+    column: str = ""
+
+
+@dataclass(frozen=True)
 class Refer(Node):
     """A reference to an equation by its label."""
 
@@ -96,7 +98,7 @@ class Refer(Node):
 
 @dataclass(frozen=True)
 class Link(Node):
-    """A reference to a chapter, a table or a figure."""
+    """A reference to a ``section``, a ``table`` or a ``figure``."""
 
     kind: str
     name: str
@@ -119,24 +121,7 @@ class Status(Node):
     kind: str
 
 
-@dataclass(frozen=True)
-class Size(Node):
-    """How many rows an axis has, or of them a column sums; the page counts again."""
-
-    rows: int
-    axis: str
-    column: str = ""
-
-
-@dataclass(frozen=True)
-class Inside(Node):
-    """How many cells lie inside of a limit, ``10 of 10 pairs``; the page counts again."""
-
-    text: str
-    margin: str
-
-
-Inline = str | Strong | Code | Math | Number | Unit | Value | Refer | Link | Hint | Status | Size | Inside
+Inline = str | Strong | Code | Math | Number | Unit | Value | Count | Refer | Link | Hint | Status
 Inlines = tuple[Inline, ...]
 
 
@@ -156,13 +141,15 @@ def joined(parts: Iterable[Inlines], between: str, last: str = "") -> Inlines:
 
 @dataclass(frozen=True)
 class Silent(Node):
-    """What was printed in a cell of a row that is left out: it has no value."""
+    """What was printed in a cell of a row that is left out: it has no value.
+
+    `described` says what it is, for an input of it; empty for what is computed.
+    """
 
     name: str
     label: tuple[int, ...]
     text: str
     described: str
-    """What it is, for an input of it; empty for what is computed."""
 
     @property
     def index(self) -> str:
@@ -180,30 +167,20 @@ Entry = Inlines | Item | Silent
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table.
-
-    Parameters
-    ----------
-    head : tuple of inlines
-    kind : str
-        ``left`` or ``number`` (on the right), ``words`` (broken into lines), ``row``, ``symbol``,
-        ``unitcell``, ``verdict`` (stands out in a row that is a finding).
-    form : str
-        The ``table-format`` of siunitx, where numbers stand below one another in print.
-    share : float
-        The part of a line that words take in print.
-    unit : tuple of inlines
-        What stands below the head.
-    tip : str
-        What the head means, where no legend tells it.
-    """
+    """A column of a table."""
 
     head: Inlines
     kind: str = "left"
+    """Or ``number`` (on the right), ``words`` (broken into lines), ``row``, ``symbol``, ``unitcell``, or
+    ``verdict``, which stands out in a row that is a finding."""
     form: str = ""
+    """The ``table-format`` of siunitx, where numbers stand below one another in print."""
     share: float = 0
+    """The part of a line that words take in print."""
     unit: Inlines = ()
+    """What stands below the head."""
     tip: str = ""
+    """What the head means, where no legend tells it."""
 
 
 @dataclass(frozen=True)
@@ -229,30 +206,7 @@ LONG = 30
 
 @dataclass(frozen=True)
 class Table(Block):
-    """A table.
-
-    Parameters
-    ----------
-    name : str
-        Its identifier.
-    caption : tuple of inlines
-    columns : tuple of Column
-    groups : tuple of Rows
-    number : str
-        That it is referred to by; one without a number stands where it is mentioned.
-    look : str
-        ``list`` (no sheet of rows), ``compared`` (live beside what was published) or nothing.
-    legend : tuple of inlines
-        What stands below it.
-    limits : tuple of inlines
-        What a mark in it means.
-    cut : str
-        A sentence about rows that are not shown.
-    wide : bool
-        Whether it takes more room than text does.
-    whole : bool
-        Whether it is always seen whole, however long it is.
-    """
+    """A table; one without a number stands where it is mentioned."""
 
     name: str
     caption: Inlines
@@ -260,11 +214,16 @@ class Table(Block):
     groups: tuple[Rows, ...]
     number: str = ""
     look: str = ""
+    """``list`` (no sheet of rows), ``compared`` (live beside what was published) or nothing."""
     legend: Inlines = ()
     limits: Inlines = ()
+    """What a mark in it means."""
     cut: str = ""
+    """A sentence about rows that are not shown."""
     wide: bool = False
+    """Whether it takes more room than text does."""
     whole: bool = False
+    """Whether it is always seen whole, however long it is."""
 
     @property
     def identifier(self) -> str:
@@ -294,21 +253,20 @@ class Table(Block):
     @property
     def filled(self) -> Table:
         """Without the columns in which no row says anything, for a format whose columns nobody counts."""
-        said = [any(row.cells[n] for row in self.rows) for n in range(len(self.columns))]
-
-        def kept(cells: tuple[Entry, ...]) -> tuple[Entry, ...]:
-            return tuple(cell for cell, says in zip(cells, said, strict=True) if says)
-
-        groups = (
-            replace(g, rows=tuple(replace(r, cells=kept(r.cells)) for r in g.rows)) for g in self.groups
+        said = [n for n in range(len(self.columns)) if any(row.cells[n] for row in self.rows)]
+        groups = tuple(
+            Rows(
+                tuple(replace(row, cells=tuple(row.cells[n] for n in said)) for row in group.rows),
+                group.title,
+            )
+            for group in self.groups
         )
-        columns = tuple(column for column, says in zip(self.columns, said, strict=True) if says)
-        return self if all(said) else replace(self, columns=columns, groups=tuple(groups))
+        return replace(self, columns=tuple(self.columns[n] for n in said), groups=groups)
 
-
-Blocks = tuple[Block, ...]
 
 # --- other blocks ----------------------------------------------------------------------------------------
+
+Blocks = tuple[Block, ...]
 
 
 @dataclass(frozen=True)
@@ -328,21 +286,15 @@ class Note(Block):
 
 @dataclass(frozen=True)
 class Items(Block):
-    """A list."""
+    """A list; one of ``versions`` is set close together."""
 
     items: tuple[Inlines, ...]
-
-
-@dataclass(frozen=True)
-class Versions(Block):
-    """What computed the report."""
-
-    items: tuple[Inlines, ...]
+    look: str = ""
 
 
 @dataclass(frozen=True)
 class Result:
-    """A cell that is a result: its symbol, what it is, how many rows it rests on where that is not all."""
+    """A cell that is a result: how many rows it rests on where that is not all, and how many carry marks."""
 
     symbol: Math
     meaning: Inlines
@@ -367,37 +319,16 @@ class Figure(Block):
 
 
 @dataclass(frozen=True)
-class Numbered(Block):
-    """A displayed equation with its number."""
-
-    equation: Equation
-
-
-@dataclass(frozen=True)
 class Formula(Block):
-    """A displayed equation without a number."""
+    """A displayed equation, with its number or without."""
 
     equation: Equation
+    numbered: bool = False
 
 
 @dataclass(frozen=True)
 class Claim(Block):
-    """An equation with what is known of it.
-
-    Parameters
-    ----------
-    equation : Equation
-    title : tuple of inlines
-    status : Status
-    because : tuple of inlines
-        Why it holds, and where.
-    grounds : tuple of inlines
-        What it finally rests on, if it was proved.
-    summary : str
-        Of its derivation.
-    steps : tuple of tuple of blocks
-        The derivation.
-    """
+    """An equation with what is known of it: why it holds, what it rests on if proved, its derivation."""
 
     equation: Equation
     title: Inlines

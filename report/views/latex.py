@@ -17,7 +17,7 @@ from ...derivations.equation import Equation
 from ..document.material import Material
 from ..document.numbers import is_pure
 from ..document.parts import Item
-from ..document.tree import Column, Entry, Formula, Math, Number, Numbered, Refer, Silent, Table, Unit
+from ..document.tree import Column, Entry, Formula, Math, Number, Refer, Silent, Table, Unit
 from ..errors import LoopsheetError, diagnose
 from ..programs import ProgramFailed, run
 from ..result import Report
@@ -95,12 +95,18 @@ class LatexWriter(Writer):
             return Markup(rf"\ref{{{self.label(node.label)}}}")
         return Markup(rf"\hyperref[{self.label(node.label)}]{{{tex(node.label)}}}")
 
-    def numbered(self, node: Numbered) -> Markup:
-        """A displayed equation with its number, where it stands first."""
+    def formula(self, node: Formula) -> Markup:
+        """A displayed equation; one with a number stands where it is shown first."""
         label = node.equation.label
+        if not node.numbered:
+            return self.displayed(node.equation, r"\notag")
         if not self.first(label):
             return Markup("")
-        return self._display(node.equation, rf"\tag*{{{tex(label)}}}\label{{{self.label(label)}}}")
+        return self.displayed(node.equation, rf"\tag*{{{tex(label)}}}\label{{{self.label(label)}}}")
+
+    def numbered(self, equation: Equation) -> Markup:
+        """A displayed equation with its number, for a template."""
+        return self.formula(Formula(equation, numbered=True))
 
     def reference(self, label: str) -> Markup:
         """A reference from a template."""
@@ -114,11 +120,7 @@ class LatexWriter(Writer):
         """Whether an equation stands somewhere above."""
         return label in self._used
 
-    def formula(self, node: Formula) -> Markup:
-        """A displayed equation of a derivation, which is none of the ledger."""
-        return self._display(node.equation, r"\notag")
-
-    def _display(self, equation: Equation, number: str) -> Markup:
+    def displayed(self, equation: Equation, number: str) -> Markup:
         """A displayed equation; one that may be too wide is shrunk to the line if it is."""
         lines = block(self.material.printer, equation.members)
         body = lines.aligned
