@@ -47,6 +47,7 @@ examples:
   loopsheet check my-campaign --format github
 and in such a folder, or with its name or 'paper' at the end:
   loopsheet build                      the report, in out/
+  loopsheet watch                      the same whenever a file is saved, shown in the browser
   loopsheet prove "(11)"               how equation (11) follows, step by step
   loopsheet show alpha                 all cells of a column, with all digits
   loopsheet why "alpha[1-2]"           one number: its equation, its proof, what it rests on

@@ -3,10 +3,11 @@
 A verb is listed here and imports what it needs when it runs, so that ``--help`` answers at once.
 """
 
-from . import build, check, crate, diff, new, prove, show, verify, why
+from . import build, check, crate, diff, new, prove, show, verify, watch, why
 
 VERBS = {
     "build": build,
+    "watch": watch,
     "check": check,
     "prove": prove,
     "show": show,

@@ -15,11 +15,16 @@ if TYPE_CHECKING:
 HELP = "compute a report and write it"
 
 
+def out_argument(parser: argparse.ArgumentParser) -> None:
+    """Take --out."""
+    where = "where it goes (default: FOLDER/out; for the shipped paper, out)"
+    parser.add_argument("--out", metavar="DIR", type=named, help=where)
+
+
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     folder_argument(parser)
-    where = "where it goes (default: FOLDER/out; for the shipped paper, out)"
-    parser.add_argument("--out", metavar="DIR", type=named, help=where)
+    out_argument(parser)
     parser.add_argument(
         "--to",
         metavar="FORMATS",
@@ -48,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
         print(visible(sentence), flush=True)
 
     with Progress(sys.stderr) as progress:
-        found = build.built(Study(folder, step=progress), out, formats, options.engines, say, _told)
+        found = build.built(Study(folder, step=progress), out, formats, options.engines, say, summary)
     for line in found.told["lines"]:
         print(line)
     names = {path.name: path for path in found.files}
@@ -61,8 +66,8 @@ def run(options: argparse.Namespace) -> int:
     return OK if found.told["passed"] else FINDINGS
 
 
-def _told(report: Report) -> dict[str, Any]:
-    """The result, and what is not as expected."""
+def summary(report: Report) -> dict[str, Any]:
+    """What to print of a report: its result, and what is not as expected."""
     from ..findings import checks
 
     lines = [_line(report, name) for name in report.workbook.headline]

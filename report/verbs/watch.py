@@ -1,0 +1,128 @@
+"""`watch`: build a report again whenever its folder is saved, and show it in the browser."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .build import out_argument, summary
+from .common import OK, Progress, folder_argument, keeping_arguments
+
+if TYPE_CHECKING:
+    from ..results import Result
+
+HELP = "build a report again whenever something in its folder is saved, and show it"
+
+PAUSE = 0.2
+"""Seconds between two looks at a folder, and for which it has to be at rest: editors save in steps."""
+
+MOST = 12
+"""Of the numbers that moved, how many are named."""
+
+Look = dict[str, tuple[int, int, int]]
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what it takes."""
+    folder_argument(parser)
+    out_argument(parser)
+    parser.add_argument(
+        "--to", metavar="FORMATS", default="html", help="as for build (default: html); json comes with it"
+    )
+    keeping_arguments(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Build and wait, until Ctrl-C."""
+    from ..build import parse_formats
+    from ..folders import output, report_folder, told
+    from ..local_server import Server
+
+    formats = parse_formats(f"{options.to},json")
+    folder = report_folder(options.folder)
+    out = Path(options.out) if options.out else output(folder)
+    try:
+        with Server(out) as server:
+            print(f"watching {told(folder)}; its report is at {server.address} (Ctrl-C ends)", flush=True)
+            _watch(folder, lambda: _again(folder, out, formats, server.tell))
+    except KeyboardInterrupt as stopped:
+        if getattr(stopped, "number", signal.SIGINT) != signal.SIGINT:
+            raise
+    return OK
+
+
+def _watch(folder: Path, build: Callable[[], Iterable[str]]) -> None:
+    """Build whenever a file of the folder itself, or one that was read last, is another one."""
+    read: set[str] = set()
+    seen: Look | None = None
+    while True:
+        now = _look(folder, read)
+        if now == seen:
+            time.sleep(PAUSE)
+            continue
+        time.sleep(PAUSE)
+        if now == _look(folder, read):
+            read |= {*build()}
+            seen = {**now, **{name: found for name, found in _look(folder, read).items() if name not in now}}
+
+
+def _look(folder: Path, names: Iterable[str]) -> Look:
+    """What there is, and when it was written."""
+    found: Look = {}
+    try:
+        files = {*(path.name for path in folder.iterdir()), *names}
+    except OSError:
+        files = {*names}
+    for name in sorted(files):
+        try:
+            status = (folder / name).stat()
+        except OSError:
+            continue  # somebody is just replacing it
+        if not (folder / name).is_dir():
+            found[name] = status.st_mtime_ns, status.st_size, status.st_ino
+    return found
+
+
+def _again(folder: Path, out: Path, formats: tuple[str, ...], tell: Callable[..., None]) -> Iterable[str]:
+    """Build once more, and say what changed or what is wrong; the files that were read."""
+    from ..build import built
+    from ..diagnostics import visible
+    from ..differences import compare
+    from ..errors import LoopsheetError, render_all
+    from ..study import Study
+    from ..views.differences import as_text
+
+    def say(sentence: str) -> None:
+        print(visible(sentence), flush=True)
+
+    before = _result(out)
+    try:
+        with Progress(sys.stderr) as progress:
+            study = Study(folder, step=progress)
+            found = built(study, out, formats, False, say, summary)
+    except LoopsheetError as error:
+        print(render_all(error.diagnostics), file=sys.stderr, flush=True)
+        tell(error=render_all(error.diagnostics))
+        return ()
+    after = _result(out)
+    changed = as_text(compare(before, after), MOST) if before and after else ""
+    told = changed.splitlines() if changed else found.told["lines"]
+    print(*told, f"{len(found.files)} files in {out}", sep="\n", flush=True)
+    tell(changed=changed)
+    return study.files
+
+
+def _result(out: Path) -> Result | None:
+    """What an earlier build left, if that can be read."""
+    from ..errors import InputError
+    from ..results import read_result
+
+    try:
+        return read_result(out)
+    except InputError:
+        return None
