@@ -1,20 +1,19 @@
-"""Work beside the main work: drawing takes as long as judging, and neither needs the other."""
+"""Work beside the main work, in a fresh process, which shares no memory, threads or locks with this one."""
 
 from __future__ import annotations
 
 import errno
-import gc
-import multiprocessing
 import os
-import warnings
+import pickle
+import subprocess
+import sys
 from collections.abc import Callable
 from contextlib import suppress
-from multiprocessing.connection import Connection
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from .stopping import unstoppable, worker
 
-__all__ = ["Background"]
+__all__ = ["Background", "serve"]
 
 T = TypeVar("T")
 _PATIENCE = 5.0
@@ -22,27 +21,29 @@ _PATIENCE = 5.0
 
 
 class Background(Generic[T]):
-    """A function running in a process of its own, where the system can fork; else when it is asked for.
+    """A call of a function in a process of its own, from now on.
 
     Parameters
     ----------
-    work : callable
-        Takes nothing; what it returns must be plain data. It sees the memory as it is now.
+    function : callable
+        Of a module; what it returns must be plain data.
+    *arguments : anything
+        Plain data, too.
     """
 
-    def __init__(self, work: Callable[[], T]) -> None:
-        self._work = work
-        self._process = None
-        if "fork" not in multiprocessing.get_all_start_methods():
-            return
-        context = multiprocessing.get_context("fork")
-        self._receiver, sender = context.Pipe(duplex=False)
-        self._process = context.Process(target=_run, args=(work, sender, os.getpid()), daemon=True)
-        with warnings.catch_warnings(), unstoppable():
-            # Forking beside NumPy's idle threads is what the warning is about; the child does not use them.
-            warnings.simplefilter("ignore", DeprecationWarning)
-            self._process.start()
-        sender.close()
+    def __init__(self, function: Callable[..., T], *arguments: Any) -> None:
+        code = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import serve; serve({os.getpid()})"
+        with unstoppable():
+            self._process: subprocess.Popen[bytes] | None = subprocess.Popen(
+                [sys.executable, "-c", code],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                start_new_session=True,  # what a terminal sends to all is for the parent
+            )
+        assert self._process.stdin is not None
+        with suppress(BrokenPipeError):  # it has ended, and that is told when somebody asks
+            self._process.stdin.write(pickle.dumps((function, arguments)))
+            self._process.stdin.close()
 
     def __enter__(self) -> Background[T]:
         return self
@@ -51,17 +52,16 @@ class Background(Generic[T]):
         self.cancel()
 
     def result(self) -> T:
-        """Wait for the result; what the work raised is raised here."""
-        if self._process is None:
-            return self._work()
-        try:
-            outcome, error = self._receiver.recv()
-        except EOFError:
-            self._process.join()
-            reason = f"a process of ours was ended by somebody else (code {self._process.exitcode})"
-            outcome, error = None, OSError(errno.ENOMEM, reason)  # the system does so when memory is short
-        self._process.join()
-        self._process = None
+        """Wait for the result; what the function raised is raised here."""
+        assert self._process is not None
+        assert self._process.stdout is not None
+        told = self._process.stdout.read()
+        code = self._process.wait()
+        self._close()
+        if not told:
+            reason = f"a process of ours was ended by somebody else (code {code})"
+            raise OSError(errno.ENOMEM, reason)  # the system does so when memory is short
+        outcome, error = pickle.loads(told)
         if error is not None:
             raise error
         result: T = outcome
@@ -69,22 +69,45 @@ class Background(Generic[T]):
 
     def cancel(self) -> None:
         """Stop it, if it still runs."""
-        if self._process is not None:
-            with unstoppable():
-                self._process.terminate()
-                self._process.join(_PATIENCE)
-                self._process.kill()
-                self._process.join()
+        if self._process is None:
+            return
+        with unstoppable():
+            self._process.terminate()
+            with suppress(subprocess.TimeoutExpired):
+                self._process.wait(_PATIENCE)
+            self._process.kill()
+            self._process.wait()
+            self._close()
+
+    def _close(self) -> None:
+        process, self._process = self._process, None
+        for pipe in (process.stdin, process.stdout) if process is not None else ():
+            if pipe is not None:
+                with suppress(BrokenPipeError):
+                    pipe.close()
 
 
-def _run(work: Callable[[], T], sender: Connection, parent: int) -> None:
-    def send() -> None:
-        gc.freeze()  # what was inherited is no garbage, and looking at it would copy it
+def serve(parent: int) -> None:
+    """Do in this process what another one asks for, and tell it.
+
+    Parameters
+    ----------
+    parent : int
+        The process that asks, by its number.
+    """
+    answer = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # nothing that is printed goes into the answer
+
+    def work() -> None:
         try:
-            outcome: tuple[object, Exception | None] = (work(), None)
+            function, arguments = pickle.load(sys.stdin.buffer)
+            outcome: tuple[object, Exception | None] = (function(*arguments), None)
+        except EOFError:
+            return  # nobody asks any more
         except Exception as error:
             outcome = (None, error)
         with suppress(BrokenPipeError):  # nobody waits for it
-            sender.send(outcome)
+            answer.write(pickle.dumps(outcome))
+            answer.flush()
 
-    worker(parent, send)
+    worker(parent, work)

@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import stages
 from .background import Background
 from .crate import added
 from .errors import UsageError, close, diagnose, listing
@@ -17,12 +16,12 @@ from .folders import INPUTS, told
 from .provenance import processor, sources
 from .stages import Step, book, program, refuse_too_many_rows, silent
 from .staging import put, staged
+from .study import Recipe, Study
 from .timing import timed
 
 if TYPE_CHECKING:
     from .prepared import Prepared
     from .result import Comparison, Report
-    from .study import Study
     from .verdict import Referee
     from .workbook import FigureSpec
 
@@ -164,49 +163,60 @@ def _made(
     """Compute a report and write its files into a folder."""
     from . import cost
 
-    step = study.step
+    tell(_begun(study.inputs.title, study, out))
     with ExitStack() as running:
-        tell(_begun(study.inputs.title, study, out))
-        # Everything that takes long has a process of its own, from when there is what it needs.
-        proving = None if study.are_proved() else running.enter_context(Background(study.proofs_quietly))
-        prepared = study.prepared
-        formats = _possible(prepared, formats, tell)
-        if long := cost.told(prepared.sheet, prepared.layouts, formats):
+        # What takes long and needs little of the rest has a process of its own, from when the folder is known
+        # to be in order.
+        proving = None if study.are_proved() else running.enter_context(Background(_proofs, study.recipe))
+        formats = _possible(study.prepared, formats, tell)
+        if long := cost.told(study.prepared.sheet, study.prepared.layouts, formats):
             tell(long)
+        study.prepared.check_cells()
+        aside = running.enter_context(Background(_aside, study.recipe, formats))
         report = study.computed
-        judging = running.enter_context(Background(lambda: stages.judged(report, every_engine).engines))
-        refereeing, drawing, workbook = None, None, None
-        if report.inputs.published:
-            refereeing = running.enter_context(Background(lambda: _refereed(report, formats)))
-        if report.workbook.figures and _WITH_FIGURES & set(formats):
-            drawing = running.enter_context(
-                Background(lambda: _pictures(report, report.workbook.figures, formats))
-            )
+        engines = study.engines if every_engine else study.numpy
         source = program(report) if "html" in formats else ""
         if proving is not None:
-            step("proving the equations")
+            study.step("proving the equations")
             with timed("waiting for proofs"):
                 study.proof_data = proving.result()
         proved = study.proved
+        content = b""
         if "xlsx" in formats:
-            workbook = running.enter_context(Background(lambda: book(proved)[1]))
-        step("judging the engines at 50 digits")
-        with timed("waiting for the judge"):
-            finished = replace(proved, engines=judging.result())
-        pictures: dict[str, bytes] = {}
-        if drawing is not None:
-            step("drawing the figures")
-            with timed("waiting for figures"):
-                pictures = drawing.result()
-        if refereeing is not None:
-            step("refereeing what was published")
-            with timed("waiting for the referee"):
-                referee, comparisons, its_pictures = refereeing.result()
-            finished = replace(finished, referee=referee, comparisons=comparisons)
-            pictures |= its_pictures
-        with timed("writing"):
-            _write(finished, stage, formats, pictures, source, workbook, step)
+            study.step("writing report.xlsx")
+            with timed("workbook"):
+                content = book(proved)[1]
+        study.step("drawing the figures, refereeing what was published")
+        with timed("waiting for the referee and figures"):
+            found = aside.result()
+    finished = replace(proved, engines=engines, referee=found.referee, comparisons=found.comparisons)
+    with timed("writing"):
+        _write(finished, stage, formats, found.pictures, source, content, study.step)
     return finished
+
+
+def _proofs(recipe: Recipe) -> dict[str, Any]:
+    """In a process of its own: what is known of the algebra."""
+    return Study.of(recipe).proof_data
+
+
+@dataclass(frozen=True)
+class _Aside:
+    referee: Referee
+    comparisons: tuple[Comparison, ...]
+    pictures: dict[str, bytes]
+
+
+def _aside(recipe: Recipe, formats: Collection[str]) -> _Aside:
+    """In a process of its own: what the referee finds, and all figures."""
+    study = Study.of(recipe)
+    report = study.refereed if study.computed.inputs.published else study.computed
+    pictures: dict[str, bytes] = {}
+    if _WITH_FIGURES & set(formats):
+        from .views import figures
+
+        pictures = _pictures(report, figures.of(report), formats)
+    return _Aside(report.referee, report.comparisons, pictures)
 
 
 def _of_a_crate(out: Path, folder: Path) -> dict[Path, str]:
@@ -233,27 +243,13 @@ def _pictures(report: Report, which: Sequence[FigureSpec], formats: Collection[s
     return drawn
 
 
-def _refereed(
-    report: Report, formats: Collection[str]
-) -> tuple[Referee, tuple[Comparison, ...], dict[str, bytes]]:
-    """What the referee found, and its own picture."""
-    found = stages.refereed(report)
-    pictures: dict[str, bytes] = {}
-    if _WITH_FIGURES & set(formats):
-        from .views import figures
-
-        own = [figure for figure in figures.of(found) if figure not in report.workbook.figures]
-        pictures = _pictures(found, own, formats)
-    return found.referee, found.comparisons, pictures
-
-
 def _write(
     report: Report,
     stage: Path,
     formats: Collection[str],
     pictures: Mapping[str, bytes],
     source: str,
-    workbook: Background[bytes] | None,
+    workbook: bytes,
     step: Step,
 ) -> None:
     from .views import json
@@ -278,9 +274,8 @@ def _write(
             if name.endswith(".svg")
         }
         put(stage / "report.html", html.render(report, svg, source))
-    if workbook is not None:
-        step("writing report.xlsx")
-        put(stage / "report.xlsx", workbook.result())
+    if "xlsx" in formats:
+        put(stage / "report.xlsx", workbook)
     if "pdf" in formats:
         step("running latexmk")
         latex.compile(stage)

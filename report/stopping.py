@@ -125,7 +125,7 @@ def unstoppable() -> Iterator[None]:
 
 
 def worker(parent: int, work: Callable[[], None]) -> None:
-    """Work in a process that was just forked, in an unstoppable block: it ends with its parent, not before.
+    """Work in a process that was just begun for it: it ends with its parent, not before.
 
     What a terminal sends to all is for the parent, which ends its workers by SIGTERM. If the parent is
     killed, nobody does: then the worker tells itself.

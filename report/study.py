@@ -29,9 +29,11 @@ if TYPE_CHECKING:
     from .proofs import Algebra
     from .result import Report
 
-__all__ = ["Study"]
+__all__ = ["Recipe", "Study"]
 
 T = TypeVar("T")
+Recipe = tuple[Path, Find, dict[str, bytes]]
+"""A folder, how its workbook is found, and its files."""
 
 
 def _part(name: str) -> Callable[[Callable[[Any], T]], cached_property[T]]:
@@ -68,6 +70,18 @@ class Study:
     def __init__(self, folder: Path, find: Find = find_workbook, step: stages.Step = stages.silent) -> None:
         self.folder, self.find, self.step = folder, find, step
         self._read: dict[str, bytes] = {}
+
+    @property
+    def recipe(self) -> Recipe:
+        """What another process makes the same study of."""
+        return self.folder, self.find, self.inputs.files
+
+    @classmethod
+    def of(cls, recipe: Recipe) -> Study:
+        """The study of the same bytes, whatever has become of the folder."""
+        study = cls(*recipe[:2])
+        study._read = recipe[2]
+        return study
 
     # --- what was read ---
 
@@ -118,11 +132,6 @@ class Study:
 
         about = self.inputs.about_source
         return self.kept("proofs", lambda: as_data(proved(self.ledger, about, self.step)), by="workbook")
-
-    def proofs_quietly(self) -> dict[str, Any]:
-        """The same for a process beside this one, of which nobody is told."""
-        self.step = stages.silent
-        return self.proof_data
 
     @_part("proofs")
     def algebra(self) -> Algebra:

@@ -371,7 +371,7 @@ def test_memory_that_is_short_is_no_bug(
     monkeypatch.setattr(stages, "evaluated", fail)
     assert main(["show", "alpha", "paper"]) == 2
     assert "the machine refuses: no memory is left" in capsys.readouterr().err
-    killed = Background(lambda: os.kill(os.getpid(), signal.SIGKILL))
+    killed = Background(signal.raise_signal, signal.SIGKILL)
     with pytest.raises(OSError, match=r"ended by somebody else \(code -9\)"):
         killed.result()
 
