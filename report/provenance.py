@@ -63,7 +63,7 @@ def versions() -> dict[str, str]:
     """What computed: this program, its libraries and the interpreter's minor version."""
     from importlib.metadata import version
 
-    printing = ("jinja2", "markdown-it-py", "matplotlib", "latex2mathml", "xlsxwriter")
+    printing = ("jinja2", "markdown-it-py", "matplotlib", "xlsxwriter")
     python = f"{sys.version_info.major}.{sys.version_info.minor}"
     return {
         "loopsheet": __version__,

@@ -1,5 +1,7 @@
 """Mathematics in the author's order: a literal for each construct."""
 
+from xml.etree import ElementTree
+
 import pytest
 from sympy import (
     And,
@@ -26,7 +28,9 @@ from loopsheet.derivations import soft_impact
 from loopsheet.derivations.reductions import Median
 from loopsheet.derivations.symbols import VOCABULARY, F_of, k, q
 from loopsheet.report.document.math import Printer, latex_names, name_latex, with_index
-from loopsheet.report.views.typeset import TEXT_WIDTH, block, mathml, mathml_block, width
+from loopsheet.report.document.notation import fragments
+from loopsheet.report.views.mathml import mathml, mathml_block
+from loopsheet.report.views.typeset import TEXT_WIDTH, block, width
 
 a, b, c, x, y = symbols("a b c x y", positive=True)
 NAMES = latex_names(VOCABULARY)
@@ -218,10 +222,48 @@ def test_a_word_is_one_upright_name() -> None:
     assert "<mi>red</mi>" in mathml(r"m_{\mathrm{red}}")
 
 
-def test_the_latex_goes_with_it_escaped() -> None:
-    assert 'alttext="a &lt; b"' in mathml("a < b")
+@pytest.mark.parametrize(
+    ("latex", "made"),
+    [
+        ("x_{m}^{2}", "<msubsup><mi>x</mi><mi>m</mi><mn>2</mn></msubsup>"),
+        ("v'_{2}", "<msubsup><mi>v</mi><mn>2</mn><mi>′</mi></msubsup>"),
+        (r"v''^{2}", "<msup><msup><mi>v</mi><mi>″</mi></msup><mn>2</mn></msup>"),
+        (r"\frac{a + 1}{2}", "<mfrac><mrow><mi>a</mi><mo>+</mo><mn>1</mn></mrow><mn>2</mn></mfrac>"),
+        (r"\sqrt{x}", "<msqrt><mi>x</mi></msqrt>"),
+        (r"\left(x\right)", "<mrow><mo>(</mo><mi>x</mi><mo>)</mo></mrow>"),
+        (r"\dot{x}", '<mover><mi>x</mi><mo stretchy="false">˙</mo></mover>'),
+        (r"\Omega", '<mi mathvariant="normal">Ω</mi>'),
+        (r"\varphi_{0}", "<msub><mi>φ</mi><mn>0</mn></msub>"),
+        (r"\text{a < b}", "<mtext>a &lt; b</mtext>"),
+        (r"\foo", "<mi>foo</mi>"),
+        ("2.5 < x", "<mn>2.5</mn><mo>&lt;</mo><mi>x</mi>"),
+        (r"2 \ln(x)", '<mn>2</mn><mspace width="0.17em"/><mi>ln</mi>'
+         '<mo stretchy="false">(</mo><mi>x</mi><mo stretchy="false">)</mo>'),
+    ],
+)  # fmt: skip
+def test_notation_is_set(latex: str, made: str) -> None:
+    assert mathml(latex) == f"<math>{made}</math>"
+
+
+NO_NOTATION = (
+    *("_", "^", "{", "}", "'", "\\", "a_b_c", "a^^", r"\frac", r"\left", r"\left(", r"\sqrt{"),
+    *(r"\begin{cases}a", r"\left<a\right>"),
+)
+
+
+@pytest.mark.parametrize("latex", ["", *NO_NOTATION])
+def test_what_is_no_notation_is_read_all_the_same(latex: str) -> None:
+    ElementTree.fromstring(mathml(latex))
+    assert width(latex) >= 0
+    fragments(latex)
+
+
+def test_limits_stand_above_where_there_is_room() -> None:
+    total = r"\sum_{k=1}^{n} x_{k}"
+    assert "<munderover>" in mathml(total, display=True)
+    assert "<munderover>" not in mathml(total)
 
 
 def test_a_sign_behind_a_relation_is_no_operation() -> None:
-    assert '<mo form="prefix">&#x02212;</mo>' in mathml("a = -b")
+    assert '<mo form="prefix">−</mo>' in mathml("a = -b")
     assert '<mo form="prefix">' not in mathml("a - b")

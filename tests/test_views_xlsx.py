@@ -14,6 +14,8 @@ import openpyxl
 import pytest
 from openpyxl.worksheet.formula import ArrayFormula
 
+from loopsheet.report.document.math import with_index
+from loopsheet.report.document.notation import fragments
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.folders import PAPER
 from loopsheet.report.grid import Grid
@@ -24,7 +26,6 @@ from loopsheet.report.views import json as json_view
 from loopsheet.report.views import xlsx
 from loopsheet.report.views.xlsx_style import (
     LONGEST,
-    fragments,
     height,
     number_format,
     open_format,
@@ -400,7 +401,7 @@ def test_an_input_shows_all_that_is_typed() -> None:
     ],
 )
 def test_symbols_are_letters_with_subscripts(latex: str, pieces: list[tuple[str, str]]) -> None:
-    assert fragments(latex) == pieces
+    assert fragments(with_index(latex)) == pieces
 
 
 def test_rows_are_as_high_as_their_text() -> None:

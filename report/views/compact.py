@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from xml.etree import ElementTree
 
-__all__ = ["short_markup", "short_mathml", "short_script", "short_style"]
+__all__ = ["short_markup", "short_script", "short_style"]
 
 # --- JavaScript ------------------------------------------------------------------------------------------
 
@@ -113,46 +112,3 @@ def short_markup(page: str) -> str:
 
 def _unquoted(tag: str) -> str:
     return re.sub(r'="([\w.#-]+)"(?=[ >])', r"=\1", tag)
-
-
-# --- MathML ----------------------------------------------------------------------------------------------
-
-_MATH = re.compile(r"<math\b[\s\S]*?</math>")
-_REFERENCE = re.compile(r"&#x0*([0-9A-F]+);")
-_FENCE = re.compile(r'<mo stretchy="true" fence="true" form="(?:prefix|postfix)">([()\[\]{}])</mo>')
-_ROWS = frozenset({"math", "mtd", "msqrt", "mstyle", "mpadded", "mphantom", "merror", "menclose"})
-"""Elements that take any number of children as a row."""
-
-
-def short_mathml(page: str) -> str:
-    """A page whose formulas have no groups of one, no default attributes, no numbers of characters.
-
-    What a formula is called in LaTeX is left out too: browsers and screen readers read its elements.
-
-    >>> short_mathml("<math><mrow><msup><mi>&#x003B1;</mi><mrow><mn>2</mn></mrow></msup></mrow></math>")
-    '<math><msup><mi>α</mi><mn>2</mn></msup></math>'
-    """
-    return _MATH.sub(lambda found: _shorter(found.group()), page)
-
-
-def _shorter(formula: str) -> str:
-    text = re.sub(r'^(<math[^>]*?) alttext="[^"]*"', r"\1", _REFERENCE.sub(_character, formula))
-    root = ElementTree.fromstring(_FENCE.sub(r"<mo>\1</mo>", text))
-    _ungroup(root)
-    return ElementTree.tostring(root, encoding="unicode")
-
-
-def _ungroup(element: ElementTree.Element) -> None:
-    """Take out rows of one, and rows in what is a row itself."""
-    for place, child in enumerate(element):
-        _ungroup(child)
-        # A group of one operator changes its spacing, so operators keep theirs.
-        if child.tag == "mrow" and not child.attrib and len(child) == 1 and child[0].tag != "mo":
-            element[place] = child[0]
-    if element.tag in _ROWS and len(element) == 1 and element[0].tag == "mrow" and not element[0].attrib:
-        element[:] = list(element[0])
-
-
-def _character(found: re.Match[str]) -> str:
-    character = chr(int(found[1], 16))
-    return found.group() if character in "<>&\"'" or not character.isprintable() else character

@@ -17,10 +17,11 @@ from ..document.tree import Column, Entry, Math, Number, Refer, Silent, Unit
 from ..result import Report
 from ..values import Cell
 from . import live
-from .compact import short_markup, short_mathml, short_style
+from .compact import short_markup, short_style
 from .compact_svg import inlined
 from .escape import Markup, html
-from .typeset import block, mathml, mathml_block
+from .mathml import mathml, mathml_block
+from .typeset import block
 from .units import unit_html
 from .writer import TEMPLATES, Writer
 
@@ -166,7 +167,7 @@ def render(report: Report, figures: Mapping[str, str], program: str | None = Non
         parts=parts,
         missing=Tables(material).missing(),
     )
-    return _squeezed(short_markup(short_mathml(whole)))
+    return _squeezed(short_markup(whole))
 
 
 def _script(report: Report, program: str) -> str:

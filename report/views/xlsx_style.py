@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from math import floor, log10
 from typing import Any
 
 from ..document.math import with_index
+from ..document.notation import fragments
 
-__all__ = ["Style", "fragments", "height", "number_format", "open_format", "said"]
+__all__ = ["Style", "height", "number_format", "open_format", "said"]
 
 LONGEST = 32_000
 """Characters of a cell; Excel takes 32 767."""
@@ -107,7 +107,7 @@ class Style:
 
     def symbol(self, worksheet: Any, row: int, column: int, latex: str, name: str = "symbol") -> None:
         """Write the LaTeX of a symbol as letters with subscripts."""
-        parts = fragments(latex)
+        parts = fragments(with_index(latex))
         scripts = {"": "italic", "_": "lowered", "^": "raised"}
         rich = [piece for script, text in parts for piece in (self(scripts[script]), text)]
         if len(parts) > 1:
@@ -158,50 +158,6 @@ def open_format(decimals: int) -> str:
 
 
 # --- text ------------------------------------------------------------------------------------------------
-
-_LETTERS = {
-    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ", "eta": "η",
-    "theta": "θ", "kappa": "κ", "lambda": "λ", "mu": "μ", "nu": "ν", "xi": "ξ", "pi": "π", "rho": "ρ",
-    "sigma": "σ", "tau": "τ", "phi": "φ", "chi": "χ", "psi": "ψ", "omega": "ω", "Delta": "Δ",
-    "Lambda": "Λ", "Sigma": "Σ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω", "log": "log", "ln": "ln",
-    ",": "", ";": "", " ": " ", "left": "", "right": "",
-}  # fmt: skip
-_MACRON = "\u0304"
-
-
-def fragments(latex: str) -> list[tuple[str, str]]:
-    r"""The LaTeX of a symbol as pieces of plain text, each with ``_``, ``^`` or nothing for its height.
-
-    Examples
-    --------
-    >>> fragments(r"x_{m_2%s}"), fragments(r"\bar{\alpha}"), fragments("C'_{(7)%s}")
-    ([('', 'x'), ('_', 'm2')], [('', 'ᾱ')], [('', 'C′'), ('_', '(7)')])
-    """
-    text = with_index(latex)
-    text = re.sub(r"\\(?:mathrm|text|mathit|operatorname)\s*\{([^{}]*)\}", r"\1", text)
-    text = re.sub(r"\\(?:bar|overline)\s*\{(\\[A-Za-z]+|.)\}", rf"\1{_MACRON}", text)
-    text = re.sub(r"\\([A-Za-z]+|[,; ])\s?", lambda found: _LETTERS.get(found[1], found[1]), text)
-    text = text.replace("'", "′")
-    pieces: list[tuple[str, str]] = []
-    script, depth = "", 0
-    for place, letter in enumerate(text):
-        if letter in "_^" and not depth:
-            script = letter
-        elif letter == "{":
-            depth += 1
-        elif letter == "}":
-            depth -= 1
-            script = "" if not depth else script
-        elif letter not in "_^":
-            if pieces and pieces[-1][0] == script:
-                pieces[-1] = (script, pieces[-1][1] + letter)
-            else:
-                pieces.append((script, letter))
-            if script and not depth and text[place + 1 : place + 2] != _MACRON:
-                script = ""
-    import unicodedata
-
-    return [(script, unicodedata.normalize("NFC", piece)) for script, piece in pieces]
 
 
 def said(unit: str) -> str:
