@@ -21,7 +21,7 @@ _PATIENCE = 5.0
 
 
 class Background(Generic[T]):
-    """A call of a function in a process of its own, from now on.
+    """A call of a function in a process of its own; where none may be begun, when the result is asked for.
 
     Parameters
     ----------
@@ -32,18 +32,20 @@ class Background(Generic[T]):
     """
 
     def __init__(self, function: Callable[..., T], *arguments: Any) -> None:
+        self._call = function, arguments
+        self._process: subprocess.Popen[bytes] | None = None
         code = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import serve; serve({os.getpid()})"
-        with unstoppable():
-            self._process: subprocess.Popen[bytes] | None = subprocess.Popen(
+        with unstoppable(), suppress(PermissionError, FileNotFoundError):
+            self._process = subprocess.Popen(
                 [sys.executable, "-c", code],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 start_new_session=True,  # what a terminal sends to all is for the parent
             )
-        assert self._process.stdin is not None
-        with suppress(BrokenPipeError):  # it has ended, and that is told when somebody asks
-            self._process.stdin.write(pickle.dumps((function, arguments)))
-            self._process.stdin.close()
+        if self._process is not None and self._process.stdin is not None:
+            with suppress(BrokenPipeError):  # it has ended, and that is told when somebody asks
+                self._process.stdin.write(pickle.dumps(self._call))
+                self._process.stdin.close()
 
     def __enter__(self) -> Background[T]:
         return self
@@ -53,8 +55,9 @@ class Background(Generic[T]):
 
     def result(self) -> T:
         """Wait for the result; what the function raised is raised here."""
-        assert self._process is not None
-        assert self._process.stdout is not None
+        if self._process is None or self._process.stdout is None:
+            function, arguments = self._call
+            return function(*arguments)
         told = self._process.stdout.read()
         code = self._process.wait()
         self._close()

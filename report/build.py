@@ -14,7 +14,7 @@ from .crate import added
 from .errors import UsageError, close, diagnose, listing
 from .folders import INPUTS, told
 from .provenance import processor, sources
-from .stages import Step, book, program, refuse_too_many_rows, silent
+from .stages import Step, book, refuse_too_many_rows, silent
 from .staging import put, staged
 from .study import Recipe, Study
 from .timing import timed
@@ -173,9 +173,8 @@ def _made(
             tell(long)
         study.prepared.check_cells()
         aside = running.enter_context(Background(_aside, study.recipe, formats))
-        report = study.computed
         engines = study.engines if every_engine else study.numpy
-        source = program(report) if "html" in formats else ""
+        source = study.program if "html" in formats else ""
         if proving is not None:
             study.step("proving the equations")
             with timed("waiting for proofs"):

@@ -170,6 +170,12 @@ class Study:
         """All cells, and every published value judged."""
         return stages.refereed(self.computed, self.step)
 
+    @_part("page program")
+    def program(self) -> str:
+        """The sheet as the page's program: of the columns, whatever numbers are given for them."""
+        given = " ".join(sorted(self.inputs.given))
+        return self.kept("page program", lambda: stages.program(self.computed), given, by="workbook")
+
     @_part("judge of the engines")
     def engines(self) -> tuple[Agreement, ...]:
         """How every engine that is installed here agrees with 50 digits."""

@@ -8,6 +8,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -321,6 +322,39 @@ def test_verify_believes_nothing_that_is_kept(
 
     with pytest.raises(MemoryError):
         verify(tmp_path / "gauge" / "out", None, find=find_workbook)
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid") or os.getuid() != 0, reason="only root can be two users")
+def test_another_user_believes_nothing_of_ours_and_writes_the_same(
+    require: Callable[..., str],
+) -> None:
+    """Whoever is told to use another one's cache folder makes all again, and leaves it as it is."""
+    setpriv, other = require("setpriv"), 65534
+    with tempfile.TemporaryDirectory() as name:  # pytest's own are closed to others
+        place = Path(name)
+        place.chmod(0o777)
+        (place / "gauge").mkdir()
+        end_gauge(place / "gauge")
+        found, kept_before = [], []
+        runs = ((0, "ours"), (other, "ours"), (other, "theirs"), (other, "theirs"), (0, "theirs"))
+        for user, cache in runs:
+            out = place / f"out{len(found)}"
+            out.mkdir()
+            os.chown(out, user, user)
+            as_other = [setpriv, f"--reuid={user}", f"--regid={user}", "--clear-groups"] if user else []
+            command = [sys.executable, "-m", "loopsheet", "build", str(place / "gauge"), "--out", str(out)]
+            done = subprocess.run(
+                [*as_other, *command, "--to", "html,json", "--timing"],
+                env={**os.environ, SETTING: str(place / cache), "HOME": str(place)},
+                cwd=place, capture_output=True, text=True, check=False,
+            )  # fmt: skip
+            assert done.returncode == 0, done.stderr
+            found.append(hashes(out))
+            kept_before.append("  values" not in done.stderr)
+        assert [each == found[0] for each in found] == [True] * 5
+        assert kept_before == [False, False, False, True, False]
+        assert {path.stat().st_uid for path in (place / "ours").iterdir()} == {0}
+        assert {path.stat().st_uid for path in (place / "theirs").iterdir()} == {other}
 
 
 HEAVY = {"sympy", "numpy", "scipy", "matplotlib", "pint", "jinja2", "mpmath"}

@@ -376,6 +376,19 @@ def test_memory_that_is_short_is_no_bug(
         killed.result()
 
 
+def test_where_no_process_may_be_begun_the_work_is_done_when_it_is_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    aside = Background(divmod, 7, 2)
+    assert aside.result() == (3, 1)
+    monkeypatch.setattr(sys, "executable", "/nowhere/python")
+    with Background(divmod, 7, 2) as here:
+        assert here.result() == (3, 1)
+    monkeypatch.undo()
+    with Background(divmod, 7, 0) as wrong, pytest.raises(ZeroDivisionError):
+        wrong.result()
+
+
 # --- how signals are heeded ---
 
 

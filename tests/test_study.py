@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from loopsheet.report import stages
 from loopsheet.report.cli import main
 from loopsheet.report.errors import InputError
 from loopsheet.report.folders import PAPER
+from loopsheet.report.kept import SETTING
 from loopsheet.report.result import Report
 from loopsheet.report.study import Study
 
@@ -50,6 +52,24 @@ def test_a_proof_that_was_made_elsewhere_is_the_same(report: Report) -> None:
     assert (other.proved.proofs, other.proved.errata) == (report.proofs, report.errata)
     assert other.proofs([report.ledger["(11)"]]) == (report.proof("(11)"),)
     assert report.errata
+
+
+def test_the_program_of_the_page_hangs_on_what_is_given_and_not_on_the_numbers(
+    tmp_path: Path, report: Report, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(SETTING, str(tmp_path / "cache"))
+    folder = shutil.copytree(PAPER, tmp_path / "paper")
+    data, toml = folder / "measurements.csv", folder / "report.toml"
+    programs = [Study(folder).program]
+    assert programs[0] == stages.program(report)
+    data.write_text(data.read_text().replace("29.7", "29.81"))
+    monkeypatch.setattr(stages, "program", lambda report: "another")
+    programs.append(Study(folder).program)
+    toml.write_text(toml.read_text().replace("beta = ", 'points_per_pair = "7"\nbeta = '))
+    programs.append(Study(folder).program)
+    assert programs == [programs[0], programs[0], "another"]
+    monkeypatch.undo()
+    assert stages.program(Study(folder).computed) == programs[0]
 
 
 def test_why_proves_what_a_number_comes_from_and_show_nothing(
