@@ -18,7 +18,7 @@ from urllib.parse import quote
 
 from .errors import LoopsheetError, OutputError, UsageError, diagnose
 from .folders import INPUTS, built_from
-from .results import Manifest, read_manifest
+from .read_back import Manifest, read_manifest
 from .scratch import scratch
 from .staging import put
 from .stopping import unstoppable

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from .agreement import LIMIT
-from .results import Column, Index, Result
+from .read_back import Column, Index, Result
 
 __all__ = ["Change", "Differences", "Move", "compare"]
 

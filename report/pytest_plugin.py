@@ -93,7 +93,7 @@ def _is_our_marker(name: str, /, **_: object) -> bool:
     return name == "loopsheet"
 
 
-class Campaign:
+class FolderChecks:
     """A report folder, computed once and only as far as its tests ask.
 
     Parameters
@@ -199,14 +199,14 @@ class ReportFile(pytest.File):
         """Read the folder and name its checks; a mistake in it is told with its line."""
         from .errors import LoopsheetError
 
-        campaign = Campaign(self.path.parent, _own_code_is_asked_for(self.config))
+        checks = FolderChecks(self.path.parent, _own_code_is_asked_for(self.config))
         try:
-            plan = campaign.plan()
+            plan = checks.plan()
         except LoopsheetError as error:
             raise self.CollectError(str(error)) from None
         for kind, names in plan.items():
             if names:
-                yield KindCollector.from_parent(self, name=kind, campaign=campaign, names=names)
+                yield KindCollector.from_parent(self, name=kind, checks=checks, names=names)
 
 
 class KindCollector(pytest.Collector):
@@ -214,20 +214,20 @@ class KindCollector(pytest.Collector):
 
     Parameters
     ----------
-    campaign : Campaign
+    checks : FolderChecks
     names : list of str
     **more
         As for :class:`pytest.Collector`.
     """
 
-    def __init__(self, *, campaign: Campaign, names: list[str], **more: Any) -> None:
+    def __init__(self, *, checks: FolderChecks, names: list[str], **more: Any) -> None:
         super().__init__(**more)
-        self.campaign, self.names = campaign, names
+        self.checks, self.names = checks, names
 
     def collect(self) -> Iterator[CheckItem]:
         """One test a name."""
         for name in self.names:
-            yield CheckItem.from_parent(self, name=name, campaign=self.campaign)
+            yield CheckItem.from_parent(self, name=name, checks=self.checks)
 
 
 class CheckItem(pytest.Item):
@@ -235,14 +235,14 @@ class CheckItem(pytest.Item):
 
     Parameters
     ----------
-    campaign : Campaign
+    checks : FolderChecks
     **more
         As for :class:`pytest.Item`.
     """
 
-    def __init__(self, *, campaign: Campaign, **more: Any) -> None:
+    def __init__(self, *, checks: FolderChecks, **more: Any) -> None:
         super().__init__(**more)
-        self.campaign = campaign
+        self.checks = checks
         self.kind: str = self.parent.name if self.parent is not None else ""
         self.add_marker("loopsheet")
 
@@ -251,7 +251,7 @@ class CheckItem(pytest.Item):
         from .errors import LoopsheetError
 
         try:
-            check = self.campaign.check(self.kind, self.name, self._with_programs())
+            check = self.checks.check(self.kind, self.name, self._with_programs())
         except LoopsheetError as error:
             pytest.fail(str(error), pytrace=False)
         if check.note == "warning":
@@ -268,7 +268,7 @@ class CheckItem(pytest.Item):
 
         return any(
             isinstance(item, CheckItem)
-            and item.campaign is self.campaign
+            and item.checks is self.checks
             and item.kind == "engine"
             and item.name != ENGINES[0]
             for item in self.session.items

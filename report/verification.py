@@ -15,8 +15,8 @@ from .findings import Check
 from .folders import built_from
 from .inputs import Find
 from .kept import nothing_kept
+from .read_back import Index, Manifest, read_manifest, read_result
 from .result import Report
-from .results import Index, Manifest, read_manifest, read_result
 from .scratch import scratch
 from .staging import half_moved
 from .study import Study

@@ -12,7 +12,7 @@ import pytest
 
 from loopsheet.report.cli import main
 from loopsheet.report.differences import Differences, Move, compare
-from loopsheet.report.results import Column, Result
+from loopsheet.report.read_back import Column, Result
 from loopsheet.report.views.differences import as_markdown, as_text, moved
 
 EPS = sys.float_info.epsilon

@@ -36,7 +36,7 @@ from loopsheet.report.errors import (
 from loopsheet.report.folders import built_from, report_folder
 from loopsheet.report.inputs import check_cells, load
 from loopsheet.report.quantity import Bounds
-from loopsheet.report.results import read_manifest, read_result
+from loopsheet.report.read_back import read_manifest, read_result
 from loopsheet.report.scaffold import new
 from loopsheet.report.staging import replaced
 from loopsheet.report.verbs import check

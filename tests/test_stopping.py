@@ -27,7 +27,7 @@ from loopsheet.report import stages, staging
 from loopsheet.report.background import Background
 from loopsheet.report.cli import main
 from loopsheet.report.errors import OutputError
-from loopsheet.report.results import read_manifest
+from loopsheet.report.read_back import read_manifest
 from loopsheet.report.scratch import PREFIX, scratch
 from loopsheet.report.staging import put, staged
 from loopsheet.report.stopping import Stopped, stoppable, unstoppable

@@ -25,7 +25,7 @@ def run(options: argparse.Namespace) -> int:
     """Print what is different; exit code 1 if anything is, beyond rounding."""
     from ..differences import compare
     from ..folders import result
-    from ..results import read_result
+    from ..read_back import read_result
     from ..views.differences import FORMATS
 
     found = compare(read_result(result(options.before)), read_result(result(options.after)))

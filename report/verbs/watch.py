@@ -14,7 +14,7 @@ from .build import out_argument, summary
 from .common import OK, Progress, folder_argument, keeping_arguments
 
 if TYPE_CHECKING:
-    from ..results import Result
+    from ..read_back import Result
 
 HELP = "build a report again whenever something in its folder is saved, and show it"
 
@@ -120,7 +120,7 @@ def _again(folder: Path, out: Path, formats: tuple[str, ...], tell: Callable[...
 def _result(out: Path) -> Result | None:
     """What an earlier build left, if that can be read."""
     from ..errors import InputError
-    from ..results import read_result
+    from ..read_back import read_result
 
     try:
         return read_result(out)

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from loopsheet.report.errors import InputError
-from loopsheet.report.results import read_manifest, read_result
+from loopsheet.report.read_back import read_manifest, read_result
 
 RESULT: dict[str, Any] = {
     "schema": 1,
