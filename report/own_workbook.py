@@ -6,7 +6,7 @@ import ast
 import re
 import sys
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -57,6 +57,10 @@ def own_workbook(path: Path, code: bytes) -> Workbook:
         plain: Ledger = own.guarded("what ledger() returns", found.ledger, Ledger)()
         return replace(plain, checks=tuple(own.guarded("a check", check) for check in plain.checks))
 
+    def drawings() -> dict[str, Callable[[Any], Any]]:
+        made = own.guarded("what drawings() returns", found.drawings or dict, Mapping)()
+        return {name: own.guarded(f"the drawing '{name}'", draw) for name, draw in made.items()}
+
     return replace(
         found,
         ledger=ledger,
@@ -64,6 +68,7 @@ def own_workbook(path: Path, code: bytes) -> Workbook:
         check_parameters=own.guarded("what check_parameters() returns", found.check_parameters, str | None),
         curves=found.curves and own.guarded("what curves() returns", found.curves),
         drawn=found.drawn and own.guarded("what drawn() returns", found.drawn),
+        drawings=found.drawings and drawings,
     )
 
 

@@ -70,7 +70,7 @@ def prepared(inputs: Inputs, ledger: Ledger) -> Prepared:
     if own:
         from .document.narrative import narratives
 
-        refusals.refuse_what_is_misnamed(sheet, inputs, narratives(), _drawings)
+        refusals.refuse_what_is_misnamed(sheet, inputs, narratives(), lambda: _drawings(inputs))
     refusals.refuse_what_is_missing(sheet, inputs)
     return Prepared(inputs, sheet)
 
@@ -84,10 +84,10 @@ def of_cells(inputs: Inputs) -> Sequence[Diagnostic]:
     return ()
 
 
-def _drawings() -> Collection[str]:
+def _drawings(inputs: Inputs) -> Collection[str]:
     from .views import figures
 
-    return figures.NAMES
+    return figures.drawings(inputs.workbook)
 
 
 def evaluated(made: Prepared, ledger: Ledger, step: Step) -> Report:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .quantity import Bounds
 
@@ -81,7 +81,7 @@ class FigureSpec:
     number: str
     caption: str
     draw: str
-    """Name of the drawing in :mod:`loopsheet.report.views.figures`."""
+    """Name of the drawing among the workbook's `drawings`."""
     alt: str = ""
     """What the picture shows, for those who cannot see it."""
 
@@ -144,6 +144,8 @@ class Workbook:
     """The parameters that go with it, as printed, by name."""
     curves: Callable[[Sheet, Values], tuple[Curve, ...]] | None = None
     drawn: Callable[[Sheet], Drawn] | None = None
+    drawings: Callable[[], Mapping[str, Callable[[Any], Any]]] | None = None
+    """Returns what draws its figures, by name: each takes the report and returns a matplotlib figure."""
 
     def __post_init__(self) -> None:
         """Every engine gets what the reader of a folder gets: bounds are declared once."""

@@ -95,6 +95,15 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.conditions": (SHEET, ALGEBRA),
     "report.charts": (SHEET, {"numpy"}),
     "report.workbook": (VALUES, ALGEBRA),
+    **dict.fromkeys(
+        ("report.workbooks.soft_impact_figures", "report.workbooks.soft_impact_schematics"),
+        (
+            RESULT
+            | {"derivations", "report.workbooks", "report.analysis.loops"}
+            | {"report.document.numbers", "report.views.drawing"},
+            {"numpy", "matplotlib"},
+        ),
+    ),
     "report.workbooks": (RESULT | {"derivations", "report.workbooks", "report.analysis"}, ALGEBRA),
     "report.engines": (VALUES | {"report.engines"}, RUNTIME - {"jinja2", "matplotlib"}),
     "report.analysis": (

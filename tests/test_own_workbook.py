@@ -97,7 +97,22 @@ SHEET = "Sheet((d, *given.values(), l))"
         (
             shows('figures=(FigureSpec("f", "1", "", "loop"),)'),
             '"loop"',
-            "no drawing 'loop', which figures names; did",
+            "no drawing 'loop', which figures names; there is referee",
+        ),
+        (
+            shows('figures=(FigureSpec("f", "1", "", "own"),), drawings=lambda: {"my": print}'),
+            '"own"',
+            "no drawing 'own', which figures names; there is",
+        ),
+        (
+            shows('figures=(FigureSpec("f", "1", "", "own"),), drawings=lambda: 1 / 0'),
+            "1 / 0",
+            "ZeroDivision",
+        ),
+        (
+            shows('figures=(FigureSpec("f", "1", "", "own"),), drawings=lambda: 7'),
+            "",
+            "what drawings() returns is no Mapping",
         ),
         (
             shows('figures=(FigureSpec("../f", "1", "", "loops"),)'),
@@ -120,6 +135,32 @@ def test_what_it_raises_is_told_with_folder_and_line(
     assert said in told
     number = code[: code.index(line)].count("\n") + 1
     assert f"--> gauge/workbook.py{f':{number}:' if line else ''}" in told
+
+
+DRAWS = """
+def draw(report):
+    from matplotlib.figure import Figure
+    figure = Figure()
+    figure.add_subplot().set_title(f"{len(report.values.value['l'])} lengths")
+    return figure
+"""
+OWN = 'figures=(FigureSpec("f", "1", "A figure of one’s own.", "own"),), drawings=lambda: {"own": draw}'
+
+
+def test_it_draws_its_own_figures(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    own(folder, shows(OWN).replace("WORKBOOK =", f"{DRAWS}\nWORKBOOK ="))
+    assert main(["build", "gauge", "--to", "html,latex"]) == 0
+    assert "2 lengths" in (folder / "out" / "report.html").read_text(encoding="utf-8")
+    assert (folder / "out" / "figures" / "f.pdf").is_file()
+
+
+def test_a_drawing_that_fails_is_told_with_its_line(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code = shows(OWN).replace("WORKBOOK =", f"{DRAWS.replace('Figure()', '1 / 0')}\nWORKBOOK =")
+    own(folder, code)
+    assert main(["build", "gauge", "--to", "html"]) == 2
+    told = capsys.readouterr().err
+    assert "ZeroDivisionError" in told
+    assert f"--> gauge/workbook.py:{code[: code.index('1 / 0')].count(chr(10)) + 1}:" in told
 
 
 @pytest.mark.parametrize(

@@ -1,12 +1,7 @@
 """What the figures of the soft-impact paper draw: points, hysteresis loops and exponents, in SI.
 
-No force law is typed here. The branches are those of equations (2) and (3) in the derivations, printed by
-the NumPy engine and given the sheet's values.
-
-Two figures are schematic and come in reduced units, x/x_m and F/F_m. Their numbers (`SCHEMATIC`) are
-chosen for the eye. In figure 1 the loop without friction is equation (3); how friction widens it is an
-illustration of this project, not a published law: while loading it adds, while unloading it takes away, a
-share of the force that dies out with the speed towards the maximum approach (:func:`_friction_share`).
+No force law is typed here. The branches are those of equation (3) in the derivations, printed by the NumPy
+engine and given the sheet's values.
 """
 
 from __future__ import annotations
@@ -24,18 +19,12 @@ from ..engines.numpy import kernel
 from ..sheet import PairAxis, Sheet
 from ..values import Status, Values
 
-__all__ = ["FRICTION", "SAMPLES", "SCHEMATIC", "ForceLaw", "curves"]
+__all__ = ["SAMPLES", "ForceLaw", "curves"]
 
 Array = NDArray[np.float64]
 
 SAMPLES = 201
 """Abscissae of a curve. A polyline through so many is smooth to a tenth of a point in print."""
-
-SCHEMATIC = {"alpha": 1.3, "beta": 1.5, "x_m": 1.0, "x_p": 0.55, "Cprime": 1.0}
-"""What the schematic figures assume, in reduced units; any test of a soft target looks like it."""
-
-FRICTION = 0.35
-"""The largest share of the force that friction has in figure 1: large enough to be seen."""
 
 
 class ForceLaw:
@@ -82,17 +71,12 @@ def curves(sheet: Sheet, values: Values, samples: int = SAMPLES) -> tuple[Curve,
     -------
     tuple of Curve
         ``loops``: ``points`` (one a pair), ``compression``, ``restitution`` (one a test);
-        ``alpha_pairs``: ``pair`` (one a pair: mean speed of its tests in m/s, exponent), ``mean``;
-        ``lankarani``: ``compression``, ``restitution``;
-        ``hysteresis``: ``compression``, ``restitution`` without friction, ``loading``, ``unloading`` with.
-        The last two figures are in reduced units.
+        ``alpha_pairs``: ``pair`` (one a pair: mean speed of its tests in m/s, exponent), ``mean``.
     """
     return (
         *_points(values),
         *_loops(values, samples),
         *_alpha_pairs(sheet, values),
-        *_lankarani(samples),
-        *_hysteresis(samples),
     )
 
 
@@ -163,49 +147,3 @@ def _alpha_pairs(sheet: Sheet, values: Values) -> Iterator[Curve]:
     if ok.any() and _ok(values, "alpha_mean").all():
         span = np.array([speed[ok].min(), speed[ok].max()])
         yield Curve("alpha_pairs", "mean", "", span, np.full(2, values.scalar("alpha_mean")))
-
-
-# --- figures 1 and 2: schematic, in reduced units ---------------------------------------------------------
-
-
-def _closed(
-    figure: str, compression: ForceLaw, restitution: ForceLaw, x: Array, back: Array
-) -> tuple[Curve, Curve]:
-    """Both branches with the constants of `SCHEMATIC`; the coefficient is the one that closes the loop."""
-    end = np.array([SCHEMATIC["x_m"]])
-    (peak,) = restitution(end, **SCHEMATIC)
-    coefficient = float(peak / compression(end, C=1.0, **SCHEMATIC)[0])
-    return (
-        Curve(figure, "compression", "", x, compression(x, C=coefficient, **SCHEMATIC)),
-        Curve(figure, "restitution", "", back, restitution(back, **SCHEMATIC)),
-    )
-
-
-def _lankarani(samples: int) -> Iterator[Curve]:
-    """Equation (2): both branches as they stand in its cases."""
-    # The author's own form: evaluated, the cases lose the second, whose domain lies in the first's.
-    up, down = (ForceLaw(case.expr.xreplace({model.C_LN: model.C})) for case in model.eq2.members[-1].args)
-    x_m, x_p = SCHEMATIC["x_m"], SCHEMATIC["x_p"]
-    yield from _closed("lankarani", up, down, np.linspace(0.0, x_m, samples), np.linspace(x_p, x_m, samples))
-
-
-def _hysteresis(samples: int) -> Iterator[Curve]:
-    """Equation (3) without friction, and the loop that friction widens."""
-    x_m, x_p = SCHEMATIC["x_m"], SCHEMATIC["x_p"]
-    # Denser towards x_m, where the loop with friction turns round.
-    s = np.sin(np.linspace(0.0, np.pi / 2, samples))
-    x, back = s * x_m, x_p + s * (x_m - x_p)
-    up, down = _closed("hysteresis", ForceLaw(model.law_c.value), ForceLaw(model.law_r.value), x, back)
-    share = _friction_share(s)
-    yield from (up, down)
-    yield Curve("hysteresis", "loading", "", x, up.y * (1 + share))
-    yield Curve("hysteresis", "unloading", "", back, down.y * (1 - share))
-
-
-def _friction_share(s: Array) -> Array:
-    """What share of the force is friction at the part `s` of the way to the maximum approach.
-
-    An illustration, not a law of the paper: it follows the speed of a body on a linear spring, so that it
-    vanishes where the bodies are at rest and the loop stays closed.
-    """
-    return FRICTION * np.sqrt(np.clip(1 - s**2, 0.0, 1.0))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from sympy import Expr, Integer, Rational, Symbol
@@ -22,6 +22,7 @@ from .soft_impact_root import alpha_rule, two_tests
 
 if TYPE_CHECKING:
     from ..charts import Curve, Drawn
+    from ..result import Report
     from ..values import Values
 
 __all__ = ["WORKBOOK"]
@@ -276,6 +277,19 @@ def _drawn(sheet: Sheet) -> Drawn:
     return drawn(sheet)
 
 
+def _drawings() -> dict[str, Callable[[Report], Any]]:
+    """The figures' drawings; loaded only when one is drawn."""
+    from . import soft_impact_figures as data
+    from . import soft_impact_schematics as schematics
+
+    return {
+        "hysteresis": schematics.draw_hysteresis,
+        "lankarani": schematics.draw_lankarani,
+        "loops": data.draw_loops,
+        "alpha_pairs": data.draw_alpha_pairs,
+    }
+
+
 WORKBOOK = Workbook(
     name="soft_impact",
     title="Exponent of the force law from drop tests on a soft target",
@@ -381,6 +395,7 @@ WORKBOOK = Workbook(
     example_parameters={"ball_mass": "8.366 g", "beta": "1.5"},
     curves=_curves,
     drawn=_drawn,
+    drawings=_drawings,
 )
 
 sheet = WORKBOOK.sheet
