@@ -127,6 +127,8 @@ def test_conditions_hold_each_other_and_parts_are_put_in(reads: Reads) -> None:
         (":::{if} {say}`taly`", "prose/own.md:5: no sentence is called 'taly'"),
         (":::{if} {say}`exactly`", "prose/own.md:5: this condition does not end"),
         (":::", "prose/own.md:5: nothing is open that ::: could belong to"),
+        (":::{if} loops\n:::", "prose/own.md:5: a condition is ':::{if} {role}`argument`'"),
+        (":::{include} nowhere", "prose/own.md:5: there is no prose/parts/nowhere.md"),
         ("two\nlines and {eq}`(0)`", "prose/own.md:6: no equation is called '(0)'"),
     ],
 )

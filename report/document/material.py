@@ -85,10 +85,6 @@ class Material:
         row = self.report.values.row(self.report.sheet[name], tuple(index))
         return self.items(name)[1][row]
 
-    def has(self, name: str) -> bool:
-        """Whether there is a column of that name."""
-        return name in self.report.sheet
-
     def count(self, axis: str) -> int:
         """How many rows an axis has."""
         return self.report.values.layouts[axis].size

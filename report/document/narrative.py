@@ -20,19 +20,17 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
-
-from markdown_it import MarkdownIt
-from markdown_it.token import Token
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .said import Answer, Said, Unknown
 from .tree import Block, Blocks, Code, Inlines, Items, Link, Note, Paragraph, Section, Strong
 
+if TYPE_CHECKING:
+    from markdown_it.token import Token
+
 __all__ = ["FOLDER", "NarrativeError", "narratives", "sections"]
 
 FOLDER = Path(__file__).resolve().parents[2] / "templates" / "prose"
-GENERIC = "generic"
-"""The narrative of any workbook."""
 
 _MARKDOWN = ["heading", "list", "blockquote", "emphasis", "backticks", "link", "newline"]
 _NAMED = re.compile(r"\{(\w+)\}`([^`]*)`")
@@ -84,8 +82,13 @@ def _lines(name: str) -> tuple[Line, ...]:
     text = (FOLDER / f"{name}.md").read_text(encoding="utf-8")
     found: list[Line] = []
     for number, line in enumerate(text.splitlines(), start=1):
-        included = re.fullmatch(r":::\{include\} (\w+)", line)
-        found += _lines(f"parts/{included[1]}") if included else [Line(line, f"prose/{name}.md:{number}")]
+        place = f"prose/{name}.md:{number}"
+        if included := re.fullmatch(r":::\{include\} (\w+)", line):
+            if not (FOLDER / "parts" / f"{included[1]}.md").is_file():
+                raise NarrativeError(f"{place}: there is no prose/parts/{included[1]}.md")
+            found += _lines(f"parts/{included[1]}")
+        else:
+            found.append(Line(line, place))
     return tuple(found)
 
 
@@ -93,6 +96,8 @@ class _Reader:
     """Reads one narrative for one report."""
 
     def __init__(self, said: Said, name: str) -> None:
+        from markdown_it import MarkdownIt
+
         self.said = said
         self.lines = list(self._kept(_lines(name)))
         text = "\n".join(line.text for line in self.lines)
@@ -122,7 +127,10 @@ class _Reader:
 
     def _hold(self, condition: str, place: str) -> bool:
         """Whether all roles of a condition stand for something."""
-        return all(self._answer(role, argument, place) for role, argument in _NAMED.findall(condition))
+        asked = _NAMED.findall(condition)
+        if not asked:
+            raise NarrativeError(f"{place}: a condition is ':::{{if}} {{role}}`argument`'")
+        return all(self._answer(role, argument, place) for role, argument in asked)
 
     def _answer(self, role: str, argument: str, place: str, alone: bool = False) -> Answer:
         roles = self.said.roles
