@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 __all__ = ["FORMATS", "Built", "build", "built", "parse_formats"]
 
 FORMATS = ("html", "latex", "xlsx", "json", "pdf")
+Pictures = dict[str, bytes]
+"""The files of figures, by name."""
 DEFAULT_FORMATS = ("html", "latex", "xlsx", "json")
 
 
@@ -172,7 +174,10 @@ def _made(
         if long := cost.told(study.prepared.sheet, study.prepared.layouts, formats):
             tell(long)
         study.prepared.check_cells()
-        aside = running.enter_context(Background(_aside, study.recipe, formats))
+        drawn = study.inputs.workbook.figures and _WITH_FIGURES & set(formats)
+        aside = None
+        if study.inputs.published or drawn:
+            aside = running.enter_context(Background(_aside, study.recipe, formats))
         engines = study.engines if every_engine else study.numpy
         source = study.program if "html" in formats else ""
         if proving is not None:
@@ -185,12 +190,14 @@ def _made(
             study.step("writing report.xlsx")
             with timed("workbook"):
                 content = book(proved)[1]
-        study.step("drawing the figures, refereeing what was published")
-        with timed("waiting for the referee and figures"):
-            found = aside.result()
-    finished = replace(proved, engines=engines, referee=found.referee, comparisons=found.comparisons)
+        finished, pictures = replace(proved, engines=engines), Pictures()
+        if aside is not None:
+            study.step("drawing the figures, refereeing what was published")
+            with timed("waiting for the referee and figures"):
+                referee, comparisons, pictures = aside.result()
+            finished = replace(finished, referee=referee, comparisons=comparisons)
     with timed("writing"):
-        _write(finished, stage, formats, found.pictures, source, content, study.step)
+        _write(finished, stage, formats, pictures, source, content, study.step)
     return finished
 
 
@@ -199,23 +206,16 @@ def _proofs(recipe: Recipe) -> dict[str, Any]:
     return Study.of(recipe).proof_data
 
 
-@dataclass(frozen=True)
-class _Aside:
-    referee: Referee
-    comparisons: tuple[Comparison, ...]
-    pictures: dict[str, bytes]
-
-
-def _aside(recipe: Recipe, formats: Collection[str]) -> _Aside:
+def _aside(recipe: Recipe, formats: Collection[str]) -> tuple[Referee, tuple[Comparison, ...], Pictures]:
     """In a process of its own: what the referee finds, and all figures."""
     study = Study.of(recipe)
     report = study.refereed if study.computed.inputs.published else study.computed
-    pictures: dict[str, bytes] = {}
+    pictures: Pictures = {}
     if _WITH_FIGURES & set(formats):
         from .views import figures
 
         pictures = _pictures(report, figures.of(report), formats)
-    return _Aside(report.referee, report.comparisons, pictures)
+    return report.referee, report.comparisons, pictures
 
 
 def _of_a_crate(out: Path, folder: Path) -> dict[Path, str]:

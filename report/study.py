@@ -80,7 +80,7 @@ class Study:
     def of(cls, recipe: Recipe) -> Study:
         """The study of the same bytes, whatever has become of the folder."""
         study = cls(*recipe[:2])
-        study._read = recipe[2]
+        study.files = study._read = recipe[2]
         return study
 
     # --- what was read ---

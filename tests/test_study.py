@@ -42,6 +42,9 @@ def test_a_folder_is_read_once(tmp_path: Path) -> None:
     read = dict(study.files)
     (tmp_path / "d.csv").write_text("somebody edits it")
     assert study.inputs.files == study.files == read
+    again = Study.of(study.recipe)  # in another process
+    assert again.computed.values.scalar("l") == study.computed.values.scalar("l")
+    assert again.files == read
     with pytest.raises(InputError):
         assert Study(tmp_path).files
 
