@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +35,16 @@ class Layout:
     rows: Mapping[Symbol, NDArray[np.intp]]
     ordinals: Mapping[Symbol, NDArray[np.float64]]
     labels: NDArray[np.int64]
+
+    @cached_property
+    def named(self) -> dict[str, NDArray[np.intp]]:
+        """The rows by the names of indices."""
+        return {index.name: rows for index, rows in self.rows.items()}
+
+    @cached_property
+    def numbered(self) -> dict[str, NDArray[np.float64]]:
+        """The running numbers by their names."""
+        return {symbol.name: number for symbol, number in self.ordinals.items()}
 
 
 def lay_out(

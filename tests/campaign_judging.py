@@ -17,9 +17,9 @@ from loopsheet.report.analysis.engines import EPS, LIMIT, Judge
 from loopsheet.report.analysis.readers import Reading
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.engines.domain import LARGEST, SMALLEST
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.layout import rows_of
+from loopsheet.report.plan.domain import LARGEST, SMALLEST
 from loopsheet.report.sheet import Column, Formula, name_of
 from loopsheet.report.values import CODES, Status
 

@@ -346,5 +346,5 @@ def printed_once() -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Program, "of", once(Program.of))
-        patch.setattr(bounds, "conditions", once(bounds.conditions))
+        patch.setattr(bounds.Made, "of", once(bounds.Made.of))
         yield

@@ -12,12 +12,12 @@ from sympy import Expr, Integer, Rational, Sum, Symbol, exp
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.derivations.reductions import Median
-from loopsheet.report.analysis.enclosure import Enclosure, slope_kernels
+from loopsheet.report.analysis.bounds import Made
+from loopsheet.report.analysis.enclosure import Enclosure
 from loopsheet.report.analysis.referee.campaign import Campaign
 from loopsheet.report.analysis.referee.certificate import Certificate
 from loopsheet.report.analysis.referee.minimax import best
 from loopsheet.report.analysis.referee.problem import Problem
-from loopsheet.report.conditions import conditions
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.engines.numpy_root import EnclosedRows
@@ -146,7 +146,7 @@ def test_a_median_is_enclosed_with_its_derivatives() -> None:
 
     y = formula("y", 3 * x[k], rows, requires=((x[k] < 5, "x is less than 5"),))
     sheet = Sheet((x, y, formula("m", Median(y[k], (k, 1, n)) + 1)))
-    program, made = Program.of(sheet), conditions(sheet)
+    program, made = Program.of(sheet), Made.of(sheet)
     rng, narrow = np.random.default_rng(4), 0
     for case in range(200):
         size = 2 + case % 5
@@ -155,7 +155,7 @@ def test_a_median_is_enclosed_with_its_derivatives() -> None:
         high = low + rng.choice([0.01, 1.0, 3.0], size)
         layouts = engine.evaluate(sheet, labels, {"x": low}, program).layouts
         enclosure = Enclosure(sheet, program, layouts, {"x": Intervals(low, high)})
-        slopes = enclosure.derivatives(made, slope_kernels(made), {"x": np.arange(size)})["m"]
+        slopes = enclosure.derivatives(made.derivatives, made.program, {"x": np.arange(size)})["m"]
         found = enclosure.value["m"]
         inside = low + rng.random((100, size)) * (high - low)
         value = engine.evaluate(sheet, labels, {"x": inside}, program).value["m"][:, 0]

@@ -34,6 +34,7 @@ from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program, kernel
 from loopsheet.report.engines.numpy_code import Printer
 from loopsheet.report.engines.numpy_rows import Kept
+from loopsheet.report.plan import RowSum
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Sheet, SheetError
 from loopsheet.report.values import Status, Values
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
@@ -73,28 +74,24 @@ def test_an_expression_is_printed_as(expression: Expr, code: str) -> None:
     assert Printer().doprint(expression) == code
 
 
-def test_a_kernel_is_called_with_its_cells_in_the_order_of_their_names() -> None:
-    a, c = Column("a", ROWS, Given()), Column("c", None, Given())
-    found = kernel([a[k] * c.symbol, Sum(a[k], (k, 1, n)) + c.symbol], {k: ROWS})
-    assert [str(cell) for cell in found.arguments] == ["a[k]", "a[k]", "c"]
-    assert [reference.over for reference in found.references] == [None, ROWS, None]
-    assert found.source == (
-        "def kernel(a_of_k, a_of_k_, c, rows_kept):\n    return (a_of_k*c, c + rows_kept.total(a_of_k_),)"
-    )
-    own, total = found.run(np.array([1.0, 2.0]), np.array([1.0, 2.0]), 3.0, Kept(np.array([True, True])))
+def test_a_kernel_is_called_with_its_symbols_in_the_order_of_their_names() -> None:
+    found = kernel([x * y, RowSum(x, Symbol("rows")) + y])
+    assert found.arguments == (x, y)
+    assert found.source == "def kernel(x, y, rows_kept):\n    return (x*y, y + rows_kept.total(x),)"
+    own, total = found.run(np.array([1.0, 2.0]), 3.0, Kept(np.array([True, True])))
     assert (own.tolist(), total.tolist()) == ([3.0, 6.0], [6.0])
 
 
 def test_common_parts_are_computed_once() -> None:
     t_0 = Symbol("t_0", positive=True)
-    found = kernel([exp(x + y) * t_0, exp(x + y) + 1], {})
+    found = kernel([exp(x + y) * t_0, exp(x + y) + 1])
     assert found.source.count("numpy.exp") == 1
     assert found.run(1.0, 0.5, 0.25)[0] == np.exp(0.75) * 1.0
 
 
 def test_what_numpy_has_no_word_for_is_refused() -> None:
     with pytest.raises(SheetError, match=r"^NumPy cannot compute this: .*unheard"):
-        kernel([Function("unheard")(x)], {})
+        kernel([Function("unheard")(x)])
 
 
 # ------------------------------------------------------------------------------------------- scopes
@@ -162,12 +159,13 @@ def test_both_engines_know_which_row_is_meant(case: str) -> None:
 
 
 def test_columns_may_be_called_as_the_program_calls_its_own() -> None:
-    names = ("numpy", "t_0", "rows_kept", "kernel", "a_of_k")
+    names = ("numpy", "t_0", "rows_kept", "kernel", "kept_0", "run", "sheet", "a_k", "f_sum_1", "n_of_f")
     scalars = [Column(name, None, Given()) for name in names]
     product = sum((column.symbol for column in scalars), Integer(0))
     sheet = Sheet((a, *scalars, formula("f", (product + a[k]) * (product + Sum(a[k], (k, 1, n))), ROWS)))
     values = engine.evaluate(sheet, {"rows": [1, 2]}, {"a": [1.0, 2.0], **dict.fromkeys(names, 1.0)})
-    assert values.value["f"].tolist() == [6 * 8, 7 * 8]
+    every = len(names)
+    assert values.value["f"].tolist() == [(every + 1) * (every + 3), (every + 2) * (every + 3)]
 
 
 # ------------------------------------------------------------------------------------------ batches
@@ -367,5 +365,11 @@ def test_whatever_the_data_nothing_is_ok_without_a_number_and_nothing_warns(
 
 
 def test_the_program_can_be_read() -> None:
-    assert "# alpha_mean\ndef kernel(alpha_of_p, n_pairs, pairs_kept):" in PROGRAM.source
+    assert PROGRAM.source.startswith(
+        'def sheet(run):\n    v = run.data["v"]\n    v = run.given("v", v, numpy.greater(v, 0))'
+    )
+    assert (
+        '    alpha_mean = run.formula("alpha_mean", alpha_mean_sum_1/n_pairs_of_alpha_mean)\n'
+        in PROGRAM.source
+    )
     assert "# alpha\n# fixed\ndef kernel(" in PROGRAM.source

@@ -126,11 +126,12 @@ SEARCH = re.compile(r"    (ends|at|step|defined|positive): (.|\n)*?(?=\n    \w+:
 """What guides a search decides on statuses; a wrong step is slower, but what it settles on is right. Where a
 formula is defined, or positive, is asked where it gives no number or 0; the tests of overflow change that."""
 
-EQUIVALENT = {"$ln_F[q] - $mean_ln_F", "(ln_F_of_q - mean_ln_F)", "$x[q]/$x_ref"}
+EQUIVALENT = {"$ln_F[q] - $mean_ln_F", "(ln_F - mean_ln_F)", "$x[q]/$x_ref"}
 """A line's slope does not depend on what is added to all ordinates, an exponent not on the unit of length."""
 
 Mutants = Iterator[tuple[str, str, Any]]
-"""Columns, the operator or digit that is changed with what stands around it, and the program."""
+"""Columns (none for what several share), the operator or digit that is changed with what stands around it,
+and the program."""
 
 
 def changed(text: str, skipped: Sequence[tuple[int, int]] = ()) -> Iterator[tuple[str, str]]:
@@ -155,13 +156,16 @@ def numpy_mutants(program: Program) -> Mutants:
     def run(text: str) -> Any:
         namespace: dict[str, Any] = {"numpy": np}
         exec(compile(text, "<changed>", "exec"), namespace)
-        return namespace["kernel"]
+        return namespace["sheet" if "def sheet" in text else "kernel"]
 
-    for kernels in ("formulas", "conditions"):
-        of = getattr(program, kernels)
-        for name, kernel in of.items():
-            for what, text in changed(kernel.source):
-                yield name, what, replace(program, **{kernels: {**of, name: replace(kernel, run=run(text))}})
+    lines = program.source.partition("\n\n# ")[0].splitlines()
+    for place, line in enumerate(lines):
+        # What is not changed: which data are allowed, and which rows are fetched.
+        if not re.search(r"def |run\.(data|given|rows|ordinal|size|kept)", line):
+            name = re.search(r'run\.\w+\("(\w+)"', line)
+            for what, mutant in changed(line):
+                text = "\n".join([*lines[:place], mutant, *lines[place + 1 :]])
+                yield name[1] if name else "", what, replace(program, function=run(text))
     for name, root in program.roots.items():
         for what, text in changed(root.source.partition("# value\n")[2]):
             roots = {**program.roots, name: replace(root, value=run(text))}
@@ -182,7 +186,7 @@ def test_a_character_changed_in_a_program_is_caught(
     mutants = [each for each in mutants if each[0] != "alpha_lin"]
     without_operator = {"v", "e", "x_p", "beta", "points_per_pair", "x_top", "alpha_median", "alpha_lin"}
     without_operator |= {"v_margin", "ball_density_margin", *VARIANTS[1]}
-    assert {column for column, _, _ in mutants} == sheet.by_name.keys() - without_operator
+    assert {column for column, _, _ in mutants if column} == sheet.by_name.keys() - without_operator
     programs = [javascript.program(sheet)] + ([] if ours else [program for _, _, program in mutants])
     with Node(require("node"), tmp_path, programs) as node:
         chosen = drawn(campaigns(6, variants=[1]), 36, sizes.seed)

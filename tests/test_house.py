@@ -92,7 +92,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.intervals": ({"report.elementary"}, {"numpy"}),
     "report.sheet": (SHEET, ALGEBRA),
     "report.units": (SHEET, ALGEBRA | {"pint"}),
-    "report.conditions": (SHEET, ALGEBRA),
+    "report.plan": (SHEET | {"report.plan", "report.quantity"}, ALGEBRA),
     "report.charts": (SHEET, {"numpy"}),
     "report.workbook": (VALUES, ALGEBRA),
     **dict.fromkeys(
@@ -105,10 +105,10 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
         ),
     ),
     "report.workbooks": (RESULT | {"derivations", "report.workbooks", "report.analysis"}, ALGEBRA),
-    "report.engines": (VALUES | {"report.engines"}, RUNTIME - {"jinja2", "matplotlib"}),
+    "report.engines": (VALUES | {"report.engines", "report.plan"}, RUNTIME - {"jinja2", "matplotlib"}),
     "report.analysis": (
         RESULT
-        | {"derivations", "report.conditions", "report.engines", "report.inputs", "report.analysis"}
+        | {"derivations", "report.engines", "report.inputs", "report.analysis", "report.plan"}
         | {"report.programs", "report.scratch"},
         RUNTIME - {"jinja2", "matplotlib"},
     ),

@@ -13,7 +13,7 @@ from loopsheet.report.analysis.engines import compare
 from loopsheet.report.analysis.readers import run_javascript
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.engines.domain import SMALLEST, defined, is_positive
+from loopsheet.report.plan.domain import SMALLEST, defined, is_positive
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
 from loopsheet.report.values import Status, Values

@@ -19,7 +19,8 @@ from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.engines.numpy_root import RootProgram
-from loopsheet.report.engines.roots import Total, derivatives, hoist, householder, magnitude, step
+from loopsheet.report.engines.roots import derivatives, hoist, householder, magnitude, step
+from loopsheet.report.plan import RowSum
 from loopsheet.report.sheet import Root, Sheet
 from loopsheet.report.values import Status, Values
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
@@ -46,16 +47,16 @@ def test_householder_is_exact_where_the_equation_is_linear() -> None:
 
 
 def test_a_sum_is_linear() -> None:
-    total = Total(2 * a * exp(x * b), rows)
-    assert total == 2 * Total(a * exp(x * b), rows)
-    assert Total(Integer(0), rows) == 0
-    assert diff(total, x) == 2 * Total(a * b * exp(x * b), rows)
-    assert diff(Total(a, rows), x) == 0
+    total = RowSum(2 * a * exp(x * b), rows)
+    assert total == 2 * RowSum(a * exp(x * b), rows)
+    assert RowSum(Integer(0), rows) == 0
+    assert diff(total, x) == 2 * RowSum(a * b * exp(x * b), rows)
+    assert diff(RowSum(a, rows), x) == 0
 
 
 def test_where_a_derivative_is_a_sum_the_step_is_newtons() -> None:
-    f = Total(exp(x * b), rows) - 1
-    assert step(f, x) == f / Total(b * exp(x * b), rows)
+    f = RowSum(exp(x * b), rows) - 1
+    assert step(f, x) == f / RowSum(b * exp(x * b), rows)
 
 
 def test_what_the_unknown_does_not_move_is_taken_out() -> None:
@@ -70,7 +71,7 @@ def test_a_magnitude_is_the_expression_with_nothing_cancelling() -> None:
     c = Symbol("c", real=True)
     assert magnitude(1 - c * x) == 1 + Abs(c) * x
     assert magnitude((c - x) ** 2) == (Abs(c) + x) ** 2
-    assert magnitude(Total(c * exp(-x), rows)) == Total(Abs(c) * exp(-x), rows)
+    assert magnitude(RowSum(c * exp(-x), rows)) == RowSum(Abs(c) * exp(-x), rows)
 
 
 # ---------------------------------------------------------------------------------- many pairs at once
@@ -206,17 +207,17 @@ def test_a_root_at_an_exponent_of_no_loading_curve_is_no_second_exponent() -> No
 def settled(program: RootProgram, values: tuple[Array, Array, Array, Array], steps: int) -> tuple[int, int]:
     """How many rows have one root, and how many of them some steps leave unsettled."""
     beta, v, e, x_p = values
-    named = {"beta": beta, "v[i]": v[:, 0], "v[j]": v[:, 1], "e[i]": e[:, 0], "e[j]": e[:, 1]}
-    named |= {"x_p[i]": x_p[:, 0], "x_p[j]": x_p[:, 1]}
+    named = {"beta": beta, "v_i": v[:, 0], "v_j": v[:, 1], "e_i": e[:, 0], "e_j": e[:, 1]}
+    named |= {"x_p_i": x_p[:, 0], "x_p_j": x_p[:, 1]}
     with np.errstate(all="ignore"):
-        fewer = replace(program, rule=replace(program.rule, steps=steps))
-        found = fewer.solve([named[str(r.cell)] for r in program.fixed.references], {}, (len(beta),))
+        fewer = replace(program, node=replace(program.node, steps=steps))
+        found = fewer.solve(named, {}, (len(beta),))
     return int(np.count_nonzero(found.status == Status.OK)), found.bisected
 
 
 def test_the_steps_settle_all_but_a_few_rows_and_the_others_are_bisected() -> None:
     program = PROGRAM.roots["alpha"]
-    assert program.rule.steps == 4
+    assert program.node.steps == 4
     data = pairs(20_000, 0.2, 3.0, seed=5)
     left = {steps: settled(program, data, steps) for steps in (2, 4, 6)}
     count = left[4][0]
@@ -229,7 +230,7 @@ def test_bisected_rows_are_as_good_as_the_others(monkeypatch: pytest.MonkeyPatch
     beta, v, e, x_p = pairs(3000, 1.0, 1.5, seed=6)
     good = solve(beta, v, e, x_p)
     program = PROGRAM.roots["alpha"]
-    one_step = replace(program, rule=replace(program.rule, steps=1))
+    one_step = replace(program, node=replace(program.node, steps=1))
     monkeypatch.setitem(PROGRAM.roots, "alpha", one_step)  # type: ignore[arg-type]
     again = solve(beta, v, e, x_p)
     np.testing.assert_array_equal(good.status["alpha"], again.status["alpha"])

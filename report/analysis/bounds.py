@@ -8,21 +8,21 @@ cancels here too. This bound over |c|, at least 1, is the condition of the cell.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from sympy import Indexed
 
 from ..agreement import LIMIT
-from ..conditions import Conditions, Node, Slope, conditions
-from ..engines.numpy import evaluate
-from ..layout import Layout, precedents, rows_of
-from ..sheet import Sheet, name_of
+from ..engines.numpy import Program, parts
+from ..layout import Layout, precedents
+from ..plan.derivatives import Derivatives, Local, Slope, derivatives
+from ..sheet import Sheet
 from ..values import Status, Values, rows_kept
 
-__all__ = ["bounds"]
+__all__ = ["Made", "bounds"]
 
 Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
@@ -30,7 +30,7 @@ Masks = Mapping[str, NDArray[np.bool_]]
 
 
 def bounds(
-    sheet: Sheet, layouts: Mapping[str, Layout], value: Mapping[str, Array], made: Conditions | None = None
+    sheet: Sheet, layouts: Mapping[str, Layout], value: Mapping[str, Array], made: Made | None = None
 ) -> dict[str, Array]:
     """Bound the rounding error of every cell.
 
@@ -40,8 +40,8 @@ def bounds(
     layouts : mapping of axis name to Layout
     value : mapping of column name to float array (rows,)
         All columns in SI; NaN where a cell has no value.
-    made : Conditions, optional
-        What :func:`~loopsheet.report.conditions.conditions` makes of the sheet, if that was done before.
+    made : Made, optional
+        Of the sheet, if it was made before.
 
     Returns
     -------
@@ -49,18 +49,29 @@ def bounds(
         In SI and units of eps, at least the cell's own size; infinite where nothing is known, NaN where
         the cell has no value.
     """
-    made = made or conditions(sheet)
-    labels = {axis.name: layouts[axis.name].labels[:, 0].tolist() for axis in sheet.axes if not axis.parents}
+    made = made or Made.of(sheet)
     status = {name: np.where(np.isnan(each), Status.INPUT, Status.OK) for name, each in value.items()}
+    values = Values(sheet, layouts, value, status)
     kept = {
         column.name: rows_kept(precedents(sheet, layouts, column), layouts, status)
         for column in sheet.columns
         if sheet.summed_axes(column)
     }
-    data: dict[str, Any] = {column.name: value[column.name] for column in sheet.columns}
-    for name, (of, axis) in made.counts.items():
-        data[name] = np.count_nonzero(kept[of].get(axis.name, np.ones(layouts[axis.name].size, dtype=bool)))
-    return _Spread(sheet, evaluate(made.sheet, labels, data), made, kept).bounds()
+    return _Spread(values, parts(made.program, values), made.derivatives, kept).bounds()
+
+
+@dataclass(frozen=True)
+class Made:
+    """The derivatives of a sheet, and the program of their plan."""
+
+    derivatives: Derivatives
+    program: Program
+
+    @classmethod
+    def of(cls, sheet: Sheet) -> Made:
+        """Make them."""
+        found = derivatives(sheet)
+        return cls(found, Program.of_plan(found.sheet, found.plan))
 
 
 EXPANDED = 1 << 24
@@ -75,8 +86,10 @@ class _Spread:
     `scalars` has the derivatives by the scalars, which rest on almost everything.
     """
 
-    def __init__(self, sheet: Sheet, found: Values, made: Conditions, kept: Mapping[str, Masks]) -> None:
-        self.sheet, self.found, self.made, self.kept = sheet, found, made, kept
+    def __init__(
+        self, found: Values, parts: Mapping[str, Array], made: Derivatives, kept: Mapping[str, Masks]
+    ) -> None:
+        self.sheet, self.found, self.parts, self.made, self.kept = found.sheet, found, parts, made, kept
         self.sizes = {node.name: self.size(node) for node in made.nodes}
         ends = np.cumsum(list(self.sizes.values())).tolist()
         self.start = {name: end - self.sizes[name] for name, end in zip(self.sizes, ends, strict=True)}
@@ -88,7 +101,7 @@ class _Spread:
         self.direct: dict[str, Any] = {}
         self.scalars: dict[str, Any] = {}
 
-    def size(self, node: Node) -> int:
+    def size(self, node: Local) -> int:
         return 1 if node.axis is None else self.found.layouts[node.axis.name].size
 
     def bounds(self) -> dict[str, Array]:
@@ -115,21 +128,21 @@ class _Spread:
         """The sizes of derivatives times all roundings."""
         return _weighed(derivatives, self.rounding)
 
-    def spread(self, node: Node) -> None:
+    def spread(self, node: Local) -> None:
         """The derivatives of one node: by its own rounding, and by what it names times its slopes."""
         size, start = self.sizes[node.name], self.start[node.name]
-        rounding = self.found.value[node.rounding].copy()
+        rounding = self.parts[node.rounding].copy()
         alive = node.over is not None or ~np.isnan(self.found.value[node.name])
         rows = np.arange(size)
         direct = sparse.csr_array((np.ones(size), (rows, start + rows)), shape=(size, self.sources))
         scalars = sparse.csr_array((size, len(self.scalar)))
         for slope in node.slopes:
-            values, columns = self.found.value[slope.column], self.rows_named(slope, node)
-            by = slope.by if isinstance(slope.by, str) else name_of(slope.by)
+            values, columns = self.parts[slope.value], self.rows_named(slope)
+            by = self.made.plan.node_of(slope.by)
             positions = np.arange(values.size)
             if node.over is not None:
                 values, positions = np.where(self.summed(node), values, 0.0), np.zeros_like(positions)
-            if node.middle:
+            if node.median:
                 values = np.where((share := self.share(node, by, columns)) > 0, share * values, 0.0)
             rounding[positions[np.isnan(values)]] = np.nan
             entries = np.nan_to_num(values)
@@ -148,15 +161,16 @@ class _Spread:
         else:
             self.direct[node.name], self.scalars[node.name] = direct, scalars
 
-    def rows_named(self, slope: Slope, node: Node) -> NDArray[np.intp]:
+    def rows_named(self, slope: Slope) -> NDArray[np.intp]:
         """The row of what a slope is by, for each row of the slope."""
-        number = self.found.value[slope.column].size
-        if not isinstance(slope.by, Indexed):
+        number, leaf = self.parts[slope.value].size, self.made.plan.leaves[slope.by]
+        if leaf.axis is None:
             return np.zeros(number, dtype=np.intp)
-        rows = rows_of(slope.by, node.over or node.axis, self.found.layouts)
-        return np.arange(number) if rows is None else rows
+        if leaf.index is None:
+            return np.arange(number)
+        return self.found.layouts[leaf.axis.name].rows[leaf.index]
 
-    def share(self, node: Node, name: str, rows: NDArray[np.intp]) -> Array:
+    def share(self, node: Local, name: str, rows: NDArray[np.intp]) -> Array:
         """How much of the change of each row a median makes: that of the middle, or half of two there.
 
         A row that rounding may exchange with one in the middle counts as that one does.
@@ -170,7 +184,7 @@ class _Spread:
         )
         return np.where(self.summed(node), found, 0.0)
 
-    def summed(self, node: Node) -> NDArray[np.bool_]:
+    def summed(self, node: Local) -> NDArray[np.bool_]:
         """The rows that a sum runs over."""
         assert node.over is not None
         everything = np.ones(self.found.layouts[node.over.name].size, dtype=bool)

@@ -12,20 +12,19 @@ f(X) lies in f(m) + f'(X) (X - m).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Indexed
 
-from ..conditions import Conditions, Node, Slope
-from ..engines.numpy import Kernel, Program, kernel
+from ..engines.numpy import Program
 from ..engines.numpy_root import EnclosedRows, RootProgram
 from ..engines.numpy_rows import KeptIntervals
 from ..intervals import Intervals, whole
 from ..layout import Layout, rows_of
-from ..sheet import Column, Formula, Given, Reference, Root, Sheet, name_of
+from ..plan.derivatives import Derivatives, Local, Slope
+from ..sheet import Column, Reference, Sheet, name_of
 
 __all__ = ["Enclosure"]
 
@@ -35,8 +34,61 @@ SETTLED = 2.0**-50
 APART = 2.0**-26
 """How far apart two points are that a slope is taken from, of what lies beside them."""
 
+Mask = NDArray[np.bool_]
 
-class Enclosure:
+
+class _Rows:
+    """What printed functions ask of columns that are intervals.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    layouts : mapping of axis name to Layout
+    value, sure
+        As for :class:`Enclosure`.
+    """
+
+    def __init__(
+        self,
+        sheet: Sheet,
+        layouts: Mapping[str, Layout],
+        value: dict[str, Intervals],
+        sure: dict[str, Mask],
+    ) -> None:
+        self.sheet, self.layouts, self.value, self.sure = sheet, layouts, value, sure
+
+    def rows(self, name: str, axis: str, index: str) -> Intervals:
+        """The cells of a column that the rows of an axis name by an index."""
+        return self.value[name].take(self.layouts[axis].named[index])
+
+    def ordinal(self, axis: str, index: str) -> Intervals:
+        """A running number of the rows of an axis."""
+        return Intervals.of(self.layouts[axis].numbered[index])
+
+    def size(self, axis: str) -> Intervals:
+        """How many rows an axis has."""
+        return Intervals.of(self.layouts[axis].size)
+
+    def kept(self, name: str, axis: str) -> KeptIntervals:
+        """The rows of an axis over which the sums of a column run."""
+        sure = np.ones(self.layouts[axis].size, dtype=bool)
+        for reference in self.sheet.named(self.sheet[name]):
+            if reference.over is not None and reference.over.name == axis:
+                sure = sure & self.known(reference, self.sheet[name])
+        return KeptIntervals(np.ones(self.layouts[axis].size, dtype=bool), sure)
+
+    def known(self, reference: Reference, column: Column) -> Mask:
+        """Which of the cells that a column names are sure to have a value."""
+        theirs = self.sure[name_of(reference.cell)]
+        rows = rows_of(reference.cell, reference.over or column.axis, self.layouts)
+        return theirs if rows is None else theirs.take(rows, axis=-1)
+
+    def number(self, column: Column) -> int:
+        """How many rows a column has."""
+        return 1 if column.axis is None else self.layouts[column.axis.name].size
+
+
+class Enclosure(_Rows):
     """The cells of a sheet for given cells that lie in intervals.
 
     Parameters
@@ -59,109 +111,79 @@ class Enclosure:
     def __init__(
         self, sheet: Sheet, program: Program, layouts: Mapping[str, Layout], data: Mapping[str, Intervals]
     ) -> None:
-        self.sheet, self.layouts = sheet, layouts
-        self.value: dict[str, Intervals] = {}
-        self.sure: dict[str, NDArray[np.bool_]] = {}
+        super().__init__(sheet, layouts, {}, {})
+        self.program, self.data = program, data
         with np.errstate(all="ignore"):
-            for column in sheet.order:
-                size = self.size(column)
-                if isinstance(column.rule, Given):
-                    found = data[column.name]
-                    sure = self._allowed(program, column, found)
-                elif isinstance(column.rule, Root):
-                    found, sure = self._root(program.roots[column.name], column)
-                else:
-                    found, sure = self._formula(program.formulas[column.name], column)
-                for held in self._called(program.conditions.get(column.name), column):
-                    sure = sure & (held.low == 1)
-                for reference in sheet.named(column):
-                    theirs = self.sure[name_of(reference.cell)]
-                    rows = rows_of(reference.cell, reference.over or column.axis, layouts)
-                    theirs = theirs if rows is None else theirs.take(rows, axis=-1)
-                    sure = sure & (theirs.all(axis=-1, keepdims=True) if reference.over else theirs)
-                shape = np.broadcast_shapes(found.shape, sure.shape, (size,))
-                self.value[column.name] = found.broadcast(shape)
-                self.sure[column.name] = np.broadcast_to(sure, shape)
+            program.function(self)
 
-    def size(self, column: Column) -> int:
-        """How many rows a column has."""
-        return 1 if column.axis is None else self.layouts[column.axis.name].size
+    # --- what the function calls
 
-    def _allowed(self, program: Program, column: Column, found: Intervals) -> NDArray[np.bool_]:
-        """Whether a given column may be whatever lies in the intervals."""
+    def given(self, name: str, value: Intervals, allowed: Any = True) -> Intervals:
+        """The data of a column: a value that may be another than is allowed is not sure."""
+        sure = np.isfinite(value.low) & np.isfinite(value.high) & (Intervals.of(allowed).low == 1)
+        if self.sheet.bounds[name].integer:
+            sure &= value.low == value.high  # between two whole numbers are others
+        return self._hold(self.sheet[name], value, sure)
+
+    def formula(self, name: str, value: Any, *requires: Any) -> Intervals:
+        """A column by its formula, and whether its conditions hold."""
+        column, found = self.sheet[name], Intervals.of(value)
         sure = np.isfinite(found.low) & np.isfinite(found.high)
-        if column.name in program.guards:
-            low, high = (program.guards[column.name](end)[0] for end in (found.low, found.high))
-            sure &= np.logical_and(low, high)
-        if self.sheet.bounds[column.name].integer:
-            sure &= found.low == found.high  # between two whole numbers are others
-        return sure
-
-    # --- what a kernel is called with ----------------------------------------------------------------
-
-    def _called(self, kernel: Kernel | None, column: Column) -> list[Intervals]:
-        if kernel is None:
-            return []
-        return self.call(kernel, column, self.value)
-
-    def call(self, kernel: Kernel, column: Column, value: Mapping[str, Intervals]) -> list[Intervals]:
-        """What a printed function gives for all rows of a column."""
-        arguments = [self._argument(reference, column, value) for reference in kernel.references]
-        results = kernel.run(*arguments, *(self._rows(axis) for axis in kernel.totals))
-        return [Intervals.of(result) for result in results]
-
-    def _argument(self, reference: Reference, column: Column, value: Mapping[str, Intervals]) -> Any:
-        cell, axis = reference.cell, reference.over or column.axis
-        if cell in self.sheet.sizes:
-            return Intervals.of(self.layouts[self.sheet.sizes[cell].name].size)
-        if axis is not None and cell in axis.ordinals:
-            return Intervals.of(self.layouts[axis.name].ordinals[cell])
-        rows = rows_of(cell, axis, self.layouts)
-        found = value[name_of(cell)]
-        if reference.over is not None:
-            # A sum leaves out the rows without a value; of one that may have none, anything may be missing.
-            # Of a median too: one that is missing moves it less than one that may lie at either end.
-            found = found.where(self.sure[name_of(cell)])
-        return found if rows is None else found.take(rows)
-
-    def _rows(self, axis: str) -> KeptIntervals:
-        return KeptIntervals(np.ones(self.layouts[axis].size, dtype=bool))
-
-    # --- rules ----------------------------------------------------------------------------------------
-
-    def _formula(self, kernel: Kernel, column: Column) -> tuple[Intervals, NDArray[np.bool_]]:
-        (found,) = self._called(kernel, column)
         if column.positive:
             found = Intervals(np.maximum(found.low, 0.0), found.high)
-        sure = (
-            np.isfinite(found.low) & np.isfinite(found.high) & (~np.array(column.positive) | (found.low > 0))
-        )
-        return found, sure
+            sure = sure & (found.low > 0)
+        return self._hold(column, found, sure, requires)
 
-    def _root(self, program: RootProgram, column: Column) -> tuple[Intervals, NDArray[np.bool_]]:
-        fixed = self._called(program.fixed, column)
-        rule, totals = program.rule, [self._rows(axis) for axis in program.totals]
-        ends, rest = fixed[: 5 + len(rule.turning)], fixed[5 + len(rule.turning) :]
-        # What a sum runs over are its terms: such a root is one, and not one a term.
-        rows = [(*each.shape[:-1], 1) if totals else each.shape for each in rest]
-        shape = np.broadcast_shapes(*(each.shape for each in ends), *rows, (self.size(column),))
-        low, high, _, at_low, at_high, *turning = (each.broadcast(shape) for each in ends)
+    def root(self, name: str, arguments: Sequence[Any], requires: Sequence[Any] = ()) -> Intervals:
+        """A column by its root."""
+        column, program = self.sheet[name], self.program.roots[name]
+        cells = {}
+        for argument, each in zip(program.arguments, arguments, strict=True):
+            axis = self.program.plan.leaves[argument].axis
+            over = axis if argument.name in program.terms_of else None
+            own = Intervals.of(each)
+            cells[argument.name] = own if over is None else self.kept(name, over.name).every(own)
+        return self._hold(column, *self._root(program, column, cells), requires)
 
+    def _hold(self, column: Column, found: Intervals, sure: Mask, requires: Sequence[Any] = ()) -> Intervals:
+        for held in requires:
+            sure = sure & (Intervals.of(held).low == 1)
+        for reference in self.sheet.named(column):
+            theirs = self.known(reference, column)
+            sure = sure & (theirs.all(axis=-1, keepdims=True) if reference.over else theirs)
+        shape = np.broadcast_shapes(found.shape, sure.shape, (self.number(column),))
+        self.value[column.name] = found.broadcast(shape)
+        self.sure[column.name] = np.broadcast_to(sure, shape)
+        return self.value[column.name]
+
+    # --- roots ----------------------------------------------------------------------------------------
+
+    def _root(
+        self, program: RootProgram, column: Column, cells: Mapping[str, Intervals]
+    ) -> tuple[Intervals, Mask]:
         # Generated functions are typed for arrays; intervals are as good.
+        run_fixed: Any = program.fixed.run
         run_at: Any = program.at
         run_value: Any = program.value
+        fixed = [Intervals.of(each) for each in run_fixed(*(cells[a.name] for a in program.fixed.arguments))]
+        node, totals = program.node, [self.kept(column.name, axis) for axis in program.totals]
+        ends, rest = fixed[: 5 + len(node.turning)], fixed[5 + len(node.turning) :]
+        # What a sum runs over are its terms: such a root is one, and not one a term.
+        rows = [(*each.shape[:-1], 1) if totals else each.shape for each in rest]
+        shape = np.broadcast_shapes(*(each.shape for each in ends), *rows, (self.number(column),))
+        low, high, _, at_low, at_high, *turning = (each.broadcast(shape) for each in ends)
 
         def at(point: NDArray[np.float64]) -> Intervals:
             (value,) = run_at(Intervals(point, point), *rest, *totals)
             return Intervals.of(value).broadcast(shape)
 
-        before = at_low.sign if rule.sign_low is not None else at(low.low).sign
-        after = at_high.sign if rule.sign_high is not None else at(high.high).sign
+        before = at_low.sign if node.sign_low is not None else at(low.low).sign
+        after = at_high.sign if node.sign_high is not None else at(high.high).sign
         one = before * after < 0
         for turn in turning:
             one &= (turn.high <= low.low) | (turn.low >= high.high)
         if program.enclosing is not None:
-            one &= self._counted(program, column, low, high, (at_low.sign, at_high.sign)) == 1
+            one &= self._counted(program, cells, low, high, (at_low.sign, at_high.sign)) == 1
         if not one.any():
             return whole(shape), one
         left, right = self._bracket(at, low.low.copy(), high.high.copy(), after)
@@ -170,13 +192,17 @@ class Enclosure:
         return found.where(one), one
 
     def _counted(
-        self, program: RootProgram, column: Column, low: Intervals, high: Intervals, signs: Any
+        self,
+        program: RootProgram,
+        cells: Mapping[str, Intervals],
+        low: Intervals,
+        high: Intervals,
+        signs: Any,
     ) -> NDArray[np.intp]:
         """How many roots there are whatever the values inside the intervals; -1 where that is not certain."""
         assert program.enclosing is not None
-        cells = {r: Intervals.of(self._argument(r, column, self.value)) for r in program.fixed.references}
         kept = {axis: np.ones(self.layouts[axis].size, dtype=bool) for axis in program.enclosing.totals}
-        rows = EnclosedRows(program.enclosing, cells, kept, low.shape, moving=True)
+        rows = EnclosedRows(program.enclosing, cells, program.terms_of, kept, low.shape, moving=True)
         ends = [end.reshape(-1) for end in (low.low, high.high, *signs)]
         found = rows.isolate(np.arange(ends[0].size), ends[0], ends[1], (ends[2], ends[3]))
         number = [-1 if row in found.undecided else len(own) for row, own in enumerate(found.brackets)]
@@ -198,16 +224,16 @@ class Enclosure:
     # --- derivatives ----------------------------------------------------------------------------------
 
     def derivatives(
-        self, made: Conditions, kernels: Mapping[str, Kernel], sources: Mapping[str, NDArray[np.intp]]
+        self, made: Derivatives, program: Program, sources: Mapping[str, NDArray[np.intp]]
     ) -> dict[str, Intervals]:
         """Total derivatives of every column by given cells.
 
         Parameters
         ----------
-        made : Conditions
+        made : Derivatives
             Of the sheet.
-        kernels : mapping of column name to Kernel
-            Of the slopes among its columns.
+        program : Program
+            Of its plan.
         sources : mapping of column name to integer array (rows,)
             For given columns, the number of each row among all that derivatives are taken by.
 
@@ -216,56 +242,72 @@ class Enclosure:
         mapping of column name to Intervals (rows, sources)
         """
         number = 1 + max((int(rows.max()) for rows in sources.values()), default=-1)
-        value = dict(self.value)
-        for name, (_, axis) in made.counts.items():
-            value[name] = Intervals.of(np.array([float(self.layouts[axis.name].size)]))
-        found: dict[str, Intervals] = {}
+        spread = _Spread(self, made, number)
         with np.errstate(all="ignore"):
+            program.function(spread)
             for node in made.nodes:
-                found[node.name] = self._spread(node, made, kernels, sources, value, found, number)
-        return found
+                spread.add(node, sources)
+        return spread.found
 
-    def _spread(
-        self,
-        node: Node,
-        made: Conditions,
-        kernels: Mapping[str, Kernel],
-        sources: Mapping[str, NDArray[np.intp]],
-        value: Mapping[str, Intervals],
-        found: Mapping[str, Intervals],
-        number: int,
-    ) -> Intervals:
-        size = self.size(made.sheet[node.of]) if node.over is None else 1
-        own = np.zeros((size, number))
+
+class _Spread(_Rows):
+    """The total derivatives of every node so far; what the function of their plan calls.
+
+    What a plan has besides slopes is of no use here, and a root that it would seek again is not known.
+    """
+
+    def __init__(self, cells: Enclosure, made: Derivatives, sources: int) -> None:
+        super().__init__(made.sheet, cells.layouts, dict(cells.value), dict(cells.sure))
+        self.made, self.sources = made, sources
+        self.parts: dict[str, Intervals] = {}
+        self.found: dict[str, Intervals] = {}
+
+    def part(self, name: str, axis: str | None, value: Any) -> Intervals:
+        """Numbers that are no column."""
+        size = 1 if axis is None else self.layouts[axis].size
+        found = Intervals.of(value)
+        self.parts[name] = found.broadcast(np.broadcast_shapes(found.shape, (size,)))
+        return self.parts[name]
+
+    def root(self, name: str, _: Any, requires: Any = ()) -> Intervals:
+        """The unknown of a root that its cell does not tell."""
+        column = self.sheet[name]
+        self.value[name] = whole((self.number(column),))
+        self.sure[name] = np.zeros(self.number(column), dtype=bool)
+        return self.value[name]
+
+    def add(self, node: Local, sources: Mapping[str, NDArray[np.intp]]) -> None:
+        """A node: by given cells, and by what it names times its slopes."""
+        size = 1 if node.axis is None else self.layouts[node.axis.name].size
+        own = np.zeros((size, self.sources))
         if node.name in sources:
             own[np.arange(size), sources[node.name]] = 1.0
         total = Intervals(own, own)
         for slope in node.slopes:
-            column = made.sheet[slope.column]
-            if slope.column in kernels:
-                (values,) = self.call(kernels[slope.column], column, value)
-            else:
-                values = whole((1,))
-            by = slope.by if isinstance(slope.by, str) else name_of(slope.by)
-            theirs, rows = found[by], self._named(slope, node)
-            theirs = theirs if rows is None else theirs[rows]
-            length = self.size(column)
-            product = values.broadcast((length,))[:, None] * theirs
-            if node.middle:
-                row_of = rows_of(slope.by, node.over, self.layouts)
-                terms = self.value[by] if row_of is None else self.value[by].take(row_of)
-                product = _shares(terms.where(self.sure[by])) * product
-            if node.over is not None:
-                product = product.broadcast((length, number)).total(axis=0)
-            total = total + product
-        if node.over is None and node.name in self.sure and not self.sure[node.name].all():
+            total = total + self._along(node, slope)
+        if node.over is None and not self.sure[node.name].all():
             total = total.where(self.sure[node.name][:, None] | ((total.low == 0) & (total.high == 0)))
-        return total
+        self.found[node.name] = total
 
-    def _named(self, slope: Slope, node: Node) -> NDArray[np.intp] | None:
-        if not isinstance(slope.by, Indexed):
-            return None
-        return rows_of(slope.by, node.over or node.axis, self.layouts)
+    def _along(self, node: Local, slope: Slope) -> Intervals:
+        """What comes by way of one that a node names (rows, sources)."""
+        by, rows = self.made.plan.node_of(slope.by), self._named(slope)
+        theirs = self.found[by] if rows is None else self.found[by][rows]
+        values = self.parts[slope.value]
+        product: Intervals = values[:, None] * theirs
+        if node.median:
+            terms, sure = self.value[by], self.sure[by]
+            share = _shares(terms.where(sure) if rows is None else terms.where(sure).take(rows))
+            product = share * product
+        if node.over is not None:
+            product = product.broadcast((*values.shape, self.sources)).total(axis=0)
+        return product
+
+    def _named(self, slope: Slope) -> NDArray[np.intp] | None:
+        leaf = self.made.plan.leaves[slope.by]
+        return (
+            None if leaf.axis is None or leaf.index is None else self.layouts[leaf.axis.name].rows[leaf.index]
+        )
 
 
 def _shares(terms: Intervals) -> Intervals:
@@ -336,15 +378,3 @@ def _certain(at: Any, centre: Any, ends: Any, sign: Any, share: Any) -> Any:
         near, far = np.where(held, near, middle), np.where(held, middle, far)
     # Where it is never certain, the end itself bounds the root.
     return np.where(found, centre + far * (ends - centre), ends)
-
-
-def slope_kernels(made: Conditions) -> dict[str, Kernel]:
-    """Functions of the slopes that can be computed from cells alone."""
-    found: dict[str, Kernel] = {}
-    given = {column.name for column in made.sheet.columns if isinstance(column.rule, Given)}
-    for name in {slope.column for node in made.nodes for slope in node.slopes}:
-        column = made.sheet[name]
-        named = {precedent.name for precedent in made.sheet.precedents(column)}
-        if isinstance(column.rule, Formula) and named <= given:
-            found[name] = kernel([column.rule.expression], made.sheet.indices)
-    return found

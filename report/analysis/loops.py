@@ -37,7 +37,7 @@ class ForceLaw:
     """
 
     def __init__(self, expression: Basic) -> None:
-        self._kernel = kernel([evaluated(expression)], {})
+        self._kernel = kernel([evaluated(expression)])
         self._names = [str(argument) for argument in self._kernel.arguments]
 
     def __call__(self, x: Array, **constants: float) -> Array:

@@ -12,14 +12,16 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from sympy import Basic, Expr, Indexed, Piecewise, Symbol, ceiling, diff, false, floor, sign
+from sympy import Expr, Piecewise, Symbol, ceiling, diff, false, floor, sign
 from sympy.logic.boolalg import Boolean
 
+from ..column import Root as RootRule
 from ..intervals import Intervals
-from ..sheet import Axis, Column, Reference, Root, Sheet, SheetError, name_of
-from .domain import defined, typed
+from ..plan import Leaf, Plan, Root, lowered_column
+from ..plan.domain import defined, typed_symbols
+from ..sheet import Column, Sheet, SheetError
 from .mpmath_intervals import differences, holds, printed
-from .numpy_code import Kernel, Writer
+from .numpy_code import Kernel, kernel
 
 __all__ = ["certified", "enclosing", "held", "slope"]
 
@@ -36,55 +38,60 @@ def certified(sheet: Sheet, column: Column) -> bool:
         Its rule is a :class:`~loopsheet.report.sheet.Root`.
     """
     rule = column.rule
-    assert isinstance(rule, Root)
+    assert isinstance(rule, RootRule)
     if rule.turning and rule.turning_by:
         return True
-    cells = tuple((r, *_span(sheet, r)) for r in sheet.named(column))
-    sizes = tuple((Reference(size), 1.0, np.inf) for size in sheet.sizes)
-    ordinals = {s for axis in sheet.axes for s in axis.ordinals}
-    counted = tuple((Reference(s), 1.0, np.inf) for s in sorted(ordinals, key=str))
-    form = typed(sheet, rule.expression)
-    every, indices = (*cells, *sizes, *counted), tuple(sheet.indices.items())
-    ends, turning = (rule.low, rule.high), tuple(rule.turning)
+    plan = lowered_column(sheet, column)
+    node = plan.nodes[-1]
+    assert isinstance(node, Root)
+    types = typed_symbols(sheet, plan.leaves)
+    form, low, high, *turning = (
+        each.xreplace(types) for each in (node.form, node.low, node.high, *node.turning)
+    )
+    # The unknown may be called as its column is.
+    named = set().union(*(each.free_symbols for each in (form, low, high, *turning))) - {node.unknown}
+    cells = tuple(
+        (types.get(s, s), *_span(sheet, plan.leaves[s])) for s in plan.leaves if types.get(s, s) in named
+    )
     return any(
-        decide(form, tuple(typed(sheet, point) for point in points), rule.unknown, every, indices)
-        for decide, points in ((_by_stretch, (ends[0], *turning, ends[1])), (_one_way, ends))
+        decide(form, points, node.unknown, cells)
+        for decide, points in ((_by_stretch, (low, *turning, high)), (_one_way, (low, high)))
     )
 
 
-def _span(sheet: Sheet, reference: Reference) -> tuple[float, float]:
-    """What a cell may be."""
-    name = name_of(reference.cell)
-    if name in sheet.bounds:
-        bounds = sheet.bounds[name]
+def _span(sheet: Sheet, leaf: Leaf) -> tuple[float, float]:
+    """What a leaf may be."""
+    if leaf.kind == "total":
+        return -np.inf, np.inf
+    if leaf.kind != "cells":
+        return 1.0, np.inf
+    if leaf.name in sheet.bounds:
+        bounds = sheet.bounds[leaf.name]
         return -np.inf if bounds.low is None else bounds.low, np.inf if bounds.high is None else bounds.high
-    return 0.0 if sheet[name].positive else -np.inf, np.inf
+    return 0.0 if sheet[leaf.name].positive else -np.inf, np.inf
 
 
-Cells = tuple[tuple[Reference, float, float], ...]
+Cells = tuple[tuple[Symbol, float, float], ...]
 
 
 @lru_cache(maxsize=256)
-def _by_stretch(form: Expr, points: tuple[Expr, ...], unknown: Symbol, cells: Cells, _: Any) -> bool:
+def _by_stretch(form: Expr, points: tuple[Expr, ...], unknown: Symbol, cells: Cells) -> bool:
     """Whether the slope has one sign between points that follow one another, by mpmath's intervals."""
     plain = Symbol(unknown.name, real=True)
     steepness, known = slope(form.xreplace({unknown: plain}), plain)
     compared = differences(known)
-    named = {r.place[0]: (low, high) for r, low, high in cells if r.over is None}
-    inside = {cell: Symbol(f"cell_{n}") for n, cell in enumerate(sorted(_cells(steepness, points), key=str))}
-    if compared is None or not {str(cell) for cell in inside} - {plain.name} <= named.keys():
+    if compared is None:
         return False
-    given = {symbol: named[str(cell)] for cell, symbol in inside.items() if cell != plain}
-    ends = printed(list(given), [point.xreplace(inside) for point in points])
-    bodies = [each.xreplace(inside) for each in (steepness, *(each for _, each in compared))]
-    run = printed([*given, inside.get(plain, plain)], bodies)
-    places = None if ends is None else ends(*map(list, given.values()))
+    names, spans = [symbol for symbol, *_ in cells], [[low, high] for _, low, high in cells]
+    ends = printed(names, list(points))
+    run = printed([*names, plain], [steepness, *(each for _, each in compared)])
+    places = None if ends is None else ends(*spans)
     if run is None or places is None:
         return False
     if len(points) > 2 and not all(a.b < b.a for a, b in pairwise(places)):
         return False  # a point that may lie outside does not divide the interval
     for left, right in pairwise(places):
-        found = run(*map(list, given.values()), [left.a, right.b])
+        found = run(*spans, [left.a, right.b])
         if found is None or not (found[0].a >= 0 or found[0].b <= 0):
             return False
         if not all(holds(kind, each) for (kind, _), each in zip(compared, found[1:], strict=True)):
@@ -92,44 +99,30 @@ def _by_stretch(form: Expr, points: tuple[Expr, ...], unknown: Symbol, cells: Ce
     return True
 
 
-def _cells(*expressions: Any) -> set[Basic]:
-    """The cells, and the unknown, that expressions name."""
-    found: set[Basic] = set()
-    for each in expressions:
-        for expression in each if isinstance(each, tuple) else (each,):
-            cells = expression.atoms(Indexed)
-            inner = set().union(*(cell.free_symbols for cell in cells))
-            found |= cells | (expression.free_symbols - inner)
-    return found
-
-
 @lru_cache(maxsize=256)
-def _one_way(form: Expr, ends: tuple[Expr, ...], unknown: Symbol, cells: Cells, indices: Any) -> bool:
+def _one_way(form: Expr, ends: tuple[Expr, ...], unknown: Symbol, cells: Cells) -> bool:
     """Whether the slope has one sign all over the interval, by assumptions or by intervals of arrays."""
     low, high = ends
     plain = Symbol(unknown.name, real=True, **({"positive": True} if low.is_nonnegative else {}))
     steepness, known = slope(form.xreplace({unknown: plain}), plain)
     if known == True and (steepness.is_nonnegative or steepness.is_nonpositive):  # noqa: E712 - sympy's true
         return True
-    span = {r.place: Intervals([least], [most]) for r, least, most in cells}
+    span = {symbol: Intervals([least], [most]) for symbol, least, most in cells}
     try:
-        found_ends = _run([low, high], span, indices)
+        found_ends = _run([low, high], span)
         here = Intervals(found_ends[0].low, found_ends[1].high)
-        found, sure = _run([steepness, held(known)], {**span, (plain.name, None): here}, indices)
+        found, sure = _run([steepness, held(known)], {**span, plain: here})
     except (KeyError, SheetError, TypeError):
         return False
     return bool(((found.low >= 0) | (found.high <= 0)).all() and (sure.low == 1).all())
 
 
-def _run(
-    expressions: list[Any], span: Mapping[tuple[str, Axis | None], Intervals], indices: Any
-) -> list[Intervals]:
-    """Expressions over all that their cells may be."""
-    writer = Writer(dict(indices))
-    kernel = writer.kernel([writer.plain(expression) for expression in expressions])
-    given: Any = [span[r.place] for r in kernel.references]
+def _run(expressions: list[Any], span: Mapping[Symbol, Intervals]) -> list[Intervals]:
+    """Expressions over all that their symbols may be."""
+    function = kernel(expressions)
+    given: Any = [span[symbol] for symbol in function.arguments]
     with np.errstate(all="ignore"):
-        return [Intervals.of(each) for each in kernel.run(*given, *(_AnyRows() for _ in kernel.totals))]
+        return [Intervals.of(each) for each in function.run(*given, *(_AnyRows() for _ in function.totals))]
 
 
 class _AnyRows:
@@ -160,23 +153,22 @@ def held(condition: Boolean) -> Expr:
     return Piecewise((1, condition), (0, True))
 
 
-def enclosing(sheet: Sheet, column: Column) -> Kernel:
-    """A function of a root's cells and unknown: the form, its slope and whether the slope tells its course.
+def enclosing(sheet: Sheet, plan: Plan, node: Root) -> Kernel:
+    """A function of what a root names and of its unknown: the form, its slope, whether that tells its course.
 
     Parameters
     ----------
     sheet : Sheet
-    column : Column
-        Its rule is a :class:`~loopsheet.report.sheet.Root`.
+    plan : Plan
+        Of the sheet.
+    node : Root
+        Of the plan.
     """
-    rule = column.rule
-    assert isinstance(rule, Root)
-    plain = Symbol(rule.unknown.name, real=True)
-    form = typed(sheet, rule.expression).xreplace({rule.unknown: plain})
+    plain = Symbol(node.unknown.name, real=True)
+    form = node.form.xreplace({**typed_symbols(sheet, plan.leaves), node.unknown: plain})
     for steepness, known in (slope(form, plain), (form, false)):
-        writer = Writer(sheet.indices)
         try:
-            return writer.kernel([writer.plain(each) for each in (form, steepness, held(known))])
+            return kernel([form, steepness, held(known)])
         except SheetError:
             continue
-    raise SheetError(f"{column.name}: NumPy cannot compute {form}")
+    raise SheetError(f"{node.column.name}: NumPy cannot compute {form}")

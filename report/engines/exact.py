@@ -23,13 +23,16 @@ from sympy import Basic, Expr, Indexed, Symbol, lambdify
 from ...derivations.reductions import REDUCTIONS, Median
 from ..intervals import Intervals
 from ..layout import Layout, lay_out, precedents, rows_of
+from ..plan import Leaf, Total, lowered_column
+from ..plan import Root as RootNode
+from ..plan.domain import LARGEST, SMALLEST, typed
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, RepeatAxis, Root, Sheet, name_of
 from ..values import Status, Values, how_many, inherited, rows_kept
 from .certified import certified, enclosing, slope
-from .domain import LARGEST, SMALLEST, typed
 from .exact_roots import Enclose, brackets, of_arrays, of_mpmath
 from .isolation import Doubtful
+from .numpy_root import terms_of
 
 __all__ = ["DIGITS", "ExactValues", "evaluate", "laid_out"]
 
@@ -342,8 +345,17 @@ class _Scope:
             cells = {symbol: cell for cell, symbol in named.items()}
             readers = [self._reader(cells.get(symbol, symbol), axis) for symbol in symbols]
             return lambda row: of_row([read(row) for read in readers])
-        kernel = enclosing(sheet, self.column)
-        every = [(r, self._reader(r.cell, r.over or axis)) for r in kernel.references if r.cell != plain]
+        plan = lowered_column(sheet, self.column)
+        node = plan.nodes[-1]
+        assert isinstance(node, RootNode)
+        kernel, terms = enclosing(sheet, plan, node), terms_of(node)
+        leaves = {symbol.name: leaf for symbol, leaf in plan.leaves.items()}
+        written = {n.symbol.name: n.written for n in plan.nodes if isinstance(n, Total)}
+        named = {
+            name: self.function(written[name]) if name in written else self._read_leaf(leaves[name])
+            for argument in kernel.arguments
+            if (name := argument.name) != plain.name
+        }
         kept = {}
         for name in kernel.totals:
             kept[name] = np.zeros(self.engine.layouts[name].size, dtype=bool)
@@ -351,13 +363,25 @@ class _Scope:
 
         def of_rows(row: int) -> Enclose:
             given = {}
-            for reference, read in every:
-                rows = [row] if reference.over is None else range(self._size(reference.over))
+            for name, read in named.items():
+                over = leaves[name].axis if name in terms else None
+                rows = [row] if over is None else range(self._size(over))
                 numbers = [np.nan if (x := read(each)) is None else float(x) for each in rows]
-                given[reference] = Intervals.near(numbers, numbers)
-            return of_arrays(kernel, given, kept)
+                given[name] = Intervals.near(numbers, numbers)
+            return of_arrays(kernel, given, terms, kept)
 
         return of_rows
+
+    def _read_leaf(self, leaf: Leaf) -> Callable[[int], Any]:
+        """A cell, size or running number of the plan, for the rows it is read on."""
+        if leaf.kind in ("size", "kept"):
+            assert leaf.axis is not None
+            return self._reader(leaf.axis.size, None)
+        if leaf.kind == "ordinal":
+            assert leaf.index is not None
+            return self._reader(leaf.index, leaf.axis)
+        column = self.engine.sheet[leaf.name]
+        return self._reader(column.cell if leaf.index is None else column[leaf.index], leaf.axis)
 
     def _many(
         self, expressions: Sequence[Basic], axis: Axis | None, unknown: Symbol | None

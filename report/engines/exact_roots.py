@@ -6,7 +6,7 @@ intervals of arrays that NumPy's program uses: there the judge is independent in
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -123,15 +123,17 @@ def of_mpmath(
 # --- intervals of arrays ---------------------------------------------------------------------------------
 
 
-def of_arrays(kernel: Kernel, cells: Mapping[Any, Intervals], kept: Mapping[str, Any]) -> Enclose:
+def of_arrays(
+    kernel: Kernel, cells: Mapping[str, Intervals], terms_of: Collection[str], kept: Mapping[str, Any]
+) -> Enclose:
     """What encloses a form by its printed program, for the cells of one row.
 
     Parameters
     ----------
-    kernel, cells, kept
+    kernel, cells, terms_of, kept
         As for :class:`~loopsheet.report.engines.numpy_root.EnclosedRows`.
     """
-    rows = EnclosedRows(kernel, cells, kept, (1,))
+    rows = EnclosedRows(kernel, cells, terms_of, kept, (1,))
 
     def enclose(low: Any, high: Any) -> tuple[int, int]:
         a, b = (np.array([float(end)]) for end in (low, high))

@@ -16,10 +16,10 @@ from sympy import And, Expr, Float, Indexed, Rational, Rel, Sum, Symbol
 from ...derivations.reductions import Median
 from ..grid import Place, as_issued, checked, factors
 from ..layout import Layout, rows_of
+from ..plan.domain import defined, is_positive, positive, typed
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, Reference, Root, Sheet, name_of, within
 from ..values import CODES, Status
-from .domain import defined, is_positive, positive, typed
 from .excel import IfError, Printer
 from .excel_roots import READY, Auxiliary, Unrolled
 

@@ -16,9 +16,9 @@ from sympy import Basic, Dummy, Indexed, Sum, Symbol, cse, numbered_symbols
 from sympy.printing.jscode import JavascriptCodePrinter
 
 from ...derivations.reductions import Median
+from ..plan.domain import defined, positive, typed
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet, name_of
 from .certified import certified, slope
-from .domain import defined, positive, typed
 from .javascript_intervals import enclose, needed
 
 __all__ = ["RUNTIME", "program"]

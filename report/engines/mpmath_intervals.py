@@ -11,6 +11,7 @@ from sympy import And, Basic, Gt, Lt, Ne, Symbol, cos, exp, lambdify, log, sin, 
 from sympy.core.function import Application
 
 from ...derivations.reductions import REDUCTIONS
+from ..plan import RowMedian, RowSum
 
 __all__ = ["Run", "differences", "holds", "printed", "sign"]
 
@@ -30,7 +31,7 @@ def printed(symbols: Sequence[Symbol], bodies: Sequence[Basic]) -> Run | None:
 
     It returns None where an expression has no value.
     """
-    if any(body.has(*REDUCTIONS) for body in bodies) or not all(
+    if any(body.has(*REDUCTIONS, RowSum, RowMedian) for body in bodies) or not all(
         isinstance(each, (exp, log, sin, cos)) for body in bodies for each in body.atoms(Application)
     ):
         return None

@@ -8,22 +8,24 @@ made by :mod:`~loopsheet.report.engines.numpy_code` from the sheet's own express
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..layout import Layout, lay_out, precedents, rows_of
-from ..sheet import Column, Formula, Given, Reference, RepeatAxis, Root, Sheet, name_of
+from ..layout import Layout, lay_out, precedents
+from ..plan import Leaf, Map, Plan, Root, lowered
+from ..plan.domain import SMALLEST
+from ..sheet import Column, RepeatAxis, Sheet
 from ..values import Status, Values, how_many, inherited, rows_kept
-from .domain import SMALLEST, defined, positive, typed
-from .numpy_code import SAME, Array, Function, Kernel, kernel, write
+from .numpy_code import SAME, Array, Function, Kernel, kernel
 from .numpy_root import RootProgram
 from .numpy_rows import Kept
+from .numpy_sheet import sheet_function
 
-__all__ = ["Kernel", "Program", "evaluate", "extend", "kernel"]
+__all__ = ["Kernel", "Program", "evaluate", "extend", "kernel", "parts"]
 
 Codes = NDArray[np.uint8]
 Masks = Mapping[str, NDArray[np.bool_]]
@@ -32,21 +34,30 @@ BLOCK = 1 << 13
 """How many roots are sought at a time: their intermediate results then stay in the processor's cache."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Program:
-    """The kernels of a sheet: of each column's formula, or of its root's parts, and of its conditions.
+    """The function of a sheet, and the parts that it asks for.
 
-    For a given column, that of what its values must satisfy; for a formula that has no value somewhere, that
-    of where it has one, and for one of which more than its value says so, that of where it is positive.
+    Parameters
+    ----------
+    sheet : Sheet
+    plan : Plan
+    function : callable
+        Printed from the plan; called with a run.
+    roots : mapping of column name to RootProgram
+    source : str
+        The text of all of it.
+    functions : module
+        What computes exponentials, logarithms and powers.
     """
 
     sheet: Sheet
-    formulas: Mapping[str, Kernel]
+    plan: Plan
+    function: Function
     roots: Mapping[str, RootProgram]
-    conditions: Mapping[str, Kernel]
-    guards: Mapping[str, Function]
-    domains: Mapping[str, Kernel]
-    positive: Mapping[str, Kernel]
+    source: str
+    functions: Any = SAME
+    _laid: dict[Any, Laid] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, sheet: Sheet, known: Collection[str] = (), functions: Any = SAME) -> Program:
@@ -66,40 +77,25 @@ class Program:
         SheetError
             A formula has a part that NumPy cannot compute.
         """
-        formulas, roots, conditions, guards, domains, signs = {}, {}, {}, {}, {}, {}
-        for column in sheet.order:
-            if column.name in known:
-                continue
-            if column.name in sheet.guards:
-                datum, allowed = sheet.guards[column.name]
-                _, guards[column.name] = write([datum], (), [allowed], functions)
-            if isinstance(column.rule, Formula):
-                formulas[column.name] = kernel([column.rule.expression], sheet.indices, functions)
-                formula = typed(sheet, column.rule.expression)
-                if column.positive and (sign := positive(formula)) != False:  # noqa: E712 - sympy's false
-                    signs[column.name] = kernel([sign], sheet.indices, functions)
-                if (domain := defined(formula)) != True:  # noqa: E712 - sympy's true
-                    domains[column.name] = kernel([domain], sheet.indices, functions)
-            elif isinstance(column.rule, Root):
-                roots[column.name] = RootProgram.of(sheet, column, functions)
-            if column.requires:
-                conditions[column.name] = kernel([c for c, _ in column.requires], sheet.indices, functions)
-        return cls(sheet, formulas, roots, conditions, guards, domains, signs)
+        return cls.of_plan(sheet, lowered(sheet, known), functions)
 
-    @cached_property
-    def guessing(self) -> Program:
-        """The same without counting roots by intervals: what it finds is not known to be the only root."""
-        if all(root.enclosing is None for root in self.roots.values()):
-            return self
-        return replace(self, roots={name: replace(root, counted=False) for name, root in self.roots.items()})
+    @classmethod
+    def of_plan(cls, sheet: Sheet, plan: Plan, functions: Any = SAME) -> Program:
+        """Generate the program of a plan that computes something of a sheet.
 
-    @property
-    def source(self) -> str:
-        """The whole program as text, for whoever wants to read what was run."""
-        parts = [f"# {name}\n{k.source}" for name, k in self.formulas.items()]
-        parts += [f"# {name}\n{root.source}" for name, root in self.roots.items()]
-        parts += [f"# {name}: conditions\n{k.source}" for name, k in self.conditions.items()]
-        return "\n\n".join(parts)
+        Raises
+        ------
+        SheetError
+            As for :meth:`of`.
+        """
+        roots = {
+            node.column.name: RootProgram.of(sheet, plan, node, functions)
+            for node in plan.nodes
+            if isinstance(node, Root)
+        }
+        source, function = sheet_function(plan, roots, functions)
+        parts = (f"# {name}\n{root.source}" for name, root in roots.items())
+        return cls(sheet, plan, function, roots, "\n\n".join([source, *parts]), functions)
 
     def run(
         self, labels: Mapping[str, Sequence[int]], counts: Mapping[str, int], data: Mapping[str, Array]
@@ -115,161 +111,257 @@ class Program:
         data : mapping of column name to float array (..., rows)
             The given columns in SI; NaN is a missing datum. Leading dimensions broadcast.
         """
-        return _Run(self, lay_out(self.sheet, labels, counts), data).values()
+        return _Run(self, self.laid(labels, counts), data).values()
+
+    def laid(self, labels: Mapping[str, Sequence[int]], counts: Mapping[str, int]) -> Laid:
+        """The sheet over rows; that of the last ones is kept."""
+        key = tuple((name, tuple(own)) for name, own in labels.items()), tuple(counts.items())
+        if key not in self._laid:
+            self._laid.clear()
+            self._laid[key] = Laid(self.sheet, lay_out(self.sheet, labels, counts))
+        return self._laid[key]
+
+    @cached_property
+    def guessing(self) -> Program:
+        """The same without counting roots by intervals: what it finds is not known to be the only root."""
+        if all(root.enclosing is None for root in self.roots.values()):
+            return self
+        return replace(self, roots={name: replace(root, counted=False) for name, root in self.roots.items()})
+
+    @cached_property
+    def maps(self) -> dict[str, Map]:
+        """The formulas by name."""
+        return {node.column.name: node for node in self.plan.nodes if isinstance(node, Map)}
+
+    def asked(self, condition: Any) -> Kernel | None:
+        """The function of a condition on a value; None where it is certain."""
+        if condition not in self._asked:
+            certain = condition in (True, False)
+            self._asked[condition] = None if certain else kernel([condition], self.functions)
+        return self._asked[condition]
+
+    @cached_property
+    def _asked(self) -> dict[Any, Kernel | None]:
+        return {}
+
+
+class Laid:
+    """A sheet over the rows of its axes: what does not change with the data."""
+
+    def __init__(self, sheet: Sheet, layouts: dict[str, Layout]) -> None:
+        self.sheet, self.layouts = sheet, layouts
+        self.named = {c.name: precedents(sheet, layouts, c) for c in sheet.columns}
+        self.names = {name: {each.column.name for each in named} for name, named in self.named.items()}
+        self.empty = {
+            name
+            for name, named in self.named.items()
+            if any(each.over is not None and not layouts[each.over.name].size for each in named)
+        }
+        """The columns that sum over no rows at all."""
+        self.every = {name: Kept(np.ones(own.size, dtype=bool)) for name, own in layouts.items()}
+
+    def size(self, column: Column) -> int:
+        """How many rows a column has."""
+        return 1 if column.axis is None else self.layouts[column.axis.name].size
 
 
 class _Run:
-    """One evaluation: fills values and statuses column by column, in the sheet's order."""
+    """One evaluation: what the printed function calls, column by column in the sheet's order.
+
+    As long as no cell that is named is in error, nothing is asked of single rows.
+    """
 
     def __init__(
-        self,
-        program: Program,
-        layouts: dict[str, Layout],
-        data: Mapping[str, Array],
-        known: Values | None = None,
+        self, program: Program, laid: Laid, data: Mapping[str, Array], known: Values | None = None
     ) -> None:
-        self.program, self.layouts, self.data = program, layouts, data
-        self.sheet = program.sheet
+        self.program, self.laid, self.data, self.sheet = program, laid, data, program.sheet
         self.value: dict[str, Array] = dict(known.value) if known else {}
         self.status: dict[str, Codes] = dict(known.status) if known else {}
         self.roots: dict[str, Mapping[int, tuple[float, ...]]] = dict(known.roots) if known else {}
         self.counted: dict[str, Mapping[str, int]] = dict(known.counted) if known else {}
         self.broken: dict[str, Codes] = dict(known.broken) if known else {}
+        self.wrong = {name for name, codes in self.status.items() if codes.any()}
+        """The columns of which some cell is in error."""
+        self.masks: dict[str, Masks] = {}
+        self.parts: dict[str, Array] = {}
 
     def values(self) -> Values:
         with np.errstate(all="ignore"):
-            for column in self.sheet.order:
-                if column.name in self.value:
-                    continue
-                given = isinstance(column.rule, Given)
-                value, status = self._given(column) if given else self._computed(column)
-                self.value[column.name] = np.where(status == Status.OK, value, np.nan)
-                self.status[column.name] = status.astype(np.uint8)
+            self.program.function(self)
         return Values(
-            self.sheet, self.layouts, self.value, self.status, self.roots, self.counted, self.broken
+            self.sheet, self.laid.layouts, self.value, self.status, self.roots, self.counted, self.broken
         )
 
-    def _given(self, column: Column) -> tuple[Array, Codes]:
-        value = np.atleast_1d(np.asarray(self.data[column.name], dtype=np.float64))
-        size = self._size(column)
-        if value.shape[-1] != size:
-            raise ValueError(
-                f"{column.name} has {value.shape[-1]} rows, not {size}: the last dimension is the rows"
-            )
-        allowed = np.isfinite(value)
-        if column.name in self.program.guards:
-            allowed = allowed & self.program.guards[column.name](value)[0]
-        return value, np.where(allowed, Status.OK, Status.INPUT).astype(np.uint8)
+    # --- rows
 
-    def _computed(self, column: Column) -> tuple[Array, Codes]:
-        named = precedents(self.sheet, self.layouts, column)
-        kept = rows_kept(named, self.layouts, self.status)
-        self._count(column, kept)
-        status = inherited(named, kept, self.status, self._size(column))
-        if isinstance(column.rule, Root):
-            value, found = self._root(column, kept, status)
-            beyond = np.isinf(value) | (column.positive & (value > 0) & (value < SMALLEST))
-            odd = [(found == Status.OK) & condition for condition in (np.isnan(value), beyond)]
-            found = np.select(odd, [Status.DOMAIN, Status.OVERFLOW], found).astype(np.uint8)
-        else:
-            (value,) = self._call(self.program.formulas[column.name], column, kept)
-            found = self._found(column, value, kept)
-        if column.requires:
-            found = self._required(column, kept, status, found)
+    def rows(self, name: str, axis: str, index: str) -> Array:
+        """The cells of a column that the rows of an axis name by an index."""
+        rows = self.laid.layouts[axis].named[index]
+        # take() keeps the rows of each batch element together in memory, indexing does not.
+        return self.value[name].take(rows, axis=-1)
+
+    def ordinal(self, axis: str, index: str) -> Array:
+        """A running number of the rows of an axis."""
+        return self.laid.layouts[axis].numbered[index]
+
+    def size(self, axis: str) -> Array:
+        """How many rows an axis has."""
+        return self.laid.every[axis].number
+
+    def kept(self, name: str, axis: str) -> Kept:
+        """The rows of an axis over which the sums of a column run."""
+        mask = self._masks(name).get(axis)
+        return self.laid.every[axis] if mask is None else Kept(mask)
+
+    def _odd(self, name: str) -> bool:
+        """Whether a column may inherit an error."""
+        return name in self.laid.empty or not self.wrong.isdisjoint(self.laid.names[name])
+
+    def _masks(self, name: str) -> Masks:
+        """For the axes that a column sums over, the rows kept, if some are left out."""
+        if not self._odd(name):
+            return {}
+        if name not in self.masks:
+            self.masks[name] = rows_kept(self.laid.named[name], self.laid.layouts, self.status)
+            if some := how_many(self.masks[name]):
+                self.counted[name] = some
+        return self.masks[name]
+
+    def part(self, name: str, axis: str | None, value: Any) -> Array:
+        """Numbers that are no column; NaN where there are none."""
+        size = 1 if axis is None else self.laid.layouts[axis].size
+        every = np.broadcast_to(value, np.broadcast_shapes(np.shape(value), (size,)))
+        self.parts[name] = np.where(np.isfinite(every), every, np.nan)
+        return self.parts[name]
+
+    # --- columns
+
+    def given(self, name: str, value: Array, allowed: Any = True) -> Array:
+        """The data of a column."""
+        size = self.laid.size(self.sheet[name])
+        if value.shape[-1] != size:
+            raise ValueError(f"{name} has {value.shape[-1]} rows, not {size}: the last dimension is the rows")
+        allowed = np.isfinite(value) & allowed
+        return self._hold(name, value, np.where(allowed, Status.OK, Status.INPUT).astype(np.uint8))
+
+    def formula(self, name: str, value: Any, *requires: Any) -> Array:
+        """A column by its formula, and whether its conditions hold."""
+        column = self.sheet[name]
+        size = self.laid.size(column)
+        shape = np.shape(value)
+        if requires or not shape or shape[-1] != size:
+            shape = np.broadcast_shapes(shape, (size,), *map(np.shape, requires))
+            value = np.broadcast_to(np.asarray(value, dtype=np.float64), shape).copy()
+        if not self._odd(name) and _held(value, column.positive).all() and all(map(np.all, requires)):
+            if requires:
+                self.broken[name] = np.zeros(shape, dtype=np.uint8)
+            return self._hold(name, value, np.zeros(shape, dtype=np.uint8))
+        return self._computed(column, value, self._found(column, value), requires)
+
+    def root(self, name: str, arguments: Sequence[Array], requires: Sequence[Any] = ()) -> Array:
+        """A column by its root."""
+        column, program = self.sheet[name], self.program.roots[name]
+        status = self._inherited(column)
+        value, found = self._solved(column, program, arguments, status)
+        beyond = np.isinf(value) | (column.positive & (value > 0) & (value < SMALLEST))
+        odd = [(found == Status.OK) & condition for condition in (np.isnan(value), beyond)]
+        found = np.select(odd, [Status.DOMAIN, Status.OVERFLOW], found).astype(np.uint8)
+        return self._computed(column, value, found, requires, status)
+
+    def _computed(
+        self, column: Column, value: Array, found: Codes, requires: Sequence[Any], status: Codes | None = None
+    ) -> Array:
+        """A column of which some cells may be in error: what they inherit comes before what they are."""
+        status = self._inherited(column) if status is None else status
+        if requires:
+            # What breaks a condition is outside the domain, whatever the rule made of it.
+            broken: Any = np.zeros(1, dtype=np.uint8)
+            for number, holds in enumerate(requires, start=1):
+                broken = np.where((broken == 0) & ~np.asarray(holds, dtype=bool), number, broken)
+            broken = np.where(status == Status.OK, broken, 0).astype(np.uint8)
+            self.broken[column.name] = broken
+            found = np.where(broken > 0, Status.DOMAIN, found).astype(np.uint8)
         shape = np.broadcast_shapes(value.shape, found.shape, status.shape)
         status = np.where(status == Status.OK, found, status)
-        return np.broadcast_to(value, shape), np.broadcast_to(status, shape)
+        return self._hold(
+            column.name, np.broadcast_to(value, shape).copy(), np.broadcast_to(status, shape).copy()
+        )
 
-    def _found(self, column: Column, value: Array, kept: Masks) -> Codes:
+    def _hold(self, name: str, value: Array, status: Codes) -> Array:
+        if status.any():
+            self.wrong.add(name)
+            value = np.where(status == Status.OK, value, np.nan)
+        self.value[name], self.status[name] = value, status
+        return value
+
+    def _inherited(self, column: Column) -> Codes:
+        if not self._odd(column.name):
+            shapes = (self.status[name].shape[:-1] for name in self.laid.names[column.name])
+            return np.zeros((*np.broadcast_shapes(*shapes), self.laid.size(column)), dtype=np.uint8)
+        masks = self._masks(column.name)
+        return inherited(self.laid.named[column.name], masks, self.status, self.laid.size(column))
+
+    def _found(self, column: Column, value: Array) -> Codes:
         """What the values of a formula are: one that a double holds, one that none does, or none."""
-        held, beyond = np.isfinite(value), ~np.isfinite(value)
+        held, beyond = _held(value, column.positive), ~np.isfinite(value)
         if column.positive:
             beyond = (beyond & (value != -np.inf)) | ((value > 0) & (value < SMALLEST))
-            held = held & (value >= SMALLEST)
         if held.all():
             return np.zeros(value.shape, dtype=np.uint8)
-        if column.name in self.program.positive:
-            beyond = beyond | ((value == 0) & self._holds(self.program.positive, column, kept))
-        if column.name in self.program.domains:
-            beyond = beyond & self._holds(self.program.domains, column, kept)
+        node = self.program.maps[column.name]
+        if node.positive != False:  # noqa: E712 - sympy's false
+            beyond = beyond | ((value == 0) & self._holds(node.positive, column))
+        beyond = beyond & self._holds(node.defined, column)
         found = np.select([held, beyond], [Status.OK, Status.OVERFLOW], Status.DOMAIN)
         return found.astype(np.uint8)
 
-    def _holds(self, kernels: Mapping[str, Kernel], column: Column, kept: Masks) -> Array:
-        (holds,) = self._call(kernels[column.name], column, kept)
-        return holds.astype(bool)
+    def _holds(self, condition: Any, column: Column) -> Any:
+        """Whether a condition on the cells that a column names holds."""
+        asked = self.program.asked(condition)
+        if asked is None:
+            return bool(condition)
+        named = self.program.plan.named
+        arguments = [self._fetched(named[symbol.name]) for symbol in asked.arguments]
+        found = asked.run(*arguments, *(self.kept(column.name, axis) for axis in asked.totals))[0]
+        return np.broadcast_to(found, np.broadcast_shapes(np.shape(found), (self.laid.size(column),))).astype(
+            bool
+        )
 
-    def _required(self, column: Column, kept: Masks, status: Codes, found: Codes) -> Codes:
-        """What breaks a condition is outside the domain, whatever the rule made of it."""
-        held = self._call(self.program.conditions[column.name], column, kept)
-        broken: Any = np.zeros(1, dtype=np.uint8)
-        for number, holds in enumerate(held, start=1):
-            broken = np.where((broken == 0) & ~np.asarray(holds, dtype=bool), number, broken)
-        broken = np.where(status == Status.OK, broken, 0).astype(np.uint8)
-        self.broken[column.name] = broken
-        return np.where(broken > 0, Status.DOMAIN, found).astype(np.uint8)
+    def _fetched(self, leaf: Leaf) -> Array:
+        if leaf.kind == "cells":
+            if leaf.index is None:
+                return self.value[leaf.name]
+            assert leaf.axis is not None
+            return self.rows(leaf.name, leaf.axis.name, leaf.index.name)
+        assert leaf.axis is not None
+        if leaf.kind == "ordinal":
+            assert leaf.index is not None
+            return self.ordinal(leaf.axis.name, leaf.index.name)
+        if leaf.kind == "size":
+            return self.size(leaf.axis.name)
+        return self.kept(leaf.name, leaf.axis.name).number
 
-    def _count(self, column: Column, kept: Masks) -> None:
-        if some := how_many(kept):
-            self.counted[column.name] = some
+    # --- roots
 
-    # --- what a kernel is called with ----------------------------------------------------------------
-
-    def _size(self, column: Column) -> int:
-        return 1 if column.axis is None else self.layouts[column.axis.name].size
-
-    def _call(self, function: Kernel, column: Column, kept: Masks) -> list[Array]:
-        arguments = [self._argument(reference, column, kept) for reference in function.references]
-        totals = self._totals(kept)
-        results = function.run(*arguments, *(totals[axis] for axis in function.totals))
-        size = self._size(column)
-        return [np.broadcast_to(r, np.broadcast_shapes(np.shape(r), (size,))) for r in results]
-
-    def _argument(self, reference: Reference, column: Column, kept: Masks) -> Array:
-        """All rows of what a kernel names."""
-        cell, axis = reference.cell, reference.over or column.axis
-        if cell in self.sheet.sizes:
-            return self._how_many(self.sheet.sizes[cell].name, kept)
-        if axis is not None and cell in axis.ordinals:
-            return self.layouts[axis.name].ordinals[cell]
-        rows = rows_of(cell, axis, self.layouts)
-        value = self.value[name_of(cell)]
-        # take() keeps the rows of each batch element together in memory, indexing does not.
-        return value if rows is None else value.take(rows, axis=-1)
-
-    def _how_many(self, axis: str, kept: Masks) -> Array:
-        """How many rows an axis has; for a column that sums over it, those that it sums."""
-        return self._kept(axis, kept).number
-
-    def _totals(self, kept: Masks) -> dict[str, Kept]:
-        return {axis.name: self._kept(axis.name, kept) for axis in self.sheet.axes}
-
-    def _kept(self, axis: str, kept: Masks) -> Kept:
-        return Kept(kept.get(axis, np.ones(self.layouts[axis].size, dtype=bool)))
-
-    # --- roots ----------------------------------------------------------------------------------------
-
-    def _root(self, column: Column, kept: Masks, inherited: Codes) -> tuple[Array, Codes]:
-        program, totals = self.program.roots[column.name], self._totals(kept)
-        references = program.fixed.references
-        if program.totals or program.fixed.totals:
-            arguments = [self._argument(reference, column, kept) for reference in references]
-            batch = [
-                inherited.shape,
-                *(self._how_many(a.name, kept).shape for a in self.sheet.summed_axes(column)),
-            ]
-            batch += [(*a.shape[:-1], 1) for a in arguments]
-            solved = program.solve(arguments, totals, np.broadcast_shapes(*batch, (self._size(column),)))
+    def _solved(
+        self, column: Column, program: RootProgram, arguments: Sequence[Array], inherited: Codes
+    ) -> tuple[Array, Codes]:
+        totals = {axis.name: self.kept(column.name, axis.name) for axis in self.sheet.axes}
+        names = [argument.name for argument in program.arguments]
+        if program.totals:
+            batch = [kept.number.shape for kept in totals.values()]
+            batch += [inherited.shape, *((*a.shape[:-1], 1) for a in arguments)]
+            shape = np.broadcast_shapes(*batch, (self.laid.size(column),))
+            solved = program.solve(dict(zip(names, arguments, strict=True)), totals, shape)
             if solved.several and inherited.reshape(-1)[0] == Status.OK:
                 self.roots[column.name] = solved.several
             return solved.value, solved.status
-        arguments = [self._argument(reference, column, kept) for reference in references]
         shape = np.broadcast_shapes(*(a.shape for a in arguments), inherited.shape)
         value, status = np.empty(shape), np.empty(shape, dtype=np.uint8)
         several: dict[int, tuple[float, ...]] = {}
         for block, own in _blocks(shape):
             part = [a[block] if a.ndim == len(shape) and a.shape[0] > 1 else a for a in arguments]
-            solved = program.solve(part, totals, own)
+            solved = program.solve(dict(zip(names, part, strict=True)), totals, own)
             value[block], status[block] = solved.value, solved.status
             for row, roots in solved.several.items():
                 if inherited[min(row + block.start, inherited.shape[-1] - 1)] == Status.OK:
@@ -277,6 +369,12 @@ class _Run:
         if several:
             self.roots[column.name] = several
         return value, status
+
+
+def _held(value: Array, positive: bool) -> NDArray[np.bool_]:
+    """Which values doubles hold with all their digits."""
+    finite = np.isfinite(value)
+    return finite & (value >= SMALLEST) if positive else finite
 
 
 def _blocks(shape: tuple[int, ...]) -> Iterator[tuple[slice, tuple[int, ...]]]:
@@ -334,7 +432,27 @@ def extend(values: Values, columns: Sequence[Column], data: Mapping[str, Any]) -
     }
     arrays = _arrays(data)
     layouts = lay_out(sheet, labels, _counts(sheet, {**values.value, **arrays}))
-    return _Run(Program.of(sheet, values.value), layouts, arrays, values).values()
+    return _Run(Program.of(sheet, values.value), Laid(sheet, layouts), arrays, values).values()
+
+
+def parts(program: Program, values: Values) -> dict[str, Array]:
+    """Compute the parts of a plan from finished values.
+
+    Parameters
+    ----------
+    program : Program
+        Of the plan, from :meth:`Program.of_plan`.
+    values : Values
+        All columns that the plan names.
+
+    Returns
+    -------
+    mapping of name to float array (..., rows)
+    """
+    run = _Run(program, Laid(program.sheet, dict(values.layouts)), {}, values)
+    with np.errstate(all="ignore"):
+        program.function(run)
+    return run.parts
 
 
 def _arrays(data: Mapping[str, Any]) -> dict[str, Array]:

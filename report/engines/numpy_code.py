@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import reduce
-from itertools import count
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Basic, Expr, Indexed, Max, Min, Piecewise, S, Symbol, cse, numbered_symbols
+from sympy import Basic, Expr, Piecewise, S, Symbol, cse, numbered_symbols
 from sympy.printing.codeprinter import PrintMethodNotImplementedError
 from sympy.printing.numpy import NumPyPrinter
 
-from ...derivations.reductions import REDUCTIONS, Median
 from .. import elementary
-from ..sheet import Axis, Reference, SheetError, name_of
-from .roots import Total
+from ..plan import RowMedian, RowSum, taken_over
+from ..sheet import SheetError
 
-__all__ = ["SAME", "Array", "Function", "Kernel", "Writer", "kernel"]
+__all__ = ["SAME", "Array", "Function", "Kernel", "Printer", "compiled", "kernel", "printed", "write"]
 
 Array = NDArray[np.float64]
 Function = Callable[..., tuple[Array, ...]]
@@ -82,28 +80,36 @@ class Printer(NumPyPrinter):
         last = pairs.pop()[0] if expr.args[-1].cond == True else "numpy.nan"  # noqa: E712
         return reduce(lambda rest, pair: f"numpy.where({pair[1]}, {pair[0]}, {rest})", reversed(pairs), last)
 
-    def _print_Total(self, expr: Total) -> str:
+    def _print_RowSum(self, expr: RowSum) -> str:
         terms, axis = expr.args
         return f"{axis}_kept.total({self._print(terms)})"
 
-    def _print_Middle(self, expr: Middle) -> str:
+    def _print_RowMedian(self, expr: RowMedian) -> str:
         terms, axis = expr.args
         return f"{axis}_kept.median({self._print(terms)})"
 
 
-class Middle(Expr):
-    """A median over an axis' rows as a function of the array of its terms.
+def printed(printer: Printer, expression: Any) -> str:
+    """The text of an expression.
 
-    Parameters
-    ----------
-    terms : Expr
-        In plain symbols, each of which stands for an array.
-    axis : Symbol
-        The axis' name.
+    Raises
+    ------
+    SheetError
+        NumPy has no word for some part of it.
     """
+    try:
+        return str(printer.doprint(expression))
+    except PrintMethodNotImplementedError as error:
+        raise SheetError(f"NumPy cannot compute this: {error}") from error
 
-    is_commutative = True
-    is_real = True
+
+def compiled(name: str, arguments: Sequence[str], lines: Sequence[str], functions: Any) -> tuple[str, Any]:
+    """A function of printed lines: its text, and itself."""
+    source = "\n".join([f"def {name}({', '.join(arguments)}):", *(f"    {line}" for line in lines)])
+    namespace: dict[str, Any] = {"numpy": functions}
+    # Printed from our own expressions, never foreign text.
+    exec(compile(source, "<generated>", "exec"), namespace)
+    return source, namespace[name]
 
 
 @dataclass(frozen=True)
@@ -112,8 +118,8 @@ class Kernel:
 
     Parameters
     ----------
-    references : tuple of Reference
-        Its arguments, in order.
+    arguments : tuple of Symbol
+        What it is called with, in order.
     totals : tuple of str
         The axes it sums over, or takes a median over: after its arguments, it is called with what does
         that for each, a :class:`~loopsheet.report.engines.numpy_rows.Kept`.
@@ -123,80 +129,10 @@ class Kernel:
         Returns one array for each expression.
     """
 
-    references: tuple[Reference, ...]
+    arguments: tuple[Symbol, ...]
     totals: tuple[str, ...]
     source: str
     run: Function
-
-    @property
-    def arguments(self) -> tuple[Expr, ...]:
-        """The cells it is called with."""
-        return tuple(reference.cell for reference in self.references)
-
-
-class Writer:
-    """Writes functions over the same cells.
-
-    Parameters
-    ----------
-    sums : mapping of index to Axis
-        The axes that sums may run over.
-    functions : module
-        What they call: :data:`SAME`, or NumPy.
-    """
-
-    def __init__(self, sums: Mapping[Symbol, Axis], functions: Any = SAME) -> None:
-        self.sums, self.functions = sums, functions
-        self.symbols: dict[Reference, Symbol] = {}
-        self._ordinals = {symbol for axis in sums.values() for symbol in axis.ordinals}
-        self._reserved = {"numpy", *(f"{axis.name}_kept" for axis in sums.values())}
-
-    def plain(self, expression: Any, over: Axis | None = None) -> Any:
-        """The expression in plain symbols, each the name of an array; a sum is a :class:`Total`."""
-        if isinstance(expression, REDUCTIONS):
-            axis = self.sums[expression.limits[0][0]]
-            taken = Middle if isinstance(expression, Median) else Total
-            return taken(self.plain(expression.function, axis), Symbol(axis.name))
-        if isinstance(expression, (Indexed, Symbol)):
-            by_row = isinstance(expression, Indexed) or expression in self._ordinals
-            reference = Reference(expression, over if by_row else None)
-            if reference not in self.symbols:
-                self.symbols[reference] = self._symbol(reference)
-            return self.symbols[reference]
-        if not expression.args:
-            return expression
-        parts = [self.plain(argument, over) for argument in expression.args]
-        if isinstance(expression, (Max, Min)):
-            return expression.func(
-                *parts, evaluate=False
-            )  # what can be compared was, before the names changed
-        return expression.func(*parts)
-
-    def _symbol(self, reference: Reference) -> Symbol:
-        cell = reference.cell
-        name = f"{name_of(cell)}_of_{cell.indices[0]}" if isinstance(cell, Indexed) else cell.name
-        label = cell.base.label if isinstance(cell, Indexed) else cell
-        taken = {symbol.name for symbol in self.symbols.values()} | self._reserved
-        free = next(n for suffix in count() if (n := name + "_" * suffix) not in taken)
-        return Symbol(free, **label.assumptions0)
-
-    def kernel(self, expressions: Sequence[Any]) -> Kernel:
-        """A function of the cells that the expressions, in plain symbols, name."""
-        used = set().union(*(expression.free_symbols for expression in expressions))
-        references = sorted((r for r, s in self.symbols.items() if s in used), key=_by_name)
-        totals = totals_in(expressions)
-        source, run = write([self.symbols[r] for r in references], totals, expressions, self.functions)
-        return Kernel(tuple(references), totals, source, run)
-
-
-def _by_name(reference: Reference) -> tuple[str, str]:
-    return str(reference.cell), "" if reference.over is None else reference.over.name
-
-
-def totals_in(expressions: Iterable[Basic]) -> tuple[str, ...]:
-    """The axes that expressions sum over, or take a median over."""
-    found = (taken for expression in expressions for taken in expression.atoms(Total, Middle))
-    return tuple(sorted({taken.args[1].name for taken in found}))
 
 
 def write(
@@ -213,31 +149,22 @@ def write(
     common, bodies = cse(expressions, symbols=symbols, order="none", list=True)
     printer = Printer()
     names = [*(a.name for a in arguments), *(f"{axis}_kept" for axis in totals)]
-    try:
-        lines = [f"def kernel({', '.join(names)}):"]
-        lines += [f"    {name} = {printer.doprint(value)}" for name, value in common]
-        lines += [f"    return ({', '.join(printer.doprint(body) for body in bodies)},)"]
-    except PrintMethodNotImplementedError as error:
-        raise SheetError(f"NumPy cannot compute this: {error}") from error
-    source = "\n".join(lines)
-    namespace: dict[str, Any] = {"numpy": functions}
-    exec(
-        compile(source, "<generated>", "exec"), namespace
-    )  # printed from our own expressions, never foreign text
-    return source, namespace["kernel"]
+    lines = [f"{name} = {printed(printer, value)}" for name, value in common]
+    lines += [f"return ({', '.join(printed(printer, body) for body in bodies)},)"]
+    return compiled("kernel", names, lines, functions)
 
 
-def kernel(expressions: Sequence[Basic], sums: Mapping[Symbol, Axis], functions: Any = SAME) -> Kernel:
-    """Print expressions as one function of arrays.
+def kernel(expressions: Sequence[Basic], functions: Any = SAME) -> Kernel:
+    """Print expressions in plain symbols as one function of these, sorted by name.
 
     Parameters
     ----------
     expressions : sequence of Basic
         What the function returns, in order.
-    sums : mapping of index to Axis
-        The axes that sums in them may run over.
     functions : module
-        As for :class:`Writer`.
+        What it calls: :data:`SAME`, or NumPy.
     """
-    writer = Writer(sums, functions)
-    return writer.kernel([writer.plain(expression) for expression in expressions])
+    totals = taken_over(expressions)
+    axes = {Symbol(axis) for axis in totals}
+    arguments = sorted(set().union(*(e.free_symbols for e in expressions)) - axes, key=str)
+    return Kernel(tuple(arguments), totals, *write(arguments, totals, expressions, functions))

@@ -8,9 +8,8 @@ nothing of the equation is bisected until no double is left between the ends.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -19,15 +18,16 @@ from numpy.typing import NDArray
 from sympy import Expr, Integer, Symbol
 
 from ..intervals import Intervals, whole
-from ..sheet import Column, Reference, Root, Sheet
+from ..plan import Plan, Root, RowSum, taken_over
+from ..sheet import Sheet
 from ..values import Status
 from .certified import certified, enclosing
 from .isolation import Isolated, isolate
-from .numpy_code import SAME, Array, Function, Kernel, Writer, totals_in, write
+from .numpy_code import SAME, Array, Function, Kernel, kernel, write
 from .numpy_rows import Kept, KeptIntervals
 from .roots import hoist, magnitude, step
 
-__all__ = ["EnclosedRows", "RootProgram", "Solved"]
+__all__ = ["EnclosedRows", "RootProgram", "Solved", "terms_of"]
 
 Mask = NDArray[np.bool_]
 
@@ -58,13 +58,23 @@ class Solved:
     bisected: int
 
 
+def terms_of(node: Root) -> frozenset[str]:
+    """The names of what stands in the sums of a root's equation: its rows are their terms."""
+    return frozenset(symbol.name for total in node.form.atoms(RowSum) for symbol in total.free_symbols)
+
+
 @dataclass(frozen=True)
 class RootProgram:
     """Everything a root needs, printed.
 
     Parameters
     ----------
-    rule : Root
+    node : Root
+        Of the plan.
+    arguments : tuple of Symbol
+        What :meth:`solve` is called with: cells, totals and sizes that the root names.
+    terms_of : frozenset of str
+        Those of them whose rows are the terms of its sums.
     fixed : Kernel
         What does not change with the unknown: low, high, start, the sign at each end (a number only where
         the rule gives it), the turning points, then the constants of the functions below.
@@ -88,7 +98,9 @@ class RootProgram:
         search that proves nothing does without until it has found something.
     """
 
-    rule: Root
+    node: Root
+    arguments: tuple[Symbol, ...]
+    terms_of: frozenset[str]
     fixed: Kernel
     totals: tuple[str, ...]
     at: Function
@@ -100,63 +112,60 @@ class RootProgram:
     counted: bool = True
 
     @classmethod
-    def of(cls, sheet: Sheet, column: Column, functions: Any = SAME) -> RootProgram:
+    def of(cls, sheet: Sheet, plan: Plan, node: Root, functions: Any = SAME) -> RootProgram:
         """Print the functions of one root."""
-        rule = column.rule
-        assert isinstance(rule, Root)
-        enclosed = None if certified(sheet, column) else enclosing(sheet, column)
+        enclosed = None if certified(sheet, node.column) else enclosing(sheet, plan, node)
         if enclosed is not None:
-            rule = replace(rule, turning=())  # what nobody proved is not used
-        writer = Writer(sheet.indices, functions)
-        f, value = writer.plain(rule.expression), writer.plain(rule.value)
-        unknown = writer.plain(rule.unknown)
-        constants: dict[Expr, Symbol] = {}
-        f, value = hoist(f, unknown, constants), hoist(value, unknown, constants)
+            node = replace(node, turning=())  # what nobody proved is not used
+        unknown, constants = node.unknown, dict[Expr, Symbol]()
+        f, value = (hoist(each, unknown, constants) for each in (node.form, node.value))
         ends = [
-            Integer(0) if end is None else writer.plain(end)  # no sign is given: the equation is evaluated
-            for end in (rule.low, rule.high, rule.start, rule.sign_low, rule.sign_high, *rule.turning)
+            Integer(0) if end is None else end  # no sign is given: the equation is evaluated
+            for end in (node.low, node.high, node.start, node.sign_low, node.sign_high, *node.turning)
         ]
         # Cells that need no computation are constants too.
-        named = f.free_symbols | value.free_symbols
-        cells = sorted(named.intersection(writer.symbols.values()) - {unknown}, key=str)
-        fixed = writer.kernel([*ends, *constants, *cells])
+        axes = {Symbol(axis) for axis in taken_over([f, value])}
+        cells = sorted((f.free_symbols | value.free_symbols) - {unknown, *constants.values(), *axes}, key=str)
+        fixed = kernel([*ends, *constants, *cells], functions)
         arguments = [unknown, *constants.values(), *cells]
-        totals = totals_in([f, value])
+        totals = taken_over([f, value])
         bodies = {"at": [f], "step": [f, step(f, unknown)], "terms": [magnitude(f)], "value": [value]}
         printed = {name: write(arguments, totals, body, functions) for name, body in bodies.items()}
         source = "\n".join(
             [f"# fixed\n{fixed.source}", *(f"# {n}\n{text}" for n, (text, _) in printed.items())]
         )
+        named = {symbol.name: symbol for symbol in plan.leaves}
+        asked = {s.name for s in (*fixed.arguments, *(() if enclosed is None else enclosed.arguments))}
+        every = tuple(named[name] for name in sorted(asked - {unknown.name}))
         at, go, terms, of_unknown = (function for _, function in printed.values())
-        return cls(rule, fixed, totals, at, go, terms, of_unknown, source, enclosed)
+        return cls(node, every, terms_of(node), fixed, totals, at, go, terms, of_unknown, source, enclosed)
 
     # --- numbers --------------------------------------------------------------------------------------
 
-    def solve(self, arguments: Sequence[Array], totals: Mapping[str, Kept], shape: tuple[int, ...]) -> Solved:
+    def solve(
+        self, arguments: Mapping[str, Array], totals: Mapping[str, Kept], shape: tuple[int, ...]
+    ) -> Solved:
         """Find the root of every row.
 
         Parameters
         ----------
-        arguments : sequence of float array
-            What :attr:`fixed` is called with.
+        arguments : mapping of name to float array
+            :attr:`arguments`.
         totals : mapping of axis name to Kept
-            What takes sums and medians over its rows.
+            What takes sums over its rows: of the axes of :attr:`totals`.
         shape : tuple of int
             Of the rows, batch first.
         """
-        out = self.fixed.run(*arguments, *(totals[axis] for axis in self.fixed.totals))
+        out = self.fixed.run(*(arguments[a.name] for a in self.fixed.arguments))
         fixed = [np.atleast_1d(np.asarray(each, dtype=np.float64)) for each in out]
-        ends = [np.broadcast_to(end, shape) for end in fixed[: 5 + len(self.rule.turning)]]
+        ends = [np.broadcast_to(end, shape) for end in fixed[: 5 + len(self.node.turning)]]
         rows = _Rows(self, fixed[len(ends) :], [totals[axis] for axis in self.totals])
         stretches, odd = self._stretches(ends, rows)
         doubts: Mapping[int, tuple[float, float]] = {}
         if self.enclosing is not None and self.counted:
-            thin = {
-                reference: Intervals(cell, cell)
-                for reference, cell in zip(self.fixed.references, arguments, strict=True)
-            }
-            masks = {axis: kept.mask for axis, kept in totals.items()}
-            cells = EnclosedRows(self.enclosing, thin, masks, shape)
+            thin = {name: Intervals(cell, cell) for name, cell in arguments.items()}
+            masks = {axis: totals[axis].mask for axis in self.enclosing.totals}
+            cells = EnclosedRows(self.enclosing, thin, self.terms_of, masks, shape)
             stretches, doubts = self._isolated(ends, cells, odd)
         doubtful = np.zeros(odd.size, dtype=bool)
         doubtful[list(doubts)] = True
@@ -182,7 +191,7 @@ class RootProgram:
         """The stretches between turning points, and where the equation has no sign at one of their ends."""
         low, high, _, at_low, at_high, *turning = ends
         places = [low]
-        signs = [np.sign(at_low if self.rule.sign_low is not None else rows.call(self.at, low))]
+        signs = [np.sign(at_low if self.node.sign_low is not None else rows.call(self.at, low))]
         for point in turning:
             # A turning point outside the interval, or not a number, closes an empty stretch at its left end.
             inside = (point > places[-1]) & (point < high)
@@ -190,7 +199,7 @@ class RootProgram:
             signs.append(np.where(inside, np.sign(rows.call(self.at, here)), signs[-1]))
             places.append(here)
         places.append(high)
-        signs.append(np.sign(at_high if self.rule.sign_high is not None else rows.call(self.at, high)))
+        signs.append(np.sign(at_high if self.node.sign_high is not None else rows.call(self.at, high)))
         stretches = [
             _Stretch(left, right, after, before * after < 0)
             for (left, right), (before, after) in zip(pairwise(places), pairwise(signs), strict=True)
@@ -254,7 +263,10 @@ class EnclosedRows:
     ----------
     kernel : Kernel
         The root's, from :func:`~loopsheet.report.engines.certified.enclosing`.
-    cells : mapping of Reference to Intervals
+    cells : mapping of name to Intervals
+        Its arguments, but the unknown.
+    terms_of : collection of str
+        Those of them whose rows are the terms of sums.
     kept : mapping of axis name to boolean array (..., rows)
         For the axes that it sums over, the rows that have values.
     shape : tuple of int
@@ -265,7 +277,8 @@ class EnclosedRows:
     """
 
     kernel: Kernel
-    cells: Mapping[Reference, Intervals]
+    cells: Mapping[str, Intervals]
+    terms_of: Collection[str]
     kept: Mapping[str, Mask]
     shape: tuple[int, ...]
     moving: bool = False
@@ -285,7 +298,7 @@ class EnclosedRows:
             In the flattened shape.
         low, high : float arrays (parts,)
         """
-        terms = max((c.shape[-1] for r, c in self.cells.items() if r.over is not None), default=1)
+        terms = max((self.cells[name].shape[-1] for name in self.terms_of if name in self.cells), default=1)
         each = max(1, _BLOCK // max(1, terms))
         blocks = [slice(n, n + each) for n in range(0, max(len(rows), 1), each)]
         found = [self._block(rows[block], low[block], high[block]) for block in blocks]
@@ -317,15 +330,15 @@ class EnclosedRows:
                 return end
             return np.broadcast_to(end, (*self.shape[:-1], end.shape[-1])).reshape(-1, end.shape[-1])[batch]
 
-        def taken(reference: Reference) -> Intervals:
-            found = self._named.get(reference)
+        def taken(name: str) -> Intervals:
+            found = self.cells.get(name)
             if found is None:
                 return Intervals(low[:, None], high[:, None])  # the unknown
-            take = of_rows if reference.over is None else of_terms
+            take = of_terms if name in self.terms_of else of_rows
             first = take(found.low)
             return Intervals(first, first if found.low is found.high else take(found.high))
 
-        given: Any = [taken(reference) for reference in self.kernel.references]
+        given: Any = [taken(argument.name) for argument in self.kernel.arguments]
         sums: Any = [KeptIntervals(of_terms(self.kept[axis])) for axis in self.kernel.totals]
         parts: Any
         try:
@@ -334,12 +347,6 @@ class EnclosedRows:
         except TypeError:  # intervals do not know some function
             parts = (whole((1,)), whole((1,)), np.zeros(1))
         return [Intervals.of(part).broadcast((len(rows), 1))[:, 0] for part in parts]
-
-    @cached_property
-    def _named(self) -> dict[Reference, Intervals]:
-        """The cells of the kernel's references, of which more may be assumed than where they come from."""
-        places = {reference.place: cell for reference, cell in self.cells.items()}
-        return {r: places[r.place] for r in self.kernel.references if r.place in places}
 
 
 _BLOCK = 1 << 18
@@ -378,7 +385,7 @@ class _Rows:
         """The unknown in its bracket, and how many of the wanted rows had to be bisected."""
         here = np.where((start > left) & (start < right), start, (left + right) / 2)
         f = before = there = here
-        for _ in range(self.program.rule.steps):
+        for _ in range(self.program.node.steps):
             f, back = self.program.step(here, *self.constants, *self.totals)
             # The bracket moves on a sign only: what is no number moves neither end.
             side = f * rising

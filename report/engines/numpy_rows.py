@@ -65,22 +65,37 @@ class KeptIntervals:
     Parameters
     ----------
     mask : boolean array (..., rows)
+    sure : boolean array (..., rows), optional
+        Which of the kept rows have values whatever lies in the intervals; of a sum over others nothing is
+        known.
     """
 
     mask: NDArray[np.bool_]
+    sure: NDArray[np.bool_] | None = None
 
     def total(self, terms: Any) -> Intervals:
         """The sum of the kept rows (..., 1)."""
-        every = self._every(terms)
+        every = self.every(terms)
         if not self.mask.all():
             every = Intervals(*(np.where(self.mask, end, 0.0) for end in (every.low, every.high)))
         return every.total()
 
     def median(self, terms: Any) -> Intervals:
-        """The median, of all rows."""
-        low, high = self._every(terms).middle()
+        """The median, of all rows: one that is missing moves it less than one that may lie at either end."""
+        low, high = self.every(terms).middle()
         return (low + high) / 2  # type: ignore[no-any-return]
 
-    def _every(self, terms: Any) -> Intervals:
+    @cached_property
+    def number(self) -> Intervals:
+        """How many rows are kept (..., 1)."""
+        most = np.count_nonzero(self.mask, axis=-1, keepdims=True).astype(np.float64)
+        if self.sure is None:
+            return Intervals(most, most)
+        least = np.count_nonzero(self.mask & self.sure, axis=-1, keepdims=True).astype(np.float64)
+        return Intervals(*np.broadcast_arrays(least, most))
+
+    def every(self, terms: Any) -> Intervals:
+        """The terms, a row each."""
         terms = Intervals.of(terms)
-        return terms.broadcast(np.broadcast_shapes(terms.shape, self.mask.shape))  # type: ignore[no-any-return]
+        every = terms.broadcast(np.broadcast_shapes(terms.shape, self.mask.shape))
+        return every if self.sure is None or self.sure.all() else every.where(self.sure)  # type: ignore[no-any-return]

@@ -6,36 +6,11 @@ engine and no model types a derivative.
 
 from __future__ import annotations
 
-from sympy import Abs, Add, Basic, Expr, Integer, Mul, Pow, Sum, Symbol, diff, exp, log
+from sympy import Abs, Add, Basic, Expr, Mul, Pow, Sum, Symbol, diff, exp, log
 
-__all__ = ["Total", "derivatives", "hoist", "householder", "magnitude", "step"]
+from ..plan import RowSum
 
-
-class Total(Expr):
-    """A sum over an axis' rows as a function of the array of its terms: linear, which is all algebra needs.
-
-    Parameters
-    ----------
-    terms : Expr
-        In plain symbols, each of which stands for an array.
-    axis : Symbol
-        The axis' name.
-    """
-
-    def __new__(cls, terms: Expr, axis: Symbol) -> Expr:
-        """Take numbers out, so that twice a sum is not another sum."""
-        number, rest = terms.as_coeff_Mul()
-        if number == 0:
-            return Integer(0)
-        total = super().__new__(cls, rest, axis)
-        return total if number == 1 else number * total
-
-    is_commutative = True
-    is_real = True
-
-    def _eval_derivative(self, symbol: Symbol) -> Expr:
-        terms, axis = self.args
-        return Total(diff(terms, symbol), axis)
+__all__ = ["derivatives", "hoist", "householder", "magnitude", "step"]
 
 
 def derivatives(function: Expr, unknown: Symbol) -> tuple[Expr, Expr, Expr, Expr]:
@@ -62,7 +37,7 @@ def step(function: Expr, unknown: Symbol) -> Expr:
         What must vanish, in plain symbols.
     unknown : Symbol
     """
-    if function.has(Total):
+    if function.has(RowSum):
         return function / diff(function, unknown)
     names = [Symbol(f"f_{i}", real=True) for i in range(4)]
     return householder(*names).xreplace(dict(zip(names, derivatives(function, unknown), strict=True)))
@@ -98,9 +73,9 @@ def hoist(expression: Expr, unknown: Symbol, constants: dict[Expr, Symbol]) -> E
             return part.func(constant(part.func(*still)), *rest)
         if isinstance(part, Pow) and part.base.is_positive and not part.base.has(unknown):
             return exp(moving(log(part.base) * part.exp))
-        if isinstance(part, Total):
+        if isinstance(part, RowSum):
             terms, axis = part.args
-            return Total(moving(terms), axis)
+            return RowSum(moving(terms), axis)
         return part.func(*map(moving, part.args)) if part.args else part
 
     return moving(expression)
@@ -112,9 +87,9 @@ def magnitude(expression: Basic) -> Expr:
         return expression.func(*map(magnitude, expression.args))
     if isinstance(expression, Pow) and expression.exp.is_Integer and expression.exp > 0:
         return magnitude(expression.base) ** expression.exp
-    if isinstance(expression, Total):
+    if isinstance(expression, RowSum):
         terms, axis = expression.args
-        return Total(magnitude(terms), axis)
+        return RowSum(magnitude(terms), axis)
     if isinstance(expression, Sum):
         return Sum(magnitude(expression.function), *expression.limits)
     return Abs(expression)

@@ -18,6 +18,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     parser.add_argument("cell", metavar="CELL", help="alpha, alpha[1-2], x_m[3] or alpha_mean")
     folder_argument(parser)
+    said = "show what is computed for the column instead, node by node; CELL may be 'all'"
+    parser.add_argument("--plan", action="store_true", help=said)
     keeping_arguments(parser)
 
 
@@ -27,8 +29,22 @@ def run(options: argparse.Namespace) -> int:
     from ..study import Study
 
     study = Study(report_folder(options.folder))
-    print(study.kept("show", lambda: "\n".join(_lines(study.computed, options.cell)), options.cell))
+    if options.plan:
+        print(study.kept("plan", lambda: _plan(study.computed, options.cell), options.cell), end="")
+    else:
+        print(study.kept("show", lambda: "\n".join(_lines(study.computed, options.cell)), options.cell))
     return OK
+
+
+def _plan(report: Report, address: str) -> str:
+    from ..plan import lowered
+    from ..plan.text import text
+
+    plan = lowered(report.sheet)
+    if address == "all" and address not in report.sheet:
+        return text(plan)
+    column, _ = find(report, address)
+    return text(plan, [column.name])
 
 
 def _lines(report: Report, address: str) -> Iterator[str]:

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...conditions import conditions
 from ...intervals import Intervals
 from ...sheet import SheetError
-from ..enclosure import Enclosure, slope_kernels
+from ..bounds import Made
+from ..enclosure import Enclosure
 from .campaign import Array
 from .problem import Box, Problem
 
@@ -65,11 +65,10 @@ class _Enclosed:
             raise _TooLarge
         known, key = problem.campaign.made.derivatives, id(problem.program)  # the campaign keeps its programs
         if key not in known:
-            made = conditions(problem.sheet)
-            known[key] = made, slope_kernels(made)
-        made, kernels = known[key]
+            known[key] = Made.of(problem.sheet)
+        made = known[key]
         sources = {name: np.array(rows) for name, rows in problem.rows.items()}
-        return self.over_box.derivatives(made, kernels, sources)
+        return self.over_box.derivatives(made.derivatives, made.program, sources)
 
 
 def _enclosure(problem: Problem, low: Array, high: Array) -> Enclosure:

@@ -7,6 +7,7 @@ expression has a value, and doubles are to blame.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from sympy import (
@@ -45,9 +46,11 @@ from sympy.functions.elementary.piecewise import ExprCondPair
 from sympy.logic.boolalg import Boolean
 
 from ...derivations.reductions import REDUCTIONS
+from ..quantity import Bounds
 from ..sheet import Sheet
+from .nodes import Leaf, RowMedian, RowSum
 
-__all__ = ["LARGEST", "SMALLEST", "defined", "is_positive", "positive", "typed"]
+__all__ = ["LARGEST", "SMALLEST", "assumed", "defined", "is_positive", "positive", "typed", "typed_symbols"]
 
 LARGEST = 2**1024 - 2**970
 """What is no smaller than this rounds to no finite double."""
@@ -70,13 +73,32 @@ def typed(sheet: Sheet, expression: Expr) -> Expr:
     expression : Expr
         A formula of the sheet. What is made of it names the same cells.
     """
-    assumed = {}
-    for name, bounds in sheet.bounds.items():
-        least = -1 if bounds.low is None else bounds.low
-        sign = "positive" if least > 0 or (least == 0 and bounds.low_open) else "nonnegative"
-        assumed[sheet[name].symbol] = Symbol(name, real=True) if least < 0 else Symbol(name, **{sign: True})
-    found: Expr = expression.xreplace(assumed)
+    own = {sheet[name].symbol: Symbol(name, **assumed(bounds)) for name, bounds in sheet.bounds.items()}
+    found: Expr = expression.xreplace(own)
     return found
+
+
+def typed_symbols(sheet: Sheet, leaves: Mapping[Symbol, Leaf]) -> dict[Symbol, Symbol]:
+    """For the cells of given columns, symbols of which is assumed what they may be."""
+    return {
+        symbol: Symbol(symbol.name, **assumed(sheet.bounds[leaf.name]))
+        for symbol, leaf in leaves.items()
+        if leaf.kind == "cells" and leaf.name in sheet.bounds
+    }
+
+
+def assumed(bounds: Bounds) -> dict[str, bool]:
+    """What sympy is told of a number within bounds.
+
+    Examples
+    --------
+    >>> assumed(Bounds(low=0)), assumed(Bounds(low=0, low_open=True)), assumed(Bounds())
+    ({'nonnegative': True}, {'positive': True}, {'real': True})
+    """
+    least = -1 if bounds.low is None else bounds.low
+    if least < 0:
+        return {"real": True}
+    return {"positive" if least > 0 or bounds.low_open else "nonnegative": True}
 
 
 def defined(expression: Any) -> Boolean:
@@ -106,6 +128,9 @@ def defined(expression: Any) -> Boolean:
     if isinstance(expression, REDUCTIONS):
         outside = Piecewise((Integer(0), defined(expression.function)), (Integer(1), True))
         return S.true if outside == 0 else Eq(Sum(outside, *expression.limits), 0)
+    if isinstance(expression, (RowSum, RowMedian)):
+        outside = Piecewise((Integer(0), defined(expression.args[0])), (Integer(1), True))
+        return S.true if outside == 0 else Eq(RowSum(outside, expression.args[1]), 0)
     if isinstance(expression, Piecewise):
         chosen = [Or(Not(condition), defined(value)) for value, condition in expression.args]
         conditions = [condition for _, condition in expression.args]
@@ -138,7 +163,8 @@ def is_positive(expression: Expr) -> bool:
     >>> is_positive(Sum(F[q], (q, 1, n)) / n), is_positive(F[q] - 1)
     (True, False)
     """
-    known = {total: Dummy(positive=True) for total in expression.atoms(Sum) if is_positive(total.function)}
+    totals = expression.atoms(Sum, RowSum)  # their first argument is their terms
+    known = {total: Dummy(positive=True) for total in totals if is_positive(total.args[0])}
     return bool(expression.xreplace(known).is_positive)
 
 

@@ -1,0 +1,404 @@
+"""Derivatives of a plan, and what rounding does in it, as a plan of its own.
+
+Every node c = f(r, s, ...) has
+
+- slopes: the derivative of f by each cell and each total that it names; for a root c = w(u) of G(u, r) = 0 by
+  the implicit function theorem, w_r - w' G_r / G_u;
+- the rounding R that its own operations leave, in units of eps, what it names taken as exact: |c| for a given
+  column, whose double is the nearest to what was printed; for a formula one rounding of each operation's
+  result, a sum with nothing cancelling, each times the derivative of what is computed from it; for a root
+  the rounding of w, and |w'| (|u| + R(G) / |G_u|), because an equation that is computed wrong by R(G) has its
+  root shifted by R(G) / G_u.
+
+All of them are formulas of finished cells, made by sympy; none is typed for any model, and nothing is solved
+again. What they amount to along all ways through the plan is a matter of numbers
+(:mod:`~loopsheet.report.analysis.bounds`, :mod:`~loopsheet.report.analysis.enclosure`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import reduce
+from itertools import count
+from typing import Any
+
+from sympy import (
+    Abs,
+    Add,
+    Derivative,
+    DiracDelta,
+    Expr,
+    Ge,
+    Heaviside,
+    Integer,
+    Le,
+    Max,
+    Min,
+    Mul,
+    Piecewise,
+    Poly,
+    PolynomialError,
+    Pow,
+    S,
+    Subs,
+    Symbol,
+    diff,
+    exp,
+    log,
+    numer,
+    together,
+)
+from sympy.core.function import ArgumentIndexError
+
+from ..column import Axis, Column
+from ..column import Root as RootRule
+from ..sheet import Sheet
+from .lowering import RESERVED, lowered
+from .nodes import Given, Leaf, Map, Node, Part, Plan, Root, RowSum, Total
+
+__all__ = ["Derivatives", "Local", "Slope", "derivatives"]
+
+_NO_FUNCTIONS = (Derivative, Subs, DiracDelta, Heaviside)
+
+
+@dataclass(frozen=True)
+class Slope:
+    """The derivative of a node by what it names.
+
+    Parameters
+    ----------
+    by : Symbol
+        Cells or a total.
+    value : str
+        The part that holds it, on the rows of the node; for a total, on those that it runs over.
+    """
+
+    by: Symbol
+    value: str
+
+
+@dataclass(frozen=True)
+class Local:
+    """A node with its derivatives by what it names itself.
+
+    Parameters
+    ----------
+    name : str
+        Of the column; for a total, of its symbol.
+    axis : Axis or None
+        None for a scalar and for every total.
+    over : Axis or None
+        The axis that a total runs over.
+    of : str
+        The column in whose rule it stands.
+    rounding : str
+        The part that holds its rounding in SI, in units of eps.
+    slopes : tuple of Slope
+    median : bool
+        Whether it is a median: of its slopes only those of the rows in the middle count.
+    """
+
+    name: str
+    axis: Axis | None
+    over: Axis | None
+    of: str
+    rounding: str
+    slopes: tuple[Slope, ...]
+    median: bool = False
+
+
+@dataclass(frozen=True)
+class Derivatives:
+    """The derivatives of a sheet.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        The sheet, and the unknowns of roots that their cells do not tell.
+    plan : Plan
+        Its parts hold roundings and slopes; where one has no value, nothing is known.
+    nodes : tuple of Local
+        Each after those that it names.
+    """
+
+    sheet: Sheet
+    plan: Plan
+    nodes: tuple[Local, ...]
+
+
+def derivatives(sheet: Sheet) -> Derivatives:
+    """Make the plan of a sheet's derivatives.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    """
+    plan = lowered(sheet)
+    making = _Making(plan)
+    locals_ = tuple(local for node in plan.nodes for local in making.node(node))
+    extended = Sheet((*sheet.columns, *making.columns))
+    return Derivatives(extended, Plan(tuple(making.nodes), making.leaves), locals_)
+
+
+class _Making:
+    """The derivatives so far: the nodes of their plan, and what its symbols stand for."""
+
+    def __init__(self, plan: Plan) -> None:
+        self.leaves = dict(plan.leaves)
+        self.taken = {*RESERVED, *(symbol.name for symbol in plan.leaves)}
+        self.own = plan.own
+        self.nodes: list[Node] = []
+        self.columns: list[Column] = []
+        self.sums: dict[tuple[str, Axis, Expr], Symbol] = {}
+
+    def node(self, node: Node) -> Iterator[Local]:
+        """A node, after the sums of its equation if it is a root."""
+        if isinstance(node, Root):
+            yield from _RootMaking(self, node).locals()
+        elif isinstance(node, Given):
+            yield self.local(node.column, _size(self.own[node.column.name]), {})
+        elif isinstance(node, Map):
+            value = _chosen(node.value)
+            yield self.local(node.column, rounding(value), self.slopes(value))
+        elif isinstance(node, Total):
+            self.nodes.append(node)
+            yield self.total(node)
+
+    def total(self, node: Total) -> Local:
+        """A sum or a median; it is a node of the derivatives too."""
+        terms = _chosen(node.terms)
+        # A median's terms are cells; the mean of the two in the middle is rounded.
+        own = (
+            _size(node.symbol)
+            if node.median
+            else self.summed(node.column, _size(terms) + rounding(terms), node.over)
+        )
+        return self.local(node.column, own, self.slopes(terms), node)
+
+    def local(
+        self, column: Column, own: Expr, slopes: dict[Symbol, Expr], total: Total | None = None
+    ) -> Local:
+        """A node, and the parts of its numbers."""
+        name = column.name if total is None else total.symbol.name
+        over, axis = (None, column.axis) if total is None else (total.over, None)
+        held = self.part(f"{name}_rounding", column, axis, own)
+        found = tuple(
+            Slope(by, self.part(f"{name}_slope_{n}", column, over or axis, slope))
+            for n, (by, slope) in enumerate(slopes.items())
+            if slope != 0
+        )
+        return Local(name, axis, over, column.name, held, found, total is not None and total.median)
+
+    def slopes(self, expression: Expr) -> dict[Symbol, Expr]:
+        """The derivatives of an expression by what it names."""
+        return {by: diff(expression, by) for by in self.named_in(expression)}
+
+    def named_in(self, *expressions: Expr) -> list[Symbol]:
+        """The cells and totals that expressions name, sorted by name; all else is exact."""
+        free = set().union(*(expression.free_symbols for expression in expressions))
+        named = (s for s in free if s in self.leaves and self.leaves[s].kind in ("cells", "total"))
+        return sorted(named, key=str)
+
+    def part(self, wanted: str, column: Column, axis: Axis | None, expression: Expr) -> str:
+        """A new part; its name."""
+        # What jumps has no derivative that could be printed.
+        value = S.NaN if expression.has(*_NO_FUNCTIONS) else expression
+        symbol = self.symbol(wanted, Leaf("part", wanted, axis))
+        self.nodes.append(Part(column, symbol, axis, value))
+        return str(symbol.name)
+
+    def symbol(self, wanted: str, leaf: Leaf | None) -> Symbol:
+        """A new symbol; without a leaf, whoever asks says what it stands for."""
+        name = next(name for n in count() if (name := wanted + "_" * n) not in self.taken)
+        self.taken.add(name)
+        found = Symbol(name, real=True)
+        if leaf is not None:
+            self.leaves[found] = leaf
+        return found
+
+    def summed(self, column: Column, terms: Expr, over: Axis) -> Expr:
+        """The sum of terms over the rows that the sums of a column keep."""
+        if terms == 0:
+            return terms
+        key = column.name, over, terms
+        if key not in self.sums:
+            wanted = f"{column.name}_more_{len(self.sums)}"
+            self.sums[key] = self.symbol(wanted, Leaf("total", wanted))
+            self.nodes.append(Total(column, self.sums[key], over, terms, terms))
+        return self.sums[key]
+
+
+class _RootMaking:
+    """The derivatives of a root: sums with the unknown are nodes of their own, taken where the root lies."""
+
+    def __init__(self, making: _Making, node: Root) -> None:
+        self.making, self.root, self.column = making, node, node.column
+        self.unknown = node.unknown
+        self.moving: dict[Symbol, tuple[Axis, Expr]] = {}
+        self.axes = {axis.name: axis for axis in _axes(making.leaves.values())}
+
+    def locals(self) -> Iterator[Local]:
+        making = self.making
+        form, value = (self.named(_chosen(each)) for each in (self.root.form, self.root.value))
+        here = self.here()
+        for symbol, (over, terms) in self.moving.items():
+            at = terms.xreplace({self.unknown: here})
+            node = Total(self.column, symbol, over, at, at)
+            making.nodes.append(node)
+            slopes = {by: diff(terms, by).xreplace({self.unknown: here}) for by in self.names_in(terms)}
+            own = making.summed(
+                self.column, (_size(terms) + rounding(terms)).xreplace({self.unknown: here}), over
+            )
+            yield making.local(self.column, own, slopes, node)
+        by_value, by_form = (self.by_unknown(each, here) for each in (value, form))
+        ratio = by_value / by_form
+        own = rounding(value) + _size(by_value) * _size(self.unknown) + _size(ratio) * rounding(form)
+        slopes = {by: diff(value, by) - ratio * diff(form, by) for by in self.names_in(value, form)}
+        yield making.local(
+            self.column,
+            own.xreplace({self.unknown: here}),
+            {by: slope.xreplace({self.unknown: here}) for by, slope in slopes.items()},
+        )
+
+    def names_in(self, *expressions: Expr) -> list[Symbol]:
+        """What expressions name besides the unknown, which may be called as its column is."""
+        return [symbol for symbol in self.making.named_in(*expressions) if symbol != self.unknown]
+
+    def named(self, expression: Any) -> Any:
+        """The expression with symbols for its sums."""
+        if not expression.has(RowSum):
+            return expression
+        parts = [self.named(argument) for argument in expression.args]
+        if not isinstance(expression, RowSum):
+            return expression.func(*parts)
+        terms, axis = parts
+        key = self.axes[axis.name], terms
+        for symbol, known in self.moving.items():
+            if known == key:
+                return symbol
+        wanted = f"{self.column.name}_sum_{len(self.moving)}"
+        symbol = self.making.symbol(wanted, Leaf("total", wanted))
+        self.moving[symbol] = key
+        return symbol
+
+    def here(self) -> Expr:
+        """The unknown in terms of the cell; where that is no line, it is sought once more."""
+        own = self.making.own[self.column.name]
+        if self.moving and self.column.axis is not None:
+            return S.NaN  # a sum cannot name a row of the cell; each row would have a sum of its own
+        value = self.root.value
+        if value == self.unknown:
+            return own
+        cell = Symbol("own", real=True)
+        try:
+            slope, rest = Poly(numer(together(value - cell)), self.unknown).all_coeffs()
+        except (PolynomialError, ValueError):
+            return self.again()
+        found: Expr = (-rest / slope).xreplace({cell: own})
+        return found
+
+    def again(self) -> Symbol:
+        """The unknown as a root of its own."""
+        making, column = self.making, self.column
+        assert isinstance(column.rule, RootRule)
+        rule = replace(column.rule, value=self.unknown)
+        symbol = making.symbol(f"{column.name}_unknown", None)
+        again = replace(column, name=symbol.name, rule=rule, positive=False, requires=(), limits=())
+        making.leaves[symbol] = Leaf("cells", again.name, column.axis)
+        making.columns.append(again)
+        making.nodes.append(replace(self.root, column=again, value=self.unknown, requires=()))
+        return symbol
+
+    def by_unknown(self, expression: Expr, here: Expr) -> Expr:
+        """The derivative by the unknown, sums included."""
+        found = diff(expression, self.unknown)
+        for symbol, (over, terms) in list(self.moving.items()):
+            if symbol in expression.free_symbols:
+                inner = self.by_unknown(terms, here).xreplace({self.unknown: here})
+                found += diff(expression, symbol) * self.making.summed(self.column, inner, over)
+        return found
+
+
+def _axes(leaves: Any) -> Iterator[Axis]:
+    """The axes of leaves, and those that they are made of."""
+    waiting = [leaf.axis for leaf in leaves]
+    while waiting:
+        axis = waiting.pop()
+        if axis is not None:
+            yield axis
+            waiting += axis.parents
+
+
+def _chosen(expression: Any) -> Any:
+    """Larger, smaller and absolute values written as choices."""
+    if not expression.args or not expression.has(Max, Min, Abs):
+        return expression
+    parts = [_chosen(argument) for argument in expression.args]
+    if isinstance(expression, (Max, Min)):
+        order = Ge if isinstance(expression, Max) else Le
+        return reduce(lambda a, b: Piecewise((a, order(a, b)), (b, True)), parts)
+    if isinstance(expression, Abs):
+        return Piecewise((parts[0], parts[0] >= 0), (-parts[0], True))
+    return expression.func(*parts)
+
+
+# --- rounding ---------------------------------------------------------------------------------------------
+
+
+def rounding(expression: Expr) -> Expr:
+    """What the operations of an expression round, in units of eps: what it names is exact, results are not.
+
+    Parameters
+    ----------
+    expression : Expr
+        In plain symbols.
+    """
+    if expression.is_Symbol:
+        return Integer(0)
+    if expression.is_Number or not expression.args:
+        exact = expression.is_Rational and bin(expression.q).count("1") == 1
+        return Integer(0) if exact else _size(expression)
+    if isinstance(expression, Piecewise):
+        return Piecewise(*((rounding(value), condition) for value, condition in expression.args))
+    if isinstance(expression, Add):
+        return Add(*map(_size, expression.args), *map(rounding, expression.args))
+    if isinstance(expression, Mul):
+        return _of_product(expression)
+    if isinstance(expression, Pow):
+        base, exponent = expression.args
+        inside = _size(exponent * base ** (exponent - 1)) * rounding(base)
+        if not exponent.is_number:
+            inside += _size(expression * log(base)) * rounding(exponent)
+        return _size(expression) + inside
+    inner = [(n, rounding(argument)) for n, argument in enumerate(expression.args, start=1)]
+    try:
+        return Add(_size(expression), *(_size(expression.fdiff(n)) * each for n, each in inner if each))
+    except ArgumentIndexError:
+        return S.NaN  # a function that sympy cannot differentiate
+
+
+def _of_product(product: Expr) -> Expr:
+    """A product: a sign rounds nothing, and a quotient is rounded once."""
+    factors = [factor for factor in product.args if factor not in (1, -1)]
+    found = _size(product) if len(factors) > 1 else Integer(0)
+    for factor in factors:
+        inside = rounding(factor)
+        if isinstance(factor, Pow) and factor.exp == -1 and len(factors) > 1:
+            inside = _size(factor) ** 2 * rounding(factor.base)
+        if inside != 0:
+            found += _size(product / factor) * inside
+    return found
+
+
+def _size(expression: Expr) -> Expr:
+    """The absolute value, without asking sympy for the sign of long expressions."""
+    if expression.is_Number or expression.is_Symbol:
+        return Abs(expression)
+    if isinstance(expression, Mul):
+        return Mul(*map(_size, expression.args))
+    if isinstance(expression, exp) or (isinstance(expression, Pow) and expression.base.is_positive):
+        return expression
+    if isinstance(expression, Pow) and expression.exp.is_Integer:
+        return _size(expression.base) ** expression.exp
+    return Abs(expression, evaluate=False)

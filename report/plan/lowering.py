@@ -1,0 +1,200 @@
+"""From a sheet to its plan: rows become arrays, sums become nodes of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from itertools import chain, count
+from typing import Any
+
+from sympy import Expr, Indexed, Integer, Max, Min, Symbol, false
+
+from ...derivations.reductions import REDUCTIONS, Median
+from ..sheet import Axis, Column, Formula, Sheet, name_of
+from ..sheet import Given as GivenRule
+from ..sheet import Root as RootRule
+from .domain import defined, positive, typed_symbols
+from .nodes import Given, Leaf, Map, Node, Plan, Root, RowMedian, RowSum, Total
+
+__all__ = ["lowered", "lowered_column"]
+
+_REAL = Symbol("_", real=True)
+
+RESERVED = ("numpy", "run")
+"""What printed programs call something else."""
+
+
+def lowered(sheet: Sheet, known: Collection[str] = ()) -> Plan:
+    """Lower a sheet.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    known : collection of str
+        Columns that are computed already: they have no node.
+    """
+    lowering = Lowering(sheet)
+    nodes = [node for c in sheet.order if c.name not in known for node in lowering.column(c)]
+    return Plan(tuple(nodes), lowering.leaves)
+
+
+def lowered_column(sheet: Sheet, column: Column) -> Plan:
+    """The nodes of one column alone.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    column : Column
+    """
+    lowering = Lowering(sheet)
+    return Plan(tuple(lowering.column(column)), lowering.leaves)
+
+
+class Lowering:
+    """A sheet being lowered: the symbols so far, and what each stands for.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    """
+
+    def __init__(self, sheet: Sheet) -> None:
+        self.sheet = sheet
+        self.leaves: dict[Symbol, Leaf] = {}
+        self._symbols: dict[Leaf, Symbol] = {}
+        self._written: dict[Expr, Expr] = {}
+        """Sums and medians by what they became."""
+        self._axes = {axis.name: axis for axis in sheet.axes}
+        self._taken = {*RESERVED, *(f"{axis.name}_kept" for axis in sheet.axes)}
+        for column in sheet.columns:
+            self.cells(column)  # they have the first claim to their names
+
+    # --- symbols
+
+    def symbol(self, leaf: Leaf, like: Symbol, *names: str) -> Symbol:
+        """The symbol of a leaf, of which is assumed what is assumed of another; a new one has a free name."""
+        if leaf not in self._symbols:
+            wanted = chain(names, (names[-1] + "_" * n for n in count(1)))
+            name = next(name for name in wanted if name not in self._taken)
+            self._taken.add(name)
+            self._symbols[leaf] = Symbol(name, **like.assumptions0)
+            self.leaves[self._symbols[leaf]] = leaf
+        return self._symbols[leaf]
+
+    def cells(self, column: Column, axis: Axis | None = None, index: Symbol | None = None) -> Symbol:
+        """The cells of a column, or those that an index names on the rows of an axis."""
+        name = column.name
+        if axis is None or index is None or column.axis is None or index == axis.index:
+            return self.symbol(Leaf("cells", name, column.axis), column.symbol, name)
+        longer = (f"{name}_{index}", f"{name}_{index}_of_{axis.name}")
+        return self.symbol(Leaf("cells", name, axis, index), column.symbol, *longer)
+
+    def leaf(self, cell: Expr, column: Column, axis: Axis | None) -> Symbol:
+        """What an expression on the rows of an axis, in the rule of a column, names."""
+        sheet = self.sheet
+        if cell in sheet.sizes:
+            counted = sheet.sizes[cell]
+            if counted in sheet.summed_axes(column):
+                return self.symbol(Leaf("kept", column.name, counted), cell, f"{cell}_of_{column.name}")
+            return self.symbol(Leaf("size", "", counted), cell, str(cell))
+        if isinstance(cell, Indexed):
+            return self.cells(sheet[name_of(cell)], axis, cell.indices[0])
+        if axis is not None and cell in axis.ordinals:
+            return self.symbol(Leaf("ordinal", "", axis, cell), cell, str(cell), f"{cell}_of_{axis.name}")
+        return self.cells(sheet[cell.name]) if cell.name in sheet else cell
+
+    # --- expressions
+
+    def plain(self, expression: Any, column: Column, axis: Axis | None, unknown: Symbol | None = None) -> Any:
+        """An expression in plain symbols; sums and medians stand in it.
+
+        Parameters
+        ----------
+        expression : Basic
+        column : Column
+            In whose rule it stands.
+        axis : Axis or None
+            On whose rows: of the column, or of the sum that it stands in.
+        unknown : Symbol, optional
+            Of a root, which stays as it is.
+        """
+        if expression == unknown:
+            return expression
+        if isinstance(expression, REDUCTIONS):
+            over = self.sheet.indices[expression.limits[0][0]]
+            number, terms = expression.function.as_coeff_Mul()
+            if isinstance(expression, Median):
+                taken, number, terms = RowMedian, Integer(1), expression.function
+            else:
+                taken = RowSum
+            found = taken(self.plain(terms, column, over, unknown), Symbol(over.name))
+            more, alone = found.as_coeff_Mul()
+            self._written[alone] = expression.func(terms / more, *expression.limits)
+            return number * found
+        if isinstance(expression, (Indexed, Symbol)):
+            return self.leaf(expression, column, axis)
+        if not expression.args:
+            return expression
+        parts = [self.plain(argument, column, axis, unknown) for argument in expression.args]
+        if isinstance(expression, (Max, Min)):
+            # What can be compared was, before the names changed.
+            return expression.func(*parts, evaluate=False)
+        return expression.func(*parts)
+
+    def column(self, column: Column) -> list[Node]:
+        """The nodes of a column: its totals, then itself."""
+        rule, nodes = column.rule, list[Node]()
+        if isinstance(rule, GivenRule):
+            return [Given(column, *self.sheet.guards.get(column.name, (column.symbol, None)))]
+        unknown = rule.unknown if isinstance(rule, RootRule) else None
+
+        def lower(expression: Any) -> Any:
+            plain = self.plain(expression, column, column.axis, unknown)
+            return self._lifted(plain, column, unknown, nodes)
+
+        requires = tuple(lower(condition) for condition, _ in column.requires)
+        if isinstance(rule, Formula):
+            plain = self.plain(rule.expression, column, column.axis)
+            asked = plain.xreplace(typed_symbols(self.sheet, self.leaves))
+            sign = positive(asked) if column.positive else false
+            nodes.append(Map(column, lower(rule.expression), requires, defined(asked), sign))
+        else:
+            nodes.append(
+                Root(
+                    column,
+                    rule.unknown,
+                    lower(rule.low),
+                    lower(rule.high),
+                    lower(rule.start),
+                    None if rule.sign_low is None else lower(rule.sign_low),
+                    None if rule.sign_high is None else lower(rule.sign_high),
+                    tuple(map(lower, rule.turning)),
+                    lower(rule.expression),
+                    lower(rule.value),
+                    requires,
+                    rule.steps,
+                )
+            )
+        return nodes
+
+    def _lifted(self, expression: Any, column: Column, unknown: Symbol | None, nodes: list[Node]) -> Any:
+        """The expression with symbols for its sums and medians, which become nodes; not for what moves."""
+        if not expression.has(RowSum, RowMedian):
+            return expression
+        parts = [self._lifted(argument, column, unknown, nodes) for argument in expression.args]
+        if not isinstance(expression, (RowSum, RowMedian)):
+            still = {"evaluate": False} if isinstance(expression, (Max, Min)) else {}
+            return expression.func(*parts, **still)
+        terms, axis = parts
+        if unknown is not None and terms.has(unknown):
+            return expression.func(terms, axis)
+        median, over = isinstance(expression, RowMedian), self._axes[axis.name]
+        known = {(each.over, each.terms, each.median): each for each in nodes if isinstance(each, Total)}
+        total = known.get((over, terms, median))
+        if total is None:
+            word = "median" if median else "sum"
+            symbol = self.symbol(
+                Leaf("total", f"{column.name}.{len(nodes)}"), _REAL, f"{column.name}_{word}_{len(nodes) + 1}"
+            )
+            total = Total(column, symbol, over, terms, self._written[expression], median)
+            nodes.append(total)
+        return total.symbol

@@ -1,0 +1,271 @@
+"""What a plan is made of: nodes in plain symbols, and what each symbol stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal
+
+from sympy import Basic, Expr, Integer, Symbol, diff
+from sympy.logic.boolalg import Boolean
+
+from ..column import Axis, Column
+
+__all__ = [
+    "Given",
+    "Leaf",
+    "Map",
+    "Node",
+    "Part",
+    "Plan",
+    "Root",
+    "RowMedian",
+    "RowSum",
+    "Total",
+    "taken_over",
+]
+
+Kind = Literal["cells", "total", "part", "size", "kept", "ordinal"]
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """What a plain symbol stands for: an array with a number for each row of an axis, or one number.
+
+    Parameters
+    ----------
+    kind : str
+        ``cells`` of a column; a ``total`` over rows; a ``part`` that is neither; the ``size`` of an axis;
+        how many of its rows are ``kept`` in the sums of a column; the ``ordinal``, a running number of them.
+    name : str
+        Of the column, the total or the part.
+    axis : Axis or None
+        On whose rows it is read, or whose rows are counted; None for one number.
+    index : Symbol or None
+        For cells, the index that names them from there; None if they stand on the same rows. For an ordinal,
+        the running number.
+    """
+
+    kind: Kind
+    name: str = ""
+    axis: Axis | None = None
+    index: Symbol | None = None
+
+
+# --- what is taken over rows ------------------------------------------------------------------------------
+
+
+class RowSum(Expr):
+    """A sum over an axis' rows as a function of the array of its terms: linear, which is all algebra needs.
+
+    Parameters
+    ----------
+    terms : Expr
+        In plain symbols, each of which stands for an array.
+    axis : Symbol
+        The axis' name.
+    """
+
+    def __new__(cls, terms: Expr, axis: Symbol) -> Expr:
+        """Take numbers out, so that twice a sum is not another sum."""
+        number, rest = terms.as_coeff_Mul()
+        if number == 0:
+            return Integer(0)
+        total = super().__new__(cls, rest, axis)
+        return total if number == 1 else number * total
+
+    is_commutative = True
+    is_real = True
+
+    def _sympystr(self, printer: Any) -> str:
+        terms, axis = map(printer._print, self.args)
+        return f"sum({terms}, {axis})"
+
+    def _eval_derivative(self, symbol: Symbol) -> Expr:
+        terms, axis = self.args
+        return RowSum(diff(terms, symbol), axis)
+
+
+class RowMedian(Expr):
+    """A median over an axis' rows as a function of the array of its terms.
+
+    Parameters
+    ----------
+    terms, axis
+        As for :class:`RowSum`.
+    """
+
+    is_commutative = True
+    is_real = True
+
+    def _sympystr(self, printer: Any) -> str:
+        terms, axis = map(printer._print, self.args)
+        return f"median({terms}, {axis})"
+
+
+def taken_over(expressions: Iterable[Basic]) -> tuple[str, ...]:
+    """The axes that expressions sum over, or take a median over, by name."""
+    found = (taken for expression in expressions for taken in expression.atoms(RowSum, RowMedian))
+    return tuple(sorted({taken.args[1].name for taken in found}))
+
+
+# --- nodes ------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Given:
+    """A column whose values come with the data.
+
+    Parameters
+    ----------
+    column : Column
+    datum : Symbol
+        Stands for a value in `allowed`.
+    allowed : Boolean or None
+        What a value must satisfy; None if any number will do.
+    """
+
+    column: Column
+    datum: Symbol
+    allowed: Boolean | None = None
+
+
+@dataclass(frozen=True)
+class Total:
+    """A sum or a median over those rows of an axis of which all cells that its column sums have values.
+
+    Parameters
+    ----------
+    column : Column
+        In whose rule it stands.
+    symbol : Symbol
+        What stands for it.
+    over : Axis
+    terms : Expr
+    written : Expr
+        As the rule has it, in cells of rows.
+    median : bool
+    """
+
+    column: Column
+    symbol: Symbol
+    over: Axis
+    terms: Expr
+    written: Expr
+    median: bool = False
+
+
+@dataclass(frozen=True)
+class Map:
+    """A column of which each row is a formula of rows.
+
+    Parameters
+    ----------
+    column : Column
+    value : Expr
+    requires : tuple of Boolean
+        The column's conditions, in their order.
+    defined : Boolean
+        Where it has a value at all; its sums stand in it. False where that is not known.
+    positive : Boolean
+        Where it is positive although no double may hold it; false if its value alone says it.
+    """
+
+    column: Column
+    value: Expr
+    requires: tuple[Boolean, ...]
+    defined: Boolean
+    positive: Boolean
+
+
+@dataclass(frozen=True)
+class Root:
+    """A column of which each row is made of the only zero of an equation in an interval.
+
+    Parameters
+    ----------
+    column : Column
+    unknown : Symbol
+    low, high, start : Expr
+        The ends of the interval, and a first guess.
+    sign_low, sign_high : Expr or None
+        What has the equation's sign at the ends; None if it is evaluated there.
+    turning : tuple of Expr
+        Points between which it changes sign at most once.
+    form : Expr
+        What must vanish. Sums of terms with the unknown stand in it; all others are nodes.
+    value : Expr
+        The column's value in terms of the unknown.
+    requires : tuple of Boolean
+        The column's conditions, in their order.
+    steps : int
+        How many fourth-order steps every row takes.
+    """
+
+    column: Column
+    unknown: Symbol
+    low: Expr
+    high: Expr
+    start: Expr
+    sign_low: Expr | None
+    sign_high: Expr | None
+    turning: tuple[Expr, ...]
+    form: Expr
+    value: Expr
+    requires: tuple[Boolean, ...]
+    steps: int
+
+
+@dataclass(frozen=True)
+class Part:
+    """Numbers for the rows of an axis that are no column.
+
+    Parameters
+    ----------
+    column : Column
+        Whose sums stand in them.
+    symbol : Symbol
+        What stands for them.
+    axis : Axis or None
+    value : Expr
+    """
+
+    column: Column
+    symbol: Symbol
+    axis: Axis | None
+    value: Expr
+
+
+Node = Given | Total | Part | Map | Root
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is computed, in an order in which each node finds what it names.
+
+    Parameters
+    ----------
+    nodes : tuple of Node
+        The totals of a column come right before it.
+    leaves : mapping of Symbol to Leaf
+        What every symbol stands for, but the unknowns of roots.
+    """
+
+    nodes: tuple[Node, ...]
+    leaves: Mapping[Symbol, Leaf]
+
+    @cached_property
+    def own(self) -> dict[str, Symbol]:
+        """For every column, what stands for its cells on their own rows."""
+        return {leaf.name: s for s, leaf in self.leaves.items() if leaf.kind == "cells" and not leaf.index}
+
+    @cached_property
+    def named(self) -> dict[str, Leaf]:
+        """What a symbol stands for, by its name: of some is assumed more elsewhere."""
+        return {symbol.name: leaf for symbol, leaf in self.leaves.items()}
+
+    def node_of(self, symbol: Symbol) -> str:
+        """The name of the column or total that a symbol stands for."""
+        leaf = self.leaves[symbol]
+        return leaf.name if leaf.kind == "cells" else str(symbol.name)

@@ -1,0 +1,92 @@
+"""A plan as text that a person can read: a node a line, then what its symbols stand for."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from typing import Any
+
+from .nodes import Given, Leaf, Map, Node, Part, Plan, Root, Total
+
+__all__ = ["text"]
+
+
+def text(plan: Plan, columns: Collection[str] | None = None) -> str:
+    """Write a plan, or the nodes of some columns.
+
+    Parameters
+    ----------
+    plan : Plan
+    columns : collection of str, optional
+        All of them, if it is left out.
+    """
+    nodes = [node for node in plan.nodes if columns is None or node.column.name in columns]
+    lines = [line for node in nodes for line in _node(plan, node)]
+    named = {symbol.name for node in nodes for each in _expressions(node) for symbol in each.free_symbols}
+    told = [(name, _stands_for(leaf)) for name, leaf in plan.named.items() if name in named]
+    legend = [f"{name} = {said}" for name, said in sorted(told) if said]
+    return "\n".join([*lines, *(["", *legend] if legend else [])]) + "\n"
+
+
+def _on(node: Given | Map | Root) -> str:
+    return f" on {node.column.axis.name}" if node.column.axis is not None else ""
+
+
+def _node(plan: Plan, node: Node) -> Iterator[str]:
+    """The lines of a node: what it is, then what is asked of it."""
+    if isinstance(node, Total):
+        yield f"{node.symbol}: {'median' if node.median else 'sum'} over {node.over.name} of {node.terms}"
+        return
+    if isinstance(node, Part):
+        on = "" if node.axis is None else f" on {node.axis.name}"
+        yield f"{node.symbol}{on} = {node.value}"
+        return
+    name = f"{plan.own[node.column.name]}{_on(node)}"
+    if isinstance(node, Given):
+        yield f"{name}: given"
+        if node.allowed is not None:
+            yield f"    allowed: {node.allowed}"
+        return
+    if isinstance(node, Map):
+        yield f"{name} = {node.value}"
+        if str(node.defined) != "True":
+            yield f"    defined: {node.defined}"
+        if str(node.positive) not in ("True", "False"):
+            yield f"    positive: {node.positive}"
+    else:
+        yield f"{name} = {node.value} for the only root {node.unknown} of"
+        yield f"    0 = {node.form}"
+        yield f"    between: {node.low} and {node.high}"
+        signs = ((node.sign_low, "lower"), (node.sign_high, "upper"))
+        yield from (f"    sign at the {end} end: {sign}" for sign, end in signs if sign is not None)
+        yield from (f"    turning at: {point}" for point in node.turning)
+        yield f"    start: {node.start}, {node.steps} steps"
+    yield from (f"    requires: {condition}" for condition in node.requires)
+
+
+def _expressions(node: Node) -> Iterator[Any]:
+    if isinstance(node, Total):
+        yield node.terms
+    elif isinstance(node, Given):
+        yield from () if node.allowed is None else (node.allowed,)
+    elif isinstance(node, Part):
+        yield node.value
+    elif isinstance(node, Map):
+        yield from (node.value, node.defined, node.positive, *node.requires)
+    else:
+        signs = (each for each in (node.sign_low, node.sign_high) if each is not None)
+        yield from (node.value, node.form, node.low, node.high, node.start, *signs, *node.turning)
+        yield from node.requires
+
+
+def _stands_for(leaf: Leaf) -> str:
+    """What a symbol stands for that is not called as it is."""
+    axis = "" if leaf.axis is None else leaf.axis.name
+    if leaf.kind == "cells" and leaf.index is not None:
+        return f"{leaf.name}[{leaf.index}] on {axis}"
+    if leaf.kind == "size":
+        return f"number of {axis}"
+    if leaf.kind == "kept":
+        return f"number of {axis} that the sums of {leaf.name} keep"
+    if leaf.kind == "ordinal":
+        return f"running number {leaf.index} on {axis}"
+    return ""
