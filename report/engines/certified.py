@@ -23,7 +23,7 @@ from ..sheet import Column, Sheet, SheetError
 from .mpmath_intervals import differences, holds, printed
 from .numpy_code import Kernel, kernel
 
-__all__ = ["certified", "enclosing", "held", "slope"]
+__all__ = ["certified", "enclosing", "held", "slope", "typed_form"]
 
 JUMPS = (floor, ceiling, sign, Piecewise)
 
@@ -153,6 +153,13 @@ def held(condition: Boolean) -> Expr:
     return Piecewise((1, condition), (0, True))
 
 
+def typed_form(sheet: Sheet, plan: Plan, node: Root) -> tuple[Expr, Symbol]:
+    """The form of a root, and its unknown, in symbols of which only is assumed what they may be."""
+    plain = Symbol(node.unknown.name, real=True)
+    form: Expr = node.form.xreplace({**typed_symbols(sheet, plan.leaves), node.unknown: plain})
+    return form, plain
+
+
 def enclosing(sheet: Sheet, plan: Plan, node: Root) -> Kernel:
     """A function of what a root names and of its unknown: the form, its slope, whether that tells its course.
 
@@ -164,8 +171,7 @@ def enclosing(sheet: Sheet, plan: Plan, node: Root) -> Kernel:
     node : Root
         Of the plan.
     """
-    plain = Symbol(node.unknown.name, real=True)
-    form = node.form.xreplace({**typed_symbols(sheet, plan.leaves), node.unknown: plain})
+    form, plain = typed_form(sheet, plan, node)
     for steepness, known in (slope(form, plain), (form, false)):
         try:
             return kernel([form, steepness, held(known)])

@@ -8,17 +8,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import count
+from itertools import count, groupby
 from pathlib import Path
 from typing import Any
 
-from sympy import Basic, Dummy, Indexed, Sum, Symbol, cse, numbered_symbols
+from sympy import Expr, Indexed, Symbol, cse, numbered_symbols
 from sympy.printing.jscode import JavascriptCodePrinter
 
-from ...derivations.reductions import Median
-from ..plan.domain import defined, positive, typed
+from ..plan import Given as GivenNode
+from ..plan import Leaf, Map, Plan, RowSum, Total, lowered
+from ..plan import Node as PlanNode
+from ..plan import Root as RootNode
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet, name_of
-from .certified import certified, slope
+from .certified import certified, slope, typed_form
 from .javascript_intervals import enclose, needed
 
 __all__ = ["RUNTIME", "program"]
@@ -26,7 +28,7 @@ __all__ = ["RUNTIME", "program"]
 RUNTIME = Path(__file__).resolve().parents[2] / "templates" / "engines" / "runtime.js"
 """What runs a program."""
 
-_NULL = Dummy()
+_NULL = Symbol("null", real=True)
 """JavaScript's null."""
 
 
@@ -64,127 +66,113 @@ class _Scope:
     """Prints the functions of one column and, before them, what they share.
 
     That is the arrays of the cells by short names, with a dollar in them that no column's name has, and the
-    totals that do not move with the unknown.
+    totals of the plan.
     """
 
-    def __init__(self, sheet: Sheet, column: Column, unknown: Symbol | None) -> None:
-        self.sheet, self.column, self.unknown = sheet, column, unknown
+    def __init__(self, plan: Plan, unknown: Symbol | None) -> None:
+        self.plan, self.unknown = plan, unknown
         self.printer = Printer()
         self.names: dict[str, str] = {}
         self.head: list[str] = []
-        self.fixed: dict[Sum, Symbol] = {}
+        self.totals: dict[Expr, Symbol] = {}
+        """What sums and medians came to, by themselves and by the symbols of the plan."""
         self.numbers = count()
 
-    def leaf(self, cell: Basic, axis: Axis | None, row: str) -> Symbol:
-        """A cell as JavaScript: a symbol whose name is the text to print."""
-        if cell == self.unknown:
-            text = "u"
-        elif cell == _NULL:
-            text = "null"
-        elif cell in self.sheet.sizes:
-            text = f"n.{self.sheet.sizes[cell].name}"
-        elif isinstance(cell, Indexed):
-            assert axis is not None
-            name, index = name_of(cell), cell.indices[0]
-            if index != axis.index:
-                row = f"{self.named(f'{axis.name}${index}', f'a.{axis.name}.rows.{index}')}[{row}]"
-            text = f"{self.named(f'${name}', f'c.{name}')}[{row}]"
-        elif axis is not None and cell in axis.ordinals:
-            text = f"{self.named(f'{axis.name}${cell}', f'a.{axis.name}.ordinals.{cell}')}[{row}]"
-        else:
-            text = self.named(f"${cell}", f"c.{cell}[0]")
-        return Symbol(text, **cell.assumptions0)
+    # --- what symbols stand for
+
+    def leaf(self, symbol: Symbol, row: str) -> Symbol:
+        """A symbol as JavaScript: one whose name is the text to print."""
+        if symbol == self.unknown:
+            return Symbol("u", **symbol.assumptions0)
+        leaf = self.plan.named.get(symbol.name)
+        if leaf is None:
+            return symbol
+        if leaf.kind == "total":
+            return self.totals[symbol]
+        text = {"cells": self.cells, "ordinal": self.ordinal}.get(leaf.kind, self.size)(leaf, row)
+        return Symbol(text, **symbol.assumptions0)
+
+    def cells(self, leaf: Leaf, row: str) -> str:
+        if leaf.axis is None:
+            return self.named(f"${leaf.name}", f"c.{leaf.name}[0]")
+        if leaf.index is not None:
+            axis, index = leaf.axis.name, leaf.index
+            row = f"{self.named(f'{axis}${index}', f'a.{axis}.rows.{index}')}[{row}]"
+        return f"{self.named(f'${leaf.name}', f'c.{leaf.name}')}[{row}]"
+
+    def ordinal(self, leaf: Leaf, row: str) -> str:
+        assert leaf.axis is not None
+        axis, index = leaf.axis.name, leaf.index
+        return f"{self.named(f'{axis}${index}', f'a.{axis}.ordinals.{index}')}[{row}]"
+
+    def size(self, leaf: Leaf, _: str) -> str:
+        assert leaf.axis is not None
+        return f"n.{leaf.axis.name}"
 
     def named(self, name: str, text: str) -> str:
         self.names[name] = text
         return name
 
-    def plain(self, expression: Any, axis: Axis | None, row: str, sums: dict[Sum, Symbol]) -> Any:
-        """Replace cells by what is printed for them, sums and medians by the names of what they come to."""
-        if isinstance(expression, Median):
-            return self.median(expression)
-        if isinstance(expression, Sum):
-            # Twice a sum is not another sum.
-            number, terms = expression.function.as_coeff_Mul()
-            total = Sum(terms, *expression.limits)
-            name = self.fixed.get(total) or sums.get(total) or Symbol(f"S{next(self.numbers)}", real=True)
-            if total not in self.fixed:
-                sums[total] = name
-            return number * name
-        if isinstance(expression, (Indexed, Symbol)):
-            return self.leaf(expression, axis, row)
+    def plain(self, expression: Any, row: str, moving: dict[Expr, Symbol] | None = None) -> Any:
+        """Replace symbols by what is printed for them, sums by the names of what they come to.
+
+        Those that are not known are new ones, in `moving`.
+        """
+        if isinstance(expression, RowSum):
+            own = expression.xreplace({s: self.own(s) for s in expression.free_symbols})
+            if own in self.totals:
+                return self.totals[own]
+            assert moving is not None
+            if expression not in moving:
+                moving[expression] = self.new("S")
+            return moving[expression]
+        if isinstance(expression, Symbol):
+            return self.leaf(expression, row)
         if not expression.args:
             return expression
-        return expression.func(*(self.plain(argument, axis, row, sums) for argument in expression.args))
+        return expression.func(*(self.plain(argument, row, moving) for argument in expression.args))
 
-    def median(self, taken: Median) -> Symbol:
-        """The name of a median: it is taken once, at the head."""
-        axis = self.sheet.indices[taken.limits[0][0]]
-        name = Symbol(f"M{next(self.numbers)}", **taken.assumptions0)
-        term = self.printer.doprint(self.plain(taken.function, axis, "q", {}))
-        self.head.append(f"      const {name} = median(k.{axis.name}, (q) => {term});")
-        return name
+    def own(self, symbol: Symbol) -> Symbol:
+        """The plan's symbol, if nothing more is assumed of this one than of that."""
+        leaf = self.plan.named.get(symbol.name)
+        return next((s for s, each in self.plan.leaves.items() if each is leaf), symbol) if leaf else symbol
 
-    def body(self, expressions: Sequence[Any], indent: str) -> tuple[list[str], list[str]]:
-        """Statements that compute what expressions have in common, and the texts of the expressions."""
-        common, reduced = cse(list(expressions), symbols=numbered_symbols("t_"), order="none", list=True)
-        lines = [f"{indent}const {name} = {self.printer.doprint(value)};" for name, value in common]
-        return lines, [self.printer.doprint(value) for value in reduced]
+    def new(self, letter: str) -> Symbol:
+        return Symbol(f"{letter}{next(self.numbers)}", real=True)
 
-    def function(self, *expressions: Any, alone: bool = False) -> str:
-        """A function of the row (and the unknown): it returns the expressions' values, or the only one's."""
-        sums: dict[Sum, Symbol] = {}
-        plain = [self.plain(e, self.column.axis, "r", sums) for e in expressions]
-        lines, texts = self.body(plain, "      ")
-        lines = self.totals(sums) + lines
-        result = texts[0] if alone else f"[{', '.join(texts)}]"
-        if not lines:
-            return f"(r, u) => {result}"
-        return "\n".join(["(r, u) => {", *lines, f"      return {result};", "    }"])
+    # --- totals of the plan
 
-    def enclose(self, rule: Root) -> str:
-        """The function of the row and an interval of the unknown that tells the form and its slope there."""
-        plain = Symbol(rule.unknown.name, real=True)
-        form = typed(self.sheet, rule.expression).xreplace({rule.unknown: plain})
-        steepness, known = slope(form, plain)
-        axes = self.sheet.indices
+    def take(self, totals: Sequence[Total]) -> None:
+        """Statements for totals, those of one axis in one pass unless one names another."""
+        waiting: dict[Expr, Symbol] = {}
+        over = ""
+        for total in totals:
+            axis = Symbol(total.over.name)
+            if total.median or axis.name != over or total.terms.free_symbols & set(self.totals):
+                self.head += self.passes(waiting)
+                waiting, over = {}, axis.name
+            name = self.new("M" if total.median else "S")
+            self.totals[total.symbol] = name
+            if total.median:
+                term = self.printer.doprint(self.plain(total.terms, "q"))
+                self.head.append(f"      const {name} = median(k.{axis}, (q) => {term});")
+            else:
+                self.totals[RowSum(total.terms, axis)] = waiting[RowSum(total.terms, axis)] = name
+        self.head += self.passes(waiting)
 
-        def terms(total: Sum) -> tuple[str, Any]:
-            axis = axes[total.limits[0][0]]
-            inner: dict[Sum, Symbol] = {}
-            body = self.plain(total.function, axis, "q", inner)
-            return axis.name, Symbol("ALL") if inner else body
-
-        fixed, self.fixed, self.unknown = self.fixed, {}, plain
-        text = enclose(form, steepness, known, lambda e, s: self.plain(e, self.column.axis, "r", s), terms)
-        self.fixed, self.unknown = fixed, rule.unknown
-        return text
-
-    def moves(self, expression: Any) -> bool:
-        return self.unknown is not None and bool(expression.has(self.unknown))
-
-    def totals(self, sums: dict[Sum, Symbol]) -> list[str]:
-        """Statements for the sums that move with the unknown; all others are taken once, at the head."""
-        still = {total: name for total, name in sums.items() if not self.moves(total)}
-        self.fixed |= still
-        self.head += self.passes(still)
-        return self.passes({total: name for total, name in sums.items() if total not in still})
-
-    def passes(self, sums: dict[Sum, Symbol]) -> list[str]:
+    def passes(self, sums: dict[Expr, Symbol]) -> list[str]:
         """One pass over each axis for all its sums: they share most of their work."""
         lines: list[str] = []
-        for axis in self.sheet.axes:
-            mine = [total for total in sums if total.limits[0][0] == axis.index]
-            if not mine:
-                continue
-            inner: dict[Sum, Symbol] = {}
-            terms = [self.plain(total.function, axis, "q", inner) for total in mine]
-            lines += self.totals(inner)
+        for axis in dict.fromkeys(total.args[1].name for total in sums):
+            mine = [total for total in sums if total.args[1].name == axis]
+            inner: dict[Expr, Symbol] = {}
+            terms = [self.plain(total.args[0], "q", inner) for total in mine]
+            lines += self.passes(inner)
             common, texts = self.body(terms, " " * 10)
             parts = [f"s_{n}" for n in range(len(mine))]
             lines += [
                 f"      const [{', '.join(sums[total].name for total in mine)}] = "
-                f"total(k.{axis.name}, {len(mine)}, (q, end, kept) => {{",
+                f"total(k.{axis}, {len(mine)}, (q, end, kept) => {{",
                 f"        let {', '.join(f'{part} = 0' for part in parts)};",
                 "        for (; q < end; q++) if (kept[q]) {",
                 *common,
@@ -195,33 +183,73 @@ class _Scope:
             ]
         return lines
 
+    # --- functions
 
-def _kernels(sheet: Sheet, column: Column) -> str:
+    def body(self, expressions: Sequence[Any], indent: str) -> tuple[list[str], list[str]]:
+        """Statements that compute what expressions have in common, and the texts of the expressions."""
+        common, reduced = cse(list(expressions), symbols=numbered_symbols("t_"), order="none", list=True)
+        lines = [f"{indent}const {name} = {self.printer.doprint(value)};" for name, value in common]
+        return lines, [self.printer.doprint(value) for value in reduced]
+
+    def function(self, *expressions: Any, alone: bool = False) -> str:
+        """A function of the row (and the unknown): it returns the expressions' values, or the only one's."""
+        moving: dict[Expr, Symbol] = {}
+        plain = [self.plain(e, "r", moving) for e in expressions]
+        lines, texts = self.body(plain, "      ")
+        still = {total: name for total, name in moving.items() if not self.moves(total)}
+        self.head += self.passes(still)
+        self.totals |= still
+        lines = self.passes({total: name for total, name in moving.items() if total not in still}) + lines
+        result = texts[0] if alone else f"[{', '.join(texts)}]"
+        if not lines:
+            return f"(r, u) => {result}"
+        return "\n".join(["(r, u) => {", *lines, f"      return {result};", "    }"])
+
+    def moves(self, expression: Any) -> bool:
+        return self.unknown is not None and bool(expression.has(self.unknown))
+
+    def enclose(self, sheet: Sheet, node: RootNode) -> str:
+        """The function of the row and an interval of the unknown that tells the form and its slope there."""
+        form, plain = typed_form(sheet, self.plan, node)
+        steepness, known = slope(form, plain)
+
+        def terms(total: RowSum) -> tuple[str, Any]:
+            inner: dict[Expr, Symbol] = {}
+            body = self.plain(total.args[0], "q", inner)
+            return total.args[1].name, Symbol("ALL") if inner else body
+
+        unknown, self.unknown = self.unknown, plain
+        text = enclose(form, steepness, known, lambda e, s: self.plain(e, "r", s), terms)
+        self.unknown = unknown
+        return text
+
+
+def _kernels(sheet: Sheet, plan: Plan, nodes: Sequence[PlanNode]) -> str:
     """The functions of a column, by the names that the runtime calls them; nothing for a given one."""
-    rule = column.rule
-    scope = _Scope(sheet, column, rule.unknown if isinstance(rule, Root) else None)
-    found: dict[str, str] = {}
-    if isinstance(rule, Formula):
-        value, formula = scope.function(rule.expression, alone=True), typed(sheet, rule.expression)
-        if (domain := defined(formula)) != True:  # noqa: E712 - sympy's true
-            found["defined"] = scope.function(domain, alone=True)
-        if column.positive and (sign := positive(formula)) not in (True, False):
-            found["positive"] = scope.function(sign, alone=True)
-        found["value"] = value
-    elif isinstance(rule, Root):
-        # An end whose sign is not given is evaluated as any other point.
-        signs = [_NULL if sign is None else sign for sign in (rule.sign_low, rule.sign_high)]
-        known = certified(sheet, column)
-        ends = [rule.low, rule.high, *signs, *(rule.turning if known else ())]
-        found["ends"] = scope.function(*ends)
-        if not known:
-            found |= {"isolate": "", "enclose": scope.enclose(rule)}
-        found["at"] = scope.function(rule.expression, alone=True)
-        found["value"] = scope.function(rule.value, alone=True)
-    if column.requires:
-        found["requires"] = scope.function(*(condition for condition, _ in column.requires))
-    if not found:
+    node = nodes[-1]
+    if not isinstance(node, (Map, RootNode)):
         return ""
+    scope = _Scope(plan, node.unknown if isinstance(node, RootNode) else None)
+    scope.take([each for each in nodes if isinstance(each, Total)])
+    found: dict[str, str] = {}
+    if isinstance(node, Map):
+        value = scope.function(node.value, alone=True)
+        if node.defined != True:  # noqa: E712 - sympy's true
+            found["defined"] = scope.function(node.defined, alone=True)
+        if node.positive not in (True, False):
+            found["positive"] = scope.function(node.positive, alone=True)
+        found["value"] = value
+    else:
+        # An end whose sign is not given is evaluated as any other point.
+        signs = [_NULL if sign is None else sign for sign in (node.sign_low, node.sign_high)]
+        known = certified(sheet, node.column)
+        found["ends"] = scope.function(node.low, node.high, *signs, *(node.turning if known else ()))
+        if not known:
+            found |= {"isolate": "", "enclose": scope.enclose(sheet, node)}
+        found["at"] = scope.function(node.form, alone=True)
+        found["value"] = scope.function(node.value, alone=True)
+    if node.requires:
+        found["requires"] = scope.function(*node.requires)
     arrays = ", ".join(f"{name} = {text}" for name, text in sorted(scope.names.items()))
     lines = [f"      const {arrays};"] if arrays else []
     inner = ",\n".join(
@@ -258,8 +286,10 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
     constants : mapping of column name to float
         Given scalars that are no input of the user's.
     """
-    columns = []
+    plan, columns = lowered(sheet), []
+    nodes = {name: list(own) for name, own in groupby(plan.nodes, lambda node: node.column.name)}
     for column in sheet.order:
+        node = nodes[column.name][-1]
         kind = {Given: "given", Formula: "formula", Root: "root"}[type(column.rule)]
         entry: dict[str, Any] = {
             "name": column.name,
@@ -269,15 +299,14 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
             "sums": [axis.name for axis in sheet.summed_axes(column)],
             "positive": kind != "given" and int(column.positive),
         }
-        if isinstance(column.rule, Formula) and column.positive:
+        if isinstance(node, Map) and column.positive:
             # 2 is positive by what is assumed of the cells: then a zero is a value that no double holds.
-            entry["positive"] += positive(typed(sheet, column.rule.expression)) == True  # noqa: E712
+            entry["positive"] += node.positive == True  # noqa: E712
         parts = [f"{name}: {json.dumps(value)}" for name, value in entry.items() if value]
-        if column.name in sheet.guards:
-            datum, allowed = sheet.guards[column.name]
+        if isinstance(node, GivenNode) and node.allowed is not None:
             x = Symbol("x", real=True)
-            parts.append(f"allows: (x) => {Printer().doprint(allowed.xreplace({datum: x}))}")
-        kernels = _kernels(sheet, column)
+            parts.append(f"allows: (x) => {Printer().doprint(node.allowed.xreplace({node.datum: x}))}")
+        kernels = _kernels(sheet, plan, nodes[column.name])
         if kernels:
             parts.append(f"kernels: {kernels}")
         columns.append(f"  {{{', '.join(parts)}}}")

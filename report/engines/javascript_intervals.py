@@ -21,7 +21,6 @@ from sympy import (
     Number,
     Pow,
     Rational,
-    Sum,
     Symbol,
     asinh,
     atan,
@@ -37,6 +36,8 @@ from sympy import (
     true,
 )  # fmt: skip
 from sympy.logic.boolalg import Boolean
+
+from ..plan import RowSum
 
 __all__ = ["enclose", "interval", "needed"]
 
@@ -114,8 +115,8 @@ def enclose(
     form: Expr,
     steepness: Expr,
     known: Boolean,
-    plain: Callable[[Basic, dict[Sum, Symbol]], Any],
-    terms: Callable[[Sum], tuple[str, Any]],
+    plain: Callable[[Basic, dict[Expr, Symbol]], Any],
+    terms: Callable[[RowSum], tuple[str, Any]],
 ) -> str:
     """A function of the row and an interval of the unknown: the form, and its slope if it has one all over.
 
@@ -128,7 +129,7 @@ def enclose(
     terms : callable
         Of a sum, the axis and its terms, printed as those of the row ``q``.
     """
-    found: dict[Sum, Symbol] = {}
+    found: dict[Expr, Symbol] = {}
     bodies = [plain(each, found) for each in (form, steepness)]
     condition = _certain(plain(known, found))
     by_axis: dict[str, list[tuple[Symbol, Any]]] = {}

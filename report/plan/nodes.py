@@ -78,6 +78,9 @@ class RowSum(Expr):
     is_commutative = True
     is_real = True
 
+    def _eval_is_positive(self) -> bool | None:
+        return True if self.args[0].is_positive else None  # there are rows, or it has no value
+
     def _sympystr(self, printer: Any) -> str:
         terms, axis = map(printer._print, self.args)
         return f"sum({terms}, {axis})"
@@ -98,6 +101,9 @@ class RowMedian(Expr):
 
     is_commutative = True
     is_real = True
+
+    def _eval_is_positive(self) -> bool | None:
+        return True if self.args[0].is_positive else None
 
     def _sympystr(self, printer: Any) -> str:
         terms, axis = map(printer._print, self.args)
