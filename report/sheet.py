@@ -303,6 +303,13 @@ def _check_symbols(sheet: Sheet, column: Column) -> None:
     """Every symbol is a column, a size, or a running number that means something on this axis."""
     for expression in column.expressions:
         _check_scope(sheet, column, expression, column.axis)
+    if isinstance(column.rule, Root) and column.axis is not None:
+        for total in column.rule.expression.atoms(*REDUCTIONS):
+            if total.has(column.rule.unknown):
+                raise SheetError(
+                    f"{column.name}: {total} names the unknown of a row; a root whose equation sums over its "
+                    f"unknown is one number, not one for each of {column.axis.name}"
+                )
 
 
 def _check_scope(sheet: Sheet, column: Column, expression: Basic, axis: Axis | None) -> None:
