@@ -83,16 +83,13 @@ def lambdified(order: int, steps: int, shared: bool, block: int) -> Callable[[di
 def generated(data: dict[str, Any], program: Program = FAST) -> Any:
     """The engine's solver: feasibility, bracket, steps and check, from arrays of pairs."""
     root = program.roots["alpha"]
-    named = dict(
-        zip(("beta", "v[i]", "v[j]", "e[i]", "e[j]", "x_p[i]", "x_p[j]"), columns(data), strict=True)
-    )
+    named = dict(zip(("beta", "v_i", "v_j", "e_i", "e_j", "x_p_i", "x_p_j"), columns(data), strict=True))
     count = len(data["v"])
     out = np.empty(count)
     with np.errstate(all="ignore"):
         for begin in range(0, count, engine.BLOCK):
             part = slice(begin, min(begin + engine.BLOCK, count))
-            arguments = [named[str(r.cell)] for r in root.fixed.references]
-            cells = [a[part] if isinstance(a, np.ndarray) else np.array([a]) for a in arguments]
+            cells = {n: a[part] if isinstance(a, np.ndarray) else np.array([a]) for n, a in named.items()}
             out[part] = root.solve(cells, {}, (part.stop - part.start,)).value
     return out
 
