@@ -34,6 +34,9 @@ Mask = NDArray[np.bool_]
 NOISE = 16 * float(np.finfo(float).eps)
 """Where the equation is smaller than this share of its terms, rounding hides the rest: the row is settled."""
 
+NEAR = (2.0**-17, 2.0**-30)
+"""How small a step is, of fourth order and of Newton's, that leaves less than rounding does."""
+
 
 @dataclass(frozen=True)
 class Solved:
@@ -384,19 +387,26 @@ class _Rows:
     ) -> tuple[Array, int]:
         """The unknown in its bracket, and how many of the wanted rows had to be bisected."""
         here = np.where((start > left) & (start < right), start, (left + right) / 2)
-        f = before = there = here
+        done, near_enough = ~wanted, NEAR[bool(self.totals)]
         for _ in range(self.program.node.steps):
             f, back = self.program.step(here, *self.constants, *self.totals)
             # The bracket moves on a sign only: what is no number moves neither end.
             side = f * rising
             left, right = np.where(side <= 0, here, left), np.where(side > 0, here, right)
-            there, before = here - back, here
-            # A step out of the bracket is replaced by the middle of what is left of it.
+            there, near = here - back, np.abs(back) <= near_enough * np.abs(here)
             inside = (there >= left) & (there <= right)
-            here = there if inside.all() else np.where(inside, there, (left + right) / 2)
-        settled = np.abs(f) <= NOISE * self.call(self.program.terms, before)
-        # Within the noise the bracket may be closed up already, and the last step out of it by an ulp.
-        here = np.where(settled, np.where(np.isfinite(there), np.clip(there, left, right), before), here)
+            if not inside.all():
+                # A step out of the bracket is replaced by the middle of what is left of it; but beside the
+                # root the bracket may be closed up already, and the step out of it by an ulp.
+                there = np.where(
+                    inside, there, np.where(near, np.clip(there, left, right), (left + right) / 2)
+                )
+            # A row that is near enough stays where it is, whatever others need.
+            here = np.where(done, here, there) if done.any() else there
+            done = done | near
+            if done.all():
+                break
+        settled = np.abs(self.call(self.program.at, here)) <= NOISE * self.call(self.program.terms, here)
         rest = wanted & ~settled
         count = int(np.count_nonzero(rest))
         if count and self.totals:
