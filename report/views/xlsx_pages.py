@@ -25,7 +25,7 @@ __all__ = ["write_equations", "write_published", "write_report"]
 def write_report(sheet: Any, style: Style, report: Report, grid: Grid, inputs: Inputs) -> None:
     """Write the first worksheet: what came out, what went in, how to use the workbook."""
     scalars = grid.on(SCALARS, "given", "computed", "margin")
-    names = max(18, *(1.15 * len(block.name) for block in scalars))
+    names = max([18, *(1.15 * len(block.name) for block in scalars)])
     for column, width in enumerate((names, 17, 15, 52, 12, 10, 22, 40)):
         sheet.set_column(column, column, width)
     style.text(sheet, 0, 0, report.title, "title")
