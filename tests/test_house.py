@@ -457,3 +457,16 @@ def test_every_installed_pin_is_the_locked_one() -> None:
     for name, pin in pins(ROOT / "requirements" / "runtime.txt").items():
         if " ; " not in pin:
             assert pin.startswith(f"{name}=={metadata.version(name)} ")
+
+
+WALKS = re.findall(r"`(report/[\w/]+\.py): (\w+)`", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize(("path", "name"), WALKS)
+def test_who_walks_through_the_house_finds_what_is_named(path: str, name: str) -> None:
+    tree = ast.parse((ROOT / path).read_text(encoding="utf-8"))
+    assert name in {node.name for node in tree.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+
+
+def test_the_walks_name_places() -> None:
+    assert len(WALKS) > 25
