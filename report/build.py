@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from base64 import b64decode, b64encode
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 __all__ = ["FORMATS", "Built", "build", "built", "parse_formats"]
 
 FORMATS = ("html", "latex", "xlsx", "json", "pdf")
-Pictures = dict[str, bytes]
-"""The files of figures, by name."""
 DEFAULT_FORMATS = ("html", "latex", "xlsx", "json")
 
 
@@ -174,10 +172,9 @@ def _made(
         if long := cost.told(study.prepared.sheet, study.prepared.layouts, formats):
             tell(long)
         study.prepared.check_cells()
-        drawn = study.inputs.workbook.figures and _WITH_FIGURES & set(formats)
-        aside = None
-        if study.inputs.published or drawn:
-            aside = running.enter_context(Background(_aside, study.recipe, formats))
+        refereeing = None
+        if study.inputs.published:
+            refereeing = running.enter_context(Background(_refereed, study.recipe))
         engines = study.engines if every_engine else study.numpy
         source = study.program if "html" in formats else ""
         if proving is not None:
@@ -190,12 +187,17 @@ def _made(
             study.step("writing report.xlsx")
             with timed("workbook"):
                 content = book(proved)[1]
-        finished, pictures = replace(proved, engines=engines), Pictures()
-        if aside is not None:
-            study.step("drawing the figures, refereeing what was published")
-            with timed("waiting for the referee and figures"):
-                referee, comparisons, pictures = aside.result()
+        finished = replace(proved, engines=engines)
+        study.step("drawing the figures")
+        with timed("figures"):
+            pictures = _pictures(finished, formats)
+        if refereeing is not None:
+            study.step("refereeing what was published")
+            with timed("waiting for the referee"):
+                referee, comparisons = refereeing.result()
             finished = replace(finished, referee=referee, comparisons=comparisons)
+            with timed("figures"):
+                pictures |= _pictures(finished, formats, finished.workbook.figures)
     with timed("writing"):
         _write(finished, stage, formats, pictures, source, content, study.step)
     return finished
@@ -206,16 +208,10 @@ def _proofs(recipe: Recipe) -> dict[str, Any]:
     return Study.of(recipe).proof_data
 
 
-def _aside(recipe: Recipe, formats: Collection[str]) -> tuple[Referee, tuple[Comparison, ...], Pictures]:
-    """In a process of its own: what the referee finds, and all figures."""
-    study = Study.of(recipe)
-    report = study.refereed if study.computed.inputs.published else study.computed
-    pictures: Pictures = {}
-    if _WITH_FIGURES & set(formats):
-        from .views import figures
-
-        pictures = _pictures(report, figures.of(report), formats)
-    return report.referee, report.comparisons, pictures
+def _refereed(recipe: Recipe) -> tuple[Referee, tuple[Comparison, ...]]:
+    """In a process of its own: what the referee finds."""
+    report = Study.of(recipe).refereed
+    return report.referee, report.comparisons
 
 
 def _of_a_crate(out: Path, folder: Path) -> dict[Path, str]:
@@ -229,12 +225,14 @@ _WITH_FIGURES = {"html", "latex", "pdf"}
 """The formats that show figures."""
 
 
-def _pictures(report: Report, which: Sequence[FigureSpec], formats: Collection[str]) -> dict[str, bytes]:
-    """The files of figures, by name."""
+def _pictures(report: Report, formats: Collection[str], but: Collection[FigureSpec] = ()) -> dict[str, bytes]:
+    """The files of a report's figures, by name, but some."""
+    drawn: dict[str, bytes] = {}
+    if not _WITH_FIGURES & set(formats):
+        return drawn
     from .views import figures
 
-    drawn: dict[str, bytes] = {}
-    for figure in which:
+    for figure in (each for each in figures.of(report) if each not in but):
         if "html" in formats:
             drawn[f"{figure.name}.svg"] = figures.svg(report, figure.draw).encode()
         if "latex" in formats or "pdf" in formats:
