@@ -5,6 +5,8 @@ OUT ?= out
 UV ?= uv==0.13.8
 WORKERS ?= 2
 SEED ?=
+EACH ?=
+PART ?=
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -15,7 +17,7 @@ LOCK := .venv-lock/bin/uv pip compile --quiet --universal --python-version 3.11 
 PYTEST := $(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadfile $(if $(SEED),--seed $(SEED))
 
 .DEFAULT_GOAL := help
-.PHONY: help report test campaigns bench wheel lock clean
+.PHONY: help report test campaigns mutants bench wheel lock clean
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 
@@ -23,6 +25,7 @@ help:
 	@echo 'make report      build the report of the shipped paper into $(OUT)/'
 	@echo 'make test        ruff, mypy and all tests, with a few of the campaigns that are drawn at random'
 	@echo 'make campaigns   all of these campaigns, and what was found in them (SEED=7: others)'
+	@echo 'make mutants     one spot of the sources changed at a time: what no test notices (SEED=7, EACH=40, PART=plan)'
 	@echo 'make bench       the benchmarks'
 	@echo 'make wheel       loopsheet as one file in dist/, to be installed without this folder'
 	@echo 'make lock        pin the dependencies of pyproject.toml again (UPGRADE=--upgrade: to the newest)'
@@ -42,6 +45,9 @@ test: $(VENV)/.test .mypy_root/loopsheet
 
 campaigns: $(VENV)/.test
 	$(PYTEST) -m campaigns --campaigns all
+
+mutants: $(VENV)/.test
+	$(BIN)/python tests/mutants.py $(if $(SEED),--seed $(SEED)) $(if $(EACH),--each $(EACH)) $(PART)
 
 bench: $(VENV)/.test $(VENV)/.bench
 	set -e; for script in benchmarks/bench_*.py; do echo "== $$script"; $(BIN)/python "$$script"; done
