@@ -1,8 +1,8 @@
 """How much of the sources is held by tests: one operator, number or truth is changed at a time.
 
-Run it by ``make mutants`` (SEED=7: others, EACH=40: more of them, PART=plan: of one part). The tests that belong
-to a part run on a copy in which one spot of the part is changed; a change that no test notices is printed with
-its line. Some mean the same as what they replace: read them before a test is written.
+Run it by ``make mutants`` (SEED=7: others, EACH=40: more of them, PART=plan: of one part). The tests that
+belong to a part run on a copy in which one spot of the part is changed; a change that no test notices is
+printed with its line. Some mean the same as what they replace: read them before a test is written.
 """
 
 from __future__ import annotations
