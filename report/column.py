@@ -394,6 +394,11 @@ class Reference:
         """The same for a cell of which something else is assumed."""
         return str(self.cell), self.over
 
+    @property
+    def index(self) -> Symbol | None:
+        """The index that names its row; None for what has one value."""
+        return self.cell.indices[0] if isinstance(self.cell, Indexed) else None
+
 
 def references(
     expression: Basic, sums: Mapping[Symbol, Axis], over: Axis | None = None

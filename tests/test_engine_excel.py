@@ -41,9 +41,11 @@ from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.excel import IfError, IsNumber, NotPrintable, Printer
 from loopsheet.report.engines.excel_formulas import guard
-from loopsheet.report.engines.excel_roots import unroll
+from loopsheet.report.engines.excel_roots import Unrolled, unroll
 from loopsheet.report.engines.excel_values import auxiliary_values
 from loopsheet.report.grid import Block, Grid, Place, checked, factors, letters, quoted
+from loopsheet.report.plan import Root as RootNode
+from loopsheet.report.plan import RowSum, lowered_column
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.result import Report
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
@@ -153,7 +155,7 @@ def test_the_authors_order_is_computed_alike() -> None:
 
 @pytest.mark.parametrize(
     "expression",
-    [gamma(x), Function("f")(x), Integer(1234567890123456), S.ComplexInfinity, Sum(x, (x, 1, 3))],
+    [gamma(x), Function("f")(x), Integer(1234567890123456), S.ComplexInfinity, RowSum(x, Symbol("rows"))],
     ids=str,
 )
 def test_half_a_formula_is_never_printed(expression: Any) -> None:
@@ -402,8 +404,14 @@ def cubic(steps: int = 3) -> Column:
     return Column("root", ITEMS, root)
 
 
+def unrolled(column: Column) -> Unrolled:
+    plan = lowered_column(Sheet((a, column)), column)
+    (node,) = (each for each in plan.nodes if isinstance(each, RootNode))
+    return unroll(plan, node)
+
+
 def test_a_root_is_unrolled_in_the_order_of_its_evaluation() -> None:
-    names = [cell.name for cell in unroll(cubic(1)).cells]
+    names = [cell.name for cell in unrolled(cubic(1)).cells]
     assert names == [
         f"root.{name}"
         for name in (
@@ -446,7 +454,7 @@ def test_the_steps_show_what_the_solver_found() -> None:
     column = cubic(8)
     sheet = Sheet((a, column))
     values = engine.evaluate(sheet, {"items": (1, 2, 3, 4)}, {"a": [2.5, 1.0, 30.0, np.nan]})
-    shown = auxiliary_values(values, unroll(column))
+    shown = auxiliary_values(values, unrolled(column))
     assert shown["root.check"] == ("ready", "ready", "ready", "#INPUT!")
     assert shown["root.roots"] == (1.0, 3.0, 0.0, "")
     assert shown["root.u_8"][1:] == ("", "", "")
@@ -466,6 +474,20 @@ def test_every_sum_of_a_scalar_root_has_a_cell_of_its_own() -> None:
     assert [b.title for b in sums if b.step == 1] == ["Σ₁", "Σ₂"]
     assert first(grid, "root.step_1").count("/") == 1, "Newton's step: a derivative is a sum"
     assert grid["root"].values[0] == pytest.approx(float(grid["root.u_6"].values[0] or 0), rel=1e-14)
+
+
+def test_a_sum_in_a_sum_is_named_by_its_cell() -> None:
+    unknown, all_a = Symbol("u", positive=True), Sum(a[k], (k, 1, n_items))
+    side = Sum(exp(-unknown * a[k]) * all_a, (k, 1, n_items)) - Sum(unknown * a[k], (k, 1, n_items)) / 9
+    form = Equation("", (side, Integer(0)), "for a test", Kind.DEFINITION, "balance")
+    root = Root(form, form, unknown, unknown, Integer(0), Integer(9), Integer(1), steps=6)
+    grid = made(a, Column("root", None, root))
+    sums = [b for b in grid.on("steps") if "sum_" in b.name]
+    assert [b.formulas[0].count("SUM(") for b in sums] == [1] * len(sums)
+    said = [b.meaning for b in sums]
+    assert said.count("sum of a[k]") == 1
+    assert "sum of (sum of a[k])*exp(-u*a[k])" in said
+    assert grid["root"].values[0] == pytest.approx(float(grid["root.u_12"].values[0] or 0), rel=1e-14)
 
 
 # --- the paper -------------------------------------------------------------------------------------------

@@ -13,6 +13,7 @@ from loopsheet.report.analysis.engines import compare
 from loopsheet.report.analysis.readers import run_javascript
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
+from loopsheet.report.plan import RowSum
 from loopsheet.report.plan.domain import SMALLEST, defined, is_positive
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
@@ -179,8 +180,8 @@ def test_a_function_of_which_nothing_is_known_is_defined_nowhere() -> None:
 
 
 def test_a_sum_of_positive_terms_is_positive() -> None:
-    assert is_positive(P * Sum(exp(x), (k, 1, n)) / n)
-    assert not is_positive(Sum(x, (k, 1, n)))
+    assert is_positive(P * RowSum(exp(x), Symbol("rows")) / n)
+    assert not is_positive(RowSum(x, Symbol("rows")))
 
 
 # --- the paper's workbook --------------------------------------------------------------------------------

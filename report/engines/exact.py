@@ -23,7 +23,7 @@ from sympy import Basic, Expr, Indexed, Symbol, lambdify
 from ...derivations.reductions import REDUCTIONS, Median
 from ..intervals import Intervals
 from ..layout import Layout, lay_out, precedents, rows_of
-from ..plan import Leaf, Total, lowered_column
+from ..plan import Leaf, lowered_column
 from ..plan import Root as RootNode
 from ..plan.domain import LARGEST, SMALLEST, typed
 from ..quantity import Bounds
@@ -349,8 +349,7 @@ class _Scope:
         node = plan.nodes[-1]
         assert isinstance(node, RootNode)
         kernel, terms = enclosing(sheet, plan, node), terms_of(node)
-        leaves = {symbol.name: leaf for symbol, leaf in plan.leaves.items()}
-        written = {n.symbol.name: n.written for n in plan.nodes if isinstance(n, Total)}
+        leaves, written = plan.named, {name: total.written for name, total in plan.totals.items()}
         named = {
             name: self.function(written[name]) if name in written else self._read_leaf(leaves[name])
             for argument in kernel.arguments

@@ -8,17 +8,18 @@ by some, and ``MAX``, ``AND`` and ``OR`` swallow a whole array where one of its 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields, replace
 from decimal import Decimal
 from functools import reduce
 from typing import Any
 
-from sympy import Add, Basic, Expr, Function, Integer, Mul, Pow, Rational, Sum
+from sympy import Add, Basic, Expr, Function, Integer, Mul, Pow, Rational, Symbol
 from sympy.logic.boolalg import BooleanFunction
 from sympy.printing.printer import Printer as SympyPrinter
 
-from ...derivations.reductions import Median
+from ..plan import Leaf, Plan, RowMedian, RowSum
 
-__all__ = ["FUNCTIONS", "IfError", "IsNumber", "NotPrintable", "Printer"]
+__all__ = ["FUNCTIONS", "IfError", "IsNumber", "NotPrintable", "Printer", "ordered"]
 
 FUNCTIONS = {
     "Abs": "ABS",
@@ -63,15 +64,46 @@ class IsNumber(BooleanFunction):
         return f"{printer._module_format('numpy.isfinite')}({printer._print(self.args[0])})"
 
 
+class _Cells(Symbol):
+    """Cells of rows: in sums and products, they stand behind what is the same for all rows."""
+
+    @classmethod
+    def class_key(cls) -> tuple[int, int, str]:
+        return 5, 0, cls.__name__
+
+
+class _Taken(_Cells):
+    """A sum or a median, which stands behind these."""
+
+
+def ordered(plan: Plan) -> Plan:
+    """The plan in symbols that stand in formulas in the order of the sheet's rules."""
+
+    def behind(symbol: Symbol) -> Symbol:
+        leaf = plan.named.get(symbol.name, Leaf("size"))
+        kind = _Taken if leaf.kind == "total" else _Cells if leaf.kind == "cells" and leaf.axis else Symbol
+        return kind(symbol.name, **symbol.assumptions0)
+
+    def moved(value: Any) -> Any:
+        if isinstance(value, tuple):
+            return tuple(map(moved, value))
+        if not isinstance(value, Basic):
+            return value
+        return value.xreplace({symbol: behind(symbol) for symbol in value.atoms(Symbol)})
+
+    nodes = (replace(n, **{f.name: moved(getattr(n, f.name)) for f in fields(n)}) for n in plan.nodes)
+    return Plan(tuple(nodes), {behind(symbol): leaf for symbol, leaf in plan.leaves.items()})
+
+
 class Printer(SympyPrinter):
     """Prints an expression as a formula without its equals sign.
 
     Parameters
     ----------
     leaf : callable
-        The text for a cell, a size or a running number.
+        The text for a symbol.
     total : callable or None
-        The text for a sum or a median.
+        The text for the sum of terms over the axis of a name, or for their median.
     rows : bool
         Whether the text stands for all rows of an axis at once, inside of a sum.
     """
@@ -80,8 +112,8 @@ class Printer(SympyPrinter):
 
     def __init__(
         self,
-        leaf: Callable[[Expr], str],
-        total: Callable[[Sum | Median], str] | None = None,
+        leaf: Callable[[Symbol], str],
+        total: Callable[[Expr, str, bool], str] | None = None,
         rows: bool = False,
     ) -> None:
         super().__init__()
@@ -93,10 +125,7 @@ class Printer(SympyPrinter):
 
     # --- leaves
 
-    def _print_Symbol(self, expr: Expr) -> str:
-        return self.leaf(expr)
-
-    def _print_Indexed(self, expr: Expr) -> str:
+    def _print_Symbol(self, expr: Symbol) -> str:
         return self.leaf(expr)
 
     def _print_Integer(self, expr: Expr) -> str:
@@ -203,10 +232,12 @@ class Printer(SympyPrinter):
     def _print_IsNumber(self, expr: Basic) -> str:
         return f"ISNUMBER({self._print(expr.args[0])})"
 
-    def _print_Sum(self, expr: Sum | Median) -> str:
-        return self.total(expr) if self.total is not None else self.emptyPrinter(expr)
+    def _print_RowSum(self, expr: RowSum | RowMedian) -> str:
+        if self.total is None:
+            return self.emptyPrinter(expr)
+        return self.total(expr.args[0], expr.args[1].name, isinstance(expr, RowMedian))
 
-    _print_Median = _print_Sum
+    _print_RowMedian = _print_RowSum
 
     # --- choices
 

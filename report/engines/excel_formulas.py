@@ -8,17 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
-from sympy import And, Expr, Float, Indexed, Rational, Rel, Sum, Symbol
+from sympy import And, Expr, Float, Rational, Rel, Symbol
 
-from ...derivations.reductions import Median
 from ..grid import Place, as_issued, checked, factors
-from ..layout import Layout, rows_of
-from ..plan.domain import defined, is_positive, positive, typed
+from ..layout import Layout
+from ..plan import Leaf, Map, Plan, Root
 from ..quantity import Bounds
-from ..sheet import Axis, Column, Formula, Given, Reference, Root, Sheet, name_of, within
+from ..sheet import Axis, Column, Given, Reference, Sheet, name_of, within
 from ..values import CODES, Status
 from .excel import IfError, Printer
 from .excel_roots import READY, Auxiliary, Unrolled
@@ -53,23 +52,27 @@ class Places:
     indices: Mapping[str, tuple[Place, ...]]
 
 
-def carried_name(cell: Indexed, axis: Axis) -> str:
+def carried_name(cells: Leaf) -> str:
     """What the cells are called that repeat another axis' column for the rows of this one.
 
-    >>> from sympy import IndexedBase, Symbol
-    >>> carried_name(IndexedBase("C")[Symbol("p")], Axis("points", Symbol("q"), Symbol("n")))
+    >>> carried_name(Leaf("cells", "C", Axis("points", Symbol("q"), Symbol("n")), Symbol("p")))
     'C[p] of points'
     """
-    return f"{cell} of {axis.name}"
+    return f"{cells.written} of {cells.axis and cells.axis.name}"
 
 
-def carried(sheet: Sheet, column: Column) -> dict[str, tuple[Indexed, Axis]]:
+def carried(sheet: Sheet, column: Column) -> dict[str, tuple[Leaf, Axis]]:
     """Cells that a column sums although they stand on another axis: no range reaches them."""
-    return {
-        carried_name(reference.cell, reference.over): (reference.cell, reference.over)
-        for reference in sheet.named(column)
-        if reference.over is not None and reference.cell.indices[0] != reference.over.index
-    }
+    summed = ((_leaf(named, named.over), named.over) for named in sheet.named(column) if named.over)
+    return {carried_name(leaf): (leaf, over) for leaf, over in summed if leaf.index is not None}
+
+
+def _leaf(reference: Reference, axis: Axis | None) -> Leaf:
+    """What is named on the rows of an axis."""
+    name, index = name_of(reference.cell), reference.index
+    if axis is None or index is None:
+        return Leaf("cells", name)
+    return Leaf("cells", name, axis, None if index == axis.index else index)
 
 
 class Formulas:
@@ -78,12 +81,15 @@ class Formulas:
     Parameters
     ----------
     sheet : Sheet
+    plan : Plan
+        Of the sheet.
     layouts : mapping of axis name to Layout
     places : Places
     """
 
-    def __init__(self, sheet: Sheet, layouts: Mapping[str, Layout], places: Places) -> None:
-        self.sheet, self.layouts, self.places = sheet, layouts, places
+    def __init__(self, sheet: Sheet, plan: Plan, layouts: Mapping[str, Layout], places: Places) -> None:
+        self.sheet, self.plan, self.layouts, self.places = sheet, plan, layouts, places
+        self.maps = {node.column.name: node for node in plan.nodes if isinstance(node, Map)}
 
     def checked(self, column: Column, guard: str) -> tuple[str, ...]:
         """The formulas of what is given, if it is allowed, or else its code."""
@@ -93,13 +99,13 @@ class Formulas:
 
     def column(self, column: Column, unrolled: Unrolled | None = None) -> tuple[str, ...]:
         """The formulas of a computed column, one a row."""
-        writing = _Writing(self, column, column.name)
-        return writing.rows(writing.computed(unrolled))
+        writing = _Writing(self, column, column.name, unrolled.plan if unrolled else None)
+        return writing.rows(writing.root(unrolled) if unrolled else writing.formula(self.maps[column.name]))
 
     def drawn(self, column: Column) -> tuple[str, ...]:
         """The formulas of a column for a chart: its values, or what charts leave out."""
         writing = _Writing(self, column, column.name)
-        return writing.rows(writing.drawn())
+        return writing.rows(writing.drawn(self.maps[column.name]))
 
     def check(self, unrolled: Unrolled) -> tuple[str, ...]:
         """The formulas of the cell that says whether a root can be sought."""
@@ -114,19 +120,19 @@ class Formulas:
 
     def auxiliary(self, unrolled: Unrolled, cell: Auxiliary) -> tuple[str, ...]:
         """The formulas of a cell on the way to a root."""
-        writing = _Writing(self, unrolled.column, cell.name)
+        writing = _Writing(self, unrolled.column, cell.name, unrolled.plan)
         return writing.rows(writing.auxiliary(unrolled, cell))
 
-    def carried(self, cell: Indexed, axis: Axis) -> tuple[str, ...]:
+    def carried(self, cells: Leaf) -> tuple[str, ...]:
         """The formulas that repeat another axis' cells on this one."""
-        stand_in = Column(carried_name(cell, axis), axis, Given())
+        stand_in = Column(carried_name(cells), cells.axis, Given())
         writing = _Writing(self, stand_in, stand_in.name)
-        return writing.rows(writing.own(cell))
+        return writing.rows(writing.address(cells))
 
     def kept(self, column: Column) -> dict[str, str]:
         """For each axis that a column sums over, the formula that counts the rows with values."""
         writing = _Writing(self, column, column.name)
-        return {axis.name: f"={writing.number_kept(axis)}" for axis in self.sheet.summed_axes(column)}
+        return {axis.name: f"={writing.number_kept(axis.name)}" for axis in self.sheet.summed_axes(column)}
 
 
 def guard(bounds: Bounds) -> str:
@@ -147,7 +153,8 @@ def guard(bounds: Bounds) -> str:
 class _Writing:
     """The formulas of one quantity, being written: cells that change with the row are left open."""
 
-    def __init__(self, formulas: Formulas, column: Column, name: str) -> None:
+    def __init__(self, formulas: Formulas, column: Column, name: str, plan: Plan | None = None) -> None:
+        self.plan = plan or formulas.plan
         self.sheet, self.layouts, self.places = formulas.sheet, formulas.layouts, formulas.places
         self.column, self.axis = column, column.axis
         self.place = self.places.columns[name]
@@ -167,77 +174,69 @@ class _Writing:
 
     # --- references
 
+    @cached_property
+    def named(self) -> list[tuple[Leaf, Axis | None]]:
+        """What the column's rule names, and the axis it is summed over."""
+        return [(_leaf(r, r.over or self.axis), r.over) for r in self.sheet.named(self.column)]
+
     def fill(self, place: Place, which: Any = None) -> str:
         """Leave a cell open: that of the same row, or the rows that are named."""
-        if self.axis is None:
-            return place.cell(0, self.here)
         for number, (known, rows) in enumerate(self.open):
             if known == place and rows is which:
                 return f"{{{number}}}"
         self.open.append((place, which))
         return f"{{{len(self.open) - 1}}}"
 
-    def own(self, cell: Expr) -> str:
-        """The address of a cell that a row names: ``x_p[i]``, ``beta``, ``s``, ``alpha.u_1``."""
-        if isinstance(cell, Indexed):
-            return self.fill(self.places.columns[name_of(cell)], rows_of(cell, self.axis, self.layouts))
-        if cell.name in self.sheet:
-            return self.places.columns[cell.name].cell(0, self.here)
-        if cell.name in self.places.columns:
-            return self.fill(self.places.columns[cell.name])
-        assert self.axis is not None
-        return self.fill(self.ordinal(cell, self.axis))
+    def place_of(self, leaf: Leaf, rows: bool = False) -> Place:
+        """Where cells and running numbers stand; for sums, those of another axis are repeated on this one."""
+        if leaf.kind == "ordinal" and leaf.axis and leaf.index:
+            # Among the parts that name a row, its own number is the last.
+            return self.places.indices[leaf.axis.name][-1 - leaf.axis.ordinals.index(leaf.index)]
+        return self.places.columns[carried_name(leaf) if rows and leaf.index is not None else leaf.name]
 
-    def ordinal(self, symbol: Symbol, axis: Axis) -> Place:
-        """Where a running number stands: among the parts that name a row, its own number is the last."""
-        return self.places.indices[axis.name][-1 - axis.ordinals.index(symbol)]
+    def address(self, leaf: Leaf, rows: bool = False) -> str:
+        """The address of what a row names, or of all rows that a sum runs over."""
+        place = self.place_of(leaf, rows)
+        if leaf.axis is None:
+            return place.cell(0, self.here)
+        if rows:
+            return place.range(self.here)
+        return self.fill(place, self.layouts[leaf.axis.name].rows.get(leaf.index))
 
-    def ranged(self, cell: Expr, axis: Axis) -> str:
-        """The address that a sum over an axis gives to a cell: a range, unless it is a scalar."""
-        if isinstance(cell, Indexed):
-            name = name_of(cell) if cell.indices[0] == axis.index else carried_name(cell, axis)
-            return self.places.columns[name].range(self.here)
-        if cell in axis.ordinals:
-            return self.ordinal(cell, axis).range(self.here)
-        return self.own(cell)
-
-    def leaf(self, cell: Expr, axis: Axis | None = None) -> str:
-        """A cell in SI: that of a row, or all that a sum over an axis runs over."""
-        if cell in self.sheet.sizes:
-            return self.size(self.sheet.sizes[cell])
-        address = self.own(cell) if axis is None else self.ranged(cell, axis)
-        place = self.places.columns.get(name_of(cell))
-        to_si = "" if place is None else factors(place.scale)[0]
+    def symbol(self, symbol: Symbol, rows: bool = False) -> str:
+        """What a symbol stands for, in SI: on a row, or on all rows that a sum runs over."""
+        leaf = self.plan.named[symbol.name]
+        if leaf.kind == "total":
+            total = self.plan.totals[symbol.name]
+            return self.total(total.terms, total.over.name, total.median)
+        if leaf.kind in ("kept", "size") and leaf.axis:
+            axis = leaf.axis.name
+            return self.number_kept(axis) if leaf.kind == "kept" else f"ROWS({self.numbers(axis)})"
+        address, to_si = self.address(leaf, rows), factors(self.place_of(leaf).scale)[0]
         return f"({address}{to_si})" if to_si else address
 
-    def size(self, axis: Axis) -> str:
-        """How many rows: of those that are summed over, only the kept ones count."""
-        if self.summed(axis):
-            return self.number_kept(axis)
-        return f"ROWS({self.places.indices[axis.name][0].range(self.here)})"
+    def numbers(self, axis: str) -> str:
+        """The range of numbers that name an axis' rows."""
+        return self.places.indices[axis][0].range(self.here)
 
     # --- sums
 
-    def summed(self, axis: Axis) -> list[Reference]:
-        """The cells that a column sums over an axis."""
-        return [reference for reference in self.sheet.named(self.column) if reference.over == axis]
-
-    def number_kept(self, axis: Axis) -> str:
+    def number_kept(self, axis: str) -> str:
         """How many rows of an axis have values."""
         return f"SUM(IF({self.mask(axis)},1,0))"
 
-    def mask(self, axis: Axis) -> str:
+    def mask(self, axis: str) -> str:
         """Not zero for each row of an axis whose cells all have values."""
-        tests = [f"ISNUMBER({self.ranged(reference.cell, axis)})" for reference in self.summed(axis)]
-        return "*".join(tests) or f"ISNUMBER({self.places.indices[axis.name][0].range(self.here)})"
+        summed = [self.address(leaf, rows=True) for leaf, over in self.named if over and over.name == axis]
+        return "*".join(f"ISNUMBER({each})" for each in summed or [self.numbers(axis)])
 
-    def total(self, total: Sum | Median) -> str:
+    def total(self, terms: Expr, axis: str, median: bool) -> str:
         """A sum or a median over the rows that have values."""
-        axis = self.sheet.indices[total.limits[0][0]]
-        terms = Printer(lambda cell: self.leaf(cell, axis), self.total, rows=True).doprint(total.function)
-        if isinstance(total, Median):
-            return f'MEDIAN(IF({self.mask(axis)},{terms},""))'  # of a text, no reader takes account
-        return f"SUM(IF({self.mask(axis)},{terms},0))"
+        text = Printer(partial(self.symbol, rows=True), self.total, rows=True).doprint(terms)
+        # Of a text, no reader takes account.
+        return (
+            f'MEDIAN(IF({self.mask(axis)},{text},""))' if median else f"SUM(IF({self.mask(axis)},{text},0))"
+        )
 
     def same(self, pairs: Sequence[tuple[Place, Place]]) -> str:
         """1 where the cells of two places are the same, row by row, for each pair of them."""
@@ -254,17 +253,15 @@ class _Writing:
     def inherited(self, otherwise: str) -> str:
         """The first error among the precedents, or what stands where there is none."""
         groups: list[tuple[list[str], str]] = []  # what must hold, and the code if it does not
-        for reference in self.sheet.named(self.column):
-            cell, axis = reference.cell, reference.over
-            given = isinstance(self.sheet[name_of(cell)].rule, Given)
-            if axis is None:
-                address = self.own(cell)
+        for leaf, over in self.named:
+            given = isinstance(self.sheet[leaf.name].rule, Given)
+            if over is None:
+                address = self.address(leaf)
                 holds = f"ISNUMBER({address})"
             else:
-                name = name_of(cell) if cell.indices[0] == axis.index else carried_name(cell, axis)
                 # Its first row tells why: if no row has values, some cell of it is in error.
-                address = self.places.columns[name].cell(0, self.here)
-                holds = f"OR({self.number_kept(axis)}>0,ISNUMBER({address}))"
+                address = self.place_of(leaf, rows=True).cell(0, self.here)
+                holds = f"OR({self.number_kept(over.name)}>0,ISNUMBER({address}))"
             code = _CODE[Status.INPUT] if given else address
             if groups and groups[-1][1] == code:
                 groups[-1][0].append(holds)
@@ -278,81 +275,77 @@ class _Writing:
 
     @cached_property
     def printer(self) -> Printer:
-        return Printer(self.leaf, self.total)
+        return Printer(self.symbol, self.total)
 
     def number(self, expression: Expr) -> str:
         """A value in the cells' unit."""
-        from_si = factors(self.place.scale)[1]
-        return (
-            f"{self.printer.factor(expression)}{from_si}"
-            if from_si
-            else str(self.printer.doprint(expression))
-        )
+        if from_si := factors(self.place.scale)[1]:
+            return f"{self.printer.factor(expression)}{from_si}"
+        return str(self.printer.doprint(expression))
 
-    def where_it_holds(self, text: str, otherwise: str) -> str:
+    def where_it_holds(self, node: Map | Root, text: str, otherwise: str) -> str:
         """A value where the column's conditions hold, and where it is none, what stands for that."""
-        conditions = [str(self.printer.doprint(condition)) for condition, _ in self.column.requires]
+        conditions = [str(self.printer.doprint(condition)) for condition in node.requires]
         return f"IFERROR({f'IF({_all(conditions)},{text},{otherwise})' if conditions else text},{otherwise})"
 
-    def value(self, expression: Expr, none: str) -> str:
+    def value(self, expression: Expr, sign: Any, none: str) -> str:
         """A value that a double holds, or the code of what stands for it; `none` where it is an error."""
         domain, beyond = _CODE[Status.DOMAIN], _CODE[Status.OVERFLOW]
         text = self.number(expression)
         if self.column.positive:
             # A unit of the cells could lift what is too small, so SI is asked.
-            si, formula = self.printer.doprint(expression), typed(self.sheet, expression)
-            # What is made of a root is one of several values that are sought: no signs are asked of it.
-            sign = is_positive(formula) if isinstance(self.column.rule, Root) else positive(formula)
+            si = self.printer.doprint(expression)
             above = f"{si}>0" if sign in (True, False) else f"OR({si}>0,{self.printer.doprint(sign)})"
             small = beyond if sign == True else f"IF({above},{beyond},{domain})"  # noqa: E712 - sympy's true
             text = f"IF({si}>={_SMALLEST},{text},{small})"
         return f"IFERROR({text},{none})"
 
-    def failure(self, expression: Expr) -> str:
+    def failure(self, node: Map) -> str:
         """What a formula is that is an error: a value that no double holds, or none."""
         domain, beyond = _CODE[Status.DOMAIN], _CODE[Status.OVERFLOW]
-        where = defined(typed(self.sheet, expression))
-        if where == True:  # noqa: E712 - sympy's true
+        if node.defined == True:  # noqa: E712 - sympy's true
             return beyond
-        return f"IFERROR(IF({self.printer.doprint(where)},{beyond},{domain}),{domain})"
+        return f"IFERROR(IF({self.printer.doprint(node.defined)},{beyond},{domain}),{domain})"
 
-    def computed(self, unrolled: Unrolled | None) -> str:
-        """A computed cell: an error of its precedents, its own, or its value."""
-        rule, domain = self.column.rule, _CODE[Status.DOMAIN]
-        if isinstance(rule, Formula):
-            value = self.value(rule.expression, self.failure(rule.expression))
-            return self.inherited(self.where_it_holds(value, domain) if self.column.requires else value)
-        assert isinstance(rule, Root)
-        assert unrolled is not None
-        check, number = self.own(unrolled.check), self.own(unrolled.number)
+    def formula(self, node: Map) -> str:
+        """A cell with a formula: an error of its precedents, its own, or its value."""
+        value = self.value(node.value, node.positive, self.failure(node))
+        if node.requires:
+            value = self.where_it_holds(node, value, _CODE[Status.DOMAIN])
+        return self.inherited(value)
+
+    def root(self, unrolled: Unrolled) -> str:
+        """A cell with a root: an error of its precedents, its own, or its value."""
+        node, domain = unrolled.node, _CODE[Status.DOMAIN]
+        check, number = self.address(unrolled.check), self.address(unrolled.number)
         none, two = _CODE[Status.NOROOT], _CODE[Status.TWOROOTS]
         known, settled = (self.printer.doprint(test) for test in (unrolled.known, unrolled.settled))
-        found = f"IF({settled},{self.value(unrolled.value, _CODE[Status.OVERFLOW])},{_UNSETTLED})"
+        value = self.value(unrolled.value, node.positive, _CODE[Status.OVERFLOW])
+        found = f"IF({settled},{value},{_UNSETTLED})"
         found = f"IF({number}=1,IF({known},{found},{domain}),IF({number}=0,{none},{two}))"
         if unrolled.issued is not None:
             undecided = _CODE[Status.UNDECIDED]
             found = f"IF({number}<0,{undecided},{found})"
-            found = f"IF({self.own(unrolled.issued)}=1,IF(ISNUMBER({number}),{found},{domain}),{undecided})"
+            found = f"IF(ISNUMBER({number}),{found},{domain})"
+            found = f"IF({self.address(unrolled.issued)}=1,{found},{undecided})"
         else:
             found = f"IF(ISNUMBER({number}),{found},{domain})"
-        found = self.where_it_holds(found, domain)
+        found = self.where_it_holds(node, found, domain)
         return f'IF({check}="{READY}",{found},{check})'
 
-    def drawn(self) -> str:
+    def drawn(self, node: Map) -> str:
         """A cell for a chart: its value, or what charts leave out."""
-        rule = self.column.rule
-        assert isinstance(rule, Formula)
-        tests = [f"ISNUMBER({self.own(reference.cell)})" for reference in self.sheet.named(self.column)]
-        value = self.where_it_holds(self.number(rule.expression), _NOT_AVAILABLE)
+        tests = [f"ISNUMBER({self.address(leaf)})" for leaf, _ in self.named]
+        value = self.where_it_holds(node, self.number(node.value), _NOT_AVAILABLE)
         return f"IF({_all(tests)},{value},{_NOT_AVAILABLE})"
 
     def auxiliary(self, unrolled: Unrolled, cell: Auxiliary) -> str:
         """A cell on the way to a root; empty where there is none to seek."""
-        wanted = f"{self.own(unrolled.number)}=1" if cell.alone else f'{self.own(unrolled.check)}="{READY}"'
-        printed = (
-            self.printer.added(cell.expression) if cell.residual else self.printer.doprint(cell.expression)
-        )
-        if not isinstance(cell.expression, IfError):
+        check, number = self.address(unrolled.check), self.address(unrolled.number)
+        wanted = f"{number}=1" if cell.alone else f'{check}="{READY}"'
+        value = cell.part.value
+        printed = self.printer.added(value) if cell.residual else self.printer.doprint(value)
+        if not isinstance(value, IfError):
             printed = f'IFERROR({printed},"")'
         return f'IF({wanted},{printed},"")'
 

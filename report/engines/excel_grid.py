@@ -16,11 +16,13 @@ from itertools import chain, count
 from ..charts import Drawn
 from ..grid import CHECKED, FIRST_ROW, SCALARS, STEPS, Block, Grid, Place, as_issued, checked
 from ..layout import Layout
+from ..plan import Root, lowered
 from ..quantity import Bounds
-from ..sheet import Axis, Column, Given, PairAxis, RepeatAxis, Root, Sheet, name_of
+from ..sheet import Axis, Column, Given, PairAxis, RepeatAxis, Sheet
 from ..unit_text import UnitError, parse_unit
 from ..values import CODES, Values
 from .certified import certified
+from .excel import ordered
 from .excel_formulas import Formulas, Places, carried, guard
 from .excel_roots import Unrolled, unroll
 from .excel_values import auxiliary_values
@@ -129,8 +131,12 @@ class _Assembly:
         self.places: dict[str, Place] = {}
         self.notes: dict[str, Place] = {}
         self.indices: dict[str, tuple[Place, ...]] = {}
+        self.plan = ordered(lowered(whole))
+        roots = {node.column.name: node for node in self.plan.nodes if isinstance(node, Root)}
         self.unrolled = {
-            c.name: unroll(c, certified(sheet, c)) for c in sheet.columns if isinstance(c.rule, Root)
+            c.name: unroll(self.plan, roots[c.name], certified(sheet, c))
+            for c in sheet.columns
+            if c.name in roots
         }
         asked = {
             given.name
@@ -146,7 +152,7 @@ class _Assembly:
         self.put_all()
         named = {name: self.places[checked(name)] for name in self.whole.bounds}
         places = Places({**self.places, **named}, {name: self.places[name] for name in named}, self.indices)
-        formulas = Formulas(self.whole, self.values.layouts, places)
+        formulas = Formulas(self.whole, self.plan, self.values.layouts, places)
         blocks = [*self.index_blocks(), *self.column_blocks(formulas), *self.step_blocks(formulas)]
         order = [SCALARS, *self.names.values(), STEPS]
         blocks.sort(
@@ -178,8 +184,8 @@ class _Assembly:
                 self.put(column, column.name)
         for column in given:
             self.put(column, checked(column.name))
-        for name, (cell, axis) in sorted(self.carried.items()):
-            self.places[name] = self.rooms[axis.name].next(self.places[name_of(cell)].scale)
+        for name, (leaf, axis) in sorted(self.carried.items()):
+            self.places[name] = self.rooms[axis.name].next(self.places[leaf.name].scale)
         row = _TOP - 2
         for unrolled in self.unrolled.values():
             over = unrolled.column.axis
@@ -284,16 +290,15 @@ class _Assembly:
                 written = formulas.column(column, self.unrolled.get(column.name))
                 kind = "computed" if column.name in self.sheet else "margin"
                 yield _computed(replace(block, kind=kind, kept=formulas.kept(column)), written)
-        for name, (cell, axis) in sorted(self.carried.items()):
-            column = self.whole[name_of(cell)]
-            named = self.values.layouts[axis.name].rows[cell.indices[0]]
-            values = self.shown(column)
+        for name, (leaf, axis) in sorted(self.carried.items()):
+            column = self.whole[leaf.name]
+            named, values = self.values.layouts[axis.name].rows[leaf.index], self.shown(column)
             block = Block(
-                name, "carried", str(cell), f"{column.name} of each row, for its sums",
+                name, "carried", leaf.written, f"{column.name} of each row, for its sums",
                 self.places[name], values=tuple(values[int(row)] for row in named),
                 unit=self.unit(column)[0], of=column.name,
             )  # fmt: skip
-            yield _computed(block, formulas.carried(cell, axis))
+            yield _computed(block, formulas.carried(leaf))
 
     def given_blocks(self, column: Column, block: Block, formulas: Formulas) -> Iterator[Block]:
         """What is typed, and what of it is allowed; how many rows there are is what the worksheets have."""
@@ -375,7 +380,7 @@ def _computed(block: Block, formulas: tuple[str, ...]) -> Block:
 
 def _counting(unrolled: Unrolled) -> tuple[str, ...]:
     """The cells of a root whose number is known for the inputs as issued only."""
-    return tuple(symbol.name for symbol in (unrolled.issued, unrolled.counted) if symbol is not None)
+    return tuple(cell.name for cell in (unrolled.issued, unrolled.counted) if cell is not None)
 
 
 def _literal(value: float | str | None) -> str:

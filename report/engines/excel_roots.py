@@ -1,7 +1,7 @@
 """A root as visible cells: everything the solver does, one quantity a cell, unrolled step by step.
 
-The cells are sympy expressions of the sheet's cells and of one another, so the printer that prints
-formulas prints them as well, and NumPy computes what they show before a spreadsheet has recalculated.
+The cells are parts of a plan, so the printer that prints formulas prints them as well, and NumPy computes
+what they show before a spreadsheet has recalculated.
 """
 
 from __future__ import annotations
@@ -10,10 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from sympy import Abs, And, Eq, Expr, Integer, Piecewise, Sum, Symbol, diff, sign
+from sympy import Abs, And, Eq, Expr, Integer, Piecewise, Symbol, diff, sign
 from sympy.logic.boolalg import Boolean
 
-from ..sheet import Column, Root
+from ..plan import Leaf, Node, Part, Plan, Root, RowSum, Total, free_name
+from ..sheet import Column
 from .excel import IfError, IsNumber
 from .roots import derivatives, householder
 
@@ -28,18 +29,21 @@ _DERIVATIVES = ("its derivative", "its second derivative", "its third derivative
 _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
+_REAL = Symbol("_", real=True)
+
+
 @dataclass(frozen=True)
 class Auxiliary:
     """One quantity on the way to a root.
 
     Parameters
     ----------
-    symbol : Symbol
-        How other expressions name it: the column's name, a dot and its own.
+    name : str
+        The column's name, a dot and its own.
     title, meaning : str
         For the reader.
-    expression : Expr
-        In cells of the sheet and other auxiliaries.
+    part : Part
+        Of the plan.
     step : int
         Which step it belongs to, from 1; 0 before the first.
     alone : bool
@@ -48,18 +52,13 @@ class Auxiliary:
         Whether it is a difference that tends to zero, which must not be rounded to it.
     """
 
-    symbol: Symbol
+    name: str
     title: str
     meaning: str
-    expression: Expr
+    part: Part
     step: int = 0
     alone: bool = False
     residual: bool = False
-
-    @property
-    def name(self) -> str:
-        """The column's name, a dot and its own."""
-        return str(self.symbol.name)
 
 
 @dataclass(frozen=True)
@@ -68,14 +67,16 @@ class Unrolled:
 
     Parameters
     ----------
-    column : Column
-    check : Symbol
+    node : Root
+    plan : Plan
+        What its cells are made of.
+    check : Leaf
         The cell that says whether all precedents have values, and the first error if not.
     cells : tuple of Auxiliary
         In order of evaluation.
-    number : Symbol
+    number : Leaf
         How many roots there are; no number where the form has no sign.
-    issued, counted : Symbol or None
+    issued, counted : Leaf or None
         Where the number of roots is not certified for all inputs: the cell that says whether the inputs are
         those of the report as issued (1 or 0), and the one that holds how many roots there are for those, -1
         where that is not certain.
@@ -86,43 +87,54 @@ class Unrolled:
         The column's value, where there is one root.
     """
 
-    column: Column
-    check: Symbol
+    node: Root
+    plan: Plan
+    check: Leaf
     cells: tuple[Auxiliary, ...]
-    number: Symbol
+    number: Leaf
     known: Boolean
     settled: Boolean
     value: Expr
-    issued: Symbol | None = None
-    counted: Symbol | None = None
+    issued: Leaf | None = None
+    counted: Leaf | None = None
+
+    @property
+    def column(self) -> Column:
+        """Whose cells they are."""
+        return self.node.column
 
 
-def unroll(column: Column, certified: bool = True) -> Unrolled:
+def unroll(plan: Plan, node: Root, certified: bool = True) -> Unrolled:
     """Lay the solver of a root out as cells.
 
     Parameters
     ----------
-    column : Column
-        Its rule is a :class:`~loopsheet.report.sheet.Root`.
+    plan : Plan
+    node : Root
+        Of the plan.
     certified : bool
         Whether the number of its roots follows from signs for all inputs. No formula could count them
         otherwise: the workbook then keeps to the inputs for which they were counted.
     """
-    return _Unrolling(column, certified).run()
+    return _Unrolling(plan, node, certified).run()
 
 
 class _Unrolling:
     """One root being laid out: the cells so far."""
 
-    def __init__(self, column: Column, certified: bool) -> None:
-        assert isinstance(column.rule, Root)
-        self.column, self.certified = column, certified
-        self.rule = column.rule if certified else replace(column.rule, turning=())
-        self.unknown = column.rule.unknown
-        self.form = column.rule.expression
+    def __init__(self, plan: Plan, node: Root, certified: bool) -> None:
+        self.node, self.column, self.certified = node, node.column, certified
+        self.rule = node if certified else replace(node, turning=())
+        self.unknown, self.form = node.unknown, node.form
+        self.leaves, self.taken = dict(plan.leaves), {symbol.name for symbol in plan.leaves}
+        self.axes = plan.axes
+        self.totals = {total.symbol: total for total in plan.totals.values() if total.column == node.column}
+        self.nodes: list[Node] = []
+        self.sums: dict[tuple[Expr, str], Auxiliary] = {}
+        """The cells of sums, by their terms and the axis they run over."""
         self.cells: list[Auxiliary] = []
         # Newton's step where a derivative is a sum: three more passes over all points cost more than steps.
-        summed = self.form.has(Sum)
+        summed = self.form.has(RowSum)
         self.slopes = (diff(self.form, self.unknown),) if summed else derivatives(self.form, self.unknown)[1:]
         # Other engines go on where their steps do not settle; here they end.
         self.steps = 2 * self.rule.steps
@@ -135,68 +147,69 @@ class _Unrolling:
         inside = And(IsNumber(start), start > left, start < right)
         says = "the guess; the middle of the bracket if it lies outside"
         here = self.place("u_0", self.lowered(0), says, Piecewise((start, inside), (middle, True)))
+        form = before = here
         for step in range(1, self.steps + 1):
-            self.now = step
-            left, right, here = self.step(step, left, right, rising, here)
-        form, before = self.known(f"f_{self.steps}"), self.known(f"u_{self.steps - 1}")
+            self.now, before = step, here
+            form, left, right, here = self.step(step, left, right, rising, here)
         known, settled = IsNumber(form), Abs(here - before) * _SETTLED <= Abs(here)
         value = self.rule.value.xreplace({self.unknown: here})
-        asked = (None, None) if self.certified else (self.real("issued"), self.real("counted"))
-        return Unrolled(
-            self.column, self.real("check"), tuple(self.cells), number, known, settled, value, *asked
-        )
-
-    def known(self, name: str) -> Symbol:
-        return next(cell.symbol for cell in self.cells if cell.name == f"{self.column.name}.{name}")
+        asked = (None, None) if self.certified else (self.told("issued"), self.told("counted"))
+        plan = Plan((*self.totals.values(), *self.nodes), self.leaves)
+        check, cells = self.told("check"), tuple(self.cells)
+        return Unrolled(self.node, plan, check, cells, self.leaves[number], known, settled, value, *asked)
 
     # --- cells
 
     def lowered(self, number: int) -> str:
         return f"{self.unknown}{str(number).translate(_LOWERED)}"
 
-    def real(self, name: str) -> Symbol:
-        return Symbol(f"{self.column.name}.{name}", real=True)
+    def told(self, name: str) -> Leaf:
+        """A cell that no formula of others makes."""
+        return Leaf("cells", f"{self.column.name}.{name}", self.column.axis)
 
-    def add(self, name: str, title: str, meaning: str, expression: Expr, residual: bool = False) -> Symbol:
+    def symbol(self, leaf: Leaf, like: Symbol = _REAL) -> Symbol:
+        symbol = Symbol(free_name(leaf.name.replace(".", "_"), self.taken), **like.assumptions0)
+        self.leaves[symbol] = leaf
+        return symbol
+
+    def add(
+        self, name: str, title: str, meaning: str, value: Expr, residual: bool = False, like: Symbol = _REAL
+    ) -> Symbol:
         """A cell; its sums get cells of their own first."""
-        symbol = self.real(name)
-        self.cells.append(self.cell(symbol, title, meaning, self.without_sums(expression), residual))
-        return symbol
+        leaf = replace(self.told(name), kind="part")
+        part = Part(self.column, self.symbol(leaf, like), leaf.axis, self.without_sums(value))
+        self.nodes.append(part)
+        self.cells.append(Auxiliary(leaf.name, title, meaning, part, self.now, self.alone, residual))
+        return part.symbol
 
-    def place(self, name: str, title: str, meaning: str, expression: Expr) -> Symbol:
+    def place(self, name: str, title: str, meaning: str, value: Expr) -> Symbol:
         """A cell that holds a value of the unknown: it is assumed to be what the unknown is."""
-        symbol = Symbol(f"{self.column.name}.{name}", **self.unknown.assumptions0)
-        self.cells.append(self.cell(symbol, title, meaning, self.without_sums(expression)))
-        return symbol
-
-    def cell(
-        self, symbol: Symbol, title: str, meaning: str, expression: Expr, residual: bool = False
-    ) -> Auxiliary:
-        return Auxiliary(symbol, title, meaning, expression, self.now, self.alone, residual)
+        return self.add(name, title, meaning, value, like=self.unknown)
 
     def without_sums(self, expression: Expr) -> Expr:
         """The expression with a cell for each of its sums; equal sums share one."""
-        found: dict[Expr, Expr] = {}
-        for total in sorted(expression.atoms(Sum), key=str):
-            number, terms = total.function.as_coeff_Mul()
-            found[total] = number * self.total(Sum(terms, *total.limits))
-        return expression.xreplace(found)
+        sums = {total: (total.args[0], total.args[1].name) for total in expression.atoms(RowSum)}
+        sums |= {s: (t.terms, t.over.name) for s, t in self.totals.items() if expression.has(s)}
+        return expression.xreplace({each: self.sum(*sums[each]) for each in sorted(sums, key=str)})
 
-    def total(self, total: Sum) -> Symbol:
-        for cell in self.cells:
-            if cell.expression == total:
-                return cell.symbol
-        before = sum(isinstance(cell.expression, Sum) and cell.step == self.now for cell in self.cells)
-        symbol = self.real(f"sum_{self.now}_{before + 1}")
-        self.cells.append(
-            self.cell(symbol, f"Σ{str(before + 1).translate(_LOWERED)}", self.said(total), total)
-        )
-        return symbol
+    def sum(self, terms: Expr, axis: str) -> Symbol:
+        """The cell of a sum."""
+        terms = self.without_sums(terms)
+        if (terms, axis) not in self.sums:
+            number = 1 + sum(cell.step == self.now for cell in self.sums.values())
+            name, title = f"sum_{self.now}_{number}", f"Σ{str(number).translate(_LOWERED)}"
+            symbol = self.symbol(Leaf("total", f"{self.column.name}.{name}_of"))
+            self.nodes.append(Total(self.column, symbol, self.axes[axis], terms, terms))
+            self.add(name, title, self.said(terms), symbol)
+            self.sums[terms, axis] = self.cells[-1]
+        return self.sums[terms, axis].part.symbol
 
-    def said(self, total: Sum) -> str:
-        """A sum's terms, with the unknown named as the reader knows it."""
-        terms = total.function
-        own = {s: self.unknown for s in terms.free_symbols if s.name.startswith(f"{self.column.name}.")}
+    def said(self, terms: Expr) -> str:
+        """A sum's terms, with cells and the unknown named as the reader knows them."""
+        leaves = {symbol: self.leaves[symbol] for symbol in terms.free_symbols}
+        own = {s: s.func(leaf.written) for s, leaf in leaves.items() if leaf.kind == "cells"}
+        own |= {s: self.unknown for s, leaf in leaves.items() if leaf.kind == "part"}
+        own |= {cell.part.symbol: Symbol(f"({cell.meaning})") for cell in self.sums.values()}
         return f"sum of {str(terms.xreplace(own)).replace('**', '^')}"
 
     # --- how many roots, and where
@@ -243,8 +256,9 @@ class _Unrolling:
         known = And(*(IsNumber(cell) for cell in (*signs, places[0], places[-1])))
         says = "number of sign changes: of roots"
         if not self.certified:
-            counted, says = self.real("counted"), "number of roots, if the inputs are those as issued"
-            known = And(known, Eq(self.real("issued"), 1))
+            counted, issued = (self.symbol(self.told(name)) for name in ("counted", "issued"))
+            says = "number of roots, if the inputs are those as issued"
+            known = And(known, Eq(issued, 1))
         number = self.add("roots", "roots", says, Piecewise((counted, known)))
         self.alone = True
 
@@ -260,8 +274,8 @@ class _Unrolling:
 
     def step(
         self, n: int, left: Symbol, right: Symbol, rising: Symbol, here: Symbol
-    ) -> tuple[Symbol, Symbol, Symbol]:
-        """A step and what it leaves of the bracket, as all engines take it."""
+    ) -> tuple[Symbol, Symbol, Symbol, Symbol]:
+        """The form, what a step leaves of the bracket and where it leads, as all engines take it."""
         f = self.add(f"f_{n}", "f", "value of the form", self.at(here), residual=True)
         slopes = [
             self.add(
@@ -284,4 +298,4 @@ class _Unrolling:
         inside = And(there >= left, there <= right)
         moved = Piecewise((here, Eq(f, 0)), (there, inside), (middle, True))
         says = "the unknown after the step; a step out of the bracket is replaced by its middle"
-        return left, right, self.place(f"u_{n}", self.lowered(n), says, IfError(moved, middle))
+        return f, left, right, self.place(f"u_{n}", self.lowered(n), says, IfError(moved, middle))

@@ -12,7 +12,7 @@ from itertools import count, groupby
 from pathlib import Path
 from typing import Any
 
-from sympy import Expr, Indexed, Symbol, cse, numbered_symbols
+from sympy import Expr, Symbol, cse, numbered_symbols
 from sympy.printing.jscode import JavascriptCodePrinter
 
 from ..plan import Given as GivenNode
@@ -261,11 +261,8 @@ def _kernels(sheet: Sheet, plan: Plan, nodes: Sequence[PlanNode]) -> str:
 def _references(sheet: Sheet, column: Column) -> Iterable[tuple[str, str | None, str | None]]:
     """The cells that a column names: the column, the index, and the axis whose rows the index belongs to."""
     for reference in sheet.named(column):
-        cell, scope = reference.cell, reference.over or column.axis
-        if isinstance(cell, Indexed) and scope is not None:
-            yield name_of(cell), str(cell.indices[0]), scope.name
-        else:
-            yield name_of(cell), None, None if reference.over is None else reference.over.name
+        index, over = reference.index, reference.over or (reference.index and column.axis)
+        yield name_of(reference.cell), None if index is None else str(index), over.name if over else None
 
 
 def _axis(axis: Axis) -> dict[str, str]:

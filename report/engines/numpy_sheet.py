@@ -13,7 +13,7 @@ from typing import Any
 from sympy import Expr, Symbol
 from sympy.logic.boolalg import Boolean
 
-from ..plan import Given, Leaf, Map, Node, Part, Plan, Root, Total
+from ..plan import Given, Leaf, Map, Node, Part, Plan, Root, Total, free_name
 from .numpy_code import Printer, compiled, printed
 from .numpy_root import RootProgram
 
@@ -70,14 +70,6 @@ def _shared(expressions: Iterable[Any]) -> set[Any]:
     return found
 
 
-def _free(name: str, taken: set[str]) -> str:
-    """A name like this one that is not taken; now it is."""
-    while name in taken:
-        name += "_"
-    taken.add(name)
-    return name
-
-
 class _Sharing(Printer):
     """Prints a part that stands in several expressions once, on a line before them.
 
@@ -106,7 +98,7 @@ class _Sharing(Printer):
         """The name of a part."""
         if expr not in self.named:
             text = str(super()._print(expr))
-            self.named[expr] = _free(f"t_{len(self.named)}", self.names)
+            self.named[expr] = free_name(f"t_{len(self.named)}", self.names)
             self.lines.append(f"{self.named[expr]} = {text}")
         return self.named[expr]
 
@@ -179,7 +171,7 @@ class _Writing:
     def kept_rows(self, column: str, axis: str) -> str:
         """The rows that the sums of a column keep."""
         if (column, axis) not in self.kept:
-            name = self.kept[column, axis] = _free(f"kept_{len(self.kept)}", self.names)
+            name = self.kept[column, axis] = free_name(f"kept_{len(self.kept)}", self.names)
             self.lines.append(f'{name} = run.kept("{column}", "{axis}")')
         return self.kept[column, axis]
 

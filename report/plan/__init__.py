@@ -7,7 +7,7 @@ a symbol stands for, which sums are taken before, what is asked of a value. All 
 from __future__ import annotations
 
 from .lowering import lowered, lowered_column
-from .nodes import Given, Leaf, Map, Node, Part, Plan, Root, RowMedian, RowSum, Total, taken_over
+from .nodes import Given, Leaf, Map, Node, Part, Plan, Root, RowMedian, RowSum, Total, free_name, taken_over
 
 __all__ = [
     "Given",
@@ -20,6 +20,7 @@ __all__ = [
     "RowMedian",
     "RowSum",
     "Total",
+    "free_name",
     "lowered",
     "lowered_column",
     "taken_over",

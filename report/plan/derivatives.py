@@ -20,7 +20,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import reduce
-from itertools import count
 from typing import Any
 
 from sympy import (
@@ -55,7 +54,7 @@ from ..column import Axis, Column
 from ..column import Root as RootRule
 from ..sheet import Sheet
 from .lowering import RESERVED, lowered
-from .nodes import Given, Leaf, Map, Node, Part, Plan, Root, RowSum, Total
+from .nodes import Given, Leaf, Map, Node, Part, Plan, Root, RowSum, Total, free_name
 
 __all__ = ["Derivatives", "Local", "Slope", "derivatives"]
 
@@ -147,7 +146,7 @@ class _Making:
     def __init__(self, plan: Plan) -> None:
         self.leaves = dict(plan.leaves)
         self.taken = {*RESERVED, *(symbol.name for symbol in plan.leaves)}
-        self.own = plan.own
+        self.own, self.axes = plan.own, plan.axes
         self.nodes: list[Node] = []
         self.columns: list[Column] = []
         self.sums: dict[tuple[str, Axis, Expr], Symbol] = {}
@@ -210,9 +209,7 @@ class _Making:
 
     def symbol(self, wanted: str, leaf: Leaf | None) -> Symbol:
         """A new symbol; without a leaf, whoever asks says what it stands for."""
-        name = next(name for n in count() if (name := wanted + "_" * n) not in self.taken)
-        self.taken.add(name)
-        found = Symbol(name, real=True)
+        found = Symbol(free_name(wanted, self.taken), real=True)
         if leaf is not None:
             self.leaves[found] = leaf
         return found
@@ -236,7 +233,6 @@ class _RootMaking:
         self.making, self.root, self.column = making, node, node.column
         self.unknown = node.unknown
         self.moving: dict[Symbol, tuple[Axis, Expr]] = {}
-        self.axes = {axis.name: axis for axis in _axes(making.leaves.values())}
 
     def locals(self) -> Iterator[Local]:
         making = self.making
@@ -273,7 +269,7 @@ class _RootMaking:
         if not isinstance(expression, RowSum):
             return expression.func(*parts)
         terms, axis = parts
-        key = self.axes[axis.name], terms
+        key = self.making.axes[axis.name], terms
         for symbol, known in self.moving.items():
             if known == key:
                 return symbol
@@ -318,16 +314,6 @@ class _RootMaking:
                 inner = self.by_unknown(terms, here).xreplace({self.unknown: here})
                 found += diff(expression, symbol) * self.making.summed(self.column, inner, over)
         return found
-
-
-def _axes(leaves: Any) -> Iterator[Axis]:
-    """The axes of leaves, and those that they are made of."""
-    waiting = [leaf.axis for leaf in leaves]
-    while waiting:
-        axis = waiting.pop()
-        if axis is not None:
-            yield axis
-            waiting += axis.parents
 
 
 def _chosen(expression: Any) -> Any:

@@ -157,14 +157,11 @@ def is_positive(expression: Expr) -> bool:
 
     Examples
     --------
-    >>> from sympy import IndexedBase, Symbol, symbols
-    >>> q, n = symbols("q n", integer=True, positive=True)
-    >>> F = IndexedBase(Symbol("F", positive=True))
-    >>> is_positive(Sum(F[q], (q, 1, n)) / n), is_positive(F[q] - 1)
+    >>> F, n = Symbol("F", positive=True), Symbol("n", positive=True)
+    >>> is_positive(RowSum(F, Symbol("points")) / n), is_positive(F - 1)
     (True, False)
     """
-    totals = expression.atoms(Sum, RowSum)  # their first argument is their terms
-    known = {total: Dummy(positive=True) for total in totals if is_positive(total.args[0])}
+    known = {total: Dummy(positive=True) for total in expression.atoms(RowSum) if is_positive(total.args[0])}
     return bool(expression.xreplace(known).is_positive)
 
 

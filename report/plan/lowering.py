@@ -12,7 +12,7 @@ from ...derivations.reductions import REDUCTIONS, Median
 from ..sheet import Axis, Column, Formula, Sheet, name_of
 from ..sheet import Given as GivenRule
 from ..sheet import Root as RootRule
-from .domain import defined, positive, typed_symbols
+from .domain import defined, is_positive, positive, typed_symbols
 from .nodes import Given, Leaf, Map, Node, Plan, Root, RowMedian, RowSum, Total
 
 __all__ = ["lowered", "lowered_column"]
@@ -151,10 +151,13 @@ class Lowering:
             plain = self.plain(expression, column, column.axis, unknown)
             return self._lifted(plain, column, unknown, nodes)
 
+        def assuming(expression: Any) -> Any:
+            plain = self.plain(expression, column, column.axis, unknown)
+            return plain.xreplace(typed_symbols(self.sheet, self.leaves))
+
         requires = tuple(lower(condition) for condition, _ in column.requires)
         if isinstance(rule, Formula):
-            plain = self.plain(rule.expression, column, column.axis)
-            asked = plain.xreplace(typed_symbols(self.sheet, self.leaves))
+            asked = assuming(rule.expression)
             sign = positive(asked) if column.positive else false
             nodes.append(Map(column, lower(rule.expression), requires, defined(asked), sign))
         else:
@@ -171,6 +174,7 @@ class Lowering:
                     lower(rule.expression),
                     lower(rule.value),
                     requires,
+                    is_positive(assuming(rule.value)),
                     rule.steps,
                 )
             )

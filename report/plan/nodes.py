@@ -23,6 +23,7 @@ __all__ = [
     "RowMedian",
     "RowSum",
     "Total",
+    "free_name",
     "taken_over",
 ]
 
@@ -51,6 +52,11 @@ class Leaf:
     name: str = ""
     axis: Axis | None = None
     index: Symbol | None = None
+
+    @property
+    def written(self) -> str:
+        """Cells as the sheet writes them: ``x_p[j]``, ``beta``."""
+        return self.name if self.axis is None else f"{self.name}[{self.index or self.axis.index}]"
 
 
 # --- what is taken over rows ------------------------------------------------------------------------------
@@ -108,6 +114,14 @@ class RowMedian(Expr):
     def _sympystr(self, printer: Any) -> str:
         terms, axis = map(printer._print, self.args)
         return f"median({terms}, {axis})"
+
+
+def free_name(wanted: str, taken: set[str]) -> str:
+    """A name like the one that is wanted which is not taken; now it is."""
+    while wanted in taken:
+        wanted += "_"
+    taken.add(wanted)
+    return wanted
 
 
 def taken_over(expressions: Iterable[Basic]) -> tuple[str, ...]:
@@ -205,6 +219,8 @@ class Root:
         The column's value in terms of the unknown.
     requires : tuple of Boolean
         The column's conditions, in their order.
+    positive : bool
+        Whether its value is positive although no double may hold it, by what is assumed of what it names.
     steps : int
         How many fourth-order steps every row takes.
     """
@@ -220,6 +236,7 @@ class Root:
     form: Expr
     value: Expr
     requires: tuple[Boolean, ...]
+    positive: bool
     steps: int
 
 
@@ -270,6 +287,22 @@ class Plan:
     def named(self) -> dict[str, Leaf]:
         """What a symbol stands for, by its name: of some is assumed more elsewhere."""
         return {symbol.name: leaf for symbol, leaf in self.leaves.items()}
+
+    @cached_property
+    def axes(self) -> dict[str, Axis]:
+        """The axes of what its symbols stand for, and those that they are made of."""
+        found, waiting = dict[str, Axis](), [leaf.axis for leaf in self.leaves.values()]
+        while waiting:
+            axis = waiting.pop()
+            if axis is not None:
+                found[axis.name] = axis
+                waiting += axis.parents
+        return found
+
+    @cached_property
+    def totals(self) -> dict[str, Total]:
+        """Its sums and medians, by the names of what stands for them."""
+        return {node.symbol.name: node for node in self.nodes if isinstance(node, Total)}
 
     def node_of(self, symbol: Symbol) -> str:
         """The name of the column or total that a symbol stands for."""

@@ -82,7 +82,7 @@ def _stands_for(leaf: Leaf) -> str:
     """What a symbol stands for that is not called as it is."""
     axis = "" if leaf.axis is None else leaf.axis.name
     if leaf.kind == "cells" and leaf.index is not None:
-        return f"{leaf.name}[{leaf.index}] on {axis}"
+        return f"{leaf.written} on {axis}"
     if leaf.kind == "size":
         return f"number of {axis}"
     if leaf.kind == "kept":
