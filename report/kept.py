@@ -103,11 +103,11 @@ def _place() -> Path | None:
     if named is not None:
         return Path(named) if named else None
     if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData/Local") / "loopsheet" / "cache"
+        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData/Local") / "loopsheet" / "kept"
     if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches" / "loopsheet"
+        return Path.home() / "Library" / "Caches" / "loopsheet" / "kept"
     given = Path(os.environ.get("XDG_CACHE_HOME", ""))
-    return (given if given.is_absolute() else Path.home() / ".cache") / "loopsheet"
+    return (given if given.is_absolute() else Path.home() / ".cache") / "loopsheet" / "kept"
 
 
 def _is_private(found: os.stat_result, kind: Callable[[int], bool]) -> bool:

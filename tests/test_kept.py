@@ -140,11 +140,11 @@ def test_every_library_is_known() -> None:
 @pytest.mark.parametrize(
     ("platform", "variables", "expected"),
     [
-        ("linux", {}, "home/.cache/loopsheet"),
-        ("linux", {"XDG_CACHE_HOME": "{}/xdg"}, "xdg/loopsheet"),
-        ("linux", {"XDG_CACHE_HOME": "not/absolute"}, "home/.cache/loopsheet"),
-        ("darwin", {"XDG_CACHE_HOME": "{}/xdg"}, "home/Library/Caches/loopsheet"),
-        ("win32", {"LOCALAPPDATA": "{}/local"}, "local/loopsheet/cache"),
+        ("linux", {}, "home/.cache/loopsheet/kept"),
+        ("linux", {"XDG_CACHE_HOME": "{}/xdg"}, "xdg/loopsheet/kept"),
+        ("linux", {"XDG_CACHE_HOME": "not/absolute"}, "home/.cache/loopsheet/kept"),
+        ("darwin", {"XDG_CACHE_HOME": "{}/xdg"}, "home/Library/Caches/loopsheet/kept"),
+        ("win32", {"LOCALAPPDATA": "{}/local"}, "local/loopsheet/kept"),
         ("linux", {SETTING: ""}, None),
         ("linux", {SETTING: "{}/a file/below"}, None),
         ("linux", {SETTING: "\x00"}, None)
