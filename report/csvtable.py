@@ -126,7 +126,8 @@ def _report_widths(source: Source, wide: list[Row], wanted: int, findings: Findi
             at = source.at(row.fields[wanted].offset, row.fields[wanted].length)
         else:
             at = source.at(source.line_end(row.fields[-1].offset))
-        findings.add("LS306", at, found=len(row.fields), wanted=wanted)
+        more = "a comma separates fields: write 2.334, not 2,334" if len(row.fields) > wanted else ""
+        findings.add("LS306", at, found=len(row.fields), wanted=wanted, suggestion=more)
 
 
 def _looks_comma(row: Row, wanted: int) -> bool:

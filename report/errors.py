@@ -125,7 +125,7 @@ CATALOGUE: dict[str, Entry] = {
         "workbook fails",
         "{text} cannot be used: {reason}",
         "a Python file that declares WORKBOOK, a loopsheet.report.workbook.Workbook",
-        "the shipped workbooks are examples to start from",
+        "the shipped workbooks are examples; import by full names, from loopsheet.report.sheet import ...",
     ),
     "LS214": Entry(
         "code of the folder",
@@ -163,7 +163,10 @@ CATALOGUE: dict[str, Entry] = {
         "write '{example}'",
     ),
     "LS306": Entry(
-        "wrong number of fields", "the row has {found} fields, the first line has {wanted}", "{wanted} fields"
+        "wrong number of fields",
+        "the row has {found} fields, the first line has {wanted}",
+        "{wanted} fields",
+        "{suggestion}",
     ),
     "LS307": Entry(
         "row widened by decimal commas",

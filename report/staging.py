@@ -89,7 +89,7 @@ def staged(
     out : Path
         The output; made if it does not exist.
     tell : callable
-        Told which files are kept, and under which name, and which are removed of what was added.
+        Told which files are kept, and under which name, and which of the report before are removed.
     added : callable
         Given `out`, the sha256 of what was added to it since it was built: that is of the report which is
         there, and is removed with it if another one takes its place.
@@ -112,12 +112,14 @@ def staged(
                 yield stage
                 with unstoppable():
                     gone = _added(stage, out, added)
+                    names = [p.relative_to(stage) for p in stage.rglob("*") if p.is_file()]
+                    stale = set(_stale(out, names, _listed(out) or {}))
                     kept = _move_in(stage, out, killed, gone)
-                    for name in gone:
+                    for name in (*gone, *stale):
                         _remove([out / parent for parent in name.parents[:-1]])
         for name, free in kept.items():
             tell(f"{name.as_posix()} was not as built: it is kept as {free.as_posix()}")
-        if removed := sorted(name.as_posix() for name in gone if name not in kept):
+        if removed := sorted(name.as_posix() for name in stale.union(gone) if name not in kept):
             tell(f"{', '.join(removed)}: removed, as of the report before")
     except OSError as error:
         _remove(made)

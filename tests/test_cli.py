@@ -302,3 +302,12 @@ def test_a_closed_pipe_is_no_error() -> None:
     command = f"{sys.executable} -m loopsheet show x paper | head -1"
     done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
     assert done.stderr == ""
+
+
+def test_show_prints_what_is_given_as_it_was_given(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "x_p", "paper"]) == 0
+    told = [line.split() for line in capsys.readouterr().out.splitlines() if line.startswith("  x_p[")]
+    assert told == [
+        [f"x_p[{test}]", text]
+        for test, text in enumerate(("23.5", "29.7", "41.6", "45.97", "51.03"), start=1)
+    ]

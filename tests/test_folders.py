@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -177,9 +178,9 @@ def test_no_format_is_not_a_format(words: str, gauge: Path, run: Run) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ([], ["LS617]: no command is named", "allowed: build, check,", "'loopsheet new my-campaign'"]),
+        ([], ["LS617]: no command is named", "allowed: build, watch, check,", "'loopsheet new my-campaign'"]),
         (["biuld"], ["LS604]: unknown command 'biuld'", "did you mean 'build'?"]),
-        (["--traceback", "xyz"], ["LS604]: unknown command 'xyz'", "allowed: build, check,"]),
+        (["--traceback", "xyz"], ["LS604]: unknown command 'xyz'", "allowed: build, watch, check,"]),
         (["gauge"], ["LS604]: unknown command 'gauge'", "'loopsheet build gauge' builds that folder"]),
         (["build", "--otu", "x"], ["LS604]: unknown option '--otu'", "did you mean '--out'?"]),
         (["build", "a", "b"], ["LS617]: 'b' is a word too many", "'loopsheet build --help'"]),
@@ -370,3 +371,11 @@ def test_metadata_that_somebody_tampered_with_removes_nothing(name: object, edit
     assert (code, "crate-metadata.json: removed" in said) == (0, False)
     assert mine in [left.read_bytes() for left in path.parent.glob("ro-crate-*")]
     assert (edited / "report.toml").is_file()
+
+
+def test_a_file_of_the_report_before_does_not_go_without_a_word(gauge: Path, run: Run) -> None:
+    assert run("build", str(gauge), "--to", "html,json")[0] == 0
+    code, said, _ = run("build", str(gauge), "--to", "json")
+    assert code == 0
+    assert re.fullmatch(r".*report\.html: removed, as of the report before", said.splitlines()[1])
+    assert sorted(path.name for path in (gauge / "out").iterdir()) == ["manifest.json", "values.json"]

@@ -58,10 +58,14 @@ def _lines(report: Report, address: str) -> Iterator[str]:
         precedents = ", ".join(precedent.name for precedent in report.sheet.precedents(column))
         yield f"  computed from {precedents or 'nothing'}"
     wanted_labels, marks = set(labels), report.marks.of(name)
+    # What is given has the digits it was given with, no others.
+    every = report.values.labels(column)
+    texts = [printed.text for printed in report.inputs.printed(name)]
+    given = dict(zip(every, texts, strict=True)) if len(texts) == len(every) else {}
     for cell, mark in zip(report.values.cells(name), marks, strict=True):
         if cell.label in wanted_labels:
             scale = report.shown[name].scale
-            value = cell.reason if cell.value is None else repr(cell.value / scale)
+            value = cell.reason if cell.value is None else given.get(cell.label) or repr(cell.value / scale)
             yield f"  {cell.address:16} {value}{mark and f'  {mark}'}"
     for count in report.marks.behind(column):
         if count.number or count.margin.limit.source:
