@@ -279,14 +279,14 @@ def _drawn(sheet: Sheet) -> Drawn:
 
 def _drawings() -> dict[str, Callable[[Report], Any]]:
     """The figures' drawings; loaded only when one is drawn."""
-    from . import soft_impact_figures as data
-    from . import soft_impact_schematics as schematics
+    from .soft_impact_figures import draw_alpha_pairs, draw_loops
+    from .soft_impact_schematics import draw_hysteresis, draw_lankarani
 
     return {
-        "hysteresis": schematics.draw_hysteresis,
-        "lankarani": schematics.draw_lankarani,
-        "loops": data.draw_loops,
-        "alpha_pairs": data.draw_alpha_pairs,
+        "hysteresis": draw_hysteresis,
+        "lankarani": draw_lankarani,
+        "loops": draw_loops,
+        "alpha_pairs": draw_alpha_pairs,
     }
 
 

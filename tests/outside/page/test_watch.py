@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
+
+from playwright.sync_api import Browser
 
 from loopsheet.report.local_server import Server
 
 
-def test_an_open_page_follows(require: Callable[..., str], tmp_path: Path) -> None:
-    from playwright.sync_api import sync_playwright
-
+def test_an_open_page_follows(browser: Browser, tmp_path: Path) -> None:
     def issue(text: str) -> None:
         (tmp_path / "report.html").write_text(f"<title>Steel</title><p>{text}</p>")
 
     (tmp_path / "manifest.json").write_text(json.dumps({"outputs": {"report.html": "0"}}))
     issue("first")
-    chromium = require("chromium", "chromium-browser")
-    with sync_playwright() as playwright, Server(tmp_path) as server:
-        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+    with Server(tmp_path) as server:
         page = browser.new_page()
         complaints: list[str] = []
         page.on("console", lambda message: complaints.append(message.text))
@@ -40,4 +37,4 @@ def test_an_open_page_follows(require: Callable[..., str], tmp_path: Path) -> No
         page.get_by_role("button", name="Close").click()
         assert bar.is_hidden()
         assert complaints == []
-        browser.close()
+        page.close()
