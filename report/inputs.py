@@ -464,8 +464,6 @@ class _Reader:
             if text is None or place is None:
                 continue
             printed = measurements.measured[place[0]][place[1]]
-            if text == printed.text:
-                continue  # it was put right in the measurements
             try:
                 found[place] = replace(
                     read_printed(text, parse_unit(printed.unit), mode=printed.mode), given_u=printed.given_u
