@@ -125,7 +125,7 @@ CATALOGUE: dict[str, Entry] = {
         "workbook fails",
         "{text} cannot be used: {reason}",
         "a Python file that declares WORKBOOK, a loopsheet.report.workbook.Workbook",
-        "the shipped workbooks are examples; a copy imports by full names: from loopsheet.report.sheet import Sheet",
+        "the shipped workbooks are examples; a copy imports by full names, as loopsheet.report.sheet",
     ),
     "LS214": Entry(
         "code of the folder",
