@@ -9,7 +9,7 @@ import threading
 import time
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any, NoReturn
 
@@ -136,18 +136,19 @@ def worker(parent: int, work: Callable[[], None]) -> None:
         Its process number.
     work : callable
     """
+    _stop.shields = 1  # until there is somebody to catch what it throws
+    sys.unraisablehook = _stop.lost
     for number in _SIGNALS:
         signal.signal(number, _stop if number == signal.SIGTERM else signal.SIG_IGN)
     threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
-    try:
-        _stop.shields = 0
-        if _stop.waiting:
-            _stop.throw(_stop.waiting)
-        work()
-    except Stopped:
-        pass  # nobody waits for it
-    finally:
-        _stop.shields = 1  # it ends anyway
+    with suppress(Stopped):  # nobody waits for it
+        try:
+            _stop.shields = 0
+            if _stop.waiting:
+                _stop.throw(_stop.waiting)
+            work()
+        finally:
+            _stop.shields = 1  # it ends anyway
 
 
 def _end_with(parent: int) -> None:

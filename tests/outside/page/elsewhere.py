@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -58,9 +58,18 @@ class Elsewhere(Live):
         names = self.page.evaluate(_OFFERED)
         folder.mkdir()
         for name in names:
-            webdriver.until(lambda name=name: self._is_there(name), name)
+            self._come(name)
             (self.downloads / name).rename(folder / name)
         return folder
+
+    def _come(self, name: str) -> None:
+        """Wait for a file; one that a busy WebKit dropped is asked for as its reader does, by its link."""
+        for _ in range(4):
+            with suppress(TimeoutError):
+                webdriver.until(lambda: self._is_there(name), name, seconds=15)
+                return
+            self.page.locator(f'#live-note a[download="{name}"]').click()
+        webdriver.until(lambda: self._is_there(name), name)
 
     def _is_there(self, name: str) -> bool:
         path = self.downloads / name

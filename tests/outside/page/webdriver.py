@@ -30,9 +30,9 @@ class WebDriverError(Exception):
     """What the browser answered instead."""
 
 
-def until(found: Callable[[], Any], what: str) -> Any:
+def until(found: Callable[[], Any], what: str, seconds: float = WAIT) -> Any:
     """Wait for something that is true."""
-    end = time.monotonic() + WAIT
+    end = time.monotonic() + seconds
     while time.monotonic() < end:
         if result := found():
             return result
