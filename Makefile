@@ -71,7 +71,7 @@ $(VENV)/.runtime $(VENV)/.test $(VENV)/.bench: $(VENV)/.%: requirements/%.txt py
 
 wheel: $(VENV)/.runtime
 	@mkdir -p dist
-	@$(BIN)/python -c 'from pathlib import Path; from loopsheet.report.wheel import wheel; \
+	@$(BIN)/python -c 'from pathlib import Path; from loopsheet.report.archive.wheel import wheel; \
 		name, content = wheel(); print(Path("dist", name)); Path("dist", name).write_bytes(content)'
 
 lock: .venv-lock/bin/uv

@@ -15,7 +15,7 @@ import tempfile
 from pathlib import Path
 
 from loopsheet.report import stages
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.study import Study
 from loopsheet.report.views import figures, html
 

@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 from forged_campaigns import Campaign, honest, reprinted
 
 from loopsheet.report import stages
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.study import Study
 
 ROUNDS = 3

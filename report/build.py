@@ -9,20 +9,20 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .background import Background
-from .crate import added
-from .errors import UsageError, close, diagnose, listing
-from .folders import INPUTS, told
-from .provenance import processor, sources
+from .archive.crate import added
+from .inputs.folders import INPUTS, told
+from .machine.background import Background
+from .machine.provenance import processor, sources
+from .machine.staging import put, staged
+from .machine.timing import timed
+from .messages.errors import UsageError, close, diagnose, listing
 from .stages import Step, book, refuse_too_many_rows, silent
-from .staging import put, staged
 from .study import Recipe, Study
-from .timing import timed
 
 if TYPE_CHECKING:
     from .prepared import Prepared
-    from .result import Comparison, Report
-    from .verdict import Referee
+    from .result.result import Comparison, Report
+    from .result.verdict import Referee
     from .workbook import FigureSpec
 
 __all__ = ["FORMATS", "Built", "build", "built", "parse_formats"]

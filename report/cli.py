@@ -13,15 +13,15 @@ from contextlib import AbstractContextManager, nullcontext, redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn, TextIO, cast
 
-from .diagnostics import VisibleStream
-from .stopping import heeded, stoppable
-from .timing import RUN
+from .machine.stopping import heeded, stoppable
+from .machine.timing import RUN
+from .messages.diagnostics import VisibleStream
 from .verbs import VERBS
 from .verbs.common import BUG, OK, print_checks
 
 if TYPE_CHECKING:
-    from .errors import LoopsheetError, UsageError
-    from .findings import Check
+    from .messages.errors import LoopsheetError, UsageError
+    from .result.findings import Check
 
 __all__ = ["main"]
 
@@ -65,7 +65,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _wrong(reason: str, command: str) -> UsageError:
-    from .errors import UsageError, diagnose
+    from .messages.errors import UsageError, diagnose
 
     hint = f"'{command} --help' tells what it takes"
     return UsageError(diagnose("LS617", reason=reason, known="", suggestion=hint))
@@ -93,8 +93,8 @@ def _parser() -> argparse.ArgumentParser:
 
 def _parse(arguments: Sequence[str]) -> argparse.Namespace:
     """Read the command line; a word that is not known is answered with the nearest."""
-    from .errors import UsageError, diagnose, listing, suggest
-    from .folders import is_report, written
+    from .inputs.folders import is_report, written
+    from .messages.errors import UsageError, diagnose, listing, suggest
 
     words = [word for word in arguments if not word.startswith("-")]  # no option before the verb takes a word
     if words and words[0] not in VERBS:
@@ -130,9 +130,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Sequence[str] | None) -> int:
-    from .diagnostics import visible
-    from .errors import LoopsheetError, UsageError, diagnose
-    from .findings import Check
+    from .messages.diagnostics import visible
+    from .messages.errors import LoopsheetError, UsageError, diagnose
+    from .result.findings import Check
 
     options = argparse.Namespace(traceback=False)
     try:
@@ -167,15 +167,15 @@ def _kept(options: argparse.Namespace) -> AbstractContextManager[None]:
     """What a run may take from another one, and leave for it."""
     if not getattr(options, "no_cache", False):
         return nullcontext()
-    from .kept import nothing_kept
+    from .machine.kept import nothing_kept
 
     return nothing_kept()
 
 
 def _refuse(error: LoopsheetError, options: argparse.Namespace) -> int:
     """Tell what the user can put right, machines too, as far as anything can be written still."""
-    from .errors import render_all
-    from .findings import of_diagnostics
+    from .messages.errors import render_all
+    from .result.findings import of_diagnostics
 
     _tell_machines(of_diagnostics(error.diagnostics), "The input is wrong", options)
     print(render_all(error.diagnostics, color=_colored(sys.stderr)), file=sys.stderr)
@@ -189,7 +189,7 @@ def _drop_output() -> None:
 
 def _exhausted(error: Exception) -> str | None:
     """What the machine has no more of, if that is what happened."""
-    from .errors import EXHAUSTED
+    from .messages.errors import EXHAUSTED
 
     if isinstance(error, MemoryError):
         return "no memory is left"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 
-from .layout import Layout, how_large
+from .cells.layout import Layout, how_large
 from .sheet import Sheet
 
 __all__ = ["told"]

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from .declared import mistyped
-from .errors import InputError, Location, LoopsheetError, diagnose
+from .inputs.declared import mistyped
+from .messages.errors import InputError, Location, LoopsheetError, diagnose
 
 if TYPE_CHECKING:
     from ..derivations.equation import Ledger

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from .inputs import Inputs, check_cells
+from .inputs.inputs import Inputs, check_cells
 
 if TYPE_CHECKING:
+    from .cells.layout import Layout
+    from .cells.values import Values
     from .engines.exact import ExactValues
-    from .layout import Layout
     from .sheet import Sheet
-    from .values import Values
 
 __all__ = ["Prepared", "given_data"]
 
@@ -92,9 +92,9 @@ class Prepared:
         tuple of Values
             Of the sheet, and of the whole.
         """
+        from .cells.layout import how_large
         from .engines import exact
         from .engines import numpy as engine
-        from .layout import how_large
 
         if how_large(whole, self.layouts) <= most:
             found = exact.evaluate(whole, self.labels, self.exact_data)

@@ -18,8 +18,8 @@ import pytest
 from _pytest.mark.expression import Expression
 
 if TYPE_CHECKING:
-    from .errors import Diagnostic
-    from .findings import Check
+    from .messages.errors import Diagnostic
+    from .result.findings import Check
     from .study import Study
 
 __all__ = [
@@ -72,7 +72,7 @@ def _is_ours(path: Path) -> bool:
 
 def _is_copy(path: Path) -> bool:
     """Whether it stands in a crate that was made of the folder around it, which is collected itself."""
-    from .folders import INPUTS
+    from .inputs.folders import INPUTS
 
     folder, out = path.parent, path.parent.parent
     return folder.name == INPUTS and (out / "manifest.json").exists() and _is_ours(out.parent / path.name)
@@ -128,9 +128,9 @@ class FolderChecks:
         InputError
             The folder is not as it must be.
         """
-        from .analysis import oddities
-        from .errors import InputError
-        from .findings import ENGINES, names_of, table_names
+        from .judge import oddities
+        from .messages.errors import InputError
+        from .result.findings import ENGINES, names_of, table_names
 
         try:
             prepared = self.study.prepared
@@ -162,26 +162,26 @@ class FolderChecks:
 
     @cached_property
     def _refereed(self) -> dict[tuple[str, str], Check]:
-        from .findings import checks
+        from .result.findings import checks
 
         return {(check.kind, check.name): check for check in checks(self.study.refereed)}
 
     @cached_property
     def _proofs(self) -> dict[str, Check]:
-        from .findings import of_proof
+        from .result.findings import of_proof
 
         found, _ = self.study.algebra
         return {proof.equation.label: of_proof(proof, self.study.inputs) for proof in found}
 
     def _not_run(self, name: str) -> Check:
-        from .findings import Check
+        from .result.findings import Check
 
         assert self._refused is not None
         said = f"{self._refused.message}; {self._refused.hint}"
         return Check("workbook", name, True, said, self._refused.at, skipped=True)
 
     def _engine(self, name: str, every: bool) -> Check:
-        from .findings import Check, of_engine
+        from .result.findings import Check, of_engine
 
         if name not in self._engines:
             judged = self.study.engines if every else self.study.numpy
@@ -197,7 +197,7 @@ class ReportFile(pytest.File):
 
     def collect(self) -> Iterator[KindCollector]:
         """Read the folder and name its checks; a mistake in it is told with its line."""
-        from .errors import LoopsheetError
+        from .messages.errors import LoopsheetError
 
         checks = FolderChecks(self.path.parent, _own_code_is_asked_for(self.config))
         try:
@@ -248,7 +248,7 @@ class CheckItem(pytest.Item):
 
     def runtest(self) -> None:
         """Fail with the sentence of a finding; skip what cannot be checked here."""
-        from .errors import LoopsheetError
+        from .messages.errors import LoopsheetError
 
         try:
             check = self.checks.check(self.kind, self.name, self._with_programs())
@@ -264,7 +264,7 @@ class CheckItem(pytest.Item):
 
     def _with_programs(self) -> bool:
         """Whether an engine that is run by another program was selected too."""
-        from .findings import ENGINES
+        from .result.findings import ENGINES
 
         return any(
             isinstance(item, CheckItem)

@@ -8,10 +8,10 @@ from pathlib import Path
 from ..derivations.equation import Ledger
 from ..derivations.grounds import stated, supported
 from ..derivations.text import text_of_equation
-from . import units
-from .declared import misnamed
-from .errors import InputError, Location, diagnose
-from .inputs import Inputs
+from .cells import units
+from .inputs.declared import misnamed
+from .inputs.inputs import Inputs
+from .messages.errors import InputError, Location, diagnose
 from .own_workbook import place_of, place_of_column
 from .sheet import Given, Root, Sheet, SheetError
 

@@ -30,7 +30,7 @@ from .column import (
     references,
     within,
 )
-from .errors import close
+from .messages.errors import close
 from .quantity import Bounds
 
 __all__ = [

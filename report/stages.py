@@ -6,25 +6,25 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from .errors import LoopsheetError, UsageError, diagnose
-from .inputs import Inputs, load
+from .inputs.inputs import Inputs, load
+from .inputs.unit_text import UnitError as NotAUnit
+from .inputs.unit_text import parse_unit
+from .machine.provenance import versions
+from .messages.errors import LoopsheetError, UsageError, diagnose
 from .prepared import Prepared
-from .provenance import versions
-from .unit_text import UnitError as NotAUnit
-from .unit_text import parse_unit
 from .which_workbook import find_workbook
 from .workbooks import SHIPPED
 
 if TYPE_CHECKING:
     from ..derivations.equation import Ledger
-    from .agreement import Agreement
+    from .cells.grid import Grid
+    from .cells.layout import Layout
+    from .cells.values import Values
     from .charts import Drawn
-    from .errors import Diagnostic
-    from .grid import Grid
-    from .layout import Layout
-    from .result import Report, Shown
+    from .messages.errors import Diagnostic
+    from .result.agreement import Agreement
+    from .result.result import Report, Shown
     from .sheet import Column, Sheet
-    from .values import Values
 
 __all__ = [
     "Step",
@@ -93,11 +93,11 @@ def _drawings(inputs: Inputs) -> Collection[str]:
 def evaluated(made: Prepared, ledger: Ledger, step: Step) -> Report:
     """Everything but the proofs."""
     inputs, sheet = made.inputs, made.sheet
-    from .analysis.oddities import oddities
-    from .analysis.referee import compare
-    from .layout import how_large
-    from .marks import Marks, margins, with_margins
-    from .result import Report
+    from .cells.layout import how_large
+    from .cells.marks import Marks, margins, with_margins
+    from .judge.oddities import oddities
+    from .referee import compare
+    from .result.result import Report
 
     step(f"computing {how_large(sheet, made.layouts)} cells")
     inputs = made.check_cells()
@@ -133,9 +133,9 @@ def judged(report: Report, every: bool = True, step: Step = silent) -> Report:
     step : callable
         Told what is begun.
     """
-    from .analysis import sample
+    from .cells.layout import how_large
     from .engines.numpy import evaluate
-    from .layout import how_large
+    from .judge import sample
 
     step("judging the engines at 50 digits")
     whole = report.marks.values
@@ -154,8 +154,8 @@ def judged(report: Report, every: bool = True, step: Step = silent) -> Report:
 
 def _agreements(report: Report, values: Values, every: bool) -> tuple[Agreement, ...]:
     """How NumPy's values agree with 50 digits; and what else is installed here, if that is wanted."""
-    from .analysis import engines
-    from .analysis.readers import Book, of_values
+    from .judge import engines
+    from .judge.readers import Book, of_values
 
     made = Prepared(report.inputs, report.sheet)
     labels, exactly = made.labels, made.exact_data
@@ -179,8 +179,8 @@ def refereed(report: Report, step: Step = silent) -> Report:
     step : callable
         Told what is begun.
     """
-    from .analysis import referee
-    from .analysis.referee.judging import referee as judge
+    from . import referee
+    from .referee.judging import referee as judge
 
     data = Prepared(report.inputs, report.sheet).data
     found = judge(report.sheet, report.inputs, report.values, data, step)
@@ -189,7 +189,7 @@ def refereed(report: Report, step: Step = silent) -> Report:
 
 def compared(report: Report) -> Report:
     """The report with published.csv read again, after only what is known of differences has changed."""
-    from .analysis import referee
+    from . import referee
 
     inputs = load(report.inputs.folder, find_workbook)
     comparisons = referee.refereed(referee.compare(inputs.published, report.values), report.referee)
@@ -203,7 +203,7 @@ def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
     The digits follow from the inputs: one more than the least precise measured number that the column
     rests on, so that rounding for the reader loses nothing that was measured.
     """
-    from .result import Shown
+    from .result.result import Shown
     from .sheet import Given
 
     unit = column.display or column.unit

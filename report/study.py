@@ -1,7 +1,7 @@
 """One report folder as a graph of what can be known of it: each part is made when somebody asks, and once.
 
 Verbs, the pytest plugin, `verify` and users of the package ask a :class:`Study`. What it gives to views is
-finished data, a :class:`~loopsheet.report.result.Report`.
+finished data, a :class:`~loopsheet.report.result.result.Report`.
 """
 
 from __future__ import annotations
@@ -13,21 +13,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from . import stages
-from .errors import Findings
-from .inputs import LARGEST_TABLE, Find, Inputs, load
-from .kept import kept
+from .inputs.inputs import LARGEST_TABLE, Find, Inputs, load
+from .inputs.sources import read_bytes
+from .machine.kept import kept
+from .machine.timing import timed
+from .messages.errors import Findings
 from .own_workbook import follows_from_its_bytes
-from .sources import read_bytes
-from .timing import timed
 from .which_workbook import find_workbook
 
 if TYPE_CHECKING:
     from ..derivations.equation import Equation, Ledger
     from ..derivations.proof import Proof
-    from .agreement import Agreement
     from .prepared import Prepared
     from .proofs import Algebra
-    from .result import Report
+    from .result.agreement import Agreement
+    from .result.result import Report
 
 __all__ = ["Recipe", "Study"]
 
@@ -203,7 +203,7 @@ class Study:
         what : str
             What it is.
         make : callable or None
-            As for :func:`~loopsheet.report.kept.kept`.
+            As for :func:`~loopsheet.report.machine.kept.kept`.
         *parts : str
             What it hangs on besides.
         by : str

@@ -7,18 +7,18 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from .agreement import LIMIT
+from .archive.differences import EPS, Differences, compare
+from .archive.read_back import Index, Manifest, read_manifest, read_result
 from .build import FORMATS, build
-from .differences import EPS, Differences, compare
-from .errors import InputError
-from .findings import Check
-from .folders import built_from
-from .inputs import Find
-from .kept import nothing_kept
-from .read_back import Index, Manifest, read_manifest, read_result
-from .result import Report
-from .scratch import scratch
-from .staging import half_moved
+from .inputs.folders import built_from
+from .inputs.inputs import Find
+from .machine.kept import nothing_kept
+from .machine.scratch import scratch
+from .machine.staging import half_moved
+from .messages.errors import InputError
+from .result.agreement import LIMIT
+from .result.findings import Check
+from .result.result import Report
 from .study import Study
 from .which_workbook import shipped_workbook
 
@@ -69,7 +69,7 @@ def verify(
     out : Path
         What ``build`` wrote.
     folder : Path, optional
-        The report folder; without it, :func:`~loopsheet.report.folders.built_from` finds it.
+        The report folder; without it, :func:`~loopsheet.report.inputs.folders.built_from` finds it.
     step : callable
         Told what is begun.
     find : callable
@@ -177,7 +177,7 @@ def _numbers(out: Path, again: Path, report: Report) -> Differences | None:
 
 def _allowed(report: Report) -> dict[str, dict[Index, float]]:
     """What rounding may do: each of two engines may be off by what the judge of the engines allows."""
-    from .analysis.bounds import bounds
+    from .judge.bounds import bounds
 
     found = bounds(report.sheet, report.values.layouts, report.values.value)
     return {

@@ -6,7 +6,7 @@ import importlib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .errors import ForeignCode, UnknownWorkbook
+from .messages.errors import ForeignCode, UnknownWorkbook
 from .own_workbook import own_workbook
 from .workbooks import SHIPPED
 

@@ -10,9 +10,9 @@ from .quantity import Bounds
 
 if TYPE_CHECKING:
     from ..derivations.equation import Ledger
+    from .cells.values import Values
     from .charts import Curve, Drawn
     from .sheet import Sheet
-    from .values import Values
 
 __all__ = ["FigureSpec", "Measured", "Parameter", "TableSpec", "Workbook"]
 

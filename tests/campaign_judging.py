@@ -13,15 +13,15 @@ import numpy as np
 from random_campaigns import SHEETS, Broken, Campaign, Node, judge_of, laid_out, numpy_reads
 from sympy import Float, Indexed, preorder_traversal
 
-from loopsheet.report.analysis.engines import EPS, LIMIT, Judge
-from loopsheet.report.analysis.readers import Reading
+from loopsheet.report.cells.layout import rows_of
+from loopsheet.report.cells.values import CODES, Status
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
-from loopsheet.report.layout import rows_of
+from loopsheet.report.judge.engines import EPS, LIMIT, Judge
+from loopsheet.report.judge.readers import Reading
 from loopsheet.report.plan.domain import LARGEST, SMALLEST
 from loopsheet.report.sheet import Column, Formula, name_of
-from loopsheet.report.values import CODES, Status
 
 __all__ = ["Tally", "compare"]
 

@@ -19,7 +19,7 @@ from hypothesis.internal.constants_ast import Constants, constants_from_module
 import loopsheet
 
 if TYPE_CHECKING:
-    from loopsheet.report.result import Report
+    from loopsheet.report.result.result import Report
 
 CI = os.environ.get("CI", "").lower() not in ("", "0", "false")
 
@@ -76,7 +76,7 @@ def require() -> Callable[..., str]:
 @pytest.fixture(scope="session")
 def report() -> "Report":
     """The report of the shipped paper, computed and proved."""
-    from loopsheet.report.folders import PAPER
+    from loopsheet.report.inputs.folders import PAPER
     from loopsheet.report.study import Study
 
     return Study(PAPER).proved
@@ -94,7 +94,7 @@ def paper(report: "Report") -> "Report":
 def issued(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the shipped paper, and in `out` its report as `loopsheet build` writes it."""
     from loopsheet.report import build
-    from loopsheet.report.folders import PAPER
+    from loopsheet.report.inputs.folders import PAPER
     from loopsheet.report.study import Study
 
     folder = shutil.copytree(PAPER, tmp_path_factory.mktemp("issued") / "steel")

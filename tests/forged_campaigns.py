@@ -18,18 +18,18 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from loopsheet.report import verdict_words as words
-from loopsheet.report.analysis.referee import print_as
-from loopsheet.report.analysis.referee.judging import referee
+from loopsheet.report.cells.values import Values
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
-from loopsheet.report.errors import Location
-from loopsheet.report.inputs import Inputs
-from loopsheet.report.published import PublishedValue
+from loopsheet.report.inputs.inputs import Inputs
+from loopsheet.report.inputs.published import PublishedValue
+from loopsheet.report.messages.errors import Location
 from loopsheet.report.quantity import Printed
+from loopsheet.report.referee import print_as
+from loopsheet.report.referee.judging import referee
+from loopsheet.report.result import verdict_words as words
+from loopsheet.report.result.verdict import INPUT, Explanation, Referee
 from loopsheet.report.sheet import Given, Sheet
-from loopsheet.report.values import Values
-from loopsheet.report.verdict import INPUT, Explanation, Referee
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 UM, ONE = Fraction(1, 10**6), Fraction(1)
@@ -54,7 +54,7 @@ class Forgery:
     Parameters
     ----------
     kinds : set of str
-        As in :class:`~loopsheet.report.verdict.Change`; each of them says it.
+        As in :class:`~loopsheet.report.result.verdict.Change`; each of them says it.
     cells : set of (str, str, tuple of int)
         Source, column and row of what was changed; of an exchange either row may be named, of a column none.
     several : bool

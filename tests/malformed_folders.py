@@ -15,7 +15,7 @@ from pathlib import Path
 from small_report import FILES as GAUGE
 from test_toy_workbook import FILES as MARS
 
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
 
 __all__ = ["Folder", "malformed"]
 

@@ -30,8 +30,8 @@ PARTS = {
             "test_roots", "test_root_certificates", "test_overflow", "test_values",
         ),
     ),
-    "judge": (("report/analysis/*.py",), ("test_conditions", "test_enclosure", "test_analysis_engines")),
-    "referee": (("report/analysis/referee/*.py",), ("test_referee", "test_referee_explanations")),
+    "judge": (("report/judge/*.py",), ("test_conditions", "test_enclosure", "test_analysis_engines")),
+    "referee": (("report/referee/*.py",), ("test_referee", "test_referee_explanations")),
     "views": (
         ("report/views/*.py", "report/document/*.py"),
         ("test_views_html", "test_views_latex", "test_views_generic", "test_views_xlsx", "test_views_referee",

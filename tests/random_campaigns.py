@@ -19,15 +19,15 @@ from hypothesis import strategies as st
 from hypothesis.internal.conjecture import providers
 from hypothesis.internal.constants_ast import Constants
 
-from loopsheet.report.analysis import bounds
-from loopsheet.report.analysis.engines import Judge
-from loopsheet.report.analysis.readers import Reading, of_values
+from loopsheet.report.cells.layout import Layout, lay_out
+from loopsheet.report.cells.marks import with_margins
+from loopsheet.report.cells.values import CODES, Status
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.javascript import RUNTIME
 from loopsheet.report.engines.numpy import Program
-from loopsheet.report.layout import Layout, lay_out
-from loopsheet.report.marks import with_margins
-from loopsheet.report.values import CODES, Status
+from loopsheet.report.judge import bounds
+from loopsheet.report.judge.engines import Judge
+from loopsheet.report.judge.readers import Reading, of_values
 from loopsheet.report.views import live
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 

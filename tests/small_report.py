@@ -8,16 +8,16 @@ from pathlib import Path
 from typing import Any
 
 from loopsheet.derivations.equation import Ledger
-from loopsheet.report.analysis.referee import compare, refereed
-from loopsheet.report.analysis.referee.judging import referee
+from loopsheet.report.cells.values import Values
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.inputs import Inputs
-from loopsheet.report.published import PublishedValue
+from loopsheet.report.inputs.inputs import Inputs
+from loopsheet.report.inputs.published import PublishedValue
 from loopsheet.report.quantity import Printed
-from loopsheet.report.result import Comparison
+from loopsheet.report.referee import compare, refereed
+from loopsheet.report.referee.judging import referee
+from loopsheet.report.result.result import Comparison
+from loopsheet.report.result.verdict import Referee
 from loopsheet.report.sheet import Sheet
-from loopsheet.report.values import Values
-from loopsheet.report.verdict import Referee
 from loopsheet.report.workbook import Workbook
 
 SOURCE = """\

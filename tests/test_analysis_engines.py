@@ -12,16 +12,16 @@ from typing import Any
 import mpmath
 import pytest
 
-from loopsheet.report.analysis import engines, readers
-from loopsheet.report.analysis.readers import Book, Reading
+from loopsheet.report.cells.grid import Place, checked
+from loopsheet.report.cells.values import Values
 from loopsheet.report.engines import exact, excel_grid
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.folders import PAPER
-from loopsheet.report.grid import Place, checked
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.judge import engines, readers
+from loopsheet.report.judge.readers import Book, Reading
 from loopsheet.report.prepared import Prepared
-from loopsheet.report.result import Report
+from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
-from loopsheet.report.values import Values
 from loopsheet.report.views import xlsx
 
 CELLS = 2117

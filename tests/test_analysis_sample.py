@@ -10,11 +10,11 @@ import pytest
 from large_campaigns import write
 
 from loopsheet.report import stages
-from loopsheet.report.analysis import sample
+from loopsheet.report.cells.layout import how_large
 from loopsheet.report.cli import main
-from loopsheet.report.layout import how_large
+from loopsheet.report.judge import sample
 from loopsheet.report.prepared import Prepared
-from loopsheet.report.result import Report
+from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 
 MOST = 400

@@ -11,7 +11,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
 
 FOLDER = Path(__file__).resolve().parent.parent / "benchmarks"
 

@@ -18,9 +18,9 @@ import pytest
 from loopsheet.report import build, cost
 from loopsheet.report.cli import main
 from loopsheet.report.engines import excel_grid
-from loopsheet.report.errors import InputError, OutputError, UsageError
-from loopsheet.report.folders import PAPER
-from loopsheet.report.result import Report
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.messages.errors import InputError, OutputError, UsageError
+from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 
 

@@ -8,10 +8,10 @@ from xml.etree import ElementTree
 
 import pytest
 
-from loopsheet.report.agreement import Agreement
-from loopsheet.report.diagnostics import Diagnostic, Location
-from loopsheet.report.findings import Check, of_diagnostics, of_engine
-from loopsheet.report.inputs import Inputs
+from loopsheet.report.inputs.inputs import Inputs
+from loopsheet.report.messages.diagnostics import Diagnostic, Location
+from loopsheet.report.result.agreement import Agreement
+from loopsheet.report.result.findings import Check, of_diagnostics, of_engine
 from loopsheet.report.views.checks import FORMATS, as_github, as_json, as_junit, as_markdown, summary
 from loopsheet.report.views.markdown import cell, code
 

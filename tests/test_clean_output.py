@@ -14,7 +14,7 @@ from small_report import FILES, SOURCE, end_gauge
 
 from loopsheet.report import stages
 from loopsheet.report.cli import main
-from loopsheet.report.diagnostics import VisibleStream
+from loopsheet.report.messages.diagnostics import VisibleStream
 
 FOREIGN = "a\u202eb\u200fc\u00add\U000e0041e\u2066f"
 """Characters that turn text around, or have no glyph."""

@@ -17,8 +17,8 @@ import pytest
 from loopsheet.report import stages
 from loopsheet.report.cli import main
 from loopsheet.report.engines import javascript
-from loopsheet.report.folders import PAPER
-from loopsheet.report.result import Report
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.result.result import Report
 from loopsheet.report.verbs import VERBS
 
 

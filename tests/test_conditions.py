@@ -11,10 +11,10 @@ from sympy import Expr, IndexedBase, Integer, Max, Piecewise, Sum, Symbol, floor
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.derivations.reductions import Median
-from loopsheet.report.analysis import bounds as numbers
 from loopsheet.report.engines import exact
 from loopsheet.report.engines.numpy import evaluate
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.judge import bounds as numbers
 from loopsheet.report.plan import derivatives
 from loopsheet.report.prepared import Prepared
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet

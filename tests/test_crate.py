@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 from small_report import FILES, end_gauge
 
+from loopsheet.report.archive.crate import write
 from loopsheet.report.cli import main
-from loopsheet.report.crate import write
-from loopsheet.report.errors import InputError, LoopsheetError, OutputError, UsageError
+from loopsheet.report.messages.errors import InputError, LoopsheetError, OutputError, UsageError
 
 VALUES, TOML = b'{"a": 1}\n', b"title = 'A title'\n"
 

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from loopsheet.report.archive.differences import Differences, Move, compare
+from loopsheet.report.archive.read_back import Column, Result
 from loopsheet.report.cli import main
-from loopsheet.report.differences import Differences, Move, compare
-from loopsheet.report.read_back import Column, Result
 from loopsheet.report.views.differences import as_markdown, as_text, moved
 
 EPS = sys.float_info.epsilon

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from processors import lesser
 
-from loopsheet.report import elementary, intervals
-from loopsheet.report.intervals import Intervals
+from loopsheet.report.engines import elementary, intervals
+from loopsheet.report.engines.intervals import Intervals
 
 NUMBER = 1000
 ULPS = 2.0

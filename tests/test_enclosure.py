@@ -12,18 +12,18 @@ from sympy import Expr, Integer, Rational, Sum, Symbol, exp
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.derivations.reductions import Median
-from loopsheet.report.analysis.bounds import Made
-from loopsheet.report.analysis.enclosure import Enclosure
-from loopsheet.report.analysis.referee.campaign import Campaign
-from loopsheet.report.analysis.referee.certificate import Certificate
-from loopsheet.report.analysis.referee.minimax import best
-from loopsheet.report.analysis.referee.problem import Problem
 from loopsheet.report.engines import numpy as engine
+from loopsheet.report.engines.intervals import Intervals
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.engines.numpy_root import EnclosedRows
-from loopsheet.report.folders import PAPER
-from loopsheet.report.intervals import Intervals
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.judge.bounds import Made
+from loopsheet.report.judge.enclosure import Enclosure
 from loopsheet.report.quantity import Bounds
+from loopsheet.report.referee.campaign import Campaign
+from loopsheet.report.referee.certificate import Certificate
+from loopsheet.report.referee.minimax import best
+from loopsheet.report.referee.problem import Problem
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
 from loopsheet.report.study import Study
 

@@ -13,11 +13,11 @@ from mpmath import mpf
 from sympy import Expr, Max, Piecewise, Rational, Sum, Symbol, cos, exp, log, sqrt
 
 from loopsheet.derivations.equation import Equation
-from loopsheet.report.analysis import engines
+from loopsheet.report.cells.values import Status
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
+from loopsheet.report.judge import engines
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, Root, Sheet
-from loopsheet.report.values import Status
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
 
 

@@ -37,17 +37,17 @@ from sympy import (
 from sympy.core.parameters import evaluate
 
 from loopsheet.derivations.equation import Equation, Kind
+from loopsheet.report.cells.grid import Block, Grid, Place, checked, factors, letters, quoted
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.excel import IfError, IsNumber, NotPrintable, Printer
 from loopsheet.report.engines.excel_formulas import guard
 from loopsheet.report.engines.excel_roots import Unrolled, unroll
 from loopsheet.report.engines.excel_values import auxiliary_values
-from loopsheet.report.grid import Block, Grid, Place, checked, factors, letters, quoted
 from loopsheet.report.plan import Root as RootNode
 from loopsheet.report.plan import RowSum, lowered_column
 from loopsheet.report.quantity import Bounds
-from loopsheet.report.result import Report
+from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
 from loopsheet.report.workbooks import soft_impact_charts
 

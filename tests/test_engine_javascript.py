@@ -14,13 +14,13 @@ from sympy import Max, Piecewise, Sum, Symbol, exp, log, pi, sqrt
 
 from loopsheet.derivations.equation import Equation
 from loopsheet.derivations.reductions import Median
+from loopsheet.report.cells.values import Status
 from loopsheet.report.engines import javascript
 from loopsheet.report.engines.javascript import RUNTIME, Printer
 from loopsheet.report.engines.numpy import Program, evaluate
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Sheet
 from loopsheet.report.study import Study
-from loopsheet.report.values import Status
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 EPS = float(np.finfo(float).eps)

@@ -29,6 +29,7 @@ from sympy import (
 
 from loopsheet.derivations.equation import Equation
 from loopsheet.derivations.reductions import Median
+from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program, kernel
@@ -36,7 +37,6 @@ from loopsheet.report.engines.numpy_code import Printer
 from loopsheet.report.engines.numpy_rows import Kept
 from loopsheet.report.plan import RowSum
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Sheet, SheetError
-from loopsheet.report.values import Status, Values
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
 
 x, y, z = (Symbol(name, positive=True) for name in "xyz")

@@ -35,10 +35,10 @@ from random_campaigns import (
     shares,
 )
 
-from loopsheet.report.analysis.engines import LIMIT
+from loopsheet.report.cells.values import CODES, Status
 from loopsheet.report.engines import javascript
 from loopsheet.report.engines.numpy import Program
-from loopsheet.report.values import CODES, Status
+from loopsheet.report.judge.engines import LIMIT
 
 pytestmark = pytest.mark.campaigns
 

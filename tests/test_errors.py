@@ -14,10 +14,15 @@ from pathlib import Path
 
 import pytest
 
-from loopsheet.report import errors
+from loopsheet.report.archive.crate import write as write_crate
+from loopsheet.report.archive.read_back import read_manifest, read_result
+from loopsheet.report.archive.scaffold import new
 from loopsheet.report.cli import _parse
-from loopsheet.report.crate import write as write_crate
-from loopsheet.report.errors import (
+from loopsheet.report.inputs.folders import built_from, report_folder
+from loopsheet.report.inputs.inputs import check_cells, load
+from loopsheet.report.machine.staging import replaced
+from loopsheet.report.messages import errors
+from loopsheet.report.messages.errors import (
     CATALOGUE,
     Diagnostic,
     ForeignCode,
@@ -33,12 +38,7 @@ from loopsheet.report.errors import (
     render_all,
     suggest,
 )
-from loopsheet.report.folders import built_from, report_folder
-from loopsheet.report.inputs import check_cells, load
 from loopsheet.report.quantity import Bounds
-from loopsheet.report.read_back import read_manifest, read_result
-from loopsheet.report.scaffold import new
-from loopsheet.report.staging import replaced
 from loopsheet.report.verbs import check
 from loopsheet.report.workbook import Measured, Parameter, Workbook
 

@@ -7,12 +7,11 @@ from small_report import end_gauge
 
 from loopsheet.derivations.equation import Step
 from loopsheet.derivations.proof import Proof, Status, StepProof
-from loopsheet.report import verdict_words as words
-from loopsheet.report.agreement import Agreement
-from loopsheet.report.findings import ENGINES, Check, checks, names_of, of_engine, table_names
-from loopsheet.report.result import Report
-from loopsheet.report.study import Study
-from loopsheet.report.verdict import (
+from loopsheet.report.result import verdict_words as words
+from loopsheet.report.result.agreement import Agreement
+from loopsheet.report.result.findings import ENGINES, Check, checks, names_of, of_engine, table_names
+from loopsheet.report.result.result import Report
+from loopsheet.report.result.verdict import (
     REACHABLE,
     UNAMENDED,
     UNREACHABLE,
@@ -22,6 +21,7 @@ from loopsheet.report.verdict import (
     TableVerdict,
     Verdict,
 )
+from loopsheet.report.study import Study
 
 KNOWN = "source,cell,index,value,unit,expect,recomputed,reason"
 ROWS = (

@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 from small_report import FILES, end_gauge
 
-from loopsheet.report import folders
 from loopsheet.report.cli import main
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs import folders
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.verbs import VERBS
 
 Run = Callable[..., tuple[int, str, str]]

@@ -15,8 +15,8 @@ from test_toy_workbook import FILES
 
 from loopsheet.report import build
 from loopsheet.report.cli import main
-from loopsheet.report.folders import PAPER
-from loopsheet.report.result import Report
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.views import html, live
 

@@ -19,8 +19,8 @@ from typing import NamedTuple
 
 import pytest
 
-from loopsheet.report.provenance import sources
-from loopsheet.report.wheel import wheel as own_wheel
+from loopsheet.report.archive.wheel import wheel as own_wheel
+from loopsheet.report.machine.provenance import sources
 
 ROOT = Path(__file__).resolve().parent.parent
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -31,13 +31,6 @@ MAX_LINES = 650
 # ---------------------------------------------------------------------------------- the arrows
 # Part of the package -> (parts it may import, libraries it may import besides the standard one).
 # The longest name that fits a module is its rule; a part includes all below it. "" is the root.
-WORDS = {
-    "report.diagnostics",
-    "report.errors",
-    "report.number_text",
-    "report.quantity",
-    "report.unit_text",
-}
 # What proves: it knows no symbol of any paper, a vocabulary comes with each ledger.
 PROVER = {
     f"derivations.{name}"
@@ -47,76 +40,68 @@ PROVER = {
         *("text", "together", "vocabulary"),
     )
 }
-SHEET = (
-    WORDS
-    | PROVER
-    | {
-        "report.charts",
-        "report.column",
-        "report.grid",
-        "report.sheet",
-        "report.units",
-        "report.workbook",
-    }
-)
-VALUES = SHEET | {
-    "report.elementary",
-    "report.intervals",
-    "report.layout",
-    "report.marks",
-    "report.trace",
-    "report.values",
-}
-RESULT = VALUES | {
-    "report.agreement",
-    "report.differences",
-    "report.findings",
-    "report.published",
-    "report.result",
-    "report.verdict",
-    "report.verdict_data",
-    "report.verdict_words",
-}
 ALGEBRA = {"sympy", "mpmath"}
+NUMERIC = {"mpmath", "numpy", "scipy", "sympy"}
+
+
+def rooms(*names: str) -> set[str]:
+    return {f"report.{name}" for name in names}
+
+
+# What an author of a workbook writes with, and what becomes of it.
+AUTHOR = PROVER | rooms("messages", "quantity", "column", "sheet", "charts", "workbook")
+DECLARED = AUTHOR | rooms("cells")
 
 MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "": ({"derivations", "report"}, set()),
     "__main__": ({"report.cli"}, set()),
     "derivations": ({"derivations"}, ALGEBRA),
     **dict.fromkeys(PROVER, (PROVER, ALGEBRA)),
-    "report": ({"derivations", "report"}, RUNTIME),
-    "report.findings": (RESULT | {"report.inputs"}, set()),
-    "report.pytest_plugin": ({"derivations", "report"}, {"pytest", "_pytest"}),
-    **{part: (WORDS, {"pint"} if part == "report.unit_text" else set()) for part in WORDS},
-    "report.elementary": (set(), {"numpy"}),
-    "report.intervals": ({"report.elementary"}, {"numpy"}),
-    "report.sheet": (SHEET, ALGEBRA),
-    "report.units": (SHEET, ALGEBRA | {"pint"}),
-    "report.plan": (SHEET | {"report.plan", "report.quantity"}, ALGEBRA),
-    "report.charts": (SHEET, {"numpy"}),
-    "report.workbook": (VALUES, ALGEBRA),
-    **dict.fromkeys(
-        ("report.workbooks.soft_impact_figures", "report.workbooks.soft_impact_schematics"),
-        (
-            RESULT
-            | {"derivations", "report.workbooks", "report.analysis.loops"}
-            | {"report.document.numbers", "report.views.drawing"},
-            {"numpy", "matplotlib"},
-        ),
+    # --- the rooms of report/, from the ground up: each may look into those that stand before it
+    "report.messages": (rooms("messages"), set()),
+    "report.machine": (rooms("machine", "messages"), set()),
+    "report.machine.provenance": (set(), {"numpy"}),
+    "report.quantity": (set(), set()),
+    "report.column": (PROVER | rooms("quantity"), ALGEBRA),
+    "report.sheet": (PROVER | rooms("column", "messages", "quantity"), ALGEBRA),
+    "report.charts": (PROVER | rooms("sheet"), {"numpy"}),
+    "report.cells": (DECLARED - rooms("workbook"), ALGEBRA | {"numpy", "pint"}),
+    "report.workbook": (DECLARED, ALGEBRA),
+    "report.inputs": (rooms("inputs", "messages", "quantity", "sheet", "workbook"), set()),
+    "report.inputs.unit_text": (rooms("messages"), {"pint"}),
+    "report.plan": (DECLARED | rooms("plan"), ALGEBRA),
+    "report.engines": (DECLARED | rooms("engines", "inputs.unit_text", "plan"), NUMERIC),
+    "report.engines.elementary": (set(), {"numpy"}),
+    "report.engines.intervals": (rooms("engines.elementary"), {"numpy"}),
+    "report.result": (DECLARED | rooms("engines.exact", "inputs", "result"), {"mpmath", "numpy"}),
+    "report.judge": (
+        DECLARED | rooms("engines", "inputs", "judge", "machine", "plan", "result") | {"derivations"},
+        NUMERIC,
     ),
-    "report.workbooks": (RESULT | {"derivations", "report.workbooks", "report.analysis"}, ALGEBRA),
-    "report.engines": (VALUES | {"report.engines", "report.plan"}, RUNTIME - {"jinja2", "matplotlib"}),
-    "report.analysis": (
-        RESULT
-        | {"derivations", "report.engines", "report.inputs", "report.analysis", "report.plan"}
-        | {"report.programs", "report.scratch"},
-        RUNTIME - {"jinja2", "matplotlib"},
+    "report.referee": (DECLARED | rooms("engines", "inputs", "judge", "referee", "result"), NUMERIC),
+    "report.archive": (DECLARED | rooms("archive", "inputs", "machine", "result"), set()),
+    "report.document": (
+        DECLARED | rooms("document", "inputs.measurements", "inputs.published", "result"),
+        {"markdown_it", "mpmath", "numpy", "sympy"},
     ),
-    "report.document": (RESULT | {"report.document", "report.measurements"}, {"sympy", "markdown_it"}),
     "report.views": (
-        RESULT | {"report.document", "report.views", "report.programs"},
+        DECLARED
+        | rooms("archive.differences", "document", "inputs.unit_text", "machine.programs", "result", "views"),
         RUNTIME - {"scipy", "mpmath"},
     ),
+    "report.workbooks": (DECLARED | rooms("judge", "result", "workbooks") | {"derivations"}, ALGEBRA),
+    **dict.fromkeys(
+        rooms("workbooks.soft_impact_figures", "workbooks.soft_impact_schematics"),
+        (
+            DECLARED
+            | rooms("document.numbers", "judge.loops", "result", "views.drawing", "workbooks")
+            | {"derivations"},
+            {"matplotlib", "numpy"},
+        ),
+    ),
+    # --- above them all: the study of a folder, what is made of it, and who asks
+    "report": ({"derivations", "report"}, RUNTIME),
+    "report.pytest_plugin": ({"derivations", "report"}, {"pytest", "_pytest"}),
 }
 # Parts that only these modules may import, whatever the table says.
 ASKING = {"report.pytest_plugin", "report.verbs", "report.verification"}
@@ -225,7 +210,7 @@ def test_arrows_run_one_way(module: str) -> None:
     ("module", "source", "complaint"),
     [
         ("derivations.hertz", "import numpy", "may not import numpy"),
-        ("derivations.hertz", "def f():\n    from ..report import sheet", "may not import report.sheet"),
+        ("derivations.hertz", "def f():\n    from ..report import study", "may not import report.study"),
         ("derivations.hertz", "from ..report.sheet import Sheet", "may not import report.sheet"),
         ("derivations.sampling", "from . import symbols", "may not import derivations.symbols"),
         ("derivations.text", "from .soft_impact import LEDGER", "may not import derivations.soft_impact"),
@@ -233,22 +218,22 @@ def test_arrows_run_one_way(module: str) -> None:
         ("report.engines.numpy", "from ..views.html import page", "may not import report.views.html"),
         ("report.engines.numpy", "from .. import views", "may not import report.views"),
         ("report.engines.numpy", "import jinja2", "may not import jinja2"),
-        ("report.analysis.fit", "from ..views import html", "may not import report.views.html"),
+        ("report.judge.fit", "from ..views import html", "may not import report.views.html"),
         ("report.views.html", "from ..engines.numpy import solve", "may not import report.engines.numpy"),
-        ("report.views.html", "from ..analysis import fit", "may not import report.analysis.fit"),
+        ("report.views.html", "from ..judge import fit", "may not import report.judge.fit"),
         ("report.views.html", "from scipy import optimize", "may not import scipy"),
         (
             "report.views.html",
             "from ..build import build",
             "only report.verbs, report.verification may",
         ),
-        ("report.inputs", "from .cli import main", "only __main__ may import report.cli"),
-        ("report.inputs", "import undeclared", "may not import undeclared"),
-        ("report.inputs", "from loopsheet.report import sheet", "as a relative one"),
-        ("report.inputs", "import loopsheet", "as a relative one"),
-        ("report.inputs", "import importlib\nimportlib.import_module('x')", "hides the arrow"),
-        ("report.inputs", "from .. import Sheet", "may not import Sheet"),
-        ("report.errors", "from . import sheet", "may not import report.sheet"),
+        ("report.inputs.inputs", "from ..cli import main", "only __main__ may import report.cli"),
+        ("report.inputs.inputs", "import undeclared", "may not import undeclared"),
+        ("report.inputs.inputs", "from loopsheet.report import sheet", "as a relative one"),
+        ("report.inputs.inputs", "import loopsheet", "as a relative one"),
+        ("report.inputs.inputs", "import importlib\nimportlib.import_module('x')", "hides the arrow"),
+        ("report.inputs.inputs", "from ... import Sheet", "may not import Sheet"),
+        ("report.messages.errors", "from ..sheet import sheet", "may not import report.sheet"),
         ("", "import numpy", "the root may not import numpy"),
     ],
 )
@@ -259,10 +244,11 @@ def test_a_wrong_import_is_seen(module: str, source: str, complaint: str) -> Non
         "derivations.symbols",
         "report",
         "report.sheet",
+        "report.study",
         "report.views",
         "report.views.html",
-        "report.analysis",
-        "report.analysis.fit",
+        "report.judge",
+        "report.judge.fit",
     }
     found = wrong_imports(source, module, known, is_package=not module)
     assert any(re.search(complaint, sentence) for sentence in found), found
@@ -273,7 +259,7 @@ def test_a_wrong_import_is_seen(module: str, source: str, complaint: str) -> Non
     [
         ("derivations.hertz", "import math\nimport sympy as sp\nfrom .equation import Equation"),
         ("report.engines.numpy", "import numpy\nfrom ...derivations import proof\nfrom ..sheet import Sheet"),
-        ("report.analysis.fit", "from ..engines import numpy"),
+        ("report.judge.fit", "from ..engines import numpy"),
         ("report.views.html", "import jinja2\nfrom ..sheet import Sheet\nfrom .escape import escape"),
         ("report.cli", "from .verbs import VERBS\nfrom .. import __version__"),
         ("report.verbs.check", "from .. import build"),
@@ -283,6 +269,16 @@ def test_a_wrong_import_is_seen(module: str, source: str, complaint: str) -> Non
 def test_a_right_import_is_let_through(module: str, source: str) -> None:
     known = {"derivations", "derivations.proof", "report", "report.engines"}
     assert wrong_imports(source, module, known) == []
+
+
+def test_rooms_stand_in_the_order_of_the_flow() -> None:
+    """A room looks into itself and into those that stand before it."""
+    before: list[str] = ["derivations"]
+    for part, (others, _) in MAY_IMPORT.items():
+        if part.startswith("report."):
+            before.append(part)
+            above = [one for one in others if not any(covers(known, one) for known in before)]
+            assert part == "report.pytest_plugin" or not above, f"{part} looks up to {above}"
 
 
 def circle(files: Mapping[str, Path]) -> list[str]:

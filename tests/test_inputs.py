@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from loopsheet.report.errors import InputError, UnknownWorkbook, diagnose
-from loopsheet.report.inputs import Inputs, check_cells, load
-from loopsheet.report.number_text import read_printed
-from loopsheet.report.published import Pin
+from loopsheet.report.inputs.inputs import Inputs, check_cells, load
+from loopsheet.report.inputs.number_text import read_printed
+from loopsheet.report.inputs.published import Pin
+from loopsheet.report.inputs.unit_text import parse_unit
+from loopsheet.report.messages.errors import InputError, UnknownWorkbook, diagnose
 from loopsheet.report.quantity import Bounds
-from loopsheet.report.unit_text import parse_unit
 from loopsheet.report.workbook import Measured, Parameter, Workbook
 
 PAPER = Path(__file__).parent.parent / "data" / "soft_steel"

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from loopsheet.report.intervals import Intervals, whole
+from loopsheet.report.engines.intervals import Intervals, whole
 
 
 def between(low: float, high: float) -> st.SearchStrategy[list[float]]:

@@ -8,12 +8,12 @@ import pytest
 from campaign_judging import Tally, compare
 from random_campaigns import SHEETS, Campaign, Node, numpy_reads, printed_once
 
+from loopsheet.report.cells.values import Status
 from loopsheet.report.engines import javascript
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.errors import Findings, Location
-from loopsheet.report.number_text import read_value
-from loopsheet.report.unit_text import parse_unit
-from loopsheet.report.values import Status
+from loopsheet.report.inputs.number_text import read_value
+from loopsheet.report.inputs.unit_text import parse_unit
+from loopsheet.report.messages.errors import Findings, Location
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 SHEET, GIVEN = SHEETS[1], ("v", "e", "x_p", "beta", "points_per_pair", "ball_diameter", "target_mass")

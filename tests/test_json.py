@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from loopsheet.report.agreement import Agreement
-from loopsheet.report.folders import PAPER
-from loopsheet.report.result import Report
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.result.agreement import Agreement
+from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.views import json as view
 

@@ -15,15 +15,15 @@ from pathlib import Path
 import pytest
 from small_report import end_gauge
 
-from loopsheet.report import kept as keeping
 from loopsheet.report import stages
 from loopsheet.report.cli import main
-from loopsheet.report.errors import InputError
-from loopsheet.report.kept import SETTING, kept, nothing_kept, place
+from loopsheet.report.machine import kept as keeping
+from loopsheet.report.machine.kept import SETTING, kept, nothing_kept, place
+from loopsheet.report.machine.provenance import versions
+from loopsheet.report.machine.timing import Timing
+from loopsheet.report.messages.errors import InputError
 from loopsheet.report.own_workbook import follows_from_its_bytes
-from loopsheet.report.provenance import versions
 from loopsheet.report.study import Study
-from loopsheet.report.timing import Timing
 from loopsheet.report.verification import verify
 
 Built = Callable[..., tuple[int, str, int]]

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from sympy import Sum, Symbol
 
 from loopsheet.derivations.equation import Equation
-from loopsheet.report.layout import lay_out, precedents
+from loopsheet.report.cells.layout import lay_out, precedents
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Sheet
 
 

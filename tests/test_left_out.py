@@ -10,8 +10,8 @@ import openpyxl
 import pytest
 
 from loopsheet.report.cli import main
-from loopsheet.report.errors import InputError
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.messages.errors import InputError
 from loopsheet.report.study import Study
 from loopsheet.report.views import html, latex
 from loopsheet.report.views.checks import FORMATS

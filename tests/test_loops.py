@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from sympy import Float, lambdify
 
 from loopsheet.derivations import soft_impact as model
-from loopsheet.report.analysis.loops import ForceLaw, curves
+from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.charts import Curve
 from loopsheet.report.engines.numpy import evaluate
-from loopsheet.report.values import Status, Values
+from loopsheet.report.judge.loops import ForceLaw, curves
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 from loopsheet.report.workbooks.soft_impact_schematics import FRICTION, SCHEMATIC, hysteresis, lankarani
 
@@ -228,7 +228,7 @@ def test_the_workbook_says_what_its_figures_draw(paper: Values) -> None:
 def test_a_workbook_loads_no_analysis() -> None:
     code = (
         "import sys, loopsheet.report.workbooks.soft_impact; "
-        "print('loopsheet.report.analysis.loops' in sys.modules, 'matplotlib' in sys.modules)"
+        "print('loopsheet.report.judge.loops' in sys.modules, 'matplotlib' in sys.modules)"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.split() == ["False", "False"]

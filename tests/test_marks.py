@@ -12,12 +12,14 @@ from sympy import And, Basic, Eq, Or, Symbol
 
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.equation import Equation, Kind
-from loopsheet.report import build, scaffold, units
+from loopsheet.report import build
+from loopsheet.report.archive import scaffold
+from loopsheet.report.cells import units
+from loopsheet.report.cells.marks import Marks, margins, with_margins
 from loopsheet.report.cli import main
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.marks import Marks, margins, with_margins
 from loopsheet.report.quantity import Bounds
-from loopsheet.report.result import Report
+from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Limit, Sheet, SheetError
 from loopsheet.report.study import Study
 from loopsheet.report.views import html, latex

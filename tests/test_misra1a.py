@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from loopsheet.report import stages
-from loopsheet.report.analysis.referee.campaign import Campaign
-from loopsheet.report.analysis.referee.problem import Problem
 from loopsheet.report.cli import main
+from loopsheet.report.referee.campaign import Campaign
+from loopsheet.report.referee.problem import Problem
+from loopsheet.report.result.verdict import NOT_FOUND, UNREACHABLE
 from loopsheet.report.study import Study
-from loopsheet.report.verdict import NOT_FOUND, UNREACHABLE
 
 SOURCE = """\
 from sympy import Integer, Rational, Sum, Symbol, exp

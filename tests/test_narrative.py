@@ -27,7 +27,7 @@ from loopsheet.report.document.tree import (
     Table,
     Value,
 )
-from loopsheet.report.result import Report
+from loopsheet.report.result.result import Report
 from loopsheet.report.which_workbook import find_workbook
 from loopsheet.report.workbooks import SHIPPED
 

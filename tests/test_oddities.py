@@ -15,8 +15,8 @@ from slipped_campaigns import PAPER, Slip, Texts, campaign, slips, write
 
 from loopsheet.report import stages
 from loopsheet.report.cli import main
-from loopsheet.report.diagnostics import Check
-from loopsheet.report.errors import InputError
+from loopsheet.report.messages.diagnostics import Check
+from loopsheet.report.messages.errors import InputError
 from loopsheet.report.study import Study
 from loopsheet.report.views import html, latex
 from loopsheet.report.views.checks import FORMATS
@@ -327,7 +327,7 @@ def test_each_cause_is_told_of_its_own_cells(tmp_path: Path, monkeypatch: pytest
     said = checks(tmp_path)["data cells"].message
     assert len(set(causes)) == 3
     assert all(cause in said for cause in causes)
-    monkeypatch.setattr("loopsheet.report.analysis.oddities.CAUSES", 1)
+    monkeypatch.setattr("loopsheet.report.judge.oddities.CAUSES", 1)
     said = checks(tmp_path)["data cells"].message
     assert "; and 2 other causes" in said
     assert [cause in said for cause in causes] == [True, False, False]

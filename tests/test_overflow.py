@@ -9,15 +9,15 @@ import pytest
 from sympy import Piecewise, Rational, Sum, Symbol, acos, exp, log, symbols
 
 from loopsheet.derivations.equation import Equation, Kind
-from loopsheet.report.analysis.engines import compare
-from loopsheet.report.analysis.readers import run_javascript
+from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
+from loopsheet.report.judge.engines import compare
+from loopsheet.report.judge.readers import run_javascript
 from loopsheet.report.plan import RowSum
 from loopsheet.report.plan.domain import SMALLEST, defined, is_positive
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
-from loopsheet.report.values import Status, Values
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 k, n = symbols("k n", integer=True, positive=True)

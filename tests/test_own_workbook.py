@@ -15,8 +15,8 @@ from test_pytest_plugin import run
 
 from loopsheet.report import build
 from loopsheet.report.cli import main
-from loopsheet.report.errors import InputError
-from loopsheet.report.inputs import load
+from loopsheet.report.inputs.inputs import load
+from loopsheet.report.messages.errors import InputError
 from loopsheet.report.study import Study
 from loopsheet.report.verification import verify
 from loopsheet.report.which_workbook import find_workbook

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from loopsheet.report.provenance import PARTS, ROOT, sources
+from loopsheet.report.machine.provenance import PARTS, ROOT, sources
 
 
 @pytest.fixture
@@ -51,7 +51,7 @@ def test_a_change_shows_in_its_part_alone(file: str, part: str, package: Path) -
 
 def test_a_file_that_moves_is_a_change(package: Path) -> None:
     before = sources(package)
-    (package / "report" / "layout.py").rename(package / "report" / "layout2.py")
+    (package / "report" / "cells" / "layout.py").rename(package / "report" / "layout2.py")
     assert sources(package)["program"] != before["program"]
 
 

@@ -14,19 +14,18 @@ from hypothesis import strategies as st
 from small_report import end_gauge
 
 from loopsheet.report import stages
-from loopsheet.report.analysis.referee import compare, refereed
 from loopsheet.report.cli import main
-from loopsheet.report.csvtable import read_table
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
-from loopsheet.report.errors import Findings
-from loopsheet.report.findings import of_comparison
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.csvtable import read_table
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.inputs.published import PublishedValue, read_published
+from loopsheet.report.inputs.sources import Source
+from loopsheet.report.messages.errors import Findings
 from loopsheet.report.prepared import Prepared
-from loopsheet.report.published import PublishedValue, read_published
-from loopsheet.report.sources import Source
-from loopsheet.report.study import Study
-from loopsheet.report.verdict import (
+from loopsheet.report.referee import compare, refereed
+from loopsheet.report.result.findings import of_comparison
+from loopsheet.report.result.verdict import (
     OTHERWISE,
     UNEXPECTED,
     UNEXPLAINED,
@@ -36,6 +35,7 @@ from loopsheet.report.verdict import (
     Referee,
     Verdict,
 )
+from loopsheet.report.study import Study
 
 Check = Callable[..., tuple[int, str]]
 

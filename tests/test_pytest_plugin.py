@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from loopsheet.report.findings import ENGINES, names_of
-from loopsheet.report.folders import PAPER
-from loopsheet.report.inputs import PublishedValue
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.inputs.inputs import PublishedValue
 from loopsheet.report.pytest_plugin import _is_ours
+from loopsheet.report.result.findings import ENGINES, names_of
 
 
 def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -193,7 +193,7 @@ def test_without_a_report_nothing_is_loaded(tmp_path: Path) -> None:
         "import sys\n"
         "def test_it(pytestconfig):\n"
         "    assert pytestconfig.pluginmanager.has_plugin('loopsheet')\n"
-        "    heavy = ('numpy', 'sympy', 'pint', 'loopsheet.report.build', 'loopsheet.report.findings')\n"
+        "    heavy = ('numpy', 'sympy', 'pint', 'loopsheet.report.build', 'loopsheet.report.study')\n"
         "    assert [name for name in heavy if name in sys.modules] == []\n"
     )
     done = run(tmp_path)

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from loopsheet.report.errors import InputError
-from loopsheet.report.read_back import read_manifest, read_result
+from loopsheet.report.archive.read_back import read_manifest, read_result
+from loopsheet.report.messages.errors import InputError
 
 RESULT: dict[str, Any] = {
     "schema": 1,

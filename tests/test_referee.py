@@ -15,18 +15,18 @@ from small_report import judged, pure
 from sympy import Symbol
 
 from loopsheet.derivations.equation import Equation, Kind
-from loopsheet.report.analysis.referee import print_as, prints_same
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.errors import InputError
-from loopsheet.report.findings import checks
-from loopsheet.report.folders import PAPER
-from loopsheet.report.published import PublishedValue
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.inputs.published import PublishedValue
+from loopsheet.report.messages.errors import InputError
 from loopsheet.report.quantity import Printed
-from loopsheet.report.result import Report
+from loopsheet.report.referee import print_as, prints_same
+from loopsheet.report.result.findings import checks
+from loopsheet.report.result.result import Report
+from loopsheet.report.result.verdict import REACHABLE, UNREACHABLE, WITHIN, Referee
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
 from loopsheet.report.stages import refereed
 from loopsheet.report.study import Study
-from loopsheet.report.verdict import REACHABLE, UNREACHABLE, WITHIN, Referee
 
 
 def printed(text: str, unit: str = "1", scale: Fraction = Fraction(1)) -> Printed:

@@ -7,11 +7,11 @@ from small_report import found, pure
 from sympy import Sum, Symbol
 
 from loopsheet.derivations.equation import Equation, Kind
-from loopsheet.report import verdict_words as words
-from loopsheet.report.analysis.referee import certificate, search
-from loopsheet.report.published import PublishedValue
+from loopsheet.report.inputs.published import PublishedValue
+from loopsheet.report.referee import certificate, search
+from loopsheet.report.result import verdict_words as words
+from loopsheet.report.result.verdict import REACHABLE, Change, Referee
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
-from loopsheet.report.verdict import REACHABLE, Change, Referee
 
 k, n = (Symbol(name, integer=True, positive=True) for name in "kn")
 ROWS = Axis("rows", k, n)

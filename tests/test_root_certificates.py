@@ -17,14 +17,14 @@ from hypothesis import strategies as st
 from sympy import Expr, Integer, Max, Mul, Piecewise, Rational, Symbol, cos, exp, log, sin, sqrt, sympify
 
 from loopsheet.derivations.equation import Equation
-from loopsheet.report.analysis.readers import run_javascript
+from loopsheet.report.cells.values import CODES, Status
 from loopsheet.report.cli import main
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.certified import certified
+from loopsheet.report.judge.readers import run_javascript
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Given, Root, Sheet
-from loopsheet.report.values import CODES, Status
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
 
 w = Symbol("w", real=True)

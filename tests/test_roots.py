@@ -15,6 +15,7 @@ import pytest
 from mpmath import mpf
 from sympy import Abs, Expr, Integer, Rational, Symbol, diff, exp, log, simplify
 
+from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
@@ -22,7 +23,6 @@ from loopsheet.report.engines.numpy_root import RootProgram
 from loopsheet.report.engines.roots import derivatives, hoist, householder, magnitude, step
 from loopsheet.report.plan import RowSum
 from loopsheet.report.sheet import Root, Sheet
-from loopsheet.report.values import Status, Values
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
 
 EPS = float(np.finfo(float).eps)

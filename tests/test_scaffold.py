@@ -12,11 +12,11 @@ from pathlib import Path
 import pytest
 from small_report import end_gauge
 
-from loopsheet.report.errors import OutputError
-from loopsheet.report.inputs import load
-from loopsheet.report.provenance import sources
+from loopsheet.report.archive.scaffold import new
+from loopsheet.report.inputs.inputs import load
+from loopsheet.report.machine.provenance import sources
+from loopsheet.report.messages.errors import OutputError
 from loopsheet.report.quantity import Bounds
-from loopsheet.report.scaffold import new
 from loopsheet.report.workbook import Measured, Parameter, Workbook
 
 POSITIVE = Bounds(low=0, low_open=True)

@@ -9,16 +9,16 @@ from small_report import end_gauge, judged, pure
 from sympy import Expr, Rational, Symbol, exp, log, sqrt
 
 from loopsheet.derivations.equation import Equation, Kind
-from loopsheet.report.analysis.referee import print_as
+from loopsheet.report.cells.values import Values
 from loopsheet.report.document.material import Material
-from loopsheet.report.published import PublishedValue
+from loopsheet.report.inputs.published import PublishedValue
 from loopsheet.report.quantity import Printed
-from loopsheet.report.result import Comparison
+from loopsheet.report.referee import print_as
+from loopsheet.report.result.result import Comparison
+from loopsheet.report.result.verdict import EXACT, REACHABLE
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
 from loopsheet.report.stages import refereed
 from loopsheet.report.study import Study
-from loopsheet.report.values import Values
-from loopsheet.report.verdict import EXACT, REACHABLE
 
 # --- random sheets ----------------------------------------------------------------------------------------
 

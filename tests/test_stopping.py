@@ -23,14 +23,15 @@ import pytest
 from campaign_sizes import Sizes
 from small_report import end_gauge
 
-from loopsheet.report import stages, staging
-from loopsheet.report.background import Background
+from loopsheet.report import stages
+from loopsheet.report.archive.read_back import read_manifest
 from loopsheet.report.cli import main
-from loopsheet.report.errors import OutputError
-from loopsheet.report.read_back import read_manifest
-from loopsheet.report.scratch import PREFIX, scratch
-from loopsheet.report.staging import put, staged
-from loopsheet.report.stopping import Stopped, stoppable, unstoppable
+from loopsheet.report.machine import staging
+from loopsheet.report.machine.background import Background
+from loopsheet.report.machine.scratch import PREFIX, scratch
+from loopsheet.report.machine.staging import put, staged
+from loopsheet.report.machine.stopping import Stopped, stoppable, unstoppable
+from loopsheet.report.messages.errors import OutputError
 from loopsheet.report.verification import _outputs
 
 Hashes = dict[str, str]

@@ -11,10 +11,10 @@ from small_report import end_gauge
 from loopsheet.derivations import proof
 from loopsheet.report import stages
 from loopsheet.report.cli import main
-from loopsheet.report.errors import InputError
-from loopsheet.report.folders import PAPER
-from loopsheet.report.kept import SETTING
-from loopsheet.report.result import Report
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.machine.kept import SETTING
+from loopsheet.report.messages.errors import InputError
+from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 
 

@@ -30,7 +30,7 @@ from loopsheet.derivations.reductions import Median
 from loopsheet.derivations.soft_impact import LEDGER
 from loopsheet.derivations.symbols import VOCABULARY, k
 from loopsheet.derivations.text import text, text_of_equation
-from loopsheet.report.unit_text import parse_unit
+from loopsheet.report.inputs.unit_text import parse_unit
 
 # --- the vocabulary ---------------------------------------------------------------------------------------
 

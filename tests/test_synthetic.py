@@ -15,10 +15,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
 
+from loopsheet.report.cells.values import Values
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
-from loopsheet.report.values import Values
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
 
 EPS = float(np.finfo(float).eps)

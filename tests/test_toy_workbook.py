@@ -14,12 +14,13 @@ import pytest
 
 from loopsheet.derivations.proof import Status as Verdict
 from loopsheet.derivations.proof import prove
-from loopsheet.report import build, units
-from loopsheet.report.analysis import engines
+from loopsheet.report import build
+from loopsheet.report.cells import units
 from loopsheet.report.cli import main
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.result import Report
+from loopsheet.report.judge import engines
+from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study
 from loopsheet.report.which_workbook import find_workbook

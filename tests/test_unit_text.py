@@ -10,8 +10,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from loopsheet.report import unit_text
-from loopsheet.report.unit_text import COMMON, UnitError, examples, parse_unit
+from loopsheet.report.inputs import unit_text
+from loopsheet.report.inputs.unit_text import COMMON, UnitError, examples, parse_unit
 
 SI = {"meter": "m", "kilogram": "kg", "second": "s", "kelvin": "K"}
 

@@ -8,9 +8,9 @@ from sympy import Abs, And, Expr, Max, Min, Piecewise, Rational, Sum, Symbol, ex
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.equation import Equation
 from loopsheet.derivations.reductions import Median
-from loopsheet.report import units
+from loopsheet.report.cells import units
+from loopsheet.report.cells.units import UnitError, dimension_of_unit
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
-from loopsheet.report.units import UnitError, dimension_of_unit
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 

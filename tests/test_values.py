@@ -7,10 +7,10 @@ import pytest
 from sympy import Expr, Rational, Sum, Symbol, log
 
 from loopsheet.derivations.equation import Equation
+from loopsheet.report.cells.values import CODES, Status, Values
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, Root, Sheet
-from loopsheet.report.values import CODES, Status, Values
 
 NAN = float("nan")
 

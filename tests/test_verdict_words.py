@@ -10,15 +10,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loopsheet.report import stages, verdict_data
-from loopsheet.report import verdict_words as words
-from loopsheet.report.findings import checks
-from loopsheet.report.folders import PAPER
+from loopsheet.report import stages
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.quantity import Printed
-from loopsheet.report.result import Report
+from loopsheet.report.result import verdict_data
+from loopsheet.report.result import verdict_words as words
+from loopsheet.report.result.findings import checks
+from loopsheet.report.result.result import Report
+from loopsheet.report.result.verdict import UNREACHABLE, Verdict
 from loopsheet.report.study import Study
 from loopsheet.report.verbs import check
-from loopsheet.report.verdict import UNREACHABLE, Verdict
 from loopsheet.report.views import checks as formats
 from loopsheet.report.views import html, latex
 from loopsheet.report.views import json as values_json

@@ -15,11 +15,12 @@ import numpy as np
 import pytest
 from processors import lesser
 
-from loopsheet.report import build, provenance, stages, verification
+from loopsheet.report import build, stages, verification
 from loopsheet.report.cli import main
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.errors import InputError, UsageError
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.machine import provenance
+from loopsheet.report.messages.errors import InputError, UsageError
 from loopsheet.report.study import Study
 from loopsheet.report.verification import Verification, verify
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import html5lib
 import pytest
 
-from loopsheet.report.result import Report
+from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.views import html, latex
 

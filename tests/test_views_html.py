@@ -17,8 +17,8 @@ from loopsheet.report.document.material import Material
 from loopsheet.report.document.parts import MOST, index_text
 from loopsheet.report.document.tables import Tables
 from loopsheet.report.document.tree import Node
-from loopsheet.report.folders import PAPER
-from loopsheet.report.result import Report
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Given, RepeatAxis
 from loopsheet.report.study import Study
 from loopsheet.report.views import figures, html, latex

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from loopsheet.report.result import Report
+from loopsheet.report.result.result import Report
 from loopsheet.report.views import figures, latex
 
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ Șα"

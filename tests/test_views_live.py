@@ -20,18 +20,18 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from loopsheet.report.analysis.referee import print_as, prints_same
 from loopsheet.report.document.material import Material
 from loopsheet.report.document.numbers import decimals, rounded, shown
 from loopsheet.report.document.tree import Math
 from loopsheet.report.engines import javascript
-from loopsheet.report.errors import Findings, Location
-from loopsheet.report.folders import PAPER
-from loopsheet.report.number_text import NumberError, read_printed, read_value
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.inputs.number_text import NumberError, read_printed, read_value
+from loopsheet.report.inputs.unit_text import parse_unit
+from loopsheet.report.messages.errors import Findings, Location
 from loopsheet.report.quantity import Bounds, Printed
-from loopsheet.report.result import Report
+from loopsheet.report.referee import print_as, prints_same
+from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
-from loopsheet.report.unit_text import parse_unit
 from loopsheet.report.views import compact, compact_svg, figures, html, live
 
 ROOT = Path(__file__).resolve().parent.parent

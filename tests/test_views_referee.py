@@ -19,9 +19,8 @@ from loopsheet.report.document.material import Material
 from loopsheet.report.document.numbers import decimals
 from loopsheet.report.document.refereed import FIGURE, Value, figure
 from loopsheet.report.document.said import Said
-from loopsheet.report.result import Report
-from loopsheet.report.study import Study
-from loopsheet.report.verdict import (
+from loopsheet.report.result.result import Report
+from loopsheet.report.result.verdict import (
     INPUT,
     NOT_CHECKABLE,
     NOT_FOUND,
@@ -34,7 +33,8 @@ from loopsheet.report.verdict import (
     TableVerdict,
     Verdict,
 )
-from loopsheet.report.verdict_words import CALLED, at_least, bounds, mismatch, together
+from loopsheet.report.result.verdict_words import CALLED, at_least, bounds, mismatch, together
+from loopsheet.report.study import Study
 from loopsheet.report.views import figures, html, latex, reach
 from loopsheet.report.views.compact_svg import inlined
 from loopsheet.report.workbooks.soft_impact import WORKBOOK

@@ -14,13 +14,13 @@ import openpyxl
 import pytest
 from openpyxl.worksheet.formula import ArrayFormula
 
+from loopsheet.report.cells.grid import Grid
 from loopsheet.report.document.math import with_index
 from loopsheet.report.document.notation import fragments
 from loopsheet.report.engines import excel_grid
-from loopsheet.report.folders import PAPER
-from loopsheet.report.grid import Grid
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.quantity import Bounds
-from loopsheet.report.result import Report
+from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.views import json as json_view
 from loopsheet.report.views import xlsx

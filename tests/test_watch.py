@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 from small_report import end_gauge
 
-from loopsheet.report.local_server import Server
+from loopsheet.report.machine.local_server import Server
 from loopsheet.report.verbs.watch import _look
 
 
@@ -91,7 +91,7 @@ def test_it_tells_news_as_soon_as_there_are_some(server: Server, monkeypatch: py
     server.tell(error="v is not a number")
     third = json.loads(get(f"{server.address}news?known={second['known']}")[1])
     assert (third["number"], third["error"]) == (1, "v is not a number")
-    monkeypatch.setattr("loopsheet.report.local_server.PATIENCE", 0.05)
+    monkeypatch.setattr("loopsheet.report.machine.local_server.PATIENCE", 0.05)
     assert json.loads(get(f"{server.address}news?known={third['known']}")[1]) == third
 
 

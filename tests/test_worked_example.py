@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 from loopsheet.report import stages
-from loopsheet.report.analysis.referee.campaign import Campaign
-from loopsheet.report.analysis.referee.problem import Problem
 from loopsheet.report.engines import exact
-from loopsheet.report.findings import checks
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.prepared import Prepared
-from loopsheet.report.result import Report
+from loopsheet.report.referee.campaign import Campaign
+from loopsheet.report.referee.problem import Problem
+from loopsheet.report.result.findings import checks
+from loopsheet.report.result.result import Report
+from loopsheet.report.result.verdict import EXACT
 from loopsheet.report.study import Study
-from loopsheet.report.verdict import EXACT
 
 FOLDER = PAPER.parent / "worked_example"
 PRINTED = (

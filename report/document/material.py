@@ -13,11 +13,11 @@ from itertools import chain, islice
 from ...derivations.equation import Equation
 from ...derivations.proof import Proof
 from ...derivations.proof import Status as Known
-from ..diagnostics import Check
-from ..marks import Count
-from ..result import Report
+from ..cells.marks import Count
+from ..cells.values import Cell
+from ..messages.diagnostics import Check
+from ..result.result import Report
 from ..sheet import Axis, Column, Given, RepeatAxis, Root
-from ..values import Cell
 from ..workbook import FigureSpec, TableSpec
 from .math import Printer, latex_names, name_latex
 from .numbers import Figure, decimals, read, shown, table_format

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from ..cells.values import Cell, Status
 from ..quantity import Printed
-from ..result import Comparison
-from ..values import Cell, Status
+from ..result.result import Comparison
 from .numbers import Figure, is_pure
 
 __all__ = [

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .. import verdict_words as words
-from ..result import Report
-from ..verdict import EXACT, REACHABLE, UNREACHABLE, WITHIN, Verdict
+from ..result import verdict_words as words
+from ..result.result import Report
+from ..result.verdict import EXACT, REACHABLE, UNREACHABLE, WITHIN, Verdict
 from ..workbook import FigureSpec
 from .numbers import Figure, decimals, read
 from .parts import Head, Pair
@@ -69,7 +69,7 @@ class Value:
 
     @property
     def verdict(self) -> str:
-        """As of :mod:`~loopsheet.report.verdict`."""
+        """As of :mod:`~loopsheet.report.result.verdict`."""
         return self.found.verdict
 
     @property

@@ -9,10 +9,10 @@ from sympy import Expr, Indexed, Integer
 
 from ...derivations.equation import Derivation, Equation, Step
 from ...derivations.proof import IDENTITY, Proof
-from .. import verdict_words as words
-from ..agreement import Agreement
-from ..errors import suggest
-from ..verdict import NOT_CHECKABLE, UNREACHABLE
+from ..messages.errors import suggest
+from ..result import verdict_words as words
+from ..result.agreement import Agreement
+from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
 from ..workbook import FigureSpec
 from .material import Material
 from .numbers import is_pure

@@ -7,11 +7,11 @@ from functools import cached_property
 from itertools import groupby, islice
 from typing import Any, NamedTuple
 
-from .. import verdict_words as words
-from ..measurements import LeftOut
-from ..published import PublishedValue
+from ..inputs.measurements import LeftOut
+from ..inputs.published import PublishedValue
+from ..result import verdict_words as words
+from ..result.verdict import ALL, INPUT, UNREACHABLE, TableVerdict
 from ..sheet import Axis
-from ..verdict import ALL, INPUT, UNREACHABLE, TableVerdict
 from ..workbook import TableSpec
 from .material import Material
 from .numbers import is_pure, read, table_format

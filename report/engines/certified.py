@@ -16,10 +16,10 @@ from sympy import Expr, Piecewise, Symbol, ceiling, diff, false, floor, sign
 from sympy.logic.boolalg import Boolean
 
 from ..column import Root as RootRule
-from ..intervals import Intervals
 from ..plan import Leaf, Plan, Root, lowered_column
 from ..plan.domain import defined, typed_symbols
 from ..sheet import Column, Sheet, SheetError
+from .intervals import Intervals
 from .mpmath_intervals import differences, holds, printed
 from .numpy_code import Kernel, kernel
 

@@ -21,16 +21,16 @@ from numpy.typing import NDArray
 from sympy import Basic, Expr, Indexed, Symbol, lambdify
 
 from ...derivations.reductions import REDUCTIONS, Median
-from ..intervals import Intervals
-from ..layout import Layout, lay_out, precedents, rows_of
+from ..cells.layout import Layout, lay_out, precedents, rows_of
+from ..cells.values import Status, Values, how_many, inherited, rows_kept
 from ..plan import Leaf, lowered_column
 from ..plan import Root as RootNode
 from ..plan.domain import LARGEST, SMALLEST, typed
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, RepeatAxis, Root, Sheet, name_of
-from ..values import Status, Values, how_many, inherited, rows_kept
 from .certified import certified, enclosing, slope
 from .exact_roots import Enclose, brackets, of_arrays, of_mpmath
+from .intervals import Intervals
 from .isolation import Doubtful
 from .numpy_root import terms_of
 
@@ -53,7 +53,7 @@ class ExactValues:
     roots : mapping of column name to mapping of row to tuple of mpf
         All roots of ambiguous cells; of undecided ones, the part of the interval that was not decided.
     layouts, counted, broken
-        As those of :class:`~loopsheet.report.values.Values`.
+        As those of :class:`~loopsheet.report.cells.values.Values`.
     """
 
     value: Mapping[str, list[Any]]

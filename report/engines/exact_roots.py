@@ -15,7 +15,7 @@ import numpy as np
 from mpmath import iv
 from sympy import Basic, Expr, Symbol
 
-from ..intervals import Intervals
+from .intervals import Intervals
 from .isolation import HALVINGS, crossings
 from .mpmath_intervals import differences, holds, printed, sign
 from .numpy_code import Kernel

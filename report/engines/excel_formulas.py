@@ -13,12 +13,12 @@ from typing import Any
 
 from sympy import And, Expr, Float, Rational, Rel, Symbol
 
-from ..grid import Place, as_issued, checked, factors
-from ..layout import Layout
+from ..cells.grid import Place, as_issued, checked, factors
+from ..cells.layout import Layout
+from ..cells.values import CODES, Status
 from ..plan import Leaf, Map, Plan, Root
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, Reference, Sheet, name_of, within
-from ..values import CODES, Status
 from .excel import IfError, Printer
 from .excel_roots import READY, Auxiliary, Unrolled
 
@@ -40,7 +40,7 @@ class Places:
     ----------
     columns : mapping of str to Place
         Of columns, auxiliaries (``alpha.u_1``) and carried cells, by name; of a given column, those of its
-        checked cells (:func:`~loopsheet.report.grid.checked`), which all formulas name.
+        checked cells (:func:`~loopsheet.report.cells.grid.checked`), which all formulas name.
     typed : mapping of str to Place
         Of given columns, where they are typed.
     indices : mapping of axis name to tuple of Place

@@ -13,14 +13,14 @@ from decimal import Decimal
 from fractions import Fraction
 from itertools import chain, count
 
+from ..cells.grid import CHECKED, FIRST_ROW, SCALARS, STEPS, Block, Grid, Place, as_issued, checked
+from ..cells.layout import Layout
+from ..cells.values import CODES, Values
 from ..charts import Drawn
-from ..grid import CHECKED, FIRST_ROW, SCALARS, STEPS, Block, Grid, Place, as_issued, checked
-from ..layout import Layout
+from ..inputs.unit_text import UnitError, parse_unit
 from ..plan import Root, lowered
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, PairAxis, RepeatAxis, Sheet
-from ..unit_text import UnitError, parse_unit
-from ..values import CODES, Values
 from .certified import certified
 from .excel import ordered
 from .excel_formulas import Formulas, Places, carried, guard

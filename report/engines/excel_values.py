@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..layout import precedents
-from ..values import CODES, Status, Values, inherited, rows_kept
+from ..cells.layout import precedents
+from ..cells.values import CODES, Status, Values, inherited, rows_kept
 from .excel_roots import READY, Unrolled
 from .numpy import Program, parts
 from .numpy_code import Array

@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..layout import Layout, lay_out, precedents
+from ..cells.layout import Layout, lay_out, precedents
+from ..cells.values import Status, Values, how_many, inherited, rows_kept
 from ..plan import Leaf, Map, Plan, Root, lowered
 from ..plan.domain import SMALLEST
 from ..sheet import Column, RepeatAxis, Sheet
-from ..values import Status, Values, how_many, inherited, rows_kept
 from .numpy_code import SAME, Array, Function, Kernel, kernel
 from .numpy_root import RootProgram
 from .numpy_rows import Kept

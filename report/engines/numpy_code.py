@@ -13,9 +13,9 @@ from sympy import Basic, Expr, Piecewise, S, Symbol, cse, numbered_symbols
 from sympy.printing.codeprinter import PrintMethodNotImplementedError
 from sympy.printing.numpy import NumPyPrinter
 
-from .. import elementary
 from ..plan import RowMedian, RowSum, taken_over
 from ..sheet import SheetError
+from . import elementary
 
 __all__ = ["SAME", "Array", "Function", "Kernel", "Printer", "compiled", "kernel", "printed", "write"]
 

@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 from sympy import Expr, Integer, Symbol
 
-from ..intervals import Intervals, whole
+from ..cells.values import Status
 from ..plan import Plan, Root, RowSum, taken_over
 from ..sheet import Sheet
-from ..values import Status
 from .certified import certified, enclosing
+from .intervals import Intervals, whole
 from .isolation import Isolated, isolate
 from .numpy_code import SAME, Array, Function, Kernel, kernel, write
 from .numpy_rows import Kept, KeptIntervals

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..intervals import Intervals
+from .intervals import Intervals
 
 __all__ = ["Kept", "KeptIntervals"]
 

@@ -2,7 +2,7 @@
 
 The function is told by what it is called with how to fetch rows, add them up, and what to make of a value: so
 one text computes numbers (:mod:`~loopsheet.report.engines.numpy`) and intervals
-(:mod:`~loopsheet.report.analysis.enclosure`).
+(:mod:`~loopsheet.report.judge.enclosure`).
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ Every node c = f(r, s, ...) has
 
 All of them are formulas of finished cells, made by sympy; none is typed for any model, and nothing is solved
 again. What they amount to along all ways through the plan is a matter of numbers
-(:mod:`~loopsheet.report.analysis.bounds`, :mod:`~loopsheet.report.analysis.enclosure`).
+(:mod:`~loopsheet.report.judge.bounds`, :mod:`~loopsheet.report.judge.enclosure`).
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .common import FINDINGS, OK, Progress, folder_argument, keeping_arguments, named, told
 
 if TYPE_CHECKING:
-    from ..result import Report
+    from ..result.result import Report
 
 HELP = "compute a report and write it"
 
@@ -41,8 +41,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Build, and tell the result and what is not as expected."""
     from .. import build
-    from ..diagnostics import visible
-    from ..folders import output, report_folder
+    from ..inputs.folders import output, report_folder
+    from ..messages.diagnostics import visible
     from ..study import Study
 
     formats = None if options.to is None else build.parse_formats(options.to)
@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
 
 def summary(report: Report) -> dict[str, Any]:
     """What to print of a report: its result, and what is not as expected."""
-    from ..findings import checks
+    from ..result.findings import checks
 
     lines = [_line(report, name) for name in report.workbook.headline]
     lines += [

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 from .common import Progress, folder_argument, format_argument, keeping_arguments, outcome, print_checks, tell
 
 if TYPE_CHECKING:
-    from ..accepting import Accepted
-    from ..findings import Check
-    from ..result import Report
+    from ..referee.accepting import Accepted
+    from ..result.findings import Check
+    from ..result.result import Report
 
 HELP = "check the proofs, the engines against each other, and the published values"
 
@@ -35,8 +35,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Check everything and print it in the format that is asked for."""
-    from ..findings import checks
-    from ..folders import report_folder
+    from ..inputs.folders import report_folder
+    from ..result.findings import checks
     from ..study import Study
 
     if options.accept or options.reason:
@@ -53,12 +53,12 @@ def run(options: argparse.Namespace) -> int:
 
 def _accept(options: argparse.Namespace) -> int:
     """Write the known differences of a folder, show what was written, and print what is left to find."""
-    from ..accepting import accepted
-    from ..errors import UsageError, diagnose
-    from ..findings import checks
-    from ..folders import PAPER, report_folder
+    from ..inputs.folders import PAPER, report_folder
+    from ..machine.staging import replaced
+    from ..messages.errors import UsageError, diagnose
+    from ..referee.accepting import accepted
+    from ..result.findings import checks
     from ..stages import compared
-    from ..staging import replaced
     from ..study import Study
 
     reason, folder = " ".join(options.reason.split()), report_folder(options.folder)
@@ -85,7 +85,7 @@ def _accept(options: argparse.Namespace) -> int:
 
 
 def _show(found: Accepted) -> None:
-    from ..diagnostics import visible
+    from ..messages.diagnostics import visible
 
     number = len(found.changes)
     changed = "1 line" if number == 1 else f"{number or 'no'} lines"
@@ -100,7 +100,7 @@ def _show(found: Accepted) -> None:
 
 def _ask(report: Report) -> None:
     """What was not written, for nobody said why it differs."""
-    from ..verdict import UNEXPECTED
+    from ..result.verdict import UNEXPECTED
 
     number = sum(each.finding == UNEXPECTED and not each.published.expect for each in report.comparisons)
     if number:
@@ -109,7 +109,7 @@ def _ask(report: Report) -> None:
 
 
 def _print(report: Report, found: Sequence[Check]) -> None:
-    from ..verdict_words import lines
+    from ..result.verdict_words import lines
 
     passed = sum(p.status.passes for p in report.proofs)
     print(f"proofs     {passed} of {len(report.proofs)} equations stand")
@@ -137,7 +137,7 @@ def _print(report: Report, found: Sequence[Check]) -> None:
 
 def _details(report: Report) -> dict[str, Any]:
     """What JSON tells besides the checks: numbers instead of sentences."""
-    from ..verdict_data import data
+    from ..result.verdict_data import data
     from ..views.json import proof_grounds
 
     return {

@@ -7,12 +7,12 @@ import time
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, TextIO
 
-from ..diagnostics import visible
-from ..folders import WORD
+from ..inputs.folders import WORD
+from ..messages.diagnostics import visible
 
 if TYPE_CHECKING:
-    from ..findings import Check
-    from ..result import Report
+    from ..result.findings import Check
+    from ..result.result import Report
     from ..sheet import Column
 
 __all__ = [
@@ -39,7 +39,7 @@ OK, FINDINGS, USAGE, BUG = 0, 1, 2, 3
 
 
 def folder_argument(parser: argparse.ArgumentParser) -> None:
-    """Take a FOLDER: a word for :func:`~loopsheet.report.folders.report_folder`."""
+    """Take a FOLDER: a word for :func:`~loopsheet.report.inputs.folders.report_folder`."""
     said = f"a folder with a report.toml (default: the working directory), or '{WORD}' for the shipped paper"
     parser.add_argument("folder", metavar="FOLDER", nargs="?", type=named, help=said)
 
@@ -53,7 +53,7 @@ def keeping_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def result_argument(parser: argparse.ArgumentParser, name: str = "out") -> None:
-    """Take what `build` wrote: a word for :func:`~loopsheet.report.folders.result`; without it, ``out``."""
+    """Take what `build` wrote, as :func:`~loopsheet.report.inputs.folders.result` does; else ``out``."""
     said = "what 'build' wrote, or the FOLDER that it was built from (default: out)"
     parser.add_argument(name, metavar=name.upper(), nargs="?", type=named, help=said)
 
@@ -162,7 +162,7 @@ def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
     UsageError
         There is no such column or row.
     """
-    from ..errors import UsageError, diagnose, listing, suggest
+    from ..messages.errors import UsageError, diagnose, listing, suggest
 
     name, opened, rest = address.partition("[")
     index = rest.removesuffix("]")

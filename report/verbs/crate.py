@@ -27,8 +27,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write ro-crate-metadata.json and name it."""
-    from ..crate import write
-    from ..folders import report_folder, result
+    from ..archive.crate import write
+    from ..inputs.folders import report_folder, result
 
     folder = report_folder(options.folder) if options.folder else None
     whose = options.author, options.organization

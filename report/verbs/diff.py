@@ -23,9 +23,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print what is different; exit code 1 if anything is, beyond rounding."""
-    from ..differences import compare
-    from ..folders import result
-    from ..read_back import read_result
+    from ..archive.differences import compare
+    from ..archive.read_back import read_result
+    from ..inputs.folders import result
     from ..views.differences import FORMATS
 
     found = compare(read_result(result(options.before)), read_result(result(options.after)))

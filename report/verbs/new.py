@@ -23,9 +23,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the folder and name its files."""
-    from .. import scaffold
-    from ..errors import UnknownWorkbook, UsageError, diagnose, listing, suggest
-    from ..folders import written
+    from ..archive import scaffold
+    from ..inputs.folders import written
+    from ..messages.errors import UnknownWorkbook, UsageError, diagnose, listing, suggest
     from ..which_workbook import find_workbook
     from ..workbooks import SHIPPED
 

@@ -25,8 +25,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Prove, and print one line an equation, or all steps of one."""
-    from ..errors import UsageError, diagnose, suggest
-    from ..folders import WORD, is_report, report_folder
+    from ..inputs.folders import WORD, is_report, report_folder
+    from ..messages.errors import UsageError, diagnose, suggest
     from ..study import Study
 
     word = options.equation

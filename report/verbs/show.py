@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from .common import OK, find, folder_argument, keeping_arguments
 
 if TYPE_CHECKING:
-    from ..result import Report
+    from ..result.result import Report
 
 HELP = "show a cell: its value, its equation, what it is computed from"
 
@@ -25,7 +25,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print a column's equation, and the cells that are asked for."""
-    from ..folders import report_folder
+    from ..inputs.folders import report_folder
     from ..study import Study
 
     study = Study(report_folder(options.folder))

@@ -29,7 +29,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Verify, and print what differs; exit code 1 if anything does."""
-    from ..folders import report_folder, result
+    from ..inputs.folders import report_folder, result
     from ..verification import verify
     from ..which_workbook import find_workbook, shipped_workbook
 

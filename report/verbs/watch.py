@@ -14,7 +14,7 @@ from .build import out_argument, summary
 from .common import OK, Progress, folder_argument, keeping_arguments
 
 if TYPE_CHECKING:
-    from ..read_back import Result
+    from ..archive.read_back import Result
 
 HELP = "build a report again whenever something in its folder is saved, and show it"
 
@@ -40,8 +40,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Build and wait, until Ctrl-C."""
     from ..build import parse_formats
-    from ..folders import output, report_folder, told
-    from ..local_server import Server
+    from ..inputs.folders import output, report_folder, told
+    from ..machine.local_server import Server
 
     formats = parse_formats(f"{options.to},json")
     folder = report_folder(options.folder)
@@ -90,10 +90,10 @@ def _look(folder: Path, names: Iterable[str]) -> Look:
 
 def _again(folder: Path, out: Path, formats: tuple[str, ...], tell: Callable[..., None]) -> Iterable[str]:
     """Build once more, and say what changed or what is wrong; the files that were read."""
+    from ..archive.differences import compare
     from ..build import built
-    from ..diagnostics import visible
-    from ..differences import compare
-    from ..errors import LoopsheetError, render_all
+    from ..messages.diagnostics import visible
+    from ..messages.errors import LoopsheetError, render_all
     from ..study import Study
     from ..views.differences import as_text
 
@@ -119,8 +119,8 @@ def _again(folder: Path, out: Path, formats: tuple[str, ...], tell: Callable[...
 
 def _result(out: Path) -> Result | None:
     """What an earlier build left, if that can be read."""
-    from ..errors import InputError
-    from ..read_back import read_result
+    from ..archive.read_back import read_result
+    from ..messages.errors import InputError
 
     try:
         return read_result(out)

@@ -24,7 +24,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print what the formula bar of the page tells of a cell."""
-    from ..folders import report_folder
+    from ..inputs.folders import report_folder
     from ..study import Study
 
     with Progress(sys.stderr) as progress:
@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _told(study: Study, address: str) -> str:
-    from ..errors import UsageError, diagnose, listing
+    from ..messages.errors import UsageError, diagnose, listing
     from ..views.why import equations_of, why
 
     column, labels = find(report := study.computed, address)

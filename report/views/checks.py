@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 
-from ..diagnostics import visible
-from ..findings import Check
+from ..messages.diagnostics import visible
+from ..result.findings import Check
 from . import markdown as md
 
 __all__ = ["FORMATS", "as_github", "as_json", "as_junit", "as_markdown", "summary"]

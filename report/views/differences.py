@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 
-from ..diagnostics import visible
-from ..differences import Differences, Move
+from ..archive.differences import Differences, Move
+from ..messages.diagnostics import visible
 from . import markdown as md
 
 __all__ = ["FORMATS", "as_markdown", "as_text", "moved"]

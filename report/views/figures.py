@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ..document.refereed import FIGURE
 from ..document.refereed import figures as of
-from ..result import Report
+from ..result.result import Report
 from ..workbook import Workbook
 from . import drawing, reach
 

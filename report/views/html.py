@@ -9,13 +9,13 @@ from collections.abc import Mapping
 from functools import cached_property
 
 from ...derivations.equation import Equation
+from ..cells.values import Cell
 from ..document.material import Material
 from ..document.numbers import is_pure
 from ..document.parts import Item, why_address
 from ..document.tables import Tables
 from ..document.tree import Column, Entry, Math, Number, Refer, Silent, Unit
-from ..result import Report
-from ..values import Cell
+from ..result.result import Report
 from . import live
 from .compact import short_markup, short_style
 from .compact_svg import inlined

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from ...derivations.text import text_of_equation
-from .. import verdict_data
-from ..marks import Count
-from ..result import Report
+from ..cells.marks import Count
+from ..cells.values import Status
+from ..result import verdict_data
+from ..result.result import Report
+from ..result.verdict import Verdict
 from ..sheet import Column, Formula, Given, RepeatAxis
-from ..values import Status
-from ..verdict import Verdict
 
 __all__ = ["manifest", "proof_grounds", "proof_statuses", "values"]
 

@@ -18,9 +18,9 @@ from ..document.material import Material
 from ..document.numbers import is_pure
 from ..document.parts import Item
 from ..document.tree import Column, Entry, Formula, Math, Number, Refer, Silent, Table, Unit
-from ..errors import LoopsheetError, diagnose
-from ..programs import ProgramFailed, run
-from ..result import Report
+from ..machine.programs import ProgramFailed, run
+from ..messages.errors import LoopsheetError, diagnose
+from ..result.result import Report
 from .escape import Markup, tex
 from .typeset import TEXT_WIDTH, block
 from .units import unit_tex

@@ -21,11 +21,11 @@ from ..document.material import Material
 from ..document.math import Printer
 from ..document.parts import index_text, slug
 from ..document.tree import Inlines, Math, Unit
+from ..inputs.unit_text import parse_unit
 from ..quantity import Bounds, Printed
-from ..result import Report
+from ..result.result import Report
+from ..result.verdict import OTHERWISE, UNEXPECTED
 from ..sheet import Column, Formula, Given, Root, name_of
-from ..unit_text import parse_unit
-from ..verdict import OTHERWISE, UNEXPECTED
 from .compact import short_script
 from .drawing import unit_text
 from .live_files import given

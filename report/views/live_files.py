@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..quantity import Printed
-from ..result import Report
+from ..result.result import Report
 
 __all__ = ["given"]
 

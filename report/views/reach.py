@@ -13,9 +13,9 @@ import numpy as np
 
 from ..document.math import latex_names, name_latex
 from ..document.parts import index_text
-from ..result import Comparison, Report
-from ..verdict import EXACT, REACHABLE, UNREACHABLE
-from ..verdict_words import CALLED
+from ..result.result import Comparison, Report
+from ..result.verdict import EXACT, REACHABLE, UNREACHABLE
+from ..result.verdict_words import CALLED
 from . import drawing
 from .drawing import INK, LOADING, PALE, UNLOADING
 from .escape import visible

@@ -9,10 +9,10 @@ from sympy import Expr, Symbol
 from ...derivations.equation import Equation
 from ...derivations.reductions import REDUCTIONS
 from ...derivations.text import Writer, text_of_equation
-from ..result import Report
+from ..cells.trace import Group, dependents_of, precedents_of
+from ..cells.values import Cell
+from ..result.result import Report
 from ..sheet import Column, Formula, Given, Root, name_of
-from ..trace import Group, dependents_of, precedents_of
-from ..values import Cell
 
 __all__ = ["equations_of", "why"]
 

@@ -14,8 +14,8 @@ from typing import Any
 from xlsxwriter import Workbook as Book
 from xlsxwriter.worksheet import Worksheet
 
-from ..grid import SCALARS, STEPS, Grid
-from ..result import Report
+from ..cells.grid import SCALARS, STEPS, Grid
+from ..result.result import Report
 from .xlsx_charts import write_charts
 from .xlsx_inputs import Inputs
 from .xlsx_marks import mark_outside

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from ..cells.grid import Block, Grid
 from ..charts import Series
-from ..grid import Block, Grid
-from ..result import Report
+from ..result.result import Report
 from ..sheet import RepeatAxis
 from .xlsx_style import Style
 

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-from ..grid import FIRST_ROW, SCALARS, Block, Grid, Place, checked, letters
+from ..cells.grid import FIRST_ROW, SCALARS, Block, Grid, Place, checked, letters
+from ..cells.values import CODES, Status
 from ..quantity import Printed
-from ..result import Report
+from ..result.result import Report
 from ..sheet import RepeatAxis
-from ..values import CODES, Status
 from .xlsx_style import Style, open_format, said
 
 __all__ = ["Inputs"]

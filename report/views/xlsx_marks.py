@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ..grid import Block, Grid, letters
-from ..result import Report
+from ..cells.grid import Block, Grid, letters
+from ..result.result import Report
 from .xlsx_style import Style
 
 __all__ = ["TITLE", "counted", "mark_outside"]

@@ -7,8 +7,8 @@ from typing import Any
 
 from ...derivations.proof import IDENTITY
 from ...derivations.text import Writer, text_of_equation
-from ..grid import CHECKED, SCALARS, Block, Grid, checked, factors, letters
-from ..result import Comparison, Report
+from ..cells.grid import CHECKED, SCALARS, Block, Grid, checked, factors, letters
+from ..result.result import Comparison, Report
 from ..sheet import RepeatAxis
 from .json import proof_grounds, proof_statuses
 from .xlsx_inputs import Inputs

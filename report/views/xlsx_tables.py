@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..grid import FIRST_ROW, STEPS, Block, Grid, letters
-from ..result import Report
+from ..cells.grid import FIRST_ROW, STEPS, Block, Grid, letters
+from ..result.result import Report
 from ..sheet import Axis, PairAxis, RepeatAxis
 from .xlsx_inputs import Inputs
 from .xlsx_marks import TITLE

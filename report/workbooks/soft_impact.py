@@ -21,9 +21,9 @@ from .soft_impact_limits import limits
 from .soft_impact_root import alpha_rule, two_tests
 
 if TYPE_CHECKING:
+    from ..cells.values import Values
     from ..charts import Curve, Drawn
-    from ..result import Report
-    from ..values import Values
+    from ..result.result import Report
 
 __all__ = ["WORKBOOK"]
 
@@ -265,7 +265,7 @@ def _tests_after_fit() -> tuple[Column, ...]:
 
 def _curves(sheet: Sheet, values: Values) -> tuple[Curve, ...]:
     """What the figures draw; loaded only when they are drawn."""
-    from ..analysis.loops import curves
+    from ..judge.loops import curves
 
     return curves(sheet, values)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..charts import Curve
 from ..document.numbers import rounded
-from ..result import Report, Shown
+from ..result.result import Report, Shown
 from ..views import drawing
 from ..views.drawing import INK, LOADING, UNLOADING, Array, Labels, Place
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...derivations import soft_impact as model
-from ..analysis.loops import SAMPLES, ForceLaw
-from ..result import Report
+from ..judge.loops import SAMPLES, ForceLaw
+from ..result.result import Report
 from ..views import drawing
 from ..views.drawing import GREY, INK, LOADING, PALE, UNLOADING, Array, Place
 from .soft_impact_figures import MOST_CORNERS

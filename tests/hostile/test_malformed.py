@@ -20,10 +20,10 @@ from small_report import end_gauge
 
 from loopsheet.report import build, stages, verification
 from loopsheet.report.cli import main
-from loopsheet.report.errors import LoopsheetError
-from loopsheet.report.findings import checks
-from loopsheet.report.folders import PAPER
-from loopsheet.report.result import Report
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.messages.errors import LoopsheetError
+from loopsheet.report.result.findings import checks
+from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.views import html, latex
 from loopsheet.report.views import json as data

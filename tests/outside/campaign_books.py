@@ -18,13 +18,13 @@ import xlsxwriter
 from random_campaigns import MEASURED, NO_NUMBERS, SHEETS, Campaign
 from spreadsheets import recalculated
 
-from loopsheet.report.analysis.readers import Reading, _columns, read_cells
+from loopsheet.report.cells.grid import Grid, as_issued
+from loopsheet.report.cells.values import CODES, Status
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
-from loopsheet.report.grid import Grid, as_issued
+from loopsheet.report.judge.readers import Reading, _columns, read_cells
 from loopsheet.report.sheet import Root
-from loopsheet.report.values import CODES, Status
 from loopsheet.report.views.xlsx import _Worksheet
 
 MOST = 50

@@ -16,16 +16,16 @@ from typing import Any
 
 import numpy as np
 
-from loopsheet.report.analysis.readers import ALWAYS_RECALCULATE
+from loopsheet.report.cells.grid import Grid, checked
+from loopsheet.report.cells.values import CODES, Status, Values
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.certified import certified
-from loopsheet.report.folders import PAPER
-from loopsheet.report.grid import Grid, checked
-from loopsheet.report.result import Report
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.judge.readers import ALWAYS_RECALCULATE
+from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Given, RepeatAxis, Root, Sheet
 from loopsheet.report.study import Study
-from loopsheet.report.values import CODES, Status, Values
 from loopsheet.report.views import xlsx
 
 

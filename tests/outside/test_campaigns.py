@@ -16,8 +16,8 @@ from campaign_judging import Tally, compare
 from campaign_sizes import SIZES, Sizes
 from random_campaigns import KINDS, SHEETS, Node, drawn, printed_once, shares
 
-from loopsheet.report.analysis.engines import LIMIT
 from loopsheet.report.engines import javascript
+from loopsheet.report.judge.engines import LIMIT
 
 pytestmark = pytest.mark.campaigns
 

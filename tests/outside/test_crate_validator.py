@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from loopsheet.report.crate import NAME, write
+from loopsheet.report.archive.crate import NAME, write
 
 HERE = Path(__file__).parent
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from loopsheet.report.wheel import wheel
+from loopsheet.report.archive.wheel import wheel
 
 ROOT = Path(__file__).parents[2]
 

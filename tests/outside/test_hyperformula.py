@@ -13,11 +13,11 @@ import sample_sheet
 import spreadsheets
 from campaign_sizes import Sizes
 
+from loopsheet.report.cells.grid import Grid
+from loopsheet.report.cells.values import CODES, Status
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.grid import Grid
 from loopsheet.report.sheet import Given
-from loopsheet.report.values import CODES, Status
 
 HERE = Path(__file__).parent
 

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 import spreadsheets
 
-from loopsheet.report.grid import checked
-from loopsheet.report.marks import Marks
-from loopsheet.report.values import Status
+from loopsheet.report.cells.grid import checked
+from loopsheet.report.cells.marks import Marks
+from loopsheet.report.cells.values import Status
 
 HOSTILE = "=cmd|' /C calc'!A0"
 

@@ -14,7 +14,7 @@ import spreadsheets
 from small_report import end_gauge
 from test_toy_workbook import FILES
 
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
 
 HERE = Path(__file__).parent
 OFFICES = ("Office2016", "Microsoft365")

@@ -9,13 +9,13 @@ import pytest
 from mpmath import mpf
 from scipy.optimize import least_squares
 
-from loopsheet.report.analysis import engines
+from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.folders import PAPER
-from loopsheet.report.result import Report
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.judge import engines
+from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
-from loopsheet.report.values import Status, Values
 
 PAIRS = [(i, j) for i in range(1, 6) for j in range(i + 1, 6)]
 ALPHA = [1.2580, 1.2767, 1.2817, 1.2937, 1.2898, 1.2945, 1.3092, 1.3104, 1.3413, 1.3710]

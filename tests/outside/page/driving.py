@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 from playwright.sync_api import Download, Locator, Page
 
+from loopsheet.report.cells.values import CODES, Status, Values
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.prepared import given_data
-from loopsheet.report.result import Report
+from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
-from loopsheet.report.values import CODES, Status, Values
 from loopsheet.report.views import html
 
 LARGEST = 1e-12

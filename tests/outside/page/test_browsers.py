@@ -12,10 +12,10 @@ import mpmath
 import pytest
 from driving import Live
 
-from loopsheet.report.analysis.engines import EPS, LIMIT, Judge
 from loopsheet.report.engines import exact
+from loopsheet.report.judge.engines import EPS, LIMIT, Judge
 from loopsheet.report.prepared import Prepared
-from loopsheet.report.result import Report
+from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 
 DEEPER = {("x_p", 2): "29.8"}

@@ -10,8 +10,8 @@ import pytest
 from campaign_sizes import SEED, Sizes
 from driving import Live
 
-from loopsheet.report.errors import InputError
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.messages.errors import InputError
 from loopsheet.report.study import Study
 from loopsheet.report.views import live as live_view
 

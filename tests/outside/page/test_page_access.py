@@ -12,7 +12,7 @@ from driving import Live
 from test_foreign_words import folder_of
 
 from loopsheet.report import build, stages
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.study import Study
 
 Open = Callable[..., Live]

@@ -9,7 +9,7 @@ import pytest
 from driving import Live
 
 from loopsheet.report import build, stages
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.study import Study
 
 Open = Callable[..., Live]

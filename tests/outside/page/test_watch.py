@@ -7,7 +7,7 @@ from pathlib import Path
 
 from playwright.sync_api import Browser
 
-from loopsheet.report.local_server import Server
+from loopsheet.report.machine.local_server import Server
 
 
 def test_an_open_page_follows(browser: Browser, tmp_path: Path) -> None:

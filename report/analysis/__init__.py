@@ -1,1 +1,0 @@
-"""What is concluded from a sheet's values: fits, uncertainty, referee, loops."""

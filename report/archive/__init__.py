@@ -1,0 +1,1 @@
+"""Folders that are carried away and read again: crates, results beside one another, what one starts from."""

@@ -1,0 +1,312 @@
+"""An output folder as an RO-Crate 1.1: what is in it, by whom, from what, computed by what.
+
+All of it is read from manifest.json; the date and the licence are the user's words. The inputs are copied
+into the crate, which can be built again from itself then. There is no clock here: the same folder and the
+same words give the same bytes.
+"""
+
+from __future__ import annotations
+
+import datetime
+import hashlib
+import json
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from ..inputs.folders import INPUTS, built_from
+from ..machine.scratch import scratch
+from ..machine.staging import put
+from ..machine.stopping import unstoppable
+from ..messages.errors import LoopsheetError, OutputError, UsageError, diagnose
+from .read_back import Manifest, read_manifest
+
+__all__ = ["NAME", "added", "crate", "write"]
+
+NAME = "ro-crate-metadata.json"
+_BUILD = "loopsheet build"
+SPECIFICATION = "https://w3id.org/ro/crate/1.1"
+_SPDX = re.compile(r"[A-Za-z0-9][A-Za-z0-9.+-]{0,99}")
+_ADDRESS = re.compile(r"https?://[^\s<>\"{}|\\^`]{1,2000}")
+_MEDIA = {
+    ".html": "text/html",
+    ".tex": "text/x-tex",
+    ".xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+    ".json": "application/json",
+    ".pdf": "application/pdf",
+    ".svg": "image/svg+xml",
+    ".csv": "text/csv",
+    ".toml": "application/toml",
+    ".py": "text/x-python",
+}
+_WHAT = {
+    "report.html": "The report as one page, which recalculates itself when a number is changed",
+    "report.tex": "The report for LaTeX",
+    "report.pdf": "The report for printing",
+    "report.xlsx": "The report as a workbook with live formulas",
+    "values.json": "Every number in SI, unrounded, with its status and its equation",
+    "manifest.json": "The sha256 of what went in and of what came out, and the versions of what computed it",
+}
+
+Entity = dict[str, Any]
+
+
+def write(
+    out: Path,
+    date: str,
+    licence: str,
+    author: str = "",
+    organization: str = "",
+    folder: Path | None = None,
+) -> Path:
+    """Write the metadata into an output folder, and what it was built from.
+
+    Parameters
+    ----------
+    out : Path
+        What ``build`` wrote, unchanged.
+    date : str
+        The day of publication, YYYY-MM-DD.
+    licence : str
+        An SPDX identifier or an address.
+    author, organization : str
+        Whose it is, and who publishes it and employs the author, as ``NAME`` or ``NAME <https://...>``;
+        both may be empty.
+    folder : Path, optional
+        The report folder; without it, :func:`~loopsheet.report.inputs.folders.built_from` finds it.
+
+    Raises
+    ------
+    InputError
+        There is no manifest.
+    OutputError
+        An output or an input is missing or was changed, or a file cannot be written.
+    UsageError
+        The date is none, or the licence; it is not known from which folder `out` was built.
+    """
+    manifest = read_manifest(out)
+    sizes = {name: len(_read(out, name, digest)) for name, digest in manifest.outputs.items()}
+    sizes["manifest.json"] = (out / "manifest.json").stat().st_size
+    people = tuple(_people(" ".join(author.split()), " ".join(organization.split())))
+    words = _date(date), _licence(licence)
+    source = built_from(out, manifest.inputs) if folder is None else folder
+    inputs = {f"{INPUTS}/{name}": _read(source, name, digest) for name, digest in manifest.inputs.items()}
+    _refuse_what_somebody_changed(out, inputs)
+    sizes |= {name: len(content) for name, content in inputs.items()}
+    made = inputs | {NAME: crate(manifest, sizes, *words, people).encode()}
+    try:
+        with scratch(out) as stage, unstoppable():
+            for name, content in made.items():
+                put(stage / name, content)
+            for name in made:
+                (out / name).parent.mkdir(parents=True, exist_ok=True)
+                (stage / name).replace(out / name)
+    except OSError as error:
+        raise OutputError(diagnose("LS601", text=out / NAME, reason=error.strerror or error)) from error
+    return out / NAME
+
+
+def _read(folder: Path, name: str, digest: str) -> bytes:
+    """Return a file as the manifest has it."""
+    file = folder / name
+    if not file.resolve().is_relative_to(folder.resolve()) or not file.is_file():
+        raise OutputError(diagnose("LS610", text=name, reason="is missing"))
+    content = file.read_bytes()
+    if hashlib.sha256(content).hexdigest() != digest:
+        raise OutputError(diagnose("LS610", text=name, reason="was changed after it was built"))
+    return content
+
+
+def _refuse_what_somebody_changed(out: Path, inputs: Mapping[str, bytes]) -> None:
+    """Replace no file that is neither the one to write nor as the crate before has it."""
+    before = added(out)
+    for name, content in inputs.items():
+        if not (out / name).resolve().is_relative_to(out.resolve()):
+            raise OutputError(diagnose("LS610", text=name, reason="leads out of the folder"))
+        if not (out / name).is_file():
+            continue
+        there = (out / name).read_bytes()
+        if there != content and hashlib.sha256(there).hexdigest() != before.get(Path(name)):
+            raise OutputError(diagnose("LS610", text=name, reason="was changed after it was put there"))
+
+
+def added(out: Path) -> dict[Path, str]:
+    """The sha256 of what :func:`write` added to an output folder, as it was then; empty if there is no crate.
+
+    The metadata does not hold its own sha256: it is written again from its words and the manifest.
+    """
+    try:
+        graph = json.loads((out / NAME).read_text(encoding="utf-8"))["@graph"]
+        entities = {entity["@id"]: entity for entity in graph}
+        if entities["#build"]["name"] != _BUILD:
+            return {}
+        files = [entity for entity in graph if entity["@type"] == "File"]
+        inputs = {Path(file["name"]): str(file["sha256"]) for file in files if _is_input(file["name"])}
+        root, sizes = entities["./"], {file["name"]: int(str(file["contentSize"])) for file in files}
+        licence = entities[root["license"]["@id"]]
+        people = [entity for entity in graph if entity["@type"] in ("Person", "Organization")]
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        return {}  # no crate, or none of ours
+    try:
+        metadata = crate(read_manifest(out), sizes, root["datePublished"], licence, people).encode()
+    except (LoopsheetError, LookupError, TypeError, ValueError):
+        metadata = b""  # not of this manifest
+    return {**inputs, Path(NAME): hashlib.sha256(metadata).hexdigest()}
+
+
+def _date(text: str) -> str:
+    try:
+        if re.fullmatch(r"\d{4}-\d\d-\d\d", text, re.A):
+            return datetime.date.fromisoformat(text).isoformat()
+    except ValueError:
+        pass
+    raise UsageError(diagnose("LS611", text=text, suggestion="for example --date 2026-03-31"))
+
+
+def _licence(text: str) -> Entity:
+    if _ADDRESS.fullmatch(text):
+        return {
+            "@id": text,
+            "@type": "CreativeWork",
+            "name": text,
+            "description": "The licence of this report",
+        }
+    if _SPDX.fullmatch(text):
+        said = f"The licence that SPDX calls {text}"
+        address = f"https://spdx.org/licenses/{text}"
+        return {
+            "@id": address,
+            "@type": "CreativeWork",
+            "name": text,
+            "description": said,
+            "identifier": text,
+        }
+    raise UsageError(diagnose("LS612", text=text))
+
+
+def _people(author: str, organization: str) -> Iterator[Entity]:
+    """Yield the author and the organization, if there are any."""
+    person, house = _named("Person", "#author", author), _named("Organization", "#organization", organization)
+    if author:
+        yield person | ({"affiliation": {"@id": house["@id"]}} if organization else {})
+    if organization:
+        yield house
+
+
+def _named(kind: str, here: str, text: str) -> Entity:
+    """Read ``NAME`` or ``NAME <https://...>``: the address, an ORCID or a home page, is then who it is."""
+    name, _, address = text.removesuffix(">").rpartition(" <")
+    if name and text.endswith(">") and _ADDRESS.fullmatch(address):
+        return {"@id": address, "@type": kind, "name": name, "url": address}
+    return {"@id": here, "@type": kind, "name": text}
+
+
+def crate(
+    manifest: Manifest, sizes: Mapping[str, int], date: str, licence: Entity, people: Sequence[Entity]
+) -> str:
+    """The metadata as text.
+
+    Parameters
+    ----------
+    manifest : Manifest
+    sizes : mapping of str to int
+        Every file of the crate but the metadata itself, and its bytes.
+    date : str
+        YYYY-MM-DD.
+    licence : dict
+        The entity of the licence.
+    people : sequence of dict
+        The entities of the author and the publisher, as far as there are any.
+    """
+    given = {f"{INPUTS}/{name}": digest for name, digest in manifest.inputs.items()}
+    files = list(_files({name: size for name, size in sizes.items() if name not in given}, manifest.outputs))
+    inputs = list(_files({name: sizes[name] for name in given}, given))
+    software = list(_software(manifest))
+    action = {
+        "@id": "#build",
+        "@type": "CreateAction",
+        "name": _BUILD,
+        "description": "Computed every file of this folder from the inputs",
+        "instrument": {"@id": software[0]["@id"]},
+        "object": _refer(inputs),
+        "result": _refer(files),
+    }
+    title = manifest.title or "A report of loopsheet"
+    root: Entity = {
+        "@id": "./",
+        "@type": "Dataset",
+        "name": title,
+        "description": f"{title}: a report whose every number is traced to an equation and recomputed",
+        "datePublished": date,
+        "license": {"@id": licence["@id"]},
+        "hasPart": _refer([*files, *inputs]),
+        "mentions": {"@id": "#build"},
+    }
+    for entity in people:
+        root["author" if entity["@type"] == "Person" else "publisher"] = {"@id": entity["@id"]}
+        action.setdefault("agent", {"@id": entity["@id"]})
+    descriptor = {
+        "@id": NAME,
+        "@type": "CreativeWork",
+        "conformsTo": {"@id": SPECIFICATION},
+        "about": {"@id": "./"},
+    }
+    context = [f"{SPECIFICATION}/context", {"sha256": "http://schema.org/sha256"}]
+    graph = [descriptor, root, *files, action, *inputs, *software, *people, licence]
+    return json.dumps({"@context": context, "@graph": graph}, indent=1, ensure_ascii=False) + "\n"
+
+
+def _refer(entities: list[Entity]) -> list[Entity]:
+    return [{"@id": entity["@id"]} for entity in entities]
+
+
+def _files(sizes: Mapping[str, int], hashes: Mapping[str, str]) -> Iterator[Entity]:
+    for name, size in sorted(sizes.items()):
+        entity: Entity = {"@id": quote(name), "@type": "File", "name": name}
+        other = "What the report was computed from" if _is_input(name) else "A figure of the report"
+        entity["description"] = _WHAT.get(name, other)
+        entity["encodingFormat"] = _MEDIA.get(Path(name).suffix, "application/octet-stream")
+        entity["contentSize"] = str(size)
+        if name in hashes:
+            entity["sha256"] = hashes[name]
+        yield entity
+
+
+def _is_input(name: str) -> bool:
+    return name.startswith(f"{INPUTS}/")
+
+
+def _software(manifest: Manifest) -> Iterator[Entity]:
+    """Yield loopsheet first, with its sources as parts and its libraries as what it needs."""
+    versions = dict(manifest.versions)
+    own = versions.pop("loopsheet", "unknown")
+    parts = [
+        {
+            "@id": f"#loopsheet-{quote(part)}",
+            "@type": "SoftwareSourceCode",
+            "name": f"loopsheet: {part}",
+            "version": own,
+            "sha256": digest,
+        }
+        for part, digest in manifest.sources.items()
+    ]
+    needed = [
+        {
+            "@id": f"#{quote(name)}-{quote(version)}",
+            "@type": "SoftwareApplication",
+            "name": name,
+            "softwareVersion": version,
+        }
+        for name, version in versions.items()
+    ]
+    yield {
+        "@id": f"#loopsheet-{quote(own)}",
+        "@type": "SoftwareApplication",
+        "name": "loopsheet",
+        "softwareVersion": own,
+        "hasPart": _refer(parts),
+        "softwareRequirements": _refer(needed),
+    }
+    yield from (*parts, *needed)

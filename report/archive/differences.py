@@ -1,0 +1,186 @@
+"""Two results side by side, number by number: same, within rounding, moved, made by another method."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from ..result.agreement import LIMIT
+from .read_back import Column, Index, Result
+
+__all__ = ["Change", "Differences", "Move", "compare"]
+
+EPS = sys.float_info.epsilon
+
+
+@dataclass(frozen=True)
+class Move:
+    """A number that is another one.
+
+    Parameters
+    ----------
+    address : str
+        ``alpha[1-2]``.
+    unit : str
+        SI.
+    given : bool
+        Whether the user gives it.
+    before, after : float or None
+        None where it has no value.
+    status : tuple of str
+        Before and after.
+    """
+
+    address: str
+    unit: str
+    given: bool
+    before: float | None
+    after: float | None
+    status: tuple[str, str]
+
+    @property
+    def relative(self) -> float | None:
+        """The difference relative to what it was; None where there is nothing to divide, or by."""
+        if self.before is None or self.after is None or self.before == 0:
+            return None
+        return (self.after - self.before) / abs(self.before)
+
+
+@dataclass(frozen=True)
+class Change:
+    """Something else that is another one: an equation, a proof, a verdict; empty where there was none."""
+
+    name: str
+    before: str
+    after: str
+
+
+@dataclass(frozen=True)
+class Differences:
+    """What distinguishes two results.
+
+    Parameters
+    ----------
+    before, after : str
+        Their names.
+    same : int
+        How many numbers are the same double, or have the same error.
+    noise : int
+        How many differ by what rounding may do.
+    moved : tuple of Move
+        The others: what the user gives first, then scalars, then the rest in the order of the sheet.
+    method : tuple of Change
+        Columns that follow another equation, or have another unit or index set, and equations whose proof
+        came out otherwise.
+    added, removed : tuple of str
+        Columns and rows that only one of them has.
+    published : tuple of Change
+        Published values with another verdict.
+    """
+
+    before: str
+    after: str
+    same: int
+    noise: int
+    moved: tuple[Move, ...]
+    method: tuple[Change, ...]
+    added: tuple[str, ...]
+    removed: tuple[str, ...]
+    published: tuple[Change, ...]
+
+    @property
+    def any(self) -> bool:
+        """Whether they differ by more than rounding."""
+        return bool(self.moved or self.method or self.added or self.removed or self.published)
+
+
+def compare(
+    before: Result, after: Result, allowed: Mapping[str, Mapping[Index, float]] | None = None
+) -> Differences:
+    """Compare two results.
+
+    Two doubles count as the same within rounding if they differ by at most 8 eps of the larger: the limit
+    to which engines are held, for a number whose condition is 1. Who knows the conditions of the cells
+    says what is allowed.
+
+    Parameters
+    ----------
+    before, after : Result
+    allowed : mapping of column name to mapping of index to float, optional
+        How much each cell may differ, in SI; used where it is more.
+    """
+    same = noise = 0
+    moved: list[tuple[int, Move]] = []
+    for name, old in before.columns.items():
+        new = after.columns.get(name)
+        if new is None:
+            continue
+        for index, was in old.cells.items():
+            if index not in new.cells:
+                continue
+            now = new.cells[index]
+            if was == now:
+                same += 1
+            elif _within(was, now, (allowed or {}).get(name, {}).get(index, 0.0)):
+                noise += 1
+            else:
+                given = old.rule == new.rule == "given"
+                rank = 0 if given else 1 if not old.axis else 2
+                address = _address(name, index)
+                moved.append((rank, Move(address, new.unit, given, was[0], now[0], (was[1], now[1]))))
+    return Differences(
+        before.name,
+        after.name,
+        same,
+        noise,
+        tuple(move for _, move in sorted(moved, key=lambda item: item[0])),
+        (*_rules(before, after), *_changes(before.proofs, after.proofs)),
+        tuple(_only_in(after, before)),
+        tuple(_only_in(before, after)),
+        tuple(_changes(before.published, after.published)),
+    )
+
+
+def _within(was: tuple[float | None, str], now: tuple[float | None, str], allowed: float) -> bool:
+    if was[0] is None or now[0] is None or was[1] != now[1]:
+        return False
+    return abs(now[0] - was[0]) <= max(LIMIT * EPS * max(abs(was[0]), abs(now[0])), allowed)
+
+
+def _rules(before: Result, after: Result) -> list[Change]:
+    found = []
+    for name, old in before.columns.items():
+        new = after.columns.get(name)
+        if new is not None and _method(old) != _method(new):
+            found.append(Change(name, _method(old), _method(new)))
+    if before.workbook != after.workbook:
+        found.insert(0, Change("workbook", before.workbook, after.workbook))
+    return found
+
+
+def _method(column: Column) -> str:
+    over = f" on {column.axis}" if column.axis else ""
+    return f"{column.rule or 'not told'} [{column.unit}]{over}"
+
+
+def _changes(before: Mapping[str, str], after: Mapping[str, str]) -> list[Change]:
+    names = dict.fromkeys([*before, *after])
+    pairs = [Change(name, before.get(name, ""), after.get(name, "")) for name in names]
+    return [change for change in pairs if change.before != change.after]
+
+
+def _only_in(one: Result, other: Result) -> list[str]:
+    """Columns, and rows of columns that both have; one name for rows that all columns of an axis gain."""
+    found = []
+    for name, column in one.columns.items():
+        if name not in other.columns:
+            found.append(name)
+            continue
+        rows = [index for index in column.cells if index not in other.columns[name].cells]
+        found += [_address(name, index) for index in rows]
+    return found
+
+
+def _address(name: str, index: Sequence[int]) -> str:
+    return f"{name}[{'-'.join(map(str, index))}]" if index else name

@@ -1,0 +1,223 @@
+"""A workbook as cells: where every quantity stands, and the formula that is in each of its cells.
+
+The Excel engine makes it, the workbook view draws it; neither knows the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+
+from ..charts import Drawn
+from ..quantity import Bounds
+from ..sheet import Axis
+
+__all__ = [
+    "CHECKED",
+    "FIRST_ROW",
+    "SCALARS",
+    "STEPS",
+    "Block",
+    "Grid",
+    "Place",
+    "as_issued",
+    "checked",
+    "factors",
+    "letters",
+]
+
+FIRST_ROW = 7
+"""The row, from 0, of the first cell below the header of an axis' worksheet."""
+SCALARS = "report"
+"""The worksheet of the scalars."""
+CHECKED = 6
+"""Its column, from 0, of what is given where it is allowed."""
+STEPS = "steps"
+"""The worksheet of the steps to a scalar root."""
+
+
+def letters(column: int) -> str:
+    """The letters of a column that is counted from 0.
+
+    >>> letters(0), letters(25), letters(26), letters(16383)
+    ('A', 'Z', 'AA', 'XFD')
+    """
+    text = ""
+    column += 1
+    while column:
+        column, rest = divmod(column - 1, 26)
+        text = chr(ord("A") + rest) + text
+    return text
+
+
+def factors(scale: Fraction) -> tuple[str, str]:
+    """What turns a cell's number into SI, and SI into a cell's number, in whole numbers.
+
+    >>> factors(Fraction(1, 1000000)), factors(Fraction(127, 5000)), factors(Fraction(1))
+    (('/1000000', '*1000000'), ('*127/5000', '*5000/127'), ('', ''))
+    """
+    above, below = scale.numerator, scale.denominator
+    up, down = (f"*{above}" if above > 1 else ""), (f"/{below}" if below > 1 else "")
+    back = (f"*{below}" if below > 1 else "") + (f"/{above}" if above > 1 else "")
+    return up + down, back
+
+
+def checked(name: str) -> str:
+    """What the cells are called that hold a given column where it is allowed, and a code where it is not.
+
+    All formulas name these: what is pasted, filled down or put in by a program is seen by no other check.
+
+    >>> checked("x_p")
+    'x_p checked'
+    """
+    return f"{name} checked"
+
+
+def as_issued(name: str) -> str:
+    """What the cells are called that keep a given column as it was when the workbook was made."""
+    return f"{name} as issued"
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where the cells of a quantity stand, one below the other.
+
+    Parameters
+    ----------
+    worksheet : str
+    row, column : int
+        The first cell, from 0.
+    rows : int
+        How many cells.
+    scale : Fraction
+        The unit of the cells, in SI.
+    """
+
+    worksheet: str
+    row: int
+    column: int
+    rows: int = 1
+    scale: Fraction = Fraction(1)
+
+    def cell(self, row: int = 0, seen_from: str = "") -> str:
+        """The absolute address of a cell, with its worksheet unless it is seen from there."""
+        return f"{self._prefix(seen_from)}${letters(self.column)}${self.row + row + 1}"
+
+    def cells(self, rows: Iterable[int], seen_from: str = "") -> list[str]:
+        """The absolute addresses of many cells."""
+        column = f"{self._prefix(seen_from)}${letters(self.column)}$"
+        return [f"{column}{self.row + row + 1}" for row in rows]
+
+    def range(self, seen_from: str = "", first: int = 0, rows: int | None = None) -> str:
+        """The absolute address of all its cells, or of a stretch of them."""
+        column, last = letters(self.column), self.row + first + (self.rows if rows is None else rows)
+        return f"{self._prefix(seen_from)}${column}${self.row + first + 1}:${column}${last}"
+
+    def _prefix(self, seen_from: str) -> str:
+        return "" if seen_from == self.worksheet else f"{quoted(self.worksheet)}!"
+
+
+def quoted(worksheet: str) -> str:
+    """A worksheet's name as formulas write it; in quotes if it could be read as something else.
+
+    >>> quoted("tests"), quoted("C"), quoted("my pairs")
+    ('tests', "'C'", "'my pairs'")
+    """
+    plain = (
+        len(worksheet) > 3
+        and worksheet.isascii()
+        and worksheet.isalpha()
+        and worksheet.upper() not in ("TRUE", "FALSE")
+    )
+    return worksheet if plain else "'" + worksheet.replace("'", "''") + "'"
+
+
+@dataclass(frozen=True)
+class Block:
+    """The cells of one quantity.
+
+    Parameters
+    ----------
+    name : str
+        The column's name; for a cell on the way to a root the column's, a dot and its own.
+    kind : str
+        ``index`` (the numbers of rows), ``given``, ``checked`` (what is given, if it is allowed),
+        ``computed``, ``carried`` (another axis' cells, repeated for a sum), ``step`` (on the way to a
+        root), ``margin`` (how far inside of a limit another's cells lie) or ``drawn`` (for a chart).
+    title, meaning : str
+        What stands above or beside its cells.
+    place : Place
+    formulas : tuple of str
+        One a cell, beginning with ``=``; none if the cells hold values.
+    array : bool
+        Whether they must be entered as array formulas.
+    values : tuple of float, str or None
+        What the cells show, in the cells' unit: a number, an error's code, or None for an error of Excel's.
+    unit : str
+        The unit of its cells, as text.
+    source : str
+        The number of its equation, or where it was given.
+    of : str
+        The column whose root it is on the way to, or that it carries or checks.
+    step : int
+        Which step towards the root; 0 before the first.
+    kept : mapping of str to str
+        For each axis that is summed over, the array formula that counts its rows that have values.
+    bounds : Bounds
+        What a given cell may be, in its unit; a count no other than that of the rows there are.
+    guard : str
+        The formula, without its equals sign, that says whether the cell `{0}` is that.
+    """
+
+    name: str
+    kind: str
+    title: str
+    meaning: str
+    place: Place
+    formulas: tuple[str, ...] = ()
+    array: bool = False
+    values: tuple[float | str | None, ...] = ()
+    unit: str = "1"
+    source: str = ""
+    of: str = ""
+    step: int = 0
+    kept: Mapping[str, str] = field(default_factory=dict)
+    bounds: Bounds = field(default_factory=Bounds)
+    guard: str = ""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """All cells of the workbook that come from the sheet.
+
+    Parameters
+    ----------
+    blocks : tuple of Block
+        Worksheet by worksheet, from left to right or from top to bottom.
+    axes : mapping of worksheet name to Axis
+        Those that hold the rows of an axis.
+    drawn : Drawn or None
+    notes : mapping of worksheet name to Place
+        Free cells beside the given columns of an axis, for what is wrong with them.
+    """
+
+    blocks: tuple[Block, ...]
+    axes: Mapping[str, Axis]
+    drawn: Drawn | None = None
+    notes: Mapping[str, Place] = field(default_factory=dict)
+
+    @cached_property
+    def by_name(self) -> Mapping[str, Block]:
+        """Every block but those of rows' numbers by its name."""
+        return {block.name: block for block in self.blocks if block.kind != "index"}
+
+    def __getitem__(self, name: str) -> Block:
+        return self.by_name[name]
+
+    def on(self, worksheet: str, *kinds: str) -> tuple[Block, ...]:
+        """The blocks of a worksheet, all or some kinds of them."""
+        return tuple(
+            b for b in self.blocks if b.place.worksheet == worksheet and (not kinds or b.kind in kinds)
+        )

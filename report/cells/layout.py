@@ -1,0 +1,149 @@
+"""How many rows each index set has for given data, and which rows of other sets each of them names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from sympy import Expr, Indexed, Symbol
+
+from ..sheet import Axis, Column, PairAxis, RepeatAxis, Sheet, name_of
+
+__all__ = ["Layout", "Precedent", "how_large", "lay_out", "precedents"]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The rows of one axis.
+
+    Parameters
+    ----------
+    size : int
+        How many rows.
+    rows : mapping of Symbol to integer array (size,)
+        For each index that formulas may use, the row it names, from 0.
+    ordinals : mapping of Symbol to float array (size,)
+        Running numbers that formulas use as values, from 1.
+    labels : integer array (size, parts)
+        How each row is called: ``2`` for a test, ``1 2`` for a pair, ``1 2 7`` for a point.
+    """
+
+    size: int
+    rows: Mapping[Symbol, NDArray[np.intp]]
+    ordinals: Mapping[Symbol, NDArray[np.float64]]
+    labels: NDArray[np.int64]
+
+    @cached_property
+    def named(self) -> dict[str, NDArray[np.intp]]:
+        """The rows by the names of indices."""
+        return {index.name: rows for index, rows in self.rows.items()}
+
+    @cached_property
+    def numbered(self) -> dict[str, NDArray[np.float64]]:
+        """The running numbers by their names."""
+        return {symbol.name: number for symbol, number in self.ordinals.items()}
+
+
+def lay_out(
+    sheet: Sheet, labels: Mapping[str, Sequence[int]], counts: Mapping[str, int]
+) -> dict[str, Layout]:
+    """Lay out every axis of a sheet.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    labels : mapping of axis name to sequence of int
+        The rows' numbers of the axes that come with the data.
+    counts : mapping of column name to int
+        Values of the scalars that say how often an axis repeats another; 0 where that is not known.
+
+    Raises
+    ------
+    ValueError
+        A count is not a whole number of at least 0.
+    """
+    layouts: dict[str, Layout] = {}
+    for axis in sheet.axes:
+        if isinstance(axis, PairAxis):
+            layouts[axis.name] = _pairs(axis, layouts[axis.of.name])
+        elif isinstance(axis, RepeatAxis):
+            layouts[axis.name] = _repeats(axis, layouts[axis.of.name], counts[axis.count])
+        else:
+            layouts[axis.name] = _given(axis, labels[axis.name])
+    return layouts
+
+
+def how_large(sheet: Sheet, layouts: Mapping[str, Layout]) -> int:
+    """How many cells a sheet has."""
+    return sum(1 if column.axis is None else layouts[column.axis.name].size for column in sheet.columns)
+
+
+def _given(axis: Axis, labels: Sequence[int]) -> Layout:
+    own = np.arange(len(labels))
+    return Layout(len(labels), {axis.index: own}, {}, np.asarray(labels, dtype=np.int64).reshape(-1, 1))
+
+
+def _pairs(axis: PairAxis, parent: Layout) -> Layout:
+    first, second = np.triu_indices(parent.size, k=1)
+    rows = {axis.index: np.arange(first.size), axis.first: first, axis.second: second}
+    return Layout(first.size, rows, {}, np.hstack([parent.labels[first], parent.labels[second]]))
+
+
+def _repeats(axis: RepeatAxis, parent: Layout, count: int) -> Layout:
+    if count < 0 or count != int(count):
+        raise ValueError(f"{axis.count} must be a whole number of at least 0, not {count}")
+    which = np.repeat(np.arange(parent.size), int(count))
+    step = np.tile(np.arange(1, int(count) + 1), parent.size)
+    rows = {index: named[which] for index, named in parent.rows.items()}
+    rows[axis.index] = np.arange(which.size)
+    ordinals = {symbol: number[which] for symbol, number in parent.ordinals.items()}
+    ordinals[axis.step] = step.astype(np.float64)
+    return Layout(which.size, rows, ordinals, np.hstack([parent.labels[which], step.reshape(-1, 1)]))
+
+
+@dataclass(frozen=True)
+class Precedent:
+    """A cell that a rule names, with the rows it stands for.
+
+    Parameters
+    ----------
+    column : Column
+        The column it belongs to.
+    over : Axis or None
+        The axis it is summed over; None if a row names it itself.
+    rows : integer array or None
+        For each row of the naming column's axis, or of the summed one, the row it names. None: each
+        names the row of the same number, or the only one.
+    """
+
+    column: Column
+    over: Axis | None
+    rows: NDArray[np.intp] | None
+
+    def row(self, row: int) -> int:
+        """The row that a row names."""
+        if self.rows is not None:
+            return int(self.rows[row])
+        return 0 if self.column.axis is None else row
+
+    def take(self, array: NDArray[np.generic]) -> NDArray[np.generic]:
+        """From an array (..., rows) of the column, what each naming row names."""
+        return array if self.rows is None else array.take(self.rows, axis=-1)
+
+
+def precedents(sheet: Sheet, layouts: Mapping[str, Layout], column: Column) -> tuple[Precedent, ...]:
+    """Everything that a column's rule names; columns declared first come first."""
+    return tuple(
+        Precedent(sheet[name_of(r.cell)], r.over, rows_of(r.cell, r.over or column.axis, layouts))
+        for r in sheet.named(column)
+    )
+
+
+def rows_of(cell: Expr, axis: Axis | None, layouts: Mapping[str, Layout]) -> NDArray[np.intp] | None:
+    """The rows that a cell names for each row of an axis; None where they are the same, or a scalar's."""
+    if axis is None or not isinstance(cell, Indexed) or cell.indices[0] == axis.index:
+        return None
+    return layouts[axis.name].rows[cell.indices[0]]

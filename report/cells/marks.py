@@ -1,0 +1,179 @@
+"""Cells outside what is expected of them: they keep their values, carry a mark, and are counted.
+
+What a sheet declares as limits becomes columns of numbers: the margin of a cell is how far inside its limit
+it lies, negative outside. Every engine computes margins as it does other columns, and none knows of marks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import chain, count
+
+import numpy as np
+from numpy.typing import NDArray
+from sympy import And, Basic, Expr, Ge, Gt, Le, Lt, Max, Min, Or, Symbol
+
+from ...derivations.equation import Equation, Kind
+from ..column import within
+from ..quantity import Bounds
+from ..sheet import Column, Formula, Limit, Sheet, SheetError
+from .values import Status, Values
+
+__all__ = ["Count", "Margin", "Marks", "margins", "with_margins"]
+
+
+@dataclass(frozen=True)
+class Margin:
+    """One limit of a column, and the column that says how far inside of it each row lies.
+
+    Parameters
+    ----------
+    of : Column
+        Whose cells carry the mark.
+    limit : Limit
+    column : Column
+        In SI units of what the limit compares; negative outside.
+    """
+
+    of: Column
+    limit: Limit
+    column: Column
+
+
+@dataclass(frozen=True)
+class Count:
+    """How many rows lie outside of a limit, of those for which that is known."""
+
+    margin: Margin
+    number: int
+    size: int
+
+    @property
+    def rows(self) -> str:
+        """What the rows are: ``pairs``."""
+        axis = self.margin.of.axis
+        return "cells" if axis is None else axis.name
+
+    @property
+    def what(self) -> str:
+        """``pairs outside (4)``."""
+        return self.margin.limit.rows(self.rows)
+
+    @property
+    def inside(self) -> str:
+        """How many lie inside: ``7 of 10 pairs``."""
+        return f"{self.size - self.number} of {self.size} {self.rows}"
+
+    @property
+    def said(self) -> str:
+        """``3 of 10 pairs outside (4)``."""
+        return f"{self.number} of {self.size} {self.what}"
+
+
+def margins(sheet: Sheet) -> tuple[Margin, ...]:
+    """The margins of all limits of a sheet, in the order in which its columns are computed.
+
+    Raises
+    ------
+    SheetError
+        A limit is no comparison, or several joined by and or or.
+    """
+    found: list[Margin] = []
+    taken = set(sheet.by_name)
+    for column in sheet.order:
+        for limit in column.limits:
+            names = chain([f"{column.name}_margin"], (f"{column.name}_margin_{n}" for n in count(2)))
+            name = next(name for name in names if name not in taken)
+            taken.add(name)
+            says = f"{limit.mark} where this is negative"
+            rule = Formula(Equation("", (Symbol(name), _of(limit, column)), says, Kind.DEFINITION, says))
+            own = Column(name, column.axis, rule, meaning=says, positive=False)
+            found.append(Margin(column, limit, own))
+    return tuple(found)
+
+
+def with_margins(sheet: Sheet) -> Sheet:
+    """The sheet with its margins behind its columns."""
+    return Sheet((*sheet.columns, *(margin.column for margin in margins(sheet))))
+
+
+def _of(limit: Limit, column: Column) -> Expr:
+    """How far inside of a limit a row lies."""
+    if not isinstance(limit.inside, Bounds):
+        return _margin(limit.inside, column)
+    datum = Symbol(column.name, real=True)
+    found: Expr = _margin(within(datum, limit.inside), column).xreplace({datum: column.cell})
+    return found
+
+
+def _margin(inside: Basic, column: Column) -> Expr:
+    """What is negative where a relation does not hold."""
+    match inside:
+        case And():
+            return Min(*(_margin(part, column) for part in inside.args))
+        case Or():
+            return Max(*(_margin(part, column) for part in inside.args))
+        case Le() | Lt():
+            return inside.rhs - inside.lhs
+        case Ge() | Gt():
+            return inside.lhs - inside.rhs
+    raise SheetError(f"{column.name}: a limit compares by < or >, it cannot be {inside}")
+
+
+@dataclass(frozen=True)
+class Marks:
+    """Which cells lie outside of what limits.
+
+    Parameters
+    ----------
+    values : Values
+        Of the sheet with its margins, without a batch.
+    margins : tuple of Margin
+    """
+
+    values: Values
+    margins: tuple[Margin, ...]
+
+    def outside(self, margin: Margin) -> NDArray[np.bool_]:
+        """Which rows lie outside (rows,)."""
+        found: NDArray[np.bool_] = self.values.value[margin.column.name] < 0
+        return found
+
+    def count(self, margin: Margin) -> Count:
+        """How many do."""
+        known = self.values.status[margin.column.name] == Status.OK
+        return Count(margin, int(self.outside(margin).sum()), int(known.sum()))
+
+    def limiting(self, name: str) -> tuple[Margin, ...]:
+        """The margins of a column's limits."""
+        return tuple(self._by_name.get(name, ()))
+
+    def limited(self, name: str) -> Count:
+        """How many cells of a column lie outside of the first statement that limits it."""
+        return next(self.count(margin) for margin in self._by_name[name] if margin.limit.source)
+
+    def of(self, name: str) -> list[str]:
+        """The mark of every cell of a column; empty where it has none, or no value."""
+        marks: list[list[str]] = [[] for _ in self.values.value[name]]
+        for margin in self._by_name.get(name, ()):
+            has = self.values.status[name] == Status.OK
+            for row in np.flatnonzero(self.outside(margin) & has).tolist():
+                marks[row].append(margin.limit.mark)
+        return ["; ".join(own) for own in marks]
+
+    def behind(self, column: Column) -> Iterator[Count]:
+        """For a scalar, how many of the rows that it rests on lie outside, limit by limit."""
+        if column.axis is None:
+            names = {ancestor.name for ancestor in self.values.sheet.ancestors(column)}
+            for margin in self.margins:
+                if margin.of.axis is not None and margin.of.name in names:
+                    yield self.count(margin)
+
+    @cached_property
+    def _by_name(self) -> dict[str, list[Margin]]:
+        found: dict[str, list[Margin]] = {}
+        for margin in self.margins:
+            found.setdefault(margin.of.name, []).append(margin)
+        return found

@@ -1,0 +1,138 @@
+"""Checks that every formula is dimensionally sound before any code is made of it.
+
+A dimension maps base units to exponents, and an exponent may be an expression: the coefficient of a power
+law F = C x^alpha has the unit N/m^alpha, whatever alpha turns out to be.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from sympy import Basic, Expr, Indexed, sstr
+
+from ...derivations import dimensions
+from ...derivations.dimensions import PURE, Dimension, DimensionError, Dimensions, text_of
+from ...derivations.vocabulary import NO_WORDS
+from ..quantity import Bounds
+from ..sheet import Column, Formula, Given, Root, Sheet, SheetError, name_of
+
+__all__ = ["Dimension", "UnitError", "check", "dimension_of_unit"]
+
+
+class UnitError(SheetError):
+    """A formula adds, compares or raises what cannot be."""
+
+
+def dimension_of_unit(text: str, exponents: Mapping[str, Expr] | None = None) -> Dimension:
+    """Read a unit such as ``kg/m^3``, ``m/s^2`` or ``N/m^alpha``.
+
+    Parameters
+    ----------
+    text : str
+        Unit names of SI, multiplied by ``*`` and divided by ``/``, raised by ``^`` to a number or a name.
+    exponents : mapping of str to Expr
+        What the names in exponents stand for.
+
+    Raises
+    ------
+    UnitError
+        Names the unit or the exponent that is not known.
+
+    Examples
+    --------
+    >>> dimension_of_unit("N*s/m") == dimension_of_unit("kg/s")
+    True
+    """
+    try:
+        return dimensions.dimension_of_unit(text, exponents)
+    except DimensionError as problem:
+        raise UnitError(str(problem)) from None
+
+
+class _Checker(Dimensions):
+    """Finds the dimension of an expression; remembers which column it works for, for its messages."""
+
+    def __init__(self, sheet: Sheet, column: Column) -> None:
+        super().__init__(NO_WORDS)  # the columns say what their cells are
+        self.sheet, self.column = sheet, column
+
+    def fail(self, expression: Basic, problem: str) -> UnitError:
+        """The complaint names the column and its equation."""
+        return UnitError(f"{self.column.name} {self.column.source}: {problem} in {sstr(expression)}")
+
+    def of_cell(self, cell: Expr) -> Dimension:
+        """The dimension of a cell of the sheet."""
+        if isinstance(self.column.rule, Root) and cell == self.column.rule.unknown:
+            return self.of_unknown()
+        name = name_of(cell)
+        if name not in self.sheet:
+            return PURE  # a running number or a size
+        column = self.sheet[name]
+        index = cell.indices[0] if isinstance(cell, Indexed) else None
+        return dimension_of_unit(column.unit, exponents(self.sheet, column, index))
+
+    def of_unknown(self) -> Dimension:
+        """The unknown of a root is a pure number unless it is the cell's value itself."""
+        rule = self.column.rule
+        assert isinstance(rule, Root)
+        own = dimension_of_unit(self.column.unit, exponents(self.sheet, self.column, None))
+        return own if rule.value == rule.unknown else PURE
+
+
+def exponents(sheet: Sheet, column: Column, index: Expr | None) -> dict[str, Expr]:
+    """What names in the exponent of a column's unit stand for: cells of the same row."""
+    found: dict[str, Expr] = {}
+    for name in re.findall(r"\^([A-Za-z_]\w*)", column.unit):
+        if name not in sheet:
+            raise UnitError(f"its unit {column.unit!r} names {name!r}, which is no column")
+        other = sheet[name]
+        row = index if index is not None else (None if column.axis is None else column.axis.index)
+        found[name] = other.symbol if other.axis is None else other[row]
+    return found
+
+
+def check(sheet: Sheet) -> None:
+    """Check every formula, root and condition of a sheet.
+
+    Raises
+    ------
+    UnitError
+        Names the column, its equation, the expression and both dimensions.
+    """
+    for column in sheet.columns:
+        checker = _Checker(sheet, column)
+        try:
+            own = dimension_of_unit(column.unit, exponents(sheet, column, None))
+        except UnitError as problem:
+            raise UnitError(f"{column.name}: {problem}") from None
+        rule = column.rule
+        if isinstance(rule, Formula):
+            _expect(checker, rule.expression, own)
+        elif isinstance(rule, Root):
+            checker.of(rule.expression)
+            _expect(checker, rule.value, own)
+            for place in (rule.low, rule.high, rule.start, *rule.turning):
+                if place != 0 and place.is_finite is not False:
+                    _expect(checker, place, checker.of_unknown())
+            for end in (rule.sign_low, rule.sign_high):
+                if end is not None:
+                    checker.of(end)
+        elif not isinstance(rule, Given):
+            raise SheetError(f"{column.name}: unknown kind of rule {rule!r}")
+        for condition, _ in column.requires:
+            checker.relation(condition)
+        for limit in column.limits:
+            if not isinstance(limit.inside, Bounds):
+                checker.relation(limit.inside)
+
+
+def _expect(checker: _Checker, expression: Expr, own: Dimension) -> None:
+    if expression == 0:
+        return
+    found = checker.of(expression)
+    if dict(found) != dict(own):
+        raise checker.fail(
+            expression,
+            f"the unit {checker.column.unit} is {text_of(own)}, but the formula gives {text_of(found)}:",
+        )

@@ -1,0 +1,317 @@
+"""Finished values: a number or an error code for every cell, and where an error came from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import IntEnum
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..quantity import Bounds
+from ..sheet import Column, Formula, Root, Sheet
+from .layout import Layout, Precedent, precedents
+
+__all__ = ["CODES", "Cell", "Status", "Values", "how_many", "inherited", "rows_kept"]
+
+Codes = NDArray[np.uint8]
+Mask = NDArray[np.bool_]
+
+
+class Status(IntEnum):
+    """What a cell holds; everything but OK is an error value."""
+
+    OK = 0
+    INPUT = 1
+    DOMAIN = 2
+    NOROOT = 3
+    TWOROOTS = 4
+    OVERFLOW = 5
+    UNDECIDED = 6
+
+    @property
+    def code(self) -> str:
+        """The code a reader sees."""
+        return CODES[self]
+
+
+CODES = {
+    Status.OK: "ok",
+    Status.INPUT: "#INPUT!",
+    Status.DOMAIN: "#DOMAIN!",
+    Status.NOROOT: "#NOROOT!",
+    Status.TWOROOTS: "#TWOROOTS!",
+    Status.OVERFLOW: "#OVERFLOW!",
+    Status.UNDECIDED: "#UNDECIDED!",
+}
+
+
+BEYOND = "it, or a step towards it, is above 1.8e308, or positive and below 2.2e-308"
+"""What ``#OVERFLOW!`` means, for the reader."""
+
+UNCERTAIN = "it may touch zero, jump, or cross it too often"
+"""What ``#UNDECIDED!`` means, for the reader."""
+
+# --- how errors spread: the same for every engine ---------------------------------------------------------
+
+
+def rows_kept(
+    named: Sequence[Precedent], layouts: Mapping[str, Layout], status: Mapping[str, Codes]
+) -> dict[str, Mask]:
+    """For every axis that a column sums over, the rows whose cells all have values.
+
+    A pair without a root must not take the mean of all others with it. The rows that are left out are
+    counted, and every view says so.
+
+    Parameters
+    ----------
+    named : sequence of Precedent
+        What the column names.
+    layouts : mapping of axis name to Layout
+    status : mapping of column name to integer array (..., rows)
+
+    Returns
+    -------
+    mapping of axis name to boolean array (..., rows)
+    """
+    kept: dict[str, Mask] = {}
+    for precedent in named:
+        if precedent.over is not None:
+            axis = precedent.over.name
+            mask = kept.get(axis, np.ones(layouts[axis].size, dtype=bool))
+            kept[axis] = mask & (precedent.take(status[precedent.column.name]) == Status.OK)
+    return kept
+
+
+def how_many(kept: Mapping[str, Mask]) -> dict[str, int]:
+    """For every axis of which sums leave rows out, how many they run over; without a batch.
+
+    Parameters
+    ----------
+    kept : mapping of axis name to boolean array (..., rows)
+        From :func:`rows_kept`.
+    """
+    return {axis: int(mask.sum()) for axis, mask in kept.items() if mask.ndim == 1 and not mask.all()}
+
+
+def inherited(
+    named: Sequence[Precedent], kept: Mapping[str, Mask], status: Mapping[str, Codes], size: int
+) -> Codes:
+    """The first error among a column's precedents; a sum has one only if none of its rows has a value.
+
+    Parameters
+    ----------
+    named, kept, status
+        As for, and from, :func:`rows_kept`.
+    size : int
+        How many rows the column has.
+
+    Returns
+    -------
+    integer array (..., rows)
+        What a sum of no rows at all becomes is ``#DOMAIN!``.
+    """
+    found: Codes = np.zeros(size, dtype=np.uint8)
+    for precedent in named:
+        theirs = precedent.take(status[precedent.column.name])
+        if precedent.over is not None:
+            mask = kept[precedent.over.name]
+            # Its first row tells why: some cell of it is in error.
+            first = theirs[..., :1] if mask.shape[-1] else np.full((*mask.shape[:-1], 1), Status.DOMAIN)
+            theirs = np.where(mask.any(axis=-1, keepdims=True), Status.OK, first)
+        found = np.where(found == Status.OK, theirs, found).astype(np.uint8)
+    return found
+
+
+# --- cells ------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One cell: its address, and its value or its error with the first culprit."""
+
+    name: str
+    label: tuple[int, ...]
+    value: float | None
+    status: Status
+    culprit: Cell | None = None
+    """The cell where the error began; None if this is it, or if there is no error."""
+    why: str = ""
+
+    @property
+    def address(self) -> str:
+        """``alpha[1-2]``, ``x_m[3]``, ``alpha_mean``."""
+        return f"{self.name}[{'-'.join(map(str, self.label))}]" if self.label else self.name
+
+    @property
+    def reason(self) -> str:
+        """A sentence that says why there is no value."""
+        if self.status is Status.OK:
+            return ""
+        if self.culprit is None:
+            return f"{self.status.code} {self.address}: {self.why}"
+        return f"{self.status.code} {self.address} needs {self.culprit.address}: {self.culprit.why}"
+
+
+@dataclass(frozen=True)
+class Values:
+    """Values and statuses of every column.
+
+    Arrays have the dimensions (..., rows), the batch first; a scalar has one row. A column that rests on
+    nothing with a batch has none. Cells, their labels and reasons are of values without a batch.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    layouts : mapping of axis name to Layout
+    value : mapping of column name to float array (..., rows)
+        SI; NaN where the status is not OK.
+    status : mapping of column name to integer array (..., rows)
+        :class:`Status`.
+    roots : mapping of column name to mapping of row to tuple of float
+        For ambiguous cells, all the roots that were found; for undecided ones, the ends of the part of the
+        unknown's interval where it was not decided. Without a batch.
+    counted : mapping of column name to mapping of axis name to int
+        How many rows the sums of a column ran over, where some were left out; without a batch.
+    broken : mapping of column name to integer array (..., rows)
+        Which of the column's conditions a row breaks first, from 1; 0 for none.
+    """
+
+    sheet: Sheet
+    layouts: Mapping[str, Layout]
+    value: Mapping[str, NDArray[np.float64]]
+    status: Mapping[str, NDArray[np.uint8]]
+    roots: Mapping[str, Mapping[int, tuple[float, ...]]] = field(default_factory=dict)
+    counted: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    broken: Mapping[str, NDArray[np.uint8]] = field(default_factory=dict)
+
+    def labels(self, column: Column) -> list[tuple[int, ...]]:
+        """How the rows of a column are called; one empty label for a scalar."""
+        return [()] if column.axis is None else self._labels(column.axis.name)
+
+    def row(self, column: Column, label: tuple[int, ...]) -> int:
+        """The row of a label.
+
+        Raises
+        ------
+        KeyError
+            There is no such row.
+        """
+        if column.axis is None:
+            if label:
+                raise KeyError(label)
+            return 0
+        known = self._rows_by_label
+        if column.axis.name not in known:
+            known[column.axis.name] = {own: row for row, own in enumerate(self._labels(column.axis.name))}
+        return known[column.axis.name][label]
+
+    def cells(self, name: str) -> Iterator[Cell]:
+        """All cells of a column, in the order of its rows."""
+        column = self.sheet[name]
+        for row, label in enumerate(self.labels(column)):
+            yield self._cell(column, row, label)
+
+    def cell(self, name: str, label: tuple[int, ...] = ()) -> Cell:
+        """One cell by its label."""
+        column = self.sheet[name]
+        return self._cell(column, self.row(column, label), label)
+
+    def scalar(self, name: str) -> float:
+        """The value of a scalar; NaN if it has none."""
+        return float(self.value[name][..., 0])
+
+    def errors(self) -> Iterator[Cell]:
+        """All cells where an error begins."""
+        for column in self.sheet.order:
+            for row in np.flatnonzero(self.status[column.name]):
+                cell = self._cell(column, int(row), self.labels(column)[row])
+                if cell.culprit is None:
+                    yield cell
+
+    # --- what is looked up again and again -------------------------------------------------------------
+
+    @cached_property
+    def _labels_by_axis(self) -> dict[str, list[tuple[int, ...]]]:
+        return {}
+
+    @cached_property
+    def _rows_by_label(self) -> dict[str, dict[tuple[int, ...], int]]:
+        return {}
+
+    @cached_property
+    def _precedents(self) -> dict[str, tuple[tuple[Precedent, ...], dict[str, Mask]]]:
+        return {}
+
+    def _labels(self, axis: str) -> list[tuple[int, ...]]:
+        known = self._labels_by_axis
+        if axis not in known:
+            known[axis] = [tuple(label) for label in self.layouts[axis].labels.tolist()]
+        return known[axis]
+
+    def _named(self, column: Column) -> tuple[tuple[Precedent, ...], dict[str, Mask]]:
+        known = self._precedents
+        if column.name not in known:
+            named = precedents(self.sheet, self.layouts, column)
+            known[column.name] = named, rows_kept(named, self.layouts, self.status)
+        return known[column.name]
+
+    # --- why a cell has no value -----------------------------------------------------------------------
+
+    def _cell(self, column: Column, row: int, label: tuple[int, ...]) -> Cell:
+        status = Status(int(self.status[column.name][row]))
+        if status is Status.OK:
+            return Cell(column.name, label, float(self.value[column.name][row]), status)
+        culprit = self._culprit(column, row)
+        if culprit is not None:
+            return Cell(column.name, label, None, status, culprit)
+        return Cell(column.name, label, None, status, None, self._why(column, row, status))
+
+    def _culprit(self, column: Column, row: int) -> Cell | None:
+        """Follow the first precedent that is in error to where the error began."""
+        named, kept = self._named(column)
+        for precedent in named:
+            if precedent.over is not None:
+                mask = kept[precedent.over.name]
+                if mask.any() or not mask.size:
+                    continue  # a sum is in error only if no row of its axis has a value
+            other, its_row = precedent.column, precedent.row(0 if precedent.over is not None else row)
+            if self.status[other.name][its_row] != Status.OK:
+                return self._culprit(other, its_row) or self._cell(
+                    other, its_row, self.labels(other)[its_row]
+                )
+        return None
+
+    def _why(self, column: Column, row: int, status: Status) -> str:
+        rule = column.rule
+        if status is Status.INPUT:
+            allowed = self.sheet.bounds[column.name]
+            told = "" if allowed == Bounds() else f"; it must be {allowed.said(column.unit)}"
+            return f"the datum is missing or invalid{told}"
+        if isinstance(rule, Root) and status is Status.NOROOT:
+            return f"{column.source} has no root here: {rule.none}"
+        if isinstance(rule, Root) and status is Status.TWOROOTS:
+            unit = "" if column.unit == "1" else f" {column.unit}"
+            found = " and ".join(f"{root:.6g}{unit}" for root in self.roots.get(column.name, {}).get(row, ()))
+            return f"{column.source} has more than one root here: {found or rule.two}" + (
+                f" ({rule.two})" if found else ""
+            )
+        if isinstance(rule, Root) and status is Status.UNDECIDED:
+            unit = "" if column.unit == "1" or rule.value != rule.unknown else f" {column.unit}"
+            ends = dict.fromkeys(f"{end:.6g}{unit}" for end in self.roots.get(column.name, {}).get(row, ()))
+            where = f" near {rule.unknown} = {' to '.join(ends)}" if ends else ""
+            return f"the roots of {column.source} cannot be counted{where}: {UNCERTAIN}"
+        if status is Status.OVERFLOW:
+            return f"{column.source} has a value here that no double holds: {BEYOND}"
+        outside = f"outside the domain of {column.source}"
+        broken = self.broken.get(column.name)
+        if broken is not None and broken[row]:
+            return f"{outside}: {column.requires[broken[row] - 1][1]}"
+        empty = [axis for axis, mask in self._named(column)[1].items() if not mask.size]
+        if empty:
+            return f"{outside}: {empty[0]} has no rows"
+        if isinstance(rule, Formula):
+            return f"{outside}: it gives no {'positive' if column.positive else 'finite'} number here"
+        return outside

@@ -1,0 +1,252 @@
+"""Comma-separated tables (RFC 4180) with the place of every field, which Python's csv does not keep."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..messages.errors import close, listing, suggest
+from .number_text import NumberError, read_number
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from ..messages.errors import Findings, Location
+    from .sources import Source
+
+__all__ = ["Field", "Row", "Table", "match_columns", "read_table"]
+
+_BLANK = " \t\u00a0"
+_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "vertical bars"}
+_MOST_COLUMNS = 200
+_STOP = re.compile(r"[,\r\n]")
+_QUOTE = re.compile(r'"("?)')
+
+
+class Field(NamedTuple):
+    """A field without the blanks and quotes around it, and where it begins.
+
+    `exact` tells whether each character of it is one character of the file (a doubled quote is two); from
+    `begin` to `end` is all that stands between its separators.
+    """
+
+    text: str
+    offset: int
+    length: int
+    exact: bool = True
+    begin: int = 0
+    end: int = 0
+
+
+class Row(NamedTuple):
+    """The fields of a line; `sound` is false if the line itself had a finding."""
+
+    fields: list[Field]
+    offset: int
+    sound: bool = True
+
+
+class Table(NamedTuple):
+    """A table as text: a first line of names, and rows that are as wide as it."""
+
+    source: Source
+    header: list[Field]
+    rows: list[Row]
+    total: int
+    """How many rows there are, with those that had findings and are left out of `rows`."""
+
+    def at(self, field: Field, start: int = 0, length: int | None = None) -> Location:
+        """Return the place of a field, or of a part of it."""
+        if length is None or not field.exact:
+            return self.source.at(field.offset, field.length)
+        return self.source.at(field.offset + start, length)
+
+    def end_of_header(self) -> Location:
+        """Return the place after the last name, where one may be missing."""
+        return self.source.at(self.source.line_end(self.header[-1].offset + self.header[-1].length))
+
+
+def read_table(source: Source, known: Sequence[str], findings: Findings) -> Table | None:
+    """Split a file into fields; None if it is no table at all.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    known : sequence of str
+        The names a first line may hold, for the message when it holds none.
+    findings : Findings
+        Rows with a wrong number of fields, and quotes that do not close.
+    """
+    rows = _rows(source, findings)
+    while rows and _is_blank(rows[-1]):
+        rows.pop()
+    if not rows:
+        findings.add("LS111", source.at(0), allowed=f"a first line with {listing(known)}")
+        return None
+    first = next(place for place, row in enumerate(rows) if not _is_blank(row))
+    if first:
+        findings.add("LS315", source.at(rows[0].offset))
+        rows = rows[first:]
+    if not rows[0].sound:
+        return None
+    header, body = rows[0].fields, rows[1:]
+    for separator, name in _SEPARATORS.items():
+        if len(header) == 1 and separator in header[0].text:
+            start = source.text.index(separator, header[0].offset)
+            findings.add("LS308", source.at(start), text=name)
+            return None
+    if len(header) > _MOST_COLUMNS:
+        findings.add("LS316", source.at(header[0].offset), found=len(header), wanted=_MOST_COLUMNS)
+        return None
+    if all(_is_number(field.text) for field in header):
+        findings.add("LS309", source.at(header[0].offset, header[0].length), known=listing(known))
+        return None
+    blank = [row for row in body if _is_blank(row)]
+    if blank and not first:
+        findings.add("LS315", source.at(blank[0].offset))
+    full = [row for row in body if not _is_blank(row)]
+    wide = [row for row in full if row.sound and len(row.fields) != len(header)]
+    _report_widths(source, wide, len(header), findings)
+    good = [row for row in full if row.sound and len(row.fields) == len(header)]
+    return Table(source, header, good, len(full))
+
+
+def _report_widths(source: Source, wide: list[Row], wanted: int, findings: Findings) -> None:
+    """Report rows of another width: one finding for all that decimal commas explain, one for each other."""
+    commas = [row for row in wide if _looks_comma(row, wanted)]
+    for row in commas[:1]:
+        at = source.at(row.offset, source.line_end(row.offset) - row.offset)
+        findings.add("LS307", at, found=len(row.fields), wanted=wanted, count=len(commas))
+    for row in wide:
+        if _looks_comma(row, wanted):
+            continue
+        if len(row.fields) > wanted:
+            at = source.at(row.fields[wanted].offset, row.fields[wanted].length)
+        else:
+            at = source.at(source.line_end(row.fields[-1].offset))
+        more = "a comma separates fields: write 2.334, not 2,334" if len(row.fields) > wanted else ""
+        findings.add("LS306", at, found=len(row.fields), wanted=wanted, suggestion=more)
+
+
+def _looks_comma(row: Row, wanted: int) -> bool:
+    digits = [field.text.lstrip("+-").isdigit() for field in row.fields]
+    return wanted < len(row.fields) <= 2 * wanted and all(digits)
+
+
+def _is_blank(row: Row) -> bool:
+    return row.sound and not any(field.text for field in row.fields)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        read_number(text)
+    except NumberError as error:
+        return error.code == "LS402"
+    return True
+
+
+def _rows(source: Source, findings: Findings) -> list[Row]:
+    rows = []
+    position = 0
+    text = source.text
+    while position < len(text):
+        end = source.line_end(position)
+        if '"' in text[position:end]:
+            row, end = _quoted(source, position, findings)
+        else:
+            row, offset = Row([], position), position
+            for part in text[position:end].split(","):
+                row.fields.append(_field(part, offset))
+                offset += len(part) + 1
+        rows.append(row)
+        position = source.next_line(end)
+    return rows
+
+
+def _field(part: str, offset: int) -> Field:
+    stripped = part.strip(_BLANK)
+    shift = len(part) - len(part.lstrip(_BLANK)) if stripped else 0
+    return Field(stripped, offset + shift, max(len(stripped), 1), True, offset, offset + len(part))
+
+
+def _quoted(source: Source, position: int, findings: Findings) -> tuple[Row, int]:
+    """Read a line that has quotes; return it and where it ends, which may be lines later."""
+    text, start = source.text, position
+    fields: list[Field] = []
+    sound = True
+    while True:
+        begin = position
+        while text[begin : begin + 1] in {" ", "\t", "\u00a0"}:
+            begin += 1
+        if text[begin : begin + 1] == '"':
+            closing = _QUOTE.search(text, begin + 1)
+            while closing is not None and closing[1]:
+                closing = _QUOTE.search(text, closing.end())
+            if closing is None:
+                findings.add("LS313", source.at(begin))
+                return Row(fields, start, False), len(text)
+            content = text[begin + 1 : closing.start()]
+            stop = _stop(text, closing.end())
+            field = _field(content.replace('""', '"'), begin + 1)._replace(begin=position, end=stop)
+            if '"' in content:
+                field = field._replace(offset=begin, length=closing.end() - begin, exact=False)
+            fields.append(field)
+            stray = bool(text[closing.end() : stop].strip(_BLANK))
+        else:
+            stop = _stop(text, begin)
+            fields.append(_field(text[position:stop], position))
+            stray = '"' in fields[-1].text
+        if stray:
+            findings.add("LS314", source.at(begin, stop - begin), text=text[begin:stop].strip(_BLANK))
+            sound = False
+        if text[stop : stop + 1] != ",":
+            return Row(fields, start, sound), stop
+        position = stop + 1
+
+
+def _stop(text: str, position: int) -> int:
+    stop = _STOP.search(text, position)
+    return stop.start() if stop else len(text)
+
+
+def match_columns(
+    table: Table,
+    names: Sequence[str],
+    required: Mapping[str, str],
+    optional: Sequence[str],
+    findings: Findings,
+) -> dict[str, int]:
+    """Say where each column is, and report those that are missing, doubled or unknown.
+
+    Parameters
+    ----------
+    table : Table
+        The table.
+    names : sequence of str
+        The name in each field of its first line; empty where a finding was already made.
+    required : mapping of str to str
+        The columns that must be there, with an example of how to write each.
+    optional : sequence of str
+        Those that may be there.
+    findings : Findings
+        Where findings go.
+    """
+    known = [*required, *optional]
+    places: dict[str, int] = {}
+    meant: Counter[str | None] = Counter()
+    for place, (name, field) in enumerate(zip(names, table.header, strict=True)):
+        if name in places:
+            findings.add("LS302", table.at(field), text=name)
+        elif name in known:
+            places[name] = place
+        elif name or not field.text:
+            missing = [word for word in known if word not in names]
+            meant[close(name, missing)] += 1  # a misspelt column is one problem, not two
+            suggestion = suggest(name, missing) or suggest(name, known)
+            findings.add("LS303", table.at(field), text=name, known=listing(known), suggestion=suggestion)
+    for name, example in required.items():
+        if name not in places and not meant[name]:
+            findings.add("LS301", table.end_of_header(), text=name, example=example)
+    return places

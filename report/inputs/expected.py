@@ -1,0 +1,87 @@
+"""What a user expects to be odd, and why: the section ``[expected]`` of report.toml."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+from ..messages.errors import Findings, Location, listing, suggest
+
+__all__ = ["EXAMPLE", "Expectation", "check_expected"]
+
+EXAMPLE = '"alpha[1-2]" = "both drops from one height"'
+"""A line of the section."""
+
+_ADDRESS = re.compile(
+    r"test +(?P<test>[0-9]{1,9})|(?P<cell>[^\[\]]*)(?:\[(?P<index>[0-9]{1,9}(?:-[0-9]{1,9})*)\])?"
+)
+
+
+@dataclass(frozen=True)
+class Expectation:
+    """A cell that is expected to be odd, or a test whose cells are.
+
+    Parameters
+    ----------
+    address : str
+        As it was written: ``alpha[1-2]``, ``alpha_mean``, ``test 3``.
+    reason : str
+    at : Location
+        Where it was written.
+    """
+
+    address: str
+    reason: str
+    at: Location
+
+    @property
+    def cell(self) -> tuple[str, tuple[int, ...]]:
+        """Column and index of the cell; no column for a test. What is no address is a cell that there is not.
+
+        >>> Expectation("alpha[1-2]", "one height", Location()).cell
+        ('alpha', (1, 2))
+        >>> Expectation("test 3", "heard twice", Location()).cell
+        ('', (3,))
+        """
+        found = _ADDRESS.fullmatch(self.address)
+        if found is None:
+            return self.address, ()
+        index = found["test"] or found["index"] or ""
+        return found["cell"] or "", tuple(map(int, filter(None, index.split("-"))))
+
+    def covers(self, cell: str, index: tuple[int, ...], tests: Collection[int]) -> bool:
+        """Whether it speaks of a cell, by itself or by one of the tests that it rests on."""
+        name, own = self.cell
+        return own[0] in tests if not name else (name, own) == (cell, index)
+
+
+def check_expected(
+    expected: Sequence[Expectation],
+    tests: Sequence[int],
+    cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
+    findings: Findings,
+) -> None:
+    """Find what is expected of cells and tests that there are not.
+
+    Parameters
+    ----------
+    expected : sequence of Expectation
+    tests : sequence of int
+        The numbers of the tests that there are.
+    cells : mapping of str to (str, collection of tuple of int)
+        For each cell its SI unit and the indices that it has: ``{()}`` for a scalar.
+    findings : Findings
+        Where unknown cells, indices and tests go.
+    """
+    called = [f"test {test}" for test in tests]
+    for each in expected:
+        name, index = each.cell
+        if (name or not index) and name not in cells:
+            known, suggestion = listing([*called[:1], *cells], most=24), suggest(name, [*called, *cells])
+            findings.add("LS505", each.at, text=each.address, known=known, suggestion=suggestion)
+            continue
+        indices = cells[name][1] if name else {(test,) for test in tests}
+        if index not in indices:
+            known = listing("-".join(map(str, one)) or "no index" for one in sorted(indices))
+            findings.add("LS506", each.at, name=name or "test", text="-".join(map(str, index)), known=known)

@@ -1,0 +1,527 @@
+"""From a report folder to typed inputs: everything that is foreign is checked here, and all of it at once."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from ..messages.errors import (
+    Findings,
+    ForeignCode,
+    Location,
+    LoopsheetError,
+    UnknownWorkbook,
+    close,
+    listing,
+    suggest,
+)
+from .expected import EXAMPLE, Expectation, check_expected
+from .measurements import MODES, LeftOut, Measurements, read_measurements
+from .number_text import NumberError, read_printed
+from .parameters import read_parameters, wrong_type
+from .published import PublishedValue, check_published, read_published
+from .sources import Source, open_source, read_bytes
+from .tomlfile import TomlFile, read_toml
+from .unit_text import parse_unit
+
+if TYPE_CHECKING:
+    from ..messages.errors import Diagnostic
+    from ..quantity import Printed
+    from ..workbook import Workbook
+
+__all__ = ["Find", "Inputs", "PublishedValue", "check_cells", "load"]
+
+Find = Callable[[str, Path, bytes | None], "Workbook"]
+"""Finds a workbook by its name in report.toml, the folder, and what the file of that name holds."""
+
+More = Callable[["Inputs"], Iterable["Diagnostic"]]
+"""Looks at the cells that a folder names, where what is computed is in order and something else is not."""
+
+LARGEST_TOML = 250_000
+LARGEST_TABLE = 50_000_000
+LARGEST_PUBLISHED = 5_000_000
+"""Bytes. Anything larger is a mistake, and would be held in memory several times over."""
+
+_SOURCE = "source"
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What a report folder says, checked.
+
+    Parameters
+    ----------
+    folder : Path
+        As it was given.
+    title : str
+        The title of the report; the workbook's, if none is given.
+    workbook : Workbook
+        The method.
+    parameters : dict of str to Printed
+        Those that were given and those that have a default, in the workbook's order.
+    given : frozenset of str
+        The names of those that were really given.
+    tests : tuple of int
+        The test numbers, in the order of the file.
+    measured : dict of str to tuple of Printed
+        One number a test for each measured column.
+    header_units : dict of str to str
+        The unit of each measured column, as written in the header.
+    published : tuple of PublishedValue
+        The values to referee.
+    files : dict of str to bytes
+        The bytes of every file that was read, by its name relative to the folder.
+    free_at : dict of str to Location
+        The columns that the publication does not print, with the place that says so.
+    expected : tuple of Expectation
+        Cells and tests that are expected to be without a value or out of the ordinary, each with its reason.
+    errata : dict of (str, int) to Printed
+        Measured cells that are known to be misprinted, by column and row, as they would have to be printed.
+        Only the referee asks what would come out of them.
+    by_source : bool
+        Whether the published values are those of the workbook's own source.
+    left_out : tuple of LeftOut
+        The tests that take no part, each with its reason; all else is about the others.
+    aside : tuple of PublishedValue
+        Published values that rest on a test that is left out: they are not compared.
+    """
+
+    folder: Path
+    title: str
+    workbook: Workbook
+    parameters: dict[str, Printed]
+    given: frozenset[str]
+    tests: tuple[int, ...]
+    measured: dict[str, tuple[Printed, ...]]
+    header_units: dict[str, str]
+    published: tuple[PublishedValue, ...]
+    files: dict[str, bytes]
+    free_at: dict[str, Location] = field(default_factory=dict)
+    expected: tuple[Expectation, ...] = ()
+    errata: dict[tuple[str, int], Printed] = field(default_factory=dict)
+    by_source: bool = False
+    left_out: tuple[LeftOut, ...] = ()
+    aside: tuple[PublishedValue, ...] = ()
+
+    @property
+    def about_source(self) -> bool:
+        """Whether the report is about its workbook's source, so that the errata of that are its matter.
+
+        It is if it compares with the source, or brought the workbook along.
+        """
+        return self.by_source or any(name.endswith(".py") for name in self.files)
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """The columns that the publication does not print: they may have any value."""
+        return tuple(self.free_at)
+
+    @property
+    def amended(self) -> Inputs:
+        """The same with the known misprints put right."""
+        measured = {
+            name: tuple(self.errata.get((name, row), printed) for row, printed in enumerate(column))
+            for name, column in self.measured.items()
+        }
+        return replace(self, measured=measured, errata={})
+
+    @property
+    def place(self) -> Location:
+        """The file that says what is to be reported."""
+        return Location((self.folder / "report.toml").as_posix())
+
+    def printed(self, name: str) -> tuple[Printed, ...]:
+        """The numbers of a given column as they were printed, one a row; none if the folder has none."""
+        if name in self.measured:
+            return self.measured[name]
+        return (self.parameters[name],) if name in self.parameters else ()
+
+
+def load(
+    folder: Path,
+    find_workbook: Find,
+    more: More = lambda _: (),
+    read: Mapping[str, bytes] = MappingProxyType({}),
+) -> Inputs:
+    """Read a report folder.
+
+    Parameters
+    ----------
+    folder : Path
+        It holds report.toml and the files that report.toml names.
+    find_workbook : callable
+        Takes the name in report.toml, the folder, and what the file of this name holds if the workbook is
+        the user's own; returns the workbook, or raises :class:`UnknownWorkbook` or :class:`ForeignCode`.
+    more : callable
+        Finds what is wrong with the cells, which only the sheet knows, so that it is told in the same round.
+    read : mapping of str to bytes
+        Files that were read already, as :func:`~loopsheet.report.inputs.sources.read_bytes` does.
+
+    Raises
+    ------
+    InputError
+        With every finding in every file, each with its place.
+    """
+    return _Reader(folder, find_workbook, more, read).read()
+
+
+def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]]) -> Inputs:
+    """Check all that was read of cells against those of the sheet.
+
+    What is said of a cell that is missing because a test is left out is set aside.
+
+    Parameters
+    ----------
+    inputs : Inputs
+        What was read.
+    cells : mapping of str to (str, collection of tuple of int)
+        For each cell its SI unit and the indices that it has: ``{()}`` for a scalar.
+
+    Returns
+    -------
+    Inputs
+        Those without what was set aside.
+
+    Raises
+    ------
+    InputError
+        With every cell, index and test that there is not, and every unit of another dimension.
+    """
+    gone = {each.test for each in inputs.left_out}
+
+    def rests_on_gone(name: str, index: tuple[int, ...]) -> bool:
+        there = cells[name][1] if name in cells else () if not name else (index,)
+        return index not in there and not gone.isdisjoint(index)
+
+    aside = tuple(value for value in inputs.published if rests_on_gone(value.cell, value.index))
+    kept = replace(
+        inputs,
+        expected=tuple(each for each in inputs.expected if not rests_on_gone(*each.cell)),
+        published=tuple(value for value in inputs.published if value not in aside),
+        aside=aside,
+    )
+    findings = Findings()
+    check_expected(kept.expected, kept.tests, cells, findings)
+    check_published(kept.published, kept.free_at, cells, findings)
+    findings.check()
+    return kept
+
+
+class _Reader:
+    """One reading of a folder: what was found and what was read, so far."""
+
+    def __init__(self, folder: Path, find_workbook: Find, more: More, before: Mapping[str, bytes]) -> None:
+        self.folder = folder
+        self.before = before
+        self.find_workbook = find_workbook
+        self.more = more
+        self.findings = Findings()
+        self.files: dict[str, bytes] = {}
+        self.toml: TomlFile
+        self.workbook: Workbook | None = None
+        self.free: dict[str, Location] = {}
+        self.by_source = False
+
+    def read(self) -> Inputs:
+        toml = self.open_toml()
+        if toml is None:
+            self.findings.check()
+            raise AssertionError("a folder was refused without a finding")
+        self.toml = toml
+        self.keys((), ("title", "workbook", "parameters", "measurements", "expected", "published"))
+        self.workbook = self.open_workbook()
+        title = self.title()
+        parameters, given = self.parameters()
+        measurements = self.measurements()
+        computable = not self.findings.found
+        published = self.published()
+        expected = self.expected()
+        errata = self.errata(measurements) if measurements is not None else {}
+        if not computable:
+            self.findings.check()
+        if self.workbook is None or measurements is None:
+            raise AssertionError("a folder was refused without a finding")
+        inputs = Inputs(
+            self.folder,
+            title or self.workbook.title,
+            self.workbook,
+            parameters,
+            given,
+            measurements.tests,
+            measurements.measured,
+            measurements.header_units,
+            published,
+            self.files,
+            self.free,
+            expected,
+            errata,
+            self.by_source,
+            measurements.left_out,
+        )
+        if self.findings.found:
+            self.findings.found.extend(self.more(inputs))
+        self.findings.check()
+        return inputs
+
+    def open_toml(self) -> TomlFile | None:
+        try:
+            exists, is_folder = self.folder.exists(), self.folder.is_dir()
+            has_toml = is_folder and (self.folder / "report.toml").exists()
+        except (OSError, ValueError):
+            exists = is_folder = has_toml = False
+        if not exists:
+            self.findings.add("LS101", text=self.folder)
+        elif not is_folder:
+            self.findings.add("LS102", text=self.folder)
+        elif not has_toml:
+            self.findings.add("LS103", Location(self.folder.as_posix()))
+        else:
+            source = self.source("report.toml", LARGEST_TOML, "a workbook, parameters and measurements")
+            return read_toml(source, self.findings) if source else None
+        return None
+
+    def source(self, name: str, limit: int, wanted: str, asked: Location | None = None) -> Source | None:
+        data = self.bytes_of(name, limit, asked)
+        if data is None:
+            return None
+        return open_source(
+            (self.folder / name).as_posix(), Path(name).as_posix(), data, wanted, self.findings
+        )
+
+    def bytes_of(self, name: str, limit: int, asked: Location | None = None) -> bytes | None:
+        data = self.before.get(Path(name).as_posix())
+        if data is None or len(data) > limit:
+            data = read_bytes(self.folder, name, limit, self.findings, asked)
+        if data is not None:
+            self.files[Path(name).as_posix()] = data
+        return data
+
+    # ------------------------------------------------------------------ report.toml
+
+    def keys(self, table: tuple[str, ...], known: Iterable[str]) -> dict[str, Any]:
+        """Return a table after a look at its keys; an absent one, or no table at all, is empty."""
+        data: Any = self.toml.data
+        for name in table:
+            data = data.get(name, {})
+        known = tuple(known)
+        where = "[" + ".".join(table) + "]" if table else "report.toml"
+        if not isinstance(data, dict):
+            # A key above the first table header and a table of the same name look alike to a beginner.
+            wrong_type(self.toml, self.findings, table, f"a table {where}", f"{where} on a line of its own")
+            return {}
+        for key in data:
+            if key not in known:
+                suggestion = suggest(key, known)
+                allowed = listing(known) if known else "no key"
+                self.findings.add(
+                    "LS203",
+                    self.toml.key(*table, key),
+                    text=key,
+                    table=where,
+                    known=allowed,
+                    suggestion=suggestion,
+                )
+        return {key: value for key, value in data.items() if key in known}
+
+    def text(self, table: tuple[str, ...], key: str, example: str, required: bool = False) -> str | None:
+        """Return the text of a key, if it is there and is text on one line."""
+        data: Any = self.toml.data
+        for name in table:
+            data = data.get(name, {})
+            if not isinstance(data, dict):
+                return None  # keys() has reported it
+        name = key if re.fullmatch(r"[\w-]+", key, re.ASCII) else f'"{key}"'
+        line = f'{name} = "{example}"'
+        if key not in data:
+            # A misspelt key is one problem, not two.
+            if required and not any(close(word, [key]) for word in data):
+                where = "[" + ".".join(table) + "]" if table else "report.toml"
+                self.findings.add("LS204", self.toml.key(*table), text=key, table=where, example=line)
+            return None
+        path = (*table, key)
+        value = data[key]
+        if not isinstance(value, str):
+            wrong_type(self.toml, self.findings, path, "text in quotes", line)
+            return None
+        control = re.search("[\x00-\x1f\x7f-\x9f\u2028\u2029\ufffe\uffff]", value)
+        if control:
+            self.findings.add("LS112", self.toml.value(*path), text=f"U+{ord(control.group()):04X}")
+            return None
+        if not value.strip():
+            self.findings.add("LS403", self.toml.value(*path), name=key, allowed=f"text, such as {line}")
+            return None
+        return value.strip()
+
+    def names(self, *path: str) -> dict[str, Location]:
+        """Return a list of names, each with its place."""
+        data: Any = self.toml.data
+        for key in path:
+            data = data.get(key, [])
+        if not isinstance(data, list) or not all(isinstance(name, str) for name in data):
+            wrong_type(self.toml, self.findings, path, "a list of names in quotes", f'{path[-1]} = ["C_log"]')
+            return {}
+        return dict.fromkeys(data, self.toml.value(*path))
+
+    def title(self) -> str | None:
+        return self.text((), "title", "Soft steel, ball drop")
+
+    def open_workbook(self) -> Workbook | None:
+        name = self.text((), "workbook", "soft_impact", required=True)
+        if name is None:
+            return None
+        at = self.toml.value("workbook")
+        data = None
+        if name.endswith(".py"):  # the user's own code: it is part of what the report was made from
+            data = self.bytes_of(name, LARGEST_TOML, at)
+            if data is None:
+                return None
+        try:
+            return self.find_workbook(name, self.folder, data if Path(name).name == name else None)
+        except UnknownWorkbook as error:
+            known = ", ".join([*error.known, "or the name of a .py file in the folder"])
+            self.findings.add("LS207", at, text=name, known=known, suggestion=suggest(name, error.known))
+        except ForeignCode:
+            self.findings.add("LS214", at, text=name)
+        except LoopsheetError as error:
+            self.findings.found.extend(error.diagnostics)
+        return None
+
+    def parameters(self) -> tuple[dict[str, Printed], frozenset[str]]:
+        data = self.toml.data.get("parameters", {})
+        if self.workbook is None:
+            return {}, frozenset()
+        declared = {parameter.name: parameter for parameter in self.workbook.parameters}
+        before = len(self.findings.found)
+        written = self.keys(("parameters",), declared)
+        printed = read_parameters(self.toml, written, self.workbook.parameters, self.findings)
+        given = frozenset(written)
+        # A misspelt name would also be missing from its combination: that is one problem, not two.
+        above = self.toml.data
+        misspelt = "parameters" not in above and any(close(word, ["parameters"]) for word in above)
+        if len(self.findings.found) == before and isinstance(data, dict) and not misspelt:
+            sentence = self.workbook.check_parameters(given)
+            if sentence:
+                known = f"the parameters are {', '.join(declared)}"
+                self.findings.add("LS209", self.toml.key("parameters"), reason=sentence, known=known)
+        return printed, given
+
+    # ------------------------------------------------------------------ the tables
+
+    def measurements(self) -> Measurements | None:
+        table = self.keys(("measurements",), ("file", "printed"))
+        above = self.toml.data
+        missing = isinstance(above.get("measurements", {}), dict)
+        if "measurements" not in above:  # a misspelt header is one problem, not two
+            missing = not any(close(word, ["measurements"]) for word in above)
+        name = self.text(("measurements",), "file", "measurements.csv", required=missing)
+        known = None if self.workbook is None else [column.name for column in self.workbook.measured]
+        modes = self.modes("measurements", known) if "printed" in table else {}
+        if name is None:
+            return None
+        at = self.toml.value("measurements", "file")
+        source = self.source(
+            name, LARGEST_TABLE, "a first line with names and units, then one row a test", at
+        )
+        if source is None:
+            return None
+        return read_measurements(
+            source, self.workbook.measured if self.workbook else None, modes, self.findings
+        )
+
+    def modes(self, of: str, known: list[str] | None) -> dict[str, str]:
+        """How the columns of a file were shortened, where it was not by rounding."""
+        path = (of, "printed")
+        written = self.toml.data[of]["printed"]
+        table = self.keys(path, written if known is None and isinstance(written, dict) else known or ())
+        modes = {}
+        for column in table:
+            mode = self.text(path, column, "truncated")
+            if mode is not None and mode not in MODES:
+                at = self.toml.value(*path, column)
+                self.findings.add(
+                    "LS208", at, text=mode, known=listing(MODES), suggestion=suggest(mode, MODES)
+                )
+            elif mode is not None:
+                modes[column] = mode
+        return modes
+
+    def errata(self, measurements: Measurements) -> dict[tuple[str, int], Printed]:
+        """Read what measured cells would have to be printed as: ``"x_p[2]" = "29.8"``."""
+        path = ("published", "errata")
+        table = self.toml.data.get("published", {}).get("errata", {})
+        if not isinstance(table, dict):
+            example = '"x_p[2]" = "29.8"'
+            wrong_type(self.toml, self.findings, path, "a table of cells and their prints", example)
+            table = {}
+        found = {}
+        for address in table:
+            text = self.text(path, address, "29.8")
+            place = self.cell(address, measurements, self.toml.key(*path, address))
+            if text is None or place is None:
+                continue
+            printed = measurements.measured[place[0]][place[1]]
+            try:
+                found[place] = replace(
+                    read_printed(text, parse_unit(printed.unit), mode=printed.mode), given_u=printed.given_u
+                )
+            except NumberError as error:
+                self.findings.add(error.code, self.toml.value(*path, address), name=address, **error.fields)
+        return found
+
+    def cell(self, address: str, measurements: Measurements, at: Location) -> tuple[str, int] | None:
+        """Return column and row of a measured cell, ``x_p[2]``."""
+        name, _, index = address.removesuffix("]").partition("[")
+        columns, tests = measurements.measured, list(map(str, measurements.tests))
+        if name not in columns:
+            known, suggestion = listing(columns), suggest(name, columns)
+            self.findings.add("LS505", at, text=name, known=known, suggestion=suggestion)
+        elif index in [str(each.test) for each in measurements.left_out]:
+            pass  # it is misprinted in a row that nothing is computed from
+        elif index not in tests:
+            self.findings.add("LS506", at, name=name, text=index, known=listing(tests))
+        else:
+            return name, tests.index(index)
+        return None
+
+    def expected(self) -> tuple[Expectation, ...]:
+        """Read what is expected to be out of the ordinary, and why: ``"test 3" = "double bounce heard"``."""
+        path = "expected"
+        table = self.toml.data.get(path, {})
+        if not isinstance(table, dict):
+            wrong_type(self.toml, self.findings, (path,), "a table [expected]", EXAMPLE)
+            return ()
+        # What has no reason is refused, and its cell is looked at all the same.
+        reasons = {address: self.text((path,), address, "double bounce heard") for address in table}
+        return tuple(
+            Expectation(address, reason or "", self.toml.key(path, address))
+            for address, reason in reasons.items()
+        )
+
+    def published(self) -> tuple[PublishedValue, ...]:
+        if "published" not in self.toml.data:
+            return ()
+        table = self.keys(("published",), ("file", "by", "free", "printed", "errata"))
+        is_table = isinstance(self.toml.data["published"], dict)
+        name = self.text(("published",), "file", "published.csv", required=is_table)
+        if name is None or not table:
+            return ()
+        self.free = self.names("published", "free")
+        if by := self.text(("published",), "by", _SOURCE):
+            self.by_source = by == _SOURCE
+            if not self.by_source:
+                at = self.toml.value("published", "by")
+                self.findings.add("LS215", at, text=by)
+        at = self.toml.value("published", "file")
+        source = self.source(name, LARGEST_PUBLISHED, "a first line with the names of the columns", at)
+        if source is None:
+            return ()
+        values = read_published(source, self.findings)
+        modes = self.modes("published", list({v.cell: v for v in values})) if "printed" in table else {}
+        return tuple(
+            replace(value, printed=replace(value.printed, mode=modes.get(value.cell, "rounded")))
+            for value in values
+        )

@@ -1,0 +1,257 @@
+"""The table of the tests: units in its first line, one row a test, the digits as printed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from .csvtable import Field, Table, match_columns, read_table
+from .number_text import NumberError, read_printed, read_value
+from .unit_text import Unit, UnitError, examples, parse_unit
+
+if TYPE_CHECKING:
+    from ..messages.errors import Findings, Location
+    from ..quantity import Printed
+    from ..workbook import Measured
+    from .sources import Source
+
+__all__ = ["LEFT_OUT", "MODES", "LeftOut", "Measurements", "read_measurements"]
+
+MODES = ("rounded", "truncated")
+"""How a printed number may have been shortened."""
+
+LEFT_OUT = "left out"
+"""The column that says why a test takes no part; empty where it does."""
+
+_HEAD = re.compile(r"(?P<name>u\([^()\[\]]*\)|[^()\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
+_TEST = re.compile(r"0*[1-9][0-9]{0,8}")
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A test that takes no part in anything.
+
+    Parameters
+    ----------
+    test : int
+        Its number.
+    reason : str
+        Why, in the words of the file.
+    texts : dict of str to str
+        What stands in its row, as it stands, by the name of the column; it may be no number.
+    place : int
+        How many rows stand above it.
+    at : Location
+        Where its reason was written.
+    """
+
+    test: int
+    reason: str
+    texts: dict[str, str]
+    place: int
+    at: Location
+
+
+@dataclass(frozen=True)
+class Measurements:
+    """The checked table: test numbers, and a printed number for each test and measured column.
+
+    What is left out stands apart from them.
+    """
+
+    tests: tuple[int, ...]
+    measured: dict[str, tuple[Printed, ...]]
+    header_units: dict[str, str]
+    left_out: tuple[LeftOut, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Head:
+    """What a field of the first line says: a column (or its uncertainty) and a unit, if it names one."""
+
+    name: str
+    unit: str | None
+    start: int
+    """Where the unit begins in the field."""
+
+
+def read_measurements(
+    source: Source, measured: Sequence[Measured] | None, modes: Mapping[str, str], findings: Findings
+) -> Measurements | None:
+    """Read the table of the tests; None, with findings, if something is wrong with it.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    measured : sequence of Measured or None
+        The columns that the workbook needs; None if the workbook is not known, and then only the shape
+        of the table is looked at.
+    modes : mapping of str to str
+        How the numbers of a column were shortened, where it was not by rounding.
+    findings : Findings
+        Where findings go.
+    """
+    before = len(findings.found)
+    columns = {column.name: column for column in measured or ()}
+    required = {"test": "test", **{name: f"{name} [{column.unit}]" for name, column in columns.items()}}
+    table = read_table(source, list(required.values()), findings)
+    if table is None:
+        return None
+    heads = [_head(table, field, columns, findings) for field in table.header]
+    names = [head.name if head else "" for head in heads]
+    if measured is None:
+        places = {"test": names.index("test")} if "test" in names else {}
+    else:
+        optional = [*(f"u({name})" for name in columns), LEFT_OUT]
+        places = match_columns(table, names, required, optional, findings)
+    tests = _tests(table, places["test"], findings) if "test" in places else ()
+    reasons = [row.fields[places[LEFT_OUT]] for row in table.rows] if LEFT_OUT in places else []
+    gone = {place for place, reason in enumerate(reasons) if reason.text}
+    total = table.total - len(gone)
+    if total < 2:
+        count = ("no test" if total == 0 else "one test only") + " that is not left out" * bool(gone)
+        at = table.end_of_header() if table.total == 0 else _last(table)
+        findings.add("LS310", at, count=count)
+    used = [row for place, row in enumerate(table.rows) if place not in gone]
+    values: dict[str, tuple[Printed, ...]] = {}
+    units: dict[str, str] = {}
+    for name, column in columns.items():
+        head, unit = _unit(table, heads, places.get(name), column, findings)
+        _, unit_of_u = _unit(table, heads, places.get(f"u({name})"), column, findings)
+        if head is not None and head.unit is not None:
+            units[name] = head.unit.strip() or "1"  # empty brackets: a pure number
+        if name in places:
+            mode = modes.get(name, "rounded")
+            read = []
+            for row in used:
+                if findings.full:
+                    break
+                cell = row.fields[places[name]]
+                where = source.trace(cell.offset)
+                printed = read_value(
+                    cell.text, unit, column, table.at(cell), findings, mode=mode, where=where
+                )
+                if f"u({name})" in places:
+                    given = _uncertainty(table, row.fields[places[f"u({name})"]], name, unit_of_u, findings)
+                    printed = printed and replace(printed, given_u=given)
+                read.append(printed)
+            values[name] = tuple(printed for printed in read if printed is not None)
+    if len(findings.found) > before:
+        return None
+    taken = tuple(test for place, test in enumerate(tests) if place not in gone)
+    # What else stands in a row that is left out is not looked at.
+    texts = {name: place for name, place in places.items() if name not in ("test", LEFT_OUT)}
+    left_out = tuple(
+        LeftOut(
+            tests[row],
+            reasons[row].text,
+            {name: table.rows[row].fields[place].text for name, place in texts.items()},
+            row,
+            table.at(reasons[row]),
+        )
+        for row in sorted(gone)
+    )
+    return Measurements(taken, values, units, left_out)
+
+
+def _last(table: Table) -> Location:
+    row = table.rows[-1] if table.rows else None
+    return table.at(row.fields[0]) if row else table.end_of_header()
+
+
+def _head(table: Table, field: Field, columns: Mapping[str, Measured], findings: Findings) -> _Head | None:
+    """Read a field of the first line; a column that should name its unit and does not is a finding."""
+    match = _HEAD.fullmatch(field.text)
+    meant = None if match and match["name"] in columns else _meant(field.text, columns)
+    if match is None or meant is not None:
+        if not field.text:
+            return _Head("", None, 0)
+        column, unit = meant or (None, "um")
+        example = f"{column.name if column else 'x_p'} [{unit}]"
+        findings.add("LS305", table.at(field), text=field.text, example=example)
+        return _Head(column.name, None, 0) if column else None
+    name = re.sub(r"\s", "", match["name"]) if match["name"].startswith("u(") else match["name"]
+    column = columns.get(name.removeprefix("u(").removesuffix(")"))
+    if match["unit"] is None and column is not None:
+        example = f"{name} [{column.unit}]"
+        findings.add("LS304", table.at(field), text=name, unit=column.unit, example=example)
+    return _Head(name, match["unit"], match.start("unit"))
+
+
+def _meant(text: str, columns: Mapping[str, Measured]) -> tuple[Measured, str] | None:
+    """The column that a text begins with, and the unit that follows somehow: ``x_p (mm)``, ``x_p_mm``.
+
+    What follows and is no unit of that column leaves the column's own unit, if it stands in brackets of any
+    kind; without them, the text means something else.
+    """
+    for name in sorted(columns, key=len, reverse=True):
+        if not re.match(rf"{re.escape(name)}(?![^\W_])", text):
+            continue
+        column, rest = columns[name], text.removeprefix(name)
+        word = re.sub(r"^[\W_]*(?:in\b)?", "", rest).strip(" ()[]{}<>")
+        try:
+            fits = parse_unit(word).dimension == parse_unit(column.unit).dimension if word else False
+        except UnitError:
+            fits = False
+        if fits or re.search(r"[()\[\]{}]", rest):
+            return column, word if fits else column.unit
+    return None
+
+
+def _unit(
+    table: Table, heads: Sequence[_Head | None], place: int | None, column: Measured, findings: Findings
+) -> tuple[_Head | None, Unit | None]:
+    """Return what the first line says of a column, and its unit if that is one of the right dimension."""
+    head = None if place is None else heads[place]
+    if place is None or head is None or head.unit is None:
+        return head, None
+    field = table.header[place]
+    expected = parse_unit(column.unit)
+    try:
+        unit = parse_unit(head.unit.strip() or "1")
+    except UnitError as error:
+        shift = head.start + head.unit.index(head.unit.strip())
+        at = table.at(field, shift + error.start, len(error.text))
+        findings.add(error.code, at, text=error.text, suggestion=error.suggestion, known=examples(expected))
+        return head, None
+    if unit.dimension != expected.dimension:
+        at = table.at(field, head.start, max(len(head.unit), 1))
+        findings.add("LS422", at, name=head.name, text=head.unit, unit=column.unit, known=examples(expected))
+        return head, None
+    return head, unit
+
+
+def _tests(table: Table, place: int, findings: Findings) -> tuple[int, ...]:
+    lines: dict[int, int | None] = {}
+    for row in table.rows:
+        field = row.fields[place]
+        if not field.text:
+            findings.add("LS403", table.at(field), name="test", allowed="a positive whole number")
+        elif not _TEST.fullmatch(field.text):
+            findings.add("LS312", table.at(field), text=field.text)
+        elif int(field.text) in lines:
+            first = lines[int(field.text)]
+            findings.add("LS311", table.at(field), text=field.text, first=first)
+        else:
+            lines[int(field.text)] = table.at(field).line
+    return tuple(lines)
+
+
+def _uncertainty(
+    table: Table, field: Field, name: str, unit: Unit | None, findings: Findings
+) -> Fraction | None:
+    """Read the standard uncertainty that the user gave for a measured number."""
+    try:
+        u = read_printed(field.text, unit or parse_unit("1"))
+    except NumberError as error:
+        fields = {**error.fields, "allowed": "a standard uncertainty greater than 0"}
+        findings.add(error.code, table.at(field), name=f"u({name})", **fields)
+        return None
+    if u.value <= 0:
+        findings.add("LS407", table.at(field), name=f"u({name})", text=field.text)
+        return None
+    return u.value

@@ -1,0 +1,164 @@
+"""Numbers as text: plain decimal notation and nothing else, read exactly."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from typing import TYPE_CHECKING, Protocol
+
+from ..quantity import Printed
+from .unit_text import parse_unit
+
+if TYPE_CHECKING:
+    from ..messages.errors import Findings, Location
+    from ..quantity import Bounds
+    from .unit_text import Unit
+
+__all__ = ["Declared", "NumberError", "read_number", "read_printed", "read_value"]
+
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE](?P<exponent>[+-]?[0-9]+))?")
+_COMMA = re.compile(
+    r"[+-]?[0-9. '\u00a0\u202f]*,[0-9]+(?:[eE][+-]?[0-9]+)?|[+-]?[0-9]+(?:,[0-9]{3})+\.[0-9]*"
+)
+_EITHER = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
+_NOT_FINITE = frozenset(
+    {"nan", "inf", "infinity", "∞", "#n/a", "#div/0!", "#value!", "#num!", "#ref!", "n/a"}
+)
+_LONGEST = 100
+_TOP = 300
+_LARGEST = Fraction(10) ** _TOP
+_SMALLEST = 1 / _LARGEST
+
+
+class Declared(Protocol):
+    """What a workbook says of an input."""
+
+    @property
+    def name(self) -> str:
+        """The cell name."""
+
+    @property
+    def unit(self) -> str:
+        """The SI unit."""
+
+    @property
+    def meaning(self) -> str:
+        """What it is."""
+
+    @property
+    def bounds(self) -> Bounds:
+        """What values are allowed, in SI."""
+
+
+class NumberError(ValueError):
+    """A text that is not a number we take; `code` says why, `fields` what its sentences name."""
+
+    def __init__(self, code: str, **fields: str) -> None:
+        super().__init__(code)
+        self.code = code
+        self.fields = {"suggestion": "", "example": "", "thousands": "", "allowed": "a number", **fields}
+
+
+def read_number(text: str) -> Fraction:
+    """Read a decimal number exactly.
+
+    Parameters
+    ----------
+    text : str
+        An optional sign, ASCII digits with an optional point, an optional exponent.
+
+    Raises
+    ------
+    NumberError
+        For anything else, with the code of what it looks like.
+
+    Examples
+    --------
+    >>> read_number("2.940")
+    Fraction(147, 50)
+    """
+    match = _NUMBER.fullmatch(text) if len(text) <= _LONGEST else None
+    if match is None:
+        raise _why_not(text)
+    exponent = match["exponent"] or "0"
+    # Both ends are tested before Fraction computes a power of ten with that many digits.
+    if len(exponent.lstrip("+-0")) > len(str(_TOP)) or abs(int(exponent)) > _TOP:
+        raise NumberError("LS405", text=text)
+    return Fraction(text)
+
+
+def _why_not(text: str) -> NumberError:
+    if not text:
+        return NumberError("LS403")
+    if len(text) > _LONGEST:
+        return NumberError("LS405", text=text)
+    if text.lower().lstrip("+-") in _NOT_FINITE:
+        return NumberError("LS404", text=text)
+    if _COMMA.fullmatch(text):
+        point = max(text.rfind("."), text.rfind(","))
+        plain = re.sub(r"[., '\u00a0\u202f]", "", text[:point]) + "." + text[point + 1 :]
+        # Nobody knows whether 1,234 is a little more than one or a thousand: it is never guessed.
+        thousands = f" or '{text.replace(',', '')}', whichever is meant" if _EITHER.fullmatch(text) else ""
+        return NumberError("LS402", text=text, example=plain, thousands=thousands)
+    suggestion = ""
+    if _NUMBER.fullmatch(text.replace("\u2212", "-").replace("\u2013", "-")):
+        suggestion = "write the minus sign as an ordinary hyphen"
+    elif _NUMBER.fullmatch(re.sub(r"[\s_']", "", text, flags=re.ASCII)):
+        suggestion = "write the digits without spaces or marks between them"
+    return NumberError("LS401", text=text, suggestion=suggestion)
+
+
+def read_printed(text: str, unit: Unit, *, mode: str = "rounded", where: str = "") -> Printed:
+    """Read a number as it was printed in a unit.
+
+    Raises
+    ------
+    NumberError
+        If it is not a number, or one that no double could hold together with its last digit.
+    """
+    value = read_number(text) * unit.scale
+    printed = Printed(text, unit.text, value, unit.scale, mode, None, where)
+    sizes = [2 * printed.half_unit, *([abs(value)] if value else [])]
+    if not all(_SMALLEST <= size <= _LARGEST for size in sizes):
+        raise NumberError("LS405", text=text)
+    return printed
+
+
+def read_value(
+    text: str,
+    unit: Unit | None,
+    declared: Declared,
+    at: Location,
+    findings: Findings,
+    *,
+    mode: str = "rounded",
+    where: str = "",
+) -> Printed | None:
+    """Read the number of an input as its workbook declares it; None, with a finding, if it is not allowed.
+
+    Parameters
+    ----------
+    text : str
+        The number.
+    unit : Unit or None
+        Its unit; None if that is not known, and then the range is not looked at.
+    declared : Declared
+        What it is: a measured column or a parameter.
+    at : Location
+        Where it stands.
+    findings : Findings
+        Where findings go.
+    mode, where : str
+        As for :class:`Printed`.
+    """
+    try:
+        printed = read_printed(text, unit or parse_unit(declared.unit), mode=mode, where=where)
+    except NumberError as error:
+        fields = {**error.fields, "allowed": f"a number ({declared.meaning})"}
+        findings.add(error.code, at, name=declared.name, **fields)
+        return None
+    if unit is not None and not declared.bounds.allow(printed.value):
+        allowed = f"{declared.bounds.said(declared.unit)} ({declared.meaning})"
+        findings.add("LS406", at, name=declared.name, text=text, unit=unit.text, allowed=allowed)
+        return None
+    return printed

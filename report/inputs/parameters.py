@@ -1,0 +1,131 @@
+"""The scalars of report.toml: a number as printed, a space, a unit."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+from ..messages.errors import Findings, Location
+from .number_text import read_printed, read_value
+from .unit_text import Unit, UnitError, examples, parse_unit
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from ..quantity import Printed
+    from ..workbook import Parameter
+    from .tomlfile import TomlFile
+
+__all__ = ["read_parameters", "wrong_type"]
+
+# An exponent is never given back: 8.366e-3 g is no 8.366 of a unit "e-3 g".
+_SPACELESS = re.compile(
+    r"(?P<number>[+-]?[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?+)(?P<unit>[^\W\d_].*|[°%].*)", re.DOTALL
+)
+_TYPES = {
+    str: "text",
+    bool: "true or false",
+    int: "a number",
+    float: "a number",
+    dict: "a table",
+    list: "a list",
+}
+
+
+def read_parameters(
+    toml: TomlFile, written: Mapping[str, object], declared: Iterable[Parameter], findings: Findings
+) -> dict[str, Printed]:
+    """Read the parameters that were given, and fill in the defaults of the others.
+
+    Parameters
+    ----------
+    toml : TomlFile
+        The file, for places.
+    written : mapping of str to object
+        The section ``[parameters]``, without unknown names.
+    declared : iterable of Parameter
+        What the workbook wants.
+    findings : Findings
+        Where findings go.
+    """
+    printed: dict[str, Printed] = {}
+    for parameter in declared:
+        number = None
+        if parameter.name in written:
+            number = _Reader(toml, parameter, findings).read(written[parameter.name])
+        elif parameter.default is not None:
+            digits, _, unit = parameter.default.partition(" ")
+            number = read_printed(digits, parse_unit(unit or "1"))
+        if number is not None:
+            printed[parameter.name] = number
+    return printed
+
+
+def wrong_type(toml: TomlFile, findings: Findings, path: tuple[str, ...], wanted: str, example: str) -> None:
+    """Report a value that is a number, a list, a date ... where something else was wanted."""
+    value: Any = toml.data
+    for name in path:
+        value = value[name]
+    found = _TYPES.get(type(value), "a date or time")
+    at = toml.value(*path)
+    findings.add("LS205", at, text=".".join(path), found=found, wanted=wanted, example=example)
+
+
+class _Reader:
+    """Reads one parameter."""
+
+    def __init__(self, toml: TomlFile, parameter: Parameter, findings: Findings) -> None:
+        self.toml = toml
+        self.parameter = parameter
+        self.findings = findings
+        self.path = ("parameters", parameter.name)
+        self.expected = parse_unit(parameter.unit)
+        self.suffix = "" if parameter.unit == "1" else f" {parameter.unit}"
+
+    def read(self, value: object) -> Printed | None:
+        name = self.parameter.name
+        at = self.toml.value(*self.path)
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            digits = (at.source or "")[(at.column or 1) - 1 :][: at.length]
+            self.findings.add("LS206", at, text=name, example=f'"{digits}{self.suffix}"')
+            return None
+        if not isinstance(value, str):
+            wanted = "a number as printed and its unit, in quotes"
+            wrong_type(self.toml, self.findings, self.path, wanted, f'{name} = "1.5{self.suffix}"')
+            return None
+        joined = _SPACELESS.fullmatch(value.strip())
+        if joined:
+            example = f"{joined['number']} {joined['unit']}"
+            self.findings.add("LS210", at, text=value.strip(), example=example)
+            return None
+        digits, _, rest = value.strip().partition(" ")
+        start = value.find(digits)
+        unit = rest.strip()
+        size = self.unit(unit, value.find(unit, start + len(digits)), digits)
+        place = self.toml.value(*self.path, start=start, length=max(len(digits), 1))
+        where = self.toml.trace(*self.path)
+        return read_value(digits, size, self.parameter, place, self.findings, where=where)
+
+    def unit(self, text: str, start: int, digits: str) -> Unit | None:
+        """Read the unit; None, with a finding, if it is not one of the right dimension."""
+        try:
+            size = parse_unit(text or "1")
+        except UnitError as error:
+            at = self.part(start + error.start, len(error.text))
+            known = examples(self.expected)
+            self.findings.add(error.code, at, text=error.text, suggestion=error.suggestion, known=known)
+            return None
+        if size.dimension == self.expected.dimension:
+            return size
+        name, wanted = self.parameter.name, self.parameter.unit
+        if text:
+            at, known = self.part(start, len(text)), examples(self.expected)
+            self.findings.add("LS422", at, name=name, text=text, unit=wanted, known=known)
+        else:
+            example = f"{digits}{self.suffix}"
+            at = self.toml.value(*self.path)
+            self.findings.add("LS211", at, name=name, text=digits, unit=wanted, example=example)
+        return None
+
+    def part(self, start: int, length: int) -> Location:
+        return self.toml.value(*self.path, start=start, length=length)

@@ -1,0 +1,284 @@
+"""Values as a publication prints them, for the referee."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from ..messages.errors import Findings, Location, listing, suggest
+from .csvtable import Field, Table, match_columns, read_table
+from .number_text import NumberError, read_number, read_printed
+from .unit_text import Unit, UnitError, examples, parse_unit
+
+if TYPE_CHECKING:
+    from ..quantity import Printed
+    from .sources import Source
+
+__all__ = ["COLUMNS", "Pin", "PublishedValue", "check_published", "read_published"]
+
+_REQUIRED = ("source", "cell", "index", "value", "unit")
+_OPTIONAL = ("label", "expect", "recomputed", "explained", "reason")
+COLUMNS = (*_REQUIRED, *_OPTIONAL)
+"""The columns of published.csv, in the order in which they are best written."""
+_INDEX = re.compile(r"[1-9][0-9]{0,8}(?:-[1-9][0-9]{0,8})?")
+_EXPECT = ("", "differs")
+_ARROW = " -> "
+_CODE = re.compile(r"#[A-Z]+!")
+_OPEN = re.compile(r"\^[^\W\d]\w*$")
+"""The end of a unit whose exponent is another cell, such as ``N/m^alpha``."""
+
+
+@dataclass(frozen=True)
+class Pin:
+    """What a known difference is: any other one is a finding.
+
+    Parameters
+    ----------
+    printed : str
+        The published number when the difference was accepted.
+    again : str
+        The recomputed one, printed alike; or the code of a cell that had no value.
+    """
+
+    printed: str
+    again: str
+
+    def __str__(self) -> str:
+        """As it is written, ``1.234 -> 1.258``."""
+        return f"{self.printed}{_ARROW}{self.again}"
+
+    def holds(self, printed: Printed, again: str) -> bool:
+        """Whether the difference is still that one; numbers are compared by value and decimals."""
+        return _same(self.printed, printed.text) and _same(self.again, again)
+
+
+def _same(one: str, other: str) -> bool:
+    try:
+        read = [read_printed(text, parse_unit("1")) for text in (one, other)]
+    except NumberError:
+        return one == other
+    return read[0].value == read[1].value and read[0].decimals == read[1].decimals
+
+
+@dataclass(frozen=True)
+class PublishedValue:
+    """A number as a publication prints it.
+
+    Parameters
+    ----------
+    source : str
+        Where it is printed: ``Table 2``, ``text``.
+    cell : str
+        The name of the cell that it is a value of.
+    index : tuple of int
+        ``(1, 2)`` for a pair, ``(3,)`` for a test, ``()`` for a scalar.
+    printed : Printed
+        The number with its digits and its unit.
+    expect : str
+        Empty, or ``differs`` for a difference that is known.
+    pin : Pin or None
+        What it differs to; None where nobody has said it.
+    explained : str
+        The name of the explanation that it rests on, as the referee calls it: ``misprint x_p[2]``.
+    reason : str
+        Why it differs.
+    where : str
+        ``file:line:column`` of the value, relative to the folder.
+    places : mapping of str to Location
+        The place of each field, for findings that need the sheet.
+    label : str
+        What the publication calls its row, if that names an equation: ``eq. 6``.
+    unread : frozenset of str
+        Fields that are refused already; the sheet is not asked for more about them.
+    """
+
+    source: str
+    cell: str
+    index: tuple[int, ...]
+    printed: Printed
+    expect: str = ""
+    pin: Pin | None = None
+    explained: str = ""
+    reason: str = ""
+    where: str = ""
+    places: Mapping[str, Location] = field(default_factory=dict, compare=False, repr=False)
+    label: str = ""
+    unread: frozenset[str] = frozenset()
+
+
+def read_published(source: Source, findings: Findings) -> tuple[PublishedValue, ...]:
+    """Read published.csv, as far as it can be checked without the sheet.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    findings : Findings
+        Where findings go.
+    """
+    table = read_table(source, COLUMNS, findings)
+    if table is None:
+        return ()
+    names = [field.text for field in table.header]
+    places = match_columns(table, names, {name: name for name in _REQUIRED}, _OPTIONAL, findings)
+    if not places.keys() >= set(_REQUIRED):
+        return ()
+    values = []
+    first: dict[tuple[str, str, str], int | None] = {}
+    for row in table.rows:
+        if findings.full:
+            break
+        fields = {name: row.fields[place] for name, place in places.items()}
+        values.append(_value(table, fields, findings))
+        key = (fields["source"].text, fields["cell"].text, fields["index"].text)
+        at = table.at(fields["cell"])
+        if key in first:
+            name = " ".join(filter(None, key[1:]))
+            findings.add("LS504", at, text=name, source=key[0], first=first[key])
+        first.setdefault(key, at.line)
+    return tuple(values)
+
+
+def _value(table: Table, fields: Mapping[str, Field], findings: Findings) -> PublishedValue:
+    unread = set()
+    allowed = {"source": "where it is printed, such as Table 2", "cell": "the name of a cell, such as alpha"}
+    for name, sentence in {**allowed, "unit": "a unit, 1 for a pure number"}.items():
+        if not fields[name].text:
+            findings.add("LS403", table.at(fields[name]), name=name, allowed=sentence)
+            unread.add(name)
+    index = fields["index"]
+    if index.text and not _INDEX.fullmatch(index.text):
+        findings.add("LS501", table.at(index), text=index.text)
+        unread.add("index")
+    words = {name: " ".join(fields[name].text.split()) if name in fields else "" for name in _OPTIONAL}
+    if words["expect"] not in _EXPECT:
+        at, text = table.at(fields["expect"]), words["expect"]
+        findings.add("LS502", at, text=text, suggestion=suggest(text, ["differs"]))
+    for name in ("recomputed", "explained"):
+        if words[name] and not words["expect"]:
+            findings.add("LS508", table.at(fields[name]), name=name)
+    pin = _pin(table, fields["recomputed"], findings) if words["recomputed"] else None
+    printed = _printed(table, fields, unread, findings)
+    return PublishedValue(
+        fields["source"].text,
+        fields["cell"].text,
+        tuple(int(number) for number in index.text.split("-"))
+        if index.text and "index" not in unread
+        else (),
+        printed,
+        words["expect"],
+        pin,
+        words["explained"],
+        words["reason"],
+        printed.where,
+        {name: table.at(field) for name, field in fields.items()},
+        words["label"],
+        frozenset(unread),
+    )
+
+
+def _pin(table: Table, field: Field, findings: Findings) -> Pin | None:
+    printed, _, again = (part.strip() for part in field.text.partition(_ARROW.strip()))
+    try:
+        read_number(printed)
+        if not _CODE.fullmatch(again):
+            read_number(again)
+    except NumberError:
+        findings.add("LS507", table.at(field), text=field.text)
+        return None
+    return Pin(printed, again)
+
+
+def _printed(table: Table, fields: Mapping[str, Field], unread: set[str], findings: Findings) -> Printed:
+    number, written = fields["value"], fields["unit"]
+    unit = parse_unit("1")
+    try:
+        unit = parse_unit(written.text)
+    except UnitError as error:
+        if _OPEN.search(written.text):  # the sheet knows whose it is
+            return _number(table, number, Unit(written.text, Fraction(1), ()), findings)
+        at = table.at(written, error.start, len(error.text))
+        known = "a unit, 1 for a pure number"
+        findings.add(error.code, at, text=error.text, suggestion=error.suggestion, known=known)
+        unread.add("unit")
+    return _number(table, number, unit, findings)
+
+
+def _number(table: Table, number: Field, unit: Unit, findings: Findings) -> Printed:
+    try:
+        return read_printed(number.text, unit, where=table.source.trace(number.offset))
+    except NumberError as error:
+        findings.add(error.code, table.at(number), name="value", **error.fields)
+    return read_printed("0", unit)  # it is refused, and its cell is looked at all the same
+
+
+def check_published(
+    published: Sequence[PublishedValue],
+    free: Mapping[str, Location],
+    cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
+    findings: Findings,
+) -> None:
+    """Compare what the published values are values of with the cells of the sheet.
+
+    Parameters
+    ----------
+    published : sequence of PublishedValue
+    free : mapping of str to Location
+        The columns that the publication does not print, with the place that says so.
+    cells : mapping of str to (str, collection of tuple of int)
+        For each cell its SI unit and the indices that it has: ``{()}`` for a scalar. A unit that is not
+        fixed, such as ``N/m^alpha``, has no other that it converts to.
+    findings : Findings
+        Where unknown cells and indices go, and units of another dimension.
+    """
+    for name, place in free.items():
+        if name not in cells:
+            known, suggestion = listing(cells, most=24), suggest(name, cells)
+            findings.add("LS505", place, text=name, known=known, suggestion=suggestion)
+    for value in published:
+        if findings.full:
+            break
+        if "cell" in value.unread:
+            continue
+        if value.cell not in cells:
+            at = value.places.get("cell")
+            findings.add(
+                "LS505",
+                at,
+                text=value.cell,
+                known=listing(cells, most=24),
+                suggestion=suggest(value.cell, cells),
+            )
+            continue
+        unit, indices = cells[value.cell]
+        if value.index not in indices and "index" not in value.unread:
+            text = "-".join(map(str, value.index))
+            findings.add(
+                "LS506", value.places.get("index"), name=value.cell, text=text, known=_indices(indices)
+            )
+        others = None if "unit" in value.unread else _convertible(value.printed.unit, unit)
+        if others is not None:
+            at = value.places.get("unit")
+            findings.add("LS422", at, name=value.cell, text=value.printed.unit, unit=unit, known=others)
+
+
+def _convertible(written: str, unit: str) -> str | None:
+    """None where a unit converts to that of a cell, else what does."""
+    try:
+        expected = parse_unit(unit)
+    except UnitError:
+        return None if written == unit else f"{unit} as it stands: its size hangs on the exponent"
+    try:
+        fits = parse_unit(written).dimension == expected.dimension
+    except UnitError:
+        fits = False
+    return None if fits else examples(expected)
+
+
+def _indices(indices: Collection[tuple[int, ...]]) -> str:
+    if () in indices:
+        return "nothing: it is a single number"
+    return listing("-".join(map(str, index)) for index in sorted(indices))

@@ -1,0 +1,1 @@
+"""The judges of the engines and of the inputs: bounds, enclosures, what is odd."""

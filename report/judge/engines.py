@@ -1,0 +1,234 @@
+"""Engines judge one another: the same sheet in each of them, compared cell by cell with 50 digits.
+
+A difference is measured in units of eps times the condition of its cell: the bound that follows from the
+sheet's own derivatives (:mod:`~loopsheet.report.judge.bounds`), so that an engine is neither blamed for
+what no doubles could do better nor excused where they could.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cells.layout import Layout
+from ..cells.values import CODES, Cell, Status, Values
+from ..engines import exact
+from ..result.agreement import LIMIT, Agreement
+from ..sheet import Column, Sheet
+from .bounds import bounds
+from .readers import Book, Reading, of_values, run_javascript, run_workbook
+
+__all__ = ["LIMIT", "Agreement", "Judge", "compare", "compare_all"]
+
+EPS = float(np.finfo(float).eps)
+
+UNSETTLED = "#STEPS!"
+"""What only a workbook says: its steps to a root are columns and come to an end, others go on."""
+
+MOST_FINDINGS = 20
+"""How many cells of an engine are named; the rest are counted."""
+
+
+@dataclass(frozen=True)
+class Judge:
+    """The exact values of a sheet and how wrong doubles may be.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    judged : ExactValues
+    bounds : mapping of column name to float array (rows,)
+        As from :func:`~loopsheet.report.judge.bounds.bounds`, of the exact values.
+    addresses : mapping of column name to sequence of str
+        What the cells are called.
+    """
+
+    sheet: Sheet
+    judged: exact.ExactValues
+    bounds: Mapping[str, NDArray[np.float64]]
+    addresses: Mapping[str, Sequence[str]] = field(repr=False)
+
+    @classmethod
+    def of(
+        cls,
+        sheet: Sheet,
+        layouts: Mapping[str, Layout],
+        labels: Mapping[str, Sequence[int]],
+        data: Any,
+        judged: exact.ExactValues | None = None,
+    ) -> Judge:
+        """Evaluate a sheet at 50 digits and bound the errors of doubles.
+
+        Parameters
+        ----------
+        sheet : Sheet
+        layouts : mapping of axis name to Layout
+        labels, data
+            As for :func:`loopsheet.report.engines.exact.evaluate`.
+        judged : ExactValues, optional
+            What that gives, if it is known.
+        """
+        judged = judged or exact.evaluate(sheet, labels, data)
+        doubles = {
+            name: np.array([np.nan if x is None else float(x) for x in found], dtype=np.float64)
+            for name, found in judged.value.items()
+        }
+        empty = Values(sheet, layouts, {}, {})
+        addresses = {column.name: _addresses(empty, column) for column in sheet.columns}
+        return cls(sheet, judged, bounds(sheet, layouts, doubles), addresses)
+
+    def agreement(self, reading: Reading) -> Agreement:
+        """Judge what an engine found.
+
+        Parameters
+        ----------
+        reading : Reading
+        """
+        engine, program = reading.engine, reading.program
+        if reading.missing:
+            return Agreement(0, 0.0, "", (), engine=engine, missing=reading.missing)
+        if reading.failure:
+            said = f"{engine} ({program}) failed: {reading.failure}"
+            return Agreement(0, 0.0, "", (said,), engine=engine, program=program)
+        tally = _Tally(engine)
+        with mpmath.workdps(exact.DIGITS):
+            for column in self.sheet.order:
+                self._column(column, reading, tally)
+        more = len(tally.findings) - MOST_FINDINGS
+        findings = tally.findings[:MOST_FINDINGS] if more > 0 else tally.findings
+        if more > 0:
+            findings.append(f"{engine}: {more} more cells differ")
+        return Agreement(
+            tally.cells,
+            tally.worst,
+            tally.where,
+            tuple(findings),
+            units=tally.units,
+            units_where=tally.units_where,
+            engine=engine,
+            program=program,
+            unbounded=tally.unbounded,
+        )
+
+    def _column(self, column: Column, reading: Reading, tally: _Tally) -> None:
+        name = column.name
+        exactly = self.judged.value[name]
+        scale = max((abs(x) for x in exactly if x is not None), default=0)
+        if column.unit == "1" and not column.positive:
+            scale = max(scale, 1)
+        numbers, codes = reading.value[name], reading.status[name]
+        if not len(numbers) == len(codes) == len(exactly):
+            tally.findings.append(f"{name}: {reading.engine} has {len(numbers)} rows, not {len(exactly)}")
+            return
+        for row, (true, status) in enumerate(zip(exactly, self.judged.status[name], strict=True)):
+            place, number = self.addresses[name][row], numbers[row]
+            tally.cells += 1
+            if codes[row] != CODES[status]:
+                tally.differs(place, codes[row], CODES[status])
+            elif true is not None and number is not None:
+                # Of what a file has cut, nothing is the engine's fault.
+                lost = _number(reading.rounded[name][row]) if name in reading.rounded else 0
+                difference = max(abs(_number(number) - true) - lost, 0)
+                tally.add(place, difference, float(self.bounds[name][row]), scale)
+
+
+@dataclass
+class _Tally:
+    """What is counted while the cells of an engine are gone through."""
+
+    engine: str
+    cells: int = 0
+    worst: float = 0.0
+    where: str = "all equal"
+    units: float = 0.0
+    units_where: str = ""
+    unbounded: int = 0
+    findings: list[str] = field(default_factory=list)
+
+    def differs(self, place: str, theirs: str, exactly: str) -> None:
+        """A cell with another status."""
+        if theirs == UNSETTLED:
+            self.findings.append(
+                f"{place}: the steps of {self.engine} to a root do not settle ({UNSETTLED}), "
+                f"50 digits say {exactly}"
+            )
+        else:
+            self.findings.append(f"{place}: {self.engine} says {theirs}, 50 digits say {exactly}")
+
+    def add(self, place: str, difference: Any, bound: float, scale: Any) -> None:
+        """A cell with a number."""
+        relative = float(difference / scale) if scale else 0.0
+        if relative > self.worst:
+            self.worst, self.where = relative, place
+        if not np.isfinite(bound):
+            self.unbounded += 1
+            return
+        if not difference:
+            return
+        units = float(difference / (EPS * bound)) if bound else float("inf")
+        if units > self.units:
+            self.units, self.units_where = units, place
+        if not units <= LIMIT:
+            self.findings.append(f"{place}: {self.engine} is off by {relative:.1e}")
+
+
+def _addresses(values: Values, column: Column) -> list[str]:
+    labels = values.labels(column)
+    return [Cell(column.name, label, None, Status.OK).address for label in labels]
+
+
+def _number(value: float | Fraction) -> Any:
+    """A number as it is: a fraction is one of whole numbers."""
+    if isinstance(value, Fraction):
+        return mpmath.mpf(value.numerator) / value.denominator
+    return mpmath.mpf(value)
+
+
+def compare(values: Values, labels: Mapping[str, Sequence[int]], exact_data: Mapping[str, Any]) -> Agreement:
+    """Evaluate the sheet at 50 digits and compare NumPy's values.
+
+    Parameters
+    ----------
+    values : Values
+        What the engine found.
+    labels, exact_data
+        As for :func:`loopsheet.report.engines.exact.evaluate`.
+    """
+    return Judge.of(values.sheet, values.layouts, labels, exact_data).agreement(of_values(values))
+
+
+def compare_all(
+    judge: Judge,
+    values: Values,
+    labels: Mapping[str, Sequence[int]],
+    data: Mapping[str, Any],
+    book: Book | None = None,
+) -> tuple[Agreement, ...]:
+    """Compare every engine that is found on this machine.
+
+    Parameters
+    ----------
+    judge : Judge
+    values : Values
+        What NumPy found, without a batch dimension.
+    labels : mapping of axis name to sequence of int
+    data : mapping of column name to float or sequence of float
+        The given columns in SI, as doubles.
+    book : Book, optional
+        The report's workbook; without it, there is nothing to recalculate.
+
+    Returns
+    -------
+    tuple of Agreement
+        NumPy's, JavaScript's and, with a book, that of the workbook.
+    """
+    readings = [of_values(values), run_javascript(values.sheet, labels, data)]
+    if book is not None:
+        readings.append(run_workbook(values.sheet, book))
+    return tuple(judge.agreement(reading) for reading in readings)

@@ -1,0 +1,281 @@
+"""What is odd about a campaign's own data: cells without a value, rows left out, cells outside of a limit."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..cells.marks import Count, Margin, margins
+from ..cells.values import Cell, Status
+from ..messages.diagnostics import Check, Location
+from ..sheet import Column, Given, Sheet
+from .suspects import suspected
+
+if TYPE_CHECKING:
+    from ..inputs.inputs import Inputs
+    from ..quantity import Printed
+    from ..result.result import Report
+
+__all__ = ["names", "oddities"]
+
+DATA, LIMIT, EXPECTED, LEFT_OUT = "data", "limit", "expected", "left out"
+"""The kinds of these checks."""
+CELLS, ROWS, RESULT = "cells", "rows", "result"
+"""The checks of the first kind: every cell has a value, every sum is over all rows, there is a result."""
+MOST = 6
+"""So many cells are named; the rest are counted."""
+CAUSES = 4
+"""And so many causes of one column."""
+
+
+def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
+    """The names of all checks of a campaign's data, by kind, without computing anything."""
+    return {
+        DATA: [CELLS, ROWS, RESULT],
+        LIMIT: list(map(_name, margins(sheet))),
+        EXPECTED: [expectation.address for expectation in inputs.expected],
+        LEFT_OUT: [f"test {each.test}" for each in inputs.left_out],
+    }
+
+
+def _name(margin: Margin) -> str:
+    return f"{margin.of.name}: {margin.limit.mark}"
+
+
+def oddities(report: Report) -> tuple[Check, ...]:
+    """Check the data of a report that has been computed."""
+    return tuple(_Oddities(report).checks())
+
+
+class _Oddities:
+    """One look at a report: what is odd, and what of that somebody expects."""
+
+    def __init__(self, report: Report) -> None:
+        self.report, self.inputs, self.sheet, self.values = report, report.inputs, report.sheet, report.values
+        self.met: dict[str, list[str]] = {each.address: [] for each in self.inputs.expected}
+        self.failed = _Odd(self, self.values.errors())
+        self.outside = {
+            margin.column.name: _Odd(self, self.cells(margin), f"is marked ({margin.limit.mark})")
+            for margin in report.marks.margins
+        }
+        silent = {
+            pair
+            for margin in report.marks.margins
+            if margin.limit.silent
+            for pair in self.pairs(self.outside[margin.column.name].cells)
+        }
+        failed = self.pairs(self.failed.open) - silent
+        odd = failed.union(*(self.pairs(each.open) for each in self.outside.values())) - silent
+        self.suspect, self.because = suspected(report, odd, failed)
+
+    def checks(self) -> Iterator[Check]:
+        yield self.of_cells()
+        yield self.of_rows()
+        yield self.of_result()
+        yield from map(self.of_limit, self.report.marks.margins)
+        yield from self.of_expectations()
+        yield from self.of_left_out()
+
+    def cells(self, margin: Margin) -> Iterator[Cell]:
+        """The cells outside of a limit."""
+        labels = self.values.labels(margin.of)
+        for row in np.flatnonzero(self.report.marks.outside(margin)).tolist():
+            yield self.values.cell(margin.of.name, labels[row])
+
+    def tests(self, cell: Cell) -> tuple[int, ...]:
+        """The numbers of the tests that a row rests on; none of a scalar."""
+        column = self.sheet[cell.name]
+        if column.axis is None:
+            return ()
+        layout, row = self.values.layouts[column.axis.name], self.values.row(column, cell.label)
+        own = (index for index, axis in column.axis.maps.items() if not axis.parents)
+        return tuple(self.inputs.tests[layout.rows[index][row]] for index in own)
+
+    def pairs(self, cells: Iterable[Cell]) -> set[tuple[int, ...]]:
+        """The tests of the rows that rest on several."""
+        return {tests for cell in cells if len(tests := self.tests(cell)) > 1}
+
+    def reason(self, cell: Cell, says: str) -> str:
+        """Why somebody expects what is said of a cell; empty if nobody does."""
+        found = ""
+        for each in self.inputs.expected:
+            if each.covers(cell.name, cell.label, self.tests(cell)):
+                self.met[each.address].append(f"{cell.address} {says}")
+                found = found or each.reason
+        return found
+
+    # --- what has no value
+
+    def of_cells(self) -> Check:
+        """Whether every cell has a value."""
+        if not self.failed:
+            return Check(DATA, CELLS, True, "every cell has a value", self.inputs.place)
+        by_column: dict[str, list[Cell]] = {}
+        for cell in self.failed.told:
+            by_column.setdefault(cell.name, []).append(cell)
+        said = "; ".join(self.without_value(self.sheet[name], cells) for name, cells in by_column.items())
+        return self.check(DATA, CELLS, said, self.failed)
+
+    def without_value(self, column: Column, cells: Sequence[Cell]) -> str:
+        """``alpha: 4 of 10 pairs have no value: alpha[1-2] and alpha[2-3] #NOROOT!: ...``."""
+        by_cause: dict[str, list[Cell]] = {}
+        for cell in cells:
+            by_cause.setdefault(f"{cell.status.code}: {cell.why}", []).append(cell)
+        causes = [f"{_addresses(each)} {cause}" for cause, each in by_cause.items()]
+        if (more := len(causes) - CAUSES) > 0:
+            causes[CAUSES:] = [f"and {more} other causes" if more > 1 else "and another cause"]
+        have = f": {len(cells)} of {self.size(column)} have" if column.axis is not None else " has"
+        return f"{column.name}{have} no value: {'; '.join(causes)}"
+
+    def size(self, column: Column) -> str:
+        axis = column.axis
+        return "" if axis is None else f"{self.values.layouts[axis.name].size} {axis.name}"
+
+    def of_rows(self) -> Check:
+        """Whether all sums, means and fits are over all rows."""
+        found: dict[str, list[str]] = {}
+        for name in self.first(self.values.counted):
+            for axis, rows in self.values.counted[name].items():
+                over = f"over {rows} of {self.values.layouts[axis].size} {axis}"
+                if rows and not self.follows(self.values.cell(name), f"is {over}"):
+                    found.setdefault(over, []).append(name)
+        said = "; ".join(f"{_some(n)} {'is' if len(n) == 1 else 'are'} {over}" for over, n in found.items())
+        if not said:
+            said = (
+                "rows are left out as is expected"
+                if self.failed
+                else "sums, means and fits are over all rows"
+            )
+        return Check(DATA, ROWS, not found, said, self.inputs.place)
+
+    def of_result(self) -> Check:
+        """Whether every cell of the result has a value."""
+        headline = [name for name in self.report.workbook.headline if name in self.sheet]
+        missing = [
+            cell
+            for name in headline
+            for cell in self.values.cells(name)
+            if cell.status is not Status.OK and not self.follows(cell, _no_value(cell))
+        ]
+        said = "the result has a value" + (" where one is expected" if self.failed else "")
+        if missing:
+            causes = dict.fromkeys((cell.culprit or cell).address for cell in missing)
+            has = "has" if len(missing) == 1 else "have"
+            said = f"{_addresses(missing)} of the result {has} no value, for want of {_some(list(causes))}"
+        return Check(DATA, RESULT, not missing, said, self.inputs.place)
+
+    def first(self, some: Iterable[str]) -> list[str]:
+        """Names, those of the result first."""
+        return sorted(some, key=lambda name: name not in self.report.workbook.headline)
+
+    def follows(self, cell: Cell, says: str) -> bool:
+        """Whether somebody expects what is said of a cell, or all errors that it may follow from."""
+        behind = {cell.name, *(column.name for column in self.sheet.ancestors(self.sheet[cell.name]))}
+        return bool(self.reason(cell, says)) or not any(odd.name in behind for odd in self.failed.open)
+
+    # --- what is implausible, what is expected
+
+    def of_limit(self, margin: Margin) -> Check:
+        """Whether the cells of a column lie inside of one limit."""
+        odd, name, limit = self.outside[margin.column.name], _name(margin), margin.limit
+        if not odd:
+            inside = f"inside {limit.source}" if limit.source else f"none {limit.mark}"
+            return Check(LIMIT, name, True, f"{margin.of.name}: {inside}", self.inputs.place)
+        said = f"{Count(margin, len(odd.told), self.report.marks.count(margin).size).said}: "
+        if margin.of.axis is None:
+            said = f"{limit.told}: "
+        return self.check(
+            LIMIT, name, f"{margin.of.name}: {said}{_some(list(map(self.valued, odd.told)))}", odd
+        )
+
+    def valued(self, cell: Cell) -> str:
+        """``alpha[1-2] = 2.73``; a given cell as it was printed."""
+        how, printed = self.report.shown[cell.name], self.printed(cell)
+        if cell.value is None:
+            return f"{cell.address} {cell.status.code}"
+        text = printed.text if printed else f"{cell.value / how.scale:.{how.digits}g}"
+        return f"{cell.address} = {text}" + (f" {how.unit}" if how.unit != "1" else "")
+
+    def of_expectations(self) -> Iterator[Check]:
+        """Whether each expectation has come true."""
+        for each in self.inputs.expected:
+            met = list(dict.fromkeys(self.met[each.address]))
+            said = f"{each.address}, {each.reason}: {_some(met)}"
+            if not met:
+                said = f"{each.address} is expected to be odd ({each.reason}), and is not: drop it"
+            yield Check(EXPECTED, each.address, bool(met), said, each.at, note="expected")
+
+    def of_left_out(self) -> Iterator[Check]:
+        """The tests that somebody left out, and what is not compared for that."""
+        for each in self.inputs.left_out:
+            said = f"test {each.test}, {each.reason}"
+            if rests := sum(each.test in value.index for value in self.inputs.aside):
+                said += f"; {rests} published {'value rests' if rests == 1 else 'values rest'} on it"
+            yield Check(LEFT_OUT, f"test {each.test}", True, said, each.at, note="left out")
+
+    def check(self, kind: str, name: str, said: str, odd: _Odd) -> Check:
+        """A check that found something: with the test to look at, or with why it is expected."""
+        if not odd.open:
+            return Check(kind, name, True, f"{said}, as is expected", self.inputs.place)
+        if any(self.suspect in self.tests(cell) for cell in odd.open):
+            said += f"; look at test {self.suspect} first: {self.because}"
+        warns = kind == LIMIT
+        return Check(kind, name, warns, said, self.place(odd.open), note="warning" * warns)
+
+    # --- where
+
+    def place(self, cells: Sequence[Cell]) -> Location:
+        """Where the first cell was printed, or the first number of the test to look at; else report.toml."""
+        printed = self.printed(cells[0])
+        if printed is None and any(self.suspect in self.tests(cell) for cell in cells):
+            row = self.inputs.tests.index(self.suspect)
+            printed = next((column[row] for column in self.inputs.measured.values()), None)
+        found = re.fullmatch(r"(.*):(\d+):(\d+)", printed.where) if printed is not None else None
+        if printed is None or found is None:
+            return self.inputs.place
+        path = Path(self.inputs.folder, found[1]).as_posix()
+        return Location(path, int(found[2]), int(found[3]), len(printed.text))
+
+    def printed(self, cell: Cell) -> Printed | None:
+        """A given cell as it was printed."""
+        column = self.sheet[cell.name]
+        printed = self.inputs.printed(cell.name) if isinstance(column.rule, Given) else ()
+        return printed[self.values.row(column, cell.label)] if printed else None
+
+
+class _Odd:
+    """Odd cells of one kind, and those of them that nobody expects."""
+
+    def __init__(self, look: _Oddities, cells: Iterable[Cell], says: str = "") -> None:
+        self.cells = list(cells)
+        self.open = [cell for cell in self.cells if not look.reason(cell, says or _no_value(cell))]
+
+    def __bool__(self) -> bool:
+        return bool(self.cells)
+
+    @property
+    def told(self) -> list[Cell]:
+        """Those to tell of: what nobody expects; if all are expected, all."""
+        return self.open or self.cells
+
+
+def _no_value(cell: Cell) -> str:
+    return f"has no value ({cell.status.code})"
+
+
+def _addresses(cells: Iterable[Cell]) -> str:
+    return _some([cell.address for cell in cells])
+
+
+def _some(parts: Sequence[str]) -> str:
+    """The first parts, and how many more there are.
+
+    >>> _some(["a"]), _some(["a", "b", "c"]), _some(list("abcdefgh"))
+    ('a', 'a, b and c', 'a, b, c, d, e, f and 2 more')
+    """
+    shown = [*parts[:MOST], *([f"{len(parts) - MOST} more"] if len(parts) > MOST else [])]
+    return " and ".join(filter(None, [", ".join(shown[:-1]), *shown[-1:]]))

@@ -1,0 +1,292 @@
+"""Where files are written: beside what they replace, moved in whole or not at all."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
+from itertools import count
+from pathlib import Path
+
+from ..messages.errors import EXHAUSTED, Location, OutputError, diagnose
+from .scratch import left_over, locked, scratch
+from .stopping import unstoppable
+
+__all__ = ["half_moved", "put", "replaced", "staged"]
+
+PATIENCE = 60.0
+"""Seconds to wait for somebody else who builds into the same folder."""
+
+
+def put(path: Path, content: str | bytes) -> None:
+    """Write a file, and the folders above it.
+
+    Parameters
+    ----------
+    path : Path
+    content : str or bytes
+        Text is written as UTF-8.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+    except OSError as error:
+        error.filename = error.filename or str(path)  # a full disk does not say which file
+        raise
+
+
+def replaced(path: Path, before: bytes, after: bytes) -> None:
+    """Replace a user's file as a whole; what it may be read and written by stays as it is.
+
+    Parameters
+    ----------
+    path : Path
+        Where a link leads to is replaced, not the link.
+    before : bytes
+        What was read; a file that somebody has changed since is left alone.
+    after : bytes
+
+    Raises
+    ------
+    OutputError
+        It cannot be written; it is as it was then.
+    """
+    target = path.resolve()
+    try:
+        # An administrator may write anything: what counts is what the owner has said.
+        if not target.stat().st_mode & 0o222 or not os.access(target, os.W_OK):
+            raise PermissionError("it is read-only")
+        with scratch(target.parent) as stage, unstoppable():
+            draft = stage / target.name
+            draft.write_bytes(after)
+            shutil.copymode(target, draft)
+            if target.read_bytes() != before:
+                raise PermissionError("somebody has changed it meanwhile")
+            os.replace(draft, target)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OutputError(
+            diagnose("LS613", Location(path.as_posix()), text=path.name, reason=reason)
+        ) from error
+
+
+@contextmanager
+def staged(
+    out: Path,
+    tell: Callable[[str], None] = lambda _: None,
+    added: Callable[[Path], Mapping[Path, str]] = lambda _: {},
+) -> Iterator[Path]:
+    """Give a temporary folder beside the output, moved in whole when the block ends well.
+
+    A file that is in its way, and that no build made as it is there, is kept under another name. Who builds
+    into the same folder meanwhile waits for some time, and is told then.
+
+    Parameters
+    ----------
+    out : Path
+        The output; made if it does not exist.
+    tell : callable
+        Told which files are kept, and under which name, and which of the report before are removed.
+    added : callable
+        Given `out`, the sha256 of what was added to it since it was built: that is of the report which is
+        there, and is removed with it if another one takes its place.
+
+    Raises
+    ------
+    OutputError
+        It cannot be written, or something stands in the way; all is left as it was then.
+    """
+    # Of a folder that may not be entered, nothing is known; to make it then says why it cannot be.
+    if os.path.exists(out) and not os.path.isdir(out):
+        raise OutputError(diagnose("LS602", text=str(out)))
+    made = [p for p in (out, *out.parents) if not os.path.exists(p)]
+    stage = out
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        with _alone(out):
+            killed = [_listed(stage) or {} for stage in left_over(out)]  # the next line removes them
+            with scratch(out) as stage:
+                yield stage
+                with unstoppable():
+                    gone = _added(stage, out, added)
+                    names = [p.relative_to(stage) for p in stage.rglob("*") if p.is_file()]
+                    stale = set(_stale(out, names, _listed(out) or {}))
+                    kept = _move_in(stage, out, killed, gone)
+                    for name in (*gone, *stale):
+                        _remove([out / parent for parent in name.parents[:-1]])
+        for name, free in kept.items():
+            tell(f"{name.as_posix()} was not as built: it is kept as {free.as_posix()}")
+        if removed := sorted(name.as_posix() for name in stale.union(gone) if name not in kept):
+            tell(f"{', '.join(removed)}: removed, as of the report before")
+    except OSError as error:
+        _remove(made)
+        file, place = Path(error.filename or ""), out
+        if stage != out:
+            if error.errno not in EXHAUSTED or not file.is_relative_to(stage):
+                raise  # not about what we write
+            place = out / file.relative_to(stage)
+        reason = error.strerror or str(error)
+        raise OutputError(diagnose("LS601", text=place.as_posix(), reason=reason)) from error
+    except BaseException:
+        _remove(made)
+        raise
+
+
+@contextmanager
+def _alone(out: Path) -> Iterator[None]:
+    try:
+        lock = locked(out, PATIENCE)
+    except BlockingIOError as error:
+        raise OutputError(diagnose("LS621", text=out, seconds=f"{PATIENCE:g}")) from error
+    try:
+        yield
+    finally:
+        if lock is not None:
+            os.close(lock)
+
+
+def half_moved(out: Path) -> bool:
+    """Whether a build was killed while it put its files in place: what is there is of two builds then."""
+    # The manifest goes last: without one, it was killed before it had all files, or when all were in place.
+    return any(not (stage / name).exists() for stage in left_over(out) for name in _listed(stage) or ())
+
+
+def _remove(made: list[Path]) -> None:
+    """Take back the empty folders that were made."""
+    for folder in made:
+        try:
+            folder.rmdir()
+        except OSError:
+            return
+
+
+def _move_in(
+    stage: Path, out: Path, killed: list[dict[Path, str]], gone: Mapping[Path, str]
+) -> dict[Path, Path]:
+    """Put the staged files in place, all or none; return what was kept, and as what.
+
+    The manifest comes last and never speaks of half an output. What an earlier build made and this one does
+    not is taken away, unless somebody changed it. `killed` is what other builds were about to put here;
+    `gone` goes in any case, and what somebody changed of it is kept.
+    """
+    names = sorted(
+        (p.relative_to(stage) for p in stage.rglob("*") if p.is_file()),
+        key=lambda name: (name.name == "manifest.json", name),
+    )
+    for name in names:
+        _refuse_what_is_in_the_way(out, name)
+    before, built = stage / ".before", _listed(out)
+    done: list[tuple[Path, Path | None]] = []
+    kept_as: dict[Path, Path] = {}
+    try:
+        for name in _changed(stage, out, (*names, *gone), built, [*killed, gone]):
+            kept_as[name] = _free(name, out)
+            done.append((out / kept_as[name], None))
+            shutil.copy2(out / name, out / kept_as[name])
+        for name in (*gone, *_stale(out, names, built or {}), *names):
+            target = out / name
+            kept = _kept(target, before / name)
+            done.append((target, kept))
+            if name in names:
+                target.parent.mkdir(parents=True, exist_ok=True)
+                os.replace(stage / name, target)
+            else:
+                target.unlink()
+    except OSError as error:
+        for target, kept in reversed(done):
+            if kept is None:
+                target.unlink(missing_ok=True)
+            else:
+                os.replace(kept, target)
+        reason = error.strerror or str(error)
+        raise OutputError(diagnose("LS601", text=str(out), reason=reason)) from error
+    return kept_as
+
+
+def _kept(target: Path, place: Path) -> Path | None:
+    """Give a file that is there another name too: a reader finds the old one or the new, never none."""
+    if not os.path.lexists(target):
+        return None
+    place.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        os.link(target, place, follow_symlinks=False)
+    except OSError:  # not every file system has such names
+        shutil.copy2(target, place, follow_symlinks=False)
+    return place
+
+
+def _refuse_what_is_in_the_way(out: Path, name: Path) -> None:
+    """A folder where a file goes, or a file where a folder goes, is the user's: nothing is done then."""
+    if (out / name).is_dir():
+        raise OutputError(diagnose("LS601", text=name.as_posix(), reason="a folder has this name"))
+    for parent in name.parents[:-1]:
+        if (out / parent).exists() and not (out / parent).is_dir():
+            raise OutputError(diagnose("LS601", text=name.as_posix(), reason=f"{parent} is a file"))
+
+
+def _listed(folder: Path) -> dict[Path, str] | None:
+    """The sha256 of what a build made, as its manifest says; None if there is none of ours."""
+    try:
+        listed = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))["outputs"]
+        return {Path(name): str(digest) for name, digest in listed.items()}
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        return None
+
+
+def _changed(
+    stage: Path,
+    out: Path,
+    names: Collection[Path],
+    built: dict[Path, str] | None,
+    killed: Collection[Mapping[Path, str]],
+) -> Iterator[Path]:
+    """What is about to be replaced or removed, and is neither as a build made it nor as it is built now."""
+    for name in names:
+        path = out / name
+        if path.is_symlink() or not path.is_file() or (name.name == "manifest.json" and built is not None):
+            continue
+        ours = {listed.get(name) for listed in (built or {}, *killed)}
+        now = {_sha256(stage / name)} if (stage / name).is_file() else set()
+        if _sha256(path) not in ours | now:
+            yield name
+
+
+def _free(name: Path, out: Path) -> Path:
+    """A name that no file has: ``report.edited.tex``, ``report.edited-2.tex``."""
+    marks = ("edited" if number == 1 else f"edited-{number}" for number in count(1))
+    names = (name.with_name(f"{name.stem}.{mark}{name.suffix}") for mark in marks)
+    return next(free for free in names if not os.path.lexists(out / free))
+
+
+def _added(stage: Path, out: Path, added: Callable[[Path], Mapping[Path, str]]) -> dict[Path, str]:
+    """What was added to the report that is there, if another one takes its place."""
+    old, new = out / "manifest.json", stage / "manifest.json"
+    if old.is_file() and new.is_file() and old.read_bytes() == new.read_bytes():
+        return {}
+    return {
+        name: digest
+        for name, digest in added(out).items()
+        if os.path.isfile(out / name)  # false for a name that no file can have, too
+        and (out / name).resolve() == out.resolve() / name  # no link leads elsewhere
+        and ".." not in name.parts
+        and not (stage / name).exists()
+    }
+
+
+def _stale(out: Path, names: Collection[Path], built: dict[Path, str]) -> list[Path]:
+    """What an earlier build made, unchanged since, and this build does not make."""
+    return [
+        name
+        for name, digest in sorted(built.items())
+        if not (name in names or name.is_absolute() or ".." in name.parts)
+        and not (out / name).is_symlink()
+        and (out / name).is_file()
+        and _sha256(out / name) == digest
+    ]
+
+
+def _sha256(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

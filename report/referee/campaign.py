@@ -1,0 +1,157 @@
+"""A report as the referee asks it: its sheet, the digits of its inputs, and what is not printed."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cells.values import Values
+from ..engines.numpy import Program
+from ..inputs.inputs import Inputs
+from ..quantity import Bounds, Printed
+from ..result.verdict import Witness
+from ..sheet import Given, Sheet
+
+__all__ = ["Array", "Campaign", "Unknown"]
+
+Array = NDArray[np.float64]
+
+FREE = 1e15
+"""What is not printed is looked for between its recomputed value over and times so much."""
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A given cell.
+
+    Parameters
+    ----------
+    column : str
+    row : int
+    index : tuple of int
+        How the row is called.
+    printed : Printed or None
+        None for what is not printed.
+    start : float
+        Its value in SI as printed, or as recomputed.
+    allowed : Bounds
+        What it may be, whatever is printed.
+    """
+
+    column: str
+    row: int
+    index: tuple[int, ...]
+    printed: Printed | None
+    start: float
+    allowed: Bounds = field(default_factory=Bounds)
+
+    def interval(self, mode: str = "") -> tuple[float, float]:
+        """Where it may lie, in SI; under another manner of printing than was declared."""
+        if self.printed is None:
+            ends = (self.start / FREE, self.start * FREE)
+            return self.allowed.clip(min(ends), max(ends))
+        printed = replace(self.printed, mode=mode) if mode else self.printed
+        low, high = printed.interval
+        return self.allowed.clip(float(low), float(high))
+
+    def witness(self, value: float) -> Witness:
+        """A value of it, in the unit that it is printed in."""
+        scale = float(self.printed.scale) if self.printed is not None else 1.0
+        return Witness(self.column, self.index, value / scale, self.printed)
+
+
+@dataclass(frozen=True, eq=False)
+class Programs:
+    """What was made of a sheet. The same columns are asked for again and again, and printing takes long."""
+
+    sheets: dict[tuple[str, ...], Sheet] = field(default_factory=dict)
+    programs: dict[tuple[tuple[str, ...], frozenset[str]], Program] = field(default_factory=dict)
+    derivatives: dict[int, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """A report's sheet and inputs, as the referee asks them.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    inputs : Inputs
+    values : Values
+        As recomputed from what is printed.
+    data : mapping of column name to float or sequence of float
+        The given columns in SI.
+    free : tuple of str
+        Columns that the publication does not print: given or computed, they may have any value.
+    made : Programs
+        Of the sheet; campaigns with other inputs share them.
+    """
+
+    sheet: Sheet
+    inputs: Inputs
+    values: Values
+    data: Mapping[str, Any]
+    free: tuple[str, ...] = ()
+    made: Programs = field(default_factory=Programs, repr=False)
+
+    @cached_property
+    def labels(self) -> dict[str, tuple[int, ...]]:
+        """Row numbers of the axes that come with the data."""
+        return {axis.name: self.inputs.tests for axis in self.sheet.axes if not axis.parents}
+
+    def program(self, wanted: Collection[str], cut: tuple[str, ...] = ()) -> Program:
+        """The program of some columns and what they rest on, where some others are given."""
+        whole = self._with_free(cut)
+        needed = frozenset(wanted) | {a.name for name in wanted for a in whole.ancestors(whole[name])}
+        if (cut, needed) not in self.made.programs:
+            sheet = Sheet(tuple(column for column in whole.columns if column.name in needed))
+            self.made.programs[cut, needed] = Program.of(sheet)
+        return self.made.programs[cut, needed]
+
+    def _with_free(self, cut: tuple[str, ...]) -> Sheet:
+        """The sheet with some columns given that it would compute."""
+        if cut not in self.made.sheets:
+            self.made.sheets[cut] = Sheet(
+                tuple(
+                    replace(column, rule=Given("free"), requires=()) if column.name in cut else column
+                    for column in self.sheet.columns
+                )
+            )
+        return self.made.sheets[cut]
+
+    @cached_property
+    def enclosed(self) -> dict[Any, Any]:
+        """What certificates keep: the cells of each program over what prints as given."""
+        return {}
+
+    def unknowns(self, sheet: Sheet, cut: Sequence[str], asked: Sequence[str] = ()) -> Iterator[Unknown]:
+        """The given cells that are not exact; free ones without their print.
+
+        Parameters
+        ----------
+        sheet : Sheet
+            The columns in question.
+        cut : sequence of str
+            The free ones.
+        asked : sequence of str
+            Conventions that are unknowns all the same, each with nothing but its own value.
+        """
+        for column in sheet.columns:
+            if not isinstance(column.rule, Given):
+                continue
+            if column.exact and (column.name not in (*cut, *asked) or sheet.bounds[column.name].integer):
+                continue
+            printed = self.inputs.printed(column.name)
+            values = np.broadcast_to(self.values.value[column.name], (len(self.values.labels(column)),))
+            for row, (index, value) in enumerate(
+                zip(self.values.labels(column), values.tolist(), strict=True)
+            ):
+                text = None if column.name in cut else printed[row]
+                start = value if np.isfinite(value) else 1.0
+                start = start if text is None else float(text.value)
+                yield Unknown(column.name, row, index, text, start, sheet.bounds[column.name])

@@ -1,0 +1,129 @@
+"""Compares published values with their recomputation, each in the digits that were printed."""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import replace
+from decimal import Context, Decimal
+from fractions import Fraction
+
+from ..cells.values import Values
+from ..inputs.published import PublishedValue
+from ..quantity import Printed
+from ..result import verdict_words as words
+from ..result.result import Comparison
+from ..result.verdict import (
+    EXACT,
+    OTHERWISE,
+    REACHABLE,
+    UNAMENDED,
+    UNEXPECTED,
+    UNEXPLAINED,
+    UNPINNED,
+    UNREASONED,
+    WITHIN,
+    Referee,
+    Verdict,
+)
+
+__all__ = ["compare", "print_as", "prints_same", "refereed"]
+
+DIGITS = 15
+"""Of a decimal number, how many every double keeps."""
+
+
+def print_as(value: float, like: Printed) -> str:
+    """Print a value as another number was printed: in its unit, with its decimals, rounded or truncated.
+
+    Parameters
+    ----------
+    value : float
+        In SI.
+    like : Printed
+
+    Examples
+    --------
+    >>> from fractions import Fraction
+    >>> print_as(4.15439e-05, Printed("41.61", "um", Fraction("4.161e-5"), Fraction(1, 10**6)))
+    '41.54'
+    """
+    in_unit, places = Fraction(value) / like.scale, like.decimals
+    if like.mode == "truncated":
+        # A double is a little less or more than the decimal number it stands for: 29.7 is not cut to 29.6.
+        near = Context(prec=DIGITS).divide(Decimal(in_unit.numerator), Decimal(in_unit.denominator))
+        digits = math.trunc(abs(Fraction(near)) * Fraction(10) ** places)
+    else:
+        digits = round(abs(in_unit) * Fraction(10) ** places)
+    text = str(digits * 10 ** max(0, -places)).zfill(places + 1)
+    point = len(text) - max(0, places)
+    return f"{'-' if value < 0 else ''}{text[:point]}{'.' if places > 0 else ''}{text[point:]}"
+
+
+def prints_same(value: float, printed: Printed) -> bool:
+    """Whether a value in SI prints as it was printed: by value and decimals, whatever the notation.
+
+    >>> from fractions import Fraction
+    >>> prints_same(238.94213, Printed("2.3894e+02", "1", Fraction("238.94"), Fraction(1)))
+    True
+    """
+    return Fraction(print_as(value, printed)) == Fraction(printed.text)
+
+
+def compare(published: tuple[PublishedValue, ...], values: Values) -> tuple[Comparison, ...]:
+    """Set every published value beside its cell."""
+    return tuple(_compare(value, values) for value in published)
+
+
+def _compare(published: PublishedValue, values: Values) -> Comparison:
+    cell, printed = values.cell(published.cell, published.index), published.printed
+    if cell.value is None:
+        again, distance, verdict = cell.status.code, None, "not-checkable"
+    else:
+        again = print_as(cell.value, printed)
+        distance = _double((Fraction(cell.value) - printed.value) / (2 * printed.half_unit))
+        verdict = "same" if prints_same(cell.value, printed) else "differs"
+    return Comparison(published, cell, again, distance, verdict, _finding(published, again, verdict))
+
+
+def _double(number: Fraction) -> float:
+    """The nearest double: the largest there is for what is larger."""
+    most = Fraction(sys.float_info.max)
+    return float(max(-most, min(number, most)))
+
+
+def _finding(published: PublishedValue, again: str, verdict: str) -> str:
+    """What is not as expected, before the referee was asked."""
+    if not published.expect:
+        return "" if verdict == "same" else UNEXPECTED
+    if verdict == "same":
+        return UNEXPECTED
+    if published.pin is None:
+        return UNPINNED
+    if not published.pin.holds(published.printed, again):
+        return OTHERWISE
+    return "" if published.reason else UNREASONED
+
+
+def refereed(comparisons: tuple[Comparison, ...], found: Referee) -> tuple[Comparison, ...]:
+    """Comparisons with what the referee says of each."""
+    return tuple(
+        replace(comparison, refereed=verdict, finding=_refereed(comparison, verdict, found))
+        for comparison, verdict in zip(comparisons, found.values, strict=True)
+    )
+
+
+def _refereed(comparison: Comparison, verdict: Verdict, found: Referee) -> str:
+    """What is not as expected: the referee excuses what is reachable, and knows what explains the rest."""
+    published = comparison.published
+    if not published.expect:
+        possible = verdict.verdict in (EXACT, REACHABLE, WITHIN) or found.as_printed
+        return "" if possible else UNEXPECTED
+    if comparison.finding:
+        return comparison.finding
+    own = (published.source, published.cell, published.index)
+    wrong = (change for each in found.misprints for change in each.changes)
+    if own in {(change.source, change.cell, change.index) for change in wrong}:
+        return UNAMENDED
+    holding = {"", *map(words.name, found.explanations)}
+    return "" if published.explained in holding else UNEXPLAINED

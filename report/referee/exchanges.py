@@ -1,0 +1,130 @@
+"""Numbers and rows that stand under the wrong name: exchanged cells, columns and orders."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from ..result.verdict import INPUT, Change
+from .campaign import Array
+from .minimax import best
+from .problem import Box, Problem
+from .search import Explained, Search
+
+__all__ = ["columns", "exchanged_in_tables", "exchanged_inputs", "orders"]
+
+
+def exchanged_in_tables(search: Search) -> Iterator[Explained]:
+    """Two published values of a column that stand in each other's place."""
+    published = search.problem.published
+    for members in search.groups.values():
+        for n, m in _pairs(members):
+            one, other = published[n], published[m]
+            if one.printed.text == other.printed.text or not search.worth({n, m}):
+                continue
+            changed = search.problem.reprinted({n: other.printed, m: one.printed})
+            now = search.met(changed)
+            if now is not None:
+                texts = one.printed.text, other.printed.text
+                change = Change("label", one.cell, one.index, one.source, *texts, other=other.index)
+                yield search.explained([change], changed, changed.box, now)
+
+
+def exchanged_inputs(search: Search) -> Iterator[Explained]:
+    """Two numbers of a given column that stand in each other's place."""
+    problem, tried = search.problem, list[tuple[int, int, Box]]()
+    for members in problem.rows.values():
+        for n, m in _pairs(members):
+            one, other = problem.unknowns[n], problem.unknowns[m]
+            if one.printed is None or other.printed is None or one.printed.text == other.printed.text:
+                continue
+            if search.worth(search.resting_on([n, m])):
+                low, high = zip(other.interval(), one.interval(), strict=True)
+                tried.append((n, m, problem.box.moved([n, m], low, high, [other.start, one.start])))
+    for place in search.screened([box for *_, box in tried]):
+        n, m, box = tried[place]
+        box = replace(box, start=problem.restarted(box.start[None])[0])
+        now = search.met(problem, box)
+        if now is not None:
+            one, other = problem.unknowns[n], problem.unknowns[m]
+            assert one.printed is not None
+            assert other.printed is not None
+            texts = one.printed.text, other.printed.text
+            change = Change("label", one.column, one.index, INPUT, *texts, other=other.index)
+            yield search.explained([change], problem, box, now)
+
+
+def _pairs(members: Sequence[int]) -> Iterable[tuple[int, int]]:
+    for place, n in enumerate(members):
+        for m in members[place + 1 :]:
+            yield n, m
+
+
+def columns(search: Search) -> Iterator[Explained]:
+    """A row of a table that holds another column than the one it is named after."""
+    campaign = search.problem.campaign
+    for (source, cell), members in search.groups.items():
+        own = campaign.sheet[cell]
+        alike = [
+            column for column in campaign.sheet.columns
+            if column.name != cell and column.axis == own.axis and column.unit == own.unit
+        ]  # fmt: skip
+        if not alike or not search.worth(members):
+            continue
+        for column in alike:
+            changed = search.problem.renamed(members, column.name)
+            now = search.met(changed)
+            if now is not None:
+                change = Change("label", cell, (), source, cell, column.name)
+                yield search.explained([change], changed, changed.box, now)
+
+
+def orders(search: Search) -> Iterator[Explained]:
+    """A list of a table that stands in another order than its rows."""
+    for (source, cell), members in search.groups.items():
+        if len(members) < 3 or not search.worth(members):
+            continue
+        changed, point, order = search.problem, search.problem.box.start, list(members)
+        for _ in range(5):
+            cells = search.problem.guessing.evaluate(point[None])[0]
+            if not np.isfinite(cells).all():
+                break
+            new = _assigned(search.problem, members, cells)
+            if new == order:
+                break
+            order = new
+            changed = search.problem.reprinted({
+                n: search.problem.published[m].printed for n, m in zip(members, order, strict=True)
+            })  # fmt: skip
+            point = best(changed, replace(changed.box, start=point)).point
+        if order == members:
+            continue
+        now = search.met(changed, replace(changed.box, start=point))
+        if now is not None:
+            texts, would = (
+                ", ".join(search.problem.published[n].printed.text for n in rows) for rows in (members, order)
+            )
+            change = Change("order", cell, (), source, texts, would, count=_exchanges(members, order))
+            yield search.explained([change], changed, changed.box, now)
+
+
+def _assigned(problem: Problem, members: Sequence[int], cells: Array) -> list[int]:
+    """Which print goes best with which row."""
+    centre, half = problem.centre[list(members)], problem.half[list(members)]
+    cost = ((cells[list(members)][:, None] - centre) / half) ** 2
+    _, found = linear_sum_assignment(cost)
+    return [members[n] for n in found.tolist()]
+
+
+def _exchanges(before: Sequence[int], after: Sequence[int]) -> int:
+    """How many exchanges of two make one order out of another."""
+    follows, seen, cycles = dict(zip(before, after, strict=True)), set(), 0
+    for start in before:
+        here, cycles = start, cycles + (start not in seen)
+        while here not in seen:
+            seen.add(here)
+            here = follows[here]
+    return len(before) - cycles

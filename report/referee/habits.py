@@ -1,0 +1,254 @@
+"""Honest habits: what was computed from rounded numbers, or in conventions that are not printed."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..engines.numpy import evaluate
+from ..result.verdict import INPUT, Change
+from ..sheet import Column, Formula, Given, RepeatAxis
+from .campaign import Array, Campaign
+from .minimax import best
+from .misprints import freed
+from .problem import Problem
+from .search import Explained, Search
+from .ways import Way, from_printed, over_rows
+
+__all__ = ["computed_from_printed", "other_conventions", "other_rows"]
+
+CHOSEN, MOST_DIGITS = 3, 6
+"""Significant digits of a convention that somebody may have chosen, and of one that is looked for."""
+
+
+@dataclass(frozen=True)
+class _Habit:
+    """Some published values that were computed from what is printed."""
+
+    change: Change
+    members: frozenset[int]
+    way: Way
+
+
+def computed_from_printed(search: Search) -> Iterator[Explained]:
+    """Published values that were computed from printed, rounded ones: one habit, else two together."""
+    habits = list(_habits(search))
+    for number in (1, 2):
+        some = [those for those in combinations(habits, number) if _apart(those) and _worth(search, those)]
+        asked = [(_computed(search.problem, those), None) for those in some]
+        found = search.likeliest(asked)
+        for n, now in found:
+            problem = asked[n][0]
+            yield search.explained([habit.change for habit in some[n]], problem, problem.box, now)
+        if found:
+            return
+
+
+def _apart(habits: Sequence[_Habit]) -> bool:
+    return len(_members(habits)) == sum(len(habit.members) for habit in habits)
+
+
+def _members(habits: Sequence[_Habit]) -> frozenset[int]:
+    return frozenset[int]().union(*(habit.members for habit in habits))
+
+
+def _worth(search: Search, habits: Sequence[_Habit]) -> bool:
+    return search.worth(_members(habits))
+
+
+def _computed(problem: Problem, habits: Sequence[_Habit]) -> Problem:
+    for habit in habits:
+        problem = problem.computed(habit.way, habit.members)
+    return problem
+
+
+def _habits(search: Search) -> Iterator[_Habit]:
+    """What may have been computed from what is printed: each column of a table, and each table."""
+    problem = search.problem
+    campaign, sheet = problem.campaign, problem.campaign.sheet
+    printed = _printed_columns(search)
+    tables: dict[str, list[tuple[str, list[int]]]] = {}
+    for (source, cell), members in search.groups.items():
+        tables.setdefault(source, []).append((cell, members))
+        nearest = _nearest(problem, sheet[cell], printed)
+        if nearest:
+            given = {name: values for name, values in printed.items() if name in nearest}
+            yield _habit(problem, source, [(cell, members)], given)
+    for source, cells in tables.items():
+        own = {cell for cell, _ in cells}
+        elsewhere = {name: values for name, values in printed.items() if name not in own}
+        nearest = {name for cell in own for name in _nearest(problem, sheet[cell], elsewhere)}
+        resting = [(cell, m) for cell, m in cells if _nearest(problem, sheet[cell], elsewhere)]
+        if nearest and len(resting) > 1:
+            given = {name: values for name, values in elsewhere.items() if name in nearest}
+            yield _habit(problem, source, resting, given)
+            measured = {
+                name: np.array([float(p.value) for p in column])
+                for name, column in campaign.inputs.measured.items()
+            }
+            yield _habit(problem, source, resting, {**given, **measured})
+
+
+def _printed_columns(search: Search) -> dict[str, Array]:
+    """The computed columns of which every row is published, as printed, in SI."""
+    problem = search.problem
+    found: dict[str, Array] = {}
+    for (_, cell), members in search.groups.items():
+        size = len(problem.campaign.values.labels(problem.campaign.sheet[cell]))
+        if {problem.places[n][1] for n in members} == set(range(size)) and len(members) == size:
+            order = sorted(members, key=lambda n: problem.places[n][1])
+            found.setdefault(cell, np.array([float(problem.published[n].printed.value) for n in order]))
+    return found
+
+
+def _nearest(problem: Problem, column: Column, printed: Collection[str]) -> set[str]:
+    """The printed columns that a column rests on with no printed one in between."""
+    sheet, found, waiting, seen = problem.campaign.sheet, set[str](), [column], set[str]()
+    while waiting:
+        for precedent in sheet.precedents(waiting.pop()):
+            if precedent.name in printed:
+                found.add(precedent.name)
+            elif precedent.name not in seen:
+                seen.add(precedent.name)
+                waiting.append(precedent)
+    return found
+
+
+def _habit(
+    problem: Problem, source: str, cells: Sequence[tuple[str, list[int]]], given: dict[str, Array]
+) -> _Habit:
+    names = [cell for cell, _ in cells]
+    members = frozenset(n for _, rows in cells for n in rows)
+    way = from_printed(problem.campaign, names, given)
+    used = ", ".join(name for name in given if name in way.printed)
+    cell = names[0] if len(names) == 1 else ""
+    return _Habit(Change("printed", cell, (), source, "", used, count=0), members, way)
+
+
+# --- sums and means over other rows -----------------------------------------------------------------------
+
+
+def other_rows(search: Search) -> Iterator[Explained]:
+    """A published mean that leaves out a row or all rows of a test, or counts one twice."""
+    problem, sheet = search.problem, search.problem.campaign.sheet
+    for n, value in enumerate(problem.published):
+        column = sheet[value.cell]
+        axes = sheet.summed_axes(column)
+        if column.axis is not None or len(axes) != 1 or isinstance(axes[0], RepeatAxis):
+            continue
+        if not isinstance(column.rule, Formula) or not search.worth({n}):
+            continue
+        rows = dict(_rows(problem.campaign.values.layouts[axes[0].name].labels))
+        ways = over_rows(column, axes[0], list(rows.values()), sheet)
+        asked = [(problem.computed(way, {n}), None) for way in ways]
+        found = sorted(search.likeliest(asked), key=lambda one: one[1].mismatch)
+        if found:
+            would, *also = (list(rows)[place] for place, _ in found)
+            text = value.printed.text
+            change = Change("rows", value.cell, (), value.source, text, would, tuple(also))
+            changed = asked[found[0][0]][0]
+            yield search.explained([change], changed, changed.box, found[0][1])
+
+
+def _rows(labels: NDArray[np.int64]) -> Iterator[tuple[str, NDArray[np.intp]]]:
+    """Rows of an axis, and what is said of them: the likelier mistakes first."""
+    number = len(labels)
+    every = np.arange(number)
+    names = ["-".join(map(str, label)) for label in labels.tolist()]
+    for row, name in enumerate(names):
+        yield f"without {name}", np.delete(every, row)
+    for row, name in enumerate(names):
+        yield f"with {name} twice", np.append(every, row)
+    if labels.shape[1] > 1:
+        for test in np.unique(labels):
+            kept = every[~(labels == test).any(axis=1)]
+            if 0 < len(kept) < number - 1:
+                yield f"without all of {test}", kept
+
+
+# --- conventions ------------------------------------------------------------------------------------------
+
+
+def other_conventions(search: Search) -> Iterator[Explained]:
+    """A parameter that is a convention, and has another value than is said or taken for granted."""
+    problem = search.problem
+    counts = {axis.count for axis in problem.campaign.sheet.axes if isinstance(axis, RepeatAxis)}
+    for column in problem.campaign.sheet.columns:
+        if (
+            isinstance(column.rule, Given)
+            and column.exact
+            and column.name in problem.campaign.inputs.parameters
+        ):
+            yield from (_other_count if column.name in counts else _other_number)(search, column)
+
+
+def _change(problem: Problem, column: Column, would: str, also: tuple[str, ...] = ()) -> Change:
+    inputs = problem.campaign.inputs
+    text = inputs.parameters[column.name].text
+    count = int(column.name in inputs.given)
+    return Change("parameter", column.name, (), INPUT, text, would, also, count=count)
+
+
+def _other_number(search: Search, column: Column) -> Iterator[Explained]:
+    """Another number, the one with fewest digits that will do."""
+    own = search.problem
+    problem = Problem.of(own.campaign, own.published, asked=(column.name,))
+    (n,) = problem.rows.get(column.name, (None,))
+    if n is None:
+        return
+    touches = frozenset(np.flatnonzero(problem.touched[:, n]).tolist())
+    if not touches or not search.worth(touches):
+        return
+    point = freed(search, problem, n)
+    if point is None:
+        return
+    for digits in range(1, MOST_DIGITS + 1):
+        value = float(f"{point[n]:.{digits}g}")
+        box = replace(problem.box, start=point).moved([n], [value], [value], [value])
+        now = best(problem, box)
+        if now.mismatch <= 1:
+            change = _change(problem, column, f"{value:g}")
+            if digits > CHOSEN:
+                change = replace(change, count=1)
+            yield search.explained([change], problem, box, now)
+            return
+    search.drop(certain=False)
+
+
+COUNTS = (
+    *range(2, 13), 15, 16, 20, 24, 25, 30, 32, 40, 50, 60, 64, 75, 80, 99, 100, 101, 120, 128, 150, 200, 250,
+    256, 300, 400, 500, 512, 1000,
+)  # fmt: skip
+"""Numbers of rows that somebody may choose."""
+
+
+def _other_count(search: Search, column: Column) -> Iterator[Explained]:
+    """Another number of rows that each row of an axis is repeated to."""
+    own = search.problem
+    touched = _resting_on_count(own, column)
+    if not touched or not search.worth(touched):
+        return
+    counts = [count for count in COUNTS if count != own.campaign.data[column.name]]
+    asked = [(Problem.of(_with(own.campaign, column, count), own.published), None) for count in counts]
+    found = search.likeliest(asked)
+    if found:
+        texts = [str(counts[place]) for place, _ in found]
+        changed = asked[found[0][0]][0]
+        change = _change(own, column, texts[0], tuple(texts[1:]))
+        yield search.explained([change], changed, changed.box, found[0][1])
+
+
+def _with(campaign: Campaign, column: Column, value: float) -> Campaign:
+    data = {**campaign.data, column.name: float(value)}
+    program = campaign.program([c.name for c in campaign.sheet.columns])
+    return replace(campaign, data=data, values=evaluate(program.sheet, campaign.labels, data, program))
+
+
+def _resting_on_count(problem: Problem, column: Column) -> frozenset[int]:
+    sheet = problem.sheet
+    names = {c.name for c in sheet.columns if column.name in {a.name for a in sheet.ancestors(c)}}
+    return frozenset(n for n, value in enumerate(problem.published) if value.cell in names)

@@ -1,0 +1,177 @@
+"""The referee at work: every value, every table, all of them together, and what would explain them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..cells.values import Values
+from ..inputs.inputs import Inputs
+from ..inputs.published import PublishedValue
+from ..result.verdict import (
+    ALL,
+    EXACT,
+    INPUT,
+    NOT_CHECKABLE,
+    NOT_FOUND,
+    REACHABLE,
+    UNREACHABLE,
+    Change,
+    Explanation,
+    Fit,
+    Referee,
+    Relabelled,
+    TableVerdict,
+    Tried,
+    Verdict,
+)
+from ..sheet import Sheet
+from .campaign import Campaign
+from .certificate import Certificate
+from .comparison import prints_same
+from .explain import Explained, explanations
+from .labels import fits, labels
+from .minimax import Best, counted, meet
+from .problem import Problem
+from .values import verdicts
+
+__all__ = ["referee"]
+
+MORE = 1.01
+"""How much more certain a table must make it than all tables together, to be named."""
+
+
+def referee(
+    sheet: Sheet,
+    inputs: Inputs,
+    values: Values,
+    data: Mapping[str, Any],
+    step: Callable[[str], None] = lambda _: None,
+) -> Referee:
+    """Judge all published values of a report.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    inputs : Inputs
+    values : Values
+        As recomputed from what is printed.
+    data : mapping of column name to float or sequence of float
+        The given columns in SI.
+    step : callable
+        Told what is begun.
+    """
+    published = inputs.published
+    if not published:
+        return Referee(free=inputs.free)
+    campaign = Campaign(sheet, inputs, values, data, inputs.free)
+    step("refereeing each published value")
+    alone = verdicts(campaign, published)
+    checkable = [
+        value for value, verdict in zip(published, alone, strict=True) if verdict.verdict != NOT_CHECKABLE
+    ]
+    if not checkable:
+        return Referee(alone, free=inputs.free)
+    whole = Problem.of(campaign, checkable)
+    certificate = Certificate(whole)
+    tables = []
+    for source in dict.fromkeys(value.source for value in published):
+        step(f"refereeing {source}")
+        which = [n for n, value in enumerate(checkable) if value.source == source]
+        if which:
+            tables.append(_together(source, whole, which, certificate, alone, published)[0])
+        else:
+            tables.append(TableVerdict(source, 0, NOT_CHECKABLE))
+    step("refereeing all tables together")
+    joint, found = _together(ALL, whole, list(range(len(checkable))), certificate, alone, published, tables)
+    if joint.mismatch is None:
+        return Referee(alone, tuple(tables), joint, free=inputs.free)
+    explained: tuple[Explained, ...] = ()
+    tried: Tried | None = None
+    if len(checkable) < len(published):
+        # What was published once had a value: a change must give it one.
+        whole = Problem.of(campaign, published)
+        found = meet(whole)
+    if found.mismatch > 1:
+        step("refereeing what would explain the difference")
+        explained, tried = explanations(whole)
+    first = explained[0] if explained else None
+    workbook = inputs.workbook
+    fit: tuple[Fit, ...] = ()
+    named: tuple[Relabelled, ...] = ()
+    if first is not None or found.mismatch <= 1:
+        step("refereeing names of rows and fits")
+        named = labels(whole, workbook.ledger(), first)
+        fit = fits(whole, workbook.fits, first)
+    amended, misprints = _amended(campaign, step) if inputs.errata else (None, ())
+    return Referee(
+        alone, tuple(tables), joint, tuple(each.explanation for each in explained), tried, named, fit,
+        inputs.free, _known(inputs), amended, misprints,
+    )  # fmt: skip
+
+
+def _known(inputs: Inputs) -> tuple[Change, ...]:
+    """The misprints of the input that the report states."""
+    return tuple(
+        Change("misprint", name, (inputs.tests[row],), INPUT, inputs.measured[name][row].text, printed.text)
+        for (name, row), printed in inputs.errata.items()
+    )
+
+
+def _amended(campaign: Campaign, step: Callable[[str], None]) -> tuple[TableVerdict, tuple[Explanation, ...]]:
+    """Whether everything comes out once the known misprints are put right, and if not, what else is wrong."""
+    step("refereeing with the known misprints put right")
+    inputs = campaign.inputs.amended
+    problem = Problem.of(replace(campaign, inputs=inputs), inputs.published)
+    which = list(range(len(problem.published)))
+    verdict, found = _together(ALL, problem, which, Certificate(problem), (), ())
+    misprints = explanations(problem)[0] if found.mismatch > 1 else ()
+    return verdict, tuple(each.explanation for each in misprints)
+
+
+def _together(
+    source: str,
+    whole: Problem,
+    which: Sequence[int],
+    certificate: Certificate,
+    alone: Sequence[Verdict],
+    published: Sequence[PublishedValue],
+    parts: Sequence[TableVerdict] = (),
+) -> tuple[TableVerdict, Best]:
+    """Whether some of the values come out of one input."""
+    problem = whole.only(which)
+    found = counted(problem, meet(problem))
+    if not np.isfinite(found.mismatch):
+        return TableVerdict(source, len(which), NOT_CHECKABLE), found
+    exact = all(
+        prints_same(float(cell), value.printed)
+        for cell, value in zip(problem.evaluate(problem.box.start[None])[0], problem.published, strict=True)
+    )
+    # Many are as far off as the worst; those that press are why.
+    pressing = np.abs(found.weights) if found.weights.any() else np.abs(problem.mismatch(found.cells))
+    worst = problem.published[int(np.argmax(pressing))]
+    at_least, because = 0.0, ""
+    out = [
+        value for value, verdict in zip(published, alone, strict=True)
+        if verdict.verdict == UNREACHABLE and source in (ALL, value.source)
+    ]  # fmt: skip
+    if exact:
+        word = EXACT
+    elif found.mismatch <= 1:
+        word = REACHABLE
+    else:
+        weights = np.zeros(len(whole.published))
+        weights[list(which)] = found.weights
+        at_least = certificate.at_least(weights)
+        for part in parts:
+            if (part.at_least or 0) > MORE * at_least:
+                at_least, because = part.at_least or 0, part.source
+        word = UNREACHABLE if at_least > 1 or out else NOT_FOUND
+    verdict = TableVerdict(
+        source, len(which), word, found.mismatch, at_least if at_least > 1 else None, worst,
+        problem.witness(found.point), because, len(out),
+    )  # fmt: skip
+    return verdict, found

@@ -1,0 +1,293 @@
+"""Cells that are printed with other digits: which, and how they would have to be printed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import combinations, pairwise
+
+import numpy as np
+
+from ..quantity import Printed
+from ..result.verdict import INPUT, Change
+from .campaign import Array
+from .conflicts import Conflict
+from .digits import moved, respelt, slips
+from .minimax import Best, best
+from .problem import Box, Problem
+from .search import Explained, Search
+
+__all__ = ["freed", "misprints", "two_misprints"]
+
+RANGE = 10.0
+"""A misprinted number is looked for between a tenth and ten times what is printed."""
+PIECES = 160
+"""Into how many pieces that range is cut."""
+TRIED = 3
+"""In how many of them a search begins: where the others have least left to do."""
+FURTHEST = 1 << 20
+"""Units of the last digit up to which the ways to print a cell are followed."""
+LISTED = 12
+"""How many of them are listed at most."""
+PAIRS = 100
+"""How many pairs of cells are looked into."""
+
+
+# --- a cell that may be misprinted ------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Cell:
+    """A printed cell: ``n`` is its place among the published values, or among the unknowns if it is given."""
+
+    n: int
+    given: bool
+    printed: Printed
+    touches: frozenset[int]
+
+    def ignored(self, problem: Problem, box: Box) -> tuple[Problem, Box]:
+        """What is asked if its digits say nothing."""
+        if not self.given:
+            return problem.ignoring({self.n}), box
+        low, high = _range(problem, self.n)
+        return problem, box.moved([self.n], [low], [high], [box.start[self.n]])
+
+    def reprinted(self, problem: Problem, box: Box, units: int) -> tuple[Problem, Box]:
+        """What is asked if it is printed so many units of its last digit further."""
+        printed = respelt(self.printed, units)
+        if not self.given:
+            return problem.reprinted({self.n: printed}), box
+        low, high = problem.unknowns[self.n].allowed.clip(*map(float, printed.interval))
+        start = min(max(float(box.start[self.n]), low), high)
+        return problem, box.moved([self.n], [low], [high], [start])
+
+    def units(self, problem: Problem, point: Array) -> int | None:
+        """How many units further it prints at a point; None if it has no value there."""
+        value = point[self.n] if self.given else problem.guessing.evaluate(point[None])[0, self.n]
+        return moved(self.printed, Fraction(float(value))) if np.isfinite(value) else None
+
+    def change(self, problem: Problem, would: str, also: Sequence[str], span: tuple[str, ...]) -> Change:
+        """What is claimed."""
+        if self.given:
+            unknown = problem.unknowns[self.n]
+            where = unknown.column, unknown.index, INPUT
+        else:
+            value = problem.published[self.n]
+            where = value.cell, value.index, value.source
+        return Change("misprint", *where, self.printed.text, would, tuple(also), span=span)
+
+
+def _cells(search: Search) -> Iterator[_Cell]:
+    problem = search.problem
+    for n, unknown in enumerate(problem.unknowns):
+        touches = search.resting_on([n])
+        if unknown.printed is not None and touches:
+            yield _Cell(n, True, unknown.printed, touches)
+    for n, value in enumerate(problem.published):
+        yield _Cell(n, False, value.printed, frozenset({n}))
+
+
+# --- how it would be printed ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Told:
+    """How a cell would be printed, and the problem as it would be then."""
+
+    change: Change
+    units: int
+    problem: Problem
+    box: Box
+    best: Best
+
+
+def _told(cell: _Cell, problem: Problem, box: Box, point: Array) -> _Told | None:
+    """Follow the ways to print a cell to both sides of what a point makes of it; None if there is none."""
+    known: dict[int, Best | None] = {0: None}
+    near = replace(box, start=point)
+
+    def possible(units: int) -> Best | None:
+        if units not in known:
+            now = best(*cell.reprinted(problem, near, units), until=1.0)
+            known[units] = now if now.mismatch <= 1 else None
+        return known[units]
+
+    middle = cell.units(problem, point)
+    starts = () if middle is None else (middle, middle + 1, middle - 1)
+    start = next((units for units in starts if possible(units) is not None), None)
+    if start is None:
+        return None
+    low, high = (_last(start, way, possible) for way in (-1, 1))
+    ways = _in_order(cell.printed, low, high)
+    would = next((units for units in ways[:LISTED] if possible(units) is not None), start)
+    others = [respelt(cell.printed, units).text for units in ways if units != would]
+    ends = tuple(respelt(cell.printed, units).text for units in (low, high))
+    text, span = respelt(cell.printed, would).text, ends if high - low > LISTED else ()
+    change = cell.change(problem, text, others[:LISTED], span)
+    asked, there = cell.reprinted(problem, near, would)
+    found = possible(would)
+    assert found is not None
+    return _Told(change, would, asked, there, best(asked, replace(there, start=found.point)))
+
+
+def _last(start: int, way: int, possible: Callable[[int], Best | None]) -> int:
+    """The furthest possible way to print a cell to one side."""
+    last, step = start, 1
+    while step < FURTHEST and possible(start + way * step) is not None:
+        last, step = start + way * step, 2 * step
+    out = start + way * step
+    while abs(out - last) > 1:
+        between = (out + last) // 2
+        last, out = (between, out) if possible(between) is not None else (last, between)
+    return last
+
+
+def _in_order(printed: Printed, low: int, high: int) -> list[int]:
+    """The ways to print a cell: those that one slip of the hand makes, then the others, middle ones first."""
+    texts = dict.fromkeys(slips(printed.text))
+    slipped = {moved(printed, Fraction(text) * printed.scale) for text in texts}
+    middle = (low + high) // 2
+    every = range(max(low, middle - LISTED), min(high, middle + LISTED) + 1)
+    near = sorted({*every, *slipped}, key=lambda units: (units not in slipped, abs(units - middle), units))
+    return [units for units in near if low <= units <= high and units]
+
+
+# --- one cell ---------------------------------------------------------------------------------------------
+
+
+def misprints(search: Search) -> Iterator[Explained]:
+    """One cell, given or published, that would have to be printed otherwise."""
+    problem = search.problem
+    for cell in _cells(search):
+        if not search.worth(cell.touches):
+            continue
+        if cell.given:
+            point = freed(search, problem, cell.n)
+            if point is None:
+                continue
+        else:
+            found = search.conflicts.without(cell.touches)
+            assert isinstance(found, Best)
+            point = found.point
+        told = _told(cell, problem, problem.box, point)
+        if told is None:
+            search.drop(certain=False)
+        else:
+            yield search.explained([told.change], told.problem, told.box, told.best)
+
+
+def freed(search: Search, problem: Problem, n: int) -> Array | None:
+    """An input in which one given cell has any value, and everything comes out; None if there is none."""
+    edges = _edges(problem, n)
+    pieces = [problem.box.moved([n], [low], [high], [(low + high) / 2]) for low, high in pairwise(edges)]
+    alive = search.alive(pieces, problem)
+    if not alive:
+        search.drop(certain=True)
+        return None
+    for place in _promising(problem, n, pieces, alive):
+        first, last = _run(place, alive)
+        start = pieces[place].start[n]
+        box = problem.box.moved([n], [pieces[first].low[n]], [pieces[last].high[n]], [start])
+        box = replace(box, start=problem.restarted(box.start[None])[0])
+        now = best(problem, box, until=1.0)
+        if now.mismatch <= 1:
+            return now.point
+    search.drop(certain=False)
+    return None
+
+
+def _range(problem: Problem, n: int) -> tuple[float, float]:
+    """Between what a given cell is looked for."""
+    unknown, own = problem.unknowns[n], float(problem.box.start[n])
+    size = max(np.abs(problem.box.start[problem.rows[unknown.column]]))
+    low, high = sorted((own / RANGE, own * RANGE)) if own else (-size, size)
+    return unknown.allowed.clip(low, high)
+
+
+def _edges(problem: Problem, n: int) -> list[float]:
+    """Where the pieces of that range begin and end."""
+    low, high = _range(problem, n)
+    if low * high <= 0:
+        return np.linspace(low, high, PIECES + 1).tolist()  # type: ignore[no-any-return]
+    sizes: list[float] = np.geomspace(abs(low), abs(high), PIECES + 1).tolist()
+    return sorted(size if low > 0 else -size for size in sizes)
+
+
+def _run(place: int, alive: list[int]) -> tuple[int, int]:
+    """The pieces that hang together with one."""
+    first = last = place
+    while first - 1 in alive:
+        first -= 1
+    while last + 1 in alive:
+        last += 1
+    return first, last
+
+
+def _promising(problem: Problem, n: int, pieces: list[Box], alive: list[int]) -> list[int]:
+    """Pieces whose middle leaves least to what the other inputs can do, of neighbours the best."""
+    problem = problem.guessing
+    points = problem.restarted(np.stack([pieces[place].start for place in alive]))
+    off = np.abs(problem.mismatch(problem.evaluate(points)))
+    slopes = np.abs(np.nan_to_num(problem.slopes(problem.box.start, problem.box)))
+    slopes[:, n] = 0
+    reach = slopes @ (problem.box.width / 2) / problem.half
+    left = np.nan_to_num(off - reach, nan=np.inf, posinf=np.inf).max(axis=1)
+    around = np.concatenate([[np.inf], left, [np.inf]])
+    lowest = [n for n in range(len(alive)) if left[n] <= around[n] and left[n] <= around[n + 2]]
+    return [alive[n] for n in sorted(lowest, key=lambda n: left[n])[:TRIED]]
+
+
+# --- two cells --------------------------------------------------------------------------------------------
+
+
+def two_misprints(search: Search) -> Iterator[Explained]:
+    """Two cells without which the rest comes out."""
+    problem = search.problem
+    cells = [(cell, _conflict(search, cell)) for cell in _cells(search)]
+    pairs = [
+        (one, other)
+        for (one, against_one), (other, against_other) in combinations(cells, 2)
+        if one.touches & against_other and other.touches & against_one
+    ]
+    pairs.sort(key=lambda pair: len(pair[0].touches | pair[1].touches))
+    looked_into = 0
+    for one, other in pairs:
+        if not search.worth(one.touches | other.touches):
+            continue
+        looked_into += 1
+        if looked_into > PAIRS:
+            search.drop(certain=False)
+            continue
+        asked, box = other.ignored(*one.ignored(problem, problem.box))
+        point = _freed_both(search, one, other)
+        first = None if point is None else _told(one, asked, box, point)
+        if first is None:
+            continue
+        second = _told(other, *one.reprinted(problem, first.box, first.units), first.best.point)
+        if second is None:
+            search.drop(certain=False)
+        else:
+            changes = [first.change, second.change]
+            yield search.explained(changes, second.problem, second.box, second.best)
+
+
+def _freed_both(search: Search, one: _Cell, other: _Cell) -> Array | None:
+    """An input with which the rest comes out if two cells say nothing; None if none was found."""
+    problem = search.problem
+    if one.given and not other.given:
+        return freed(search, problem.ignoring({other.n}), one.n)
+    found = search.met(*other.ignored(*one.ignored(problem, problem.box)), wide=one.given)
+    return None if found is None else found.point
+
+
+def _conflict(search: Search, cell: _Cell) -> frozenset[int]:
+    """Values of which one must be touched besides, even if a cell's digits say nothing."""
+    problem = search.problem
+    found = search.conflicts.without(cell.touches)
+    if isinstance(found, Conflict):
+        return found.values
+    pressing = frozenset[int]()
+    if cell.given:
+        pressing = frozenset(best(*cell.ignored(problem, problem.box)).pressing.tolist())
+    return pressing or frozenset(range(len(problem.published)))

@@ -1,0 +1,281 @@
+"""What is asked of the referee: unknown inputs within their printed digits, and what they must yield.
+
+Everything that is printed stands for an interval. The unknowns are the given cells that the published ones
+rest on, each anywhere within its interval; what the publication does not print at all is free. An answer is
+a point of that box whose every published cell lies within the interval of its print.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cells.layout import how_large, precedents
+from ..cells.values import Status
+from ..engines.numpy import Program, evaluate
+from ..inputs.published import PublishedValue
+from ..quantity import Printed
+from ..result.verdict import Witness
+from ..sheet import Given, Sheet
+from .campaign import Array, Campaign, Unknown
+from .ways import Way
+
+__all__ = ["Box", "Problem"]
+
+
+@dataclass(frozen=True)
+class Box:
+    """Where the unknowns may lie.
+
+    Parameters
+    ----------
+    low, high : float arrays (unknowns,)
+        In SI, ends included.
+    start : float array (unknowns,)
+        Where a search begins.
+    """
+
+    low: Array
+    high: Array
+    start: Array
+
+    @property
+    def width(self) -> Array:
+        """How far each may move."""
+        return self.high - self.low
+
+    def moved(self, which: Sequence[int], low: Sequence[float], high: Sequence[float], start: Any) -> Box:
+        """The box with other intervals for some unknowns."""
+        found = Box(self.low.copy(), self.high.copy(), self.start.copy())
+        for array, values in ((found.low, low), (found.high, high), (found.start, start)):
+            array[list(which)] = values
+        return found
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Published values that shall come out together.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    program : Program
+        Of the columns that they rest on, what is free being given.
+    unknowns : tuple of Unknown
+    published : tuple of PublishedValue
+    ways : tuple of (Way or None)
+        How each of them is computed; None for what follows the sheet.
+    ignored : frozenset of int
+        Places of published values that need not come out.
+    """
+
+    campaign: Campaign
+    program: Program
+    unknowns: tuple[Unknown, ...]
+    published: tuple[PublishedValue, ...]
+    ways: tuple[Way | None, ...]
+    ignored: frozenset[int] = frozenset()
+
+    @classmethod
+    def of(
+        cls,
+        campaign: Campaign,
+        published: Sequence[PublishedValue],
+        tied: Sequence[str] = (),
+        asked: Sequence[str] = (),
+    ) -> Problem:
+        """Ask for published values together.
+
+        Parameters
+        ----------
+        campaign : Campaign
+        published : sequence of PublishedValue
+        tied : sequence of str
+            Free columns that shall follow from the others all the same.
+        asked : sequence of str
+            Conventions of the workbook that are asked for too.
+        """
+        cut = tuple(name for name in campaign.free if name not in tied)
+        program = campaign.program({value.cell for value in published}, cut)
+        unknowns = tuple(campaign.unknowns(program.sheet, cut, asked))
+        return cls(campaign, program, unknowns, tuple(published), (None,) * len(published))
+
+    @property
+    def sheet(self) -> Sheet:
+        """The columns that are computed."""
+        return self.program.sheet
+
+    @cached_property
+    def guessing(self) -> Problem:
+        """The same for a search: its roots are not counted, so that nothing may be told that it evaluates."""
+        program = self.program.guessing
+        if program is self.program and all(way is None or way.guessing is way for way in self.ways):
+            return self
+        return replace(self, program=program, ways=tuple(way and way.guessing for way in self.ways))
+
+    @cached_property
+    def size(self) -> int:
+        """How many cells its sheet has."""
+        return how_large(self.sheet, self.campaign.values.layouts)
+
+    @cached_property
+    def box(self) -> Box:
+        """Everything within its printed digits."""
+        ends = [unknown.interval() for unknown in self.unknowns]
+        low, high = (np.array([end[n] for end in ends]) for n in (0, 1))
+        start = np.array([unknown.start for unknown in self.unknowns])
+        return Box(low, high, start)
+
+    @cached_property
+    def centre(self) -> Array:
+        """The middle of what prints as published, in SI."""
+        ends = [value.printed.interval for value in self.published]
+        return np.array([float((low + high) / 2) for low, high in ends], dtype=np.float64)
+
+    @cached_property
+    def half(self) -> Array:
+        """Half of its width, in SI."""
+        return np.array([float(value.printed.half_unit) for value in self.published])
+
+    @cached_property
+    def places(self) -> list[tuple[str, int]]:
+        """Column and row of each published value."""
+        values = self.campaign.values
+        return [(p.cell, values.row(self.campaign.sheet[p.cell], p.index)) for p in self.published]
+
+    @cached_property
+    def rows(self) -> dict[str, list[int]]:
+        """For each given column with unknowns, their places among all, in the order of its rows."""
+        found: dict[str, list[int]] = {}
+        for n, unknown in enumerate(self.unknowns):
+            found.setdefault(unknown.column, []).append(n)
+        return found
+
+    def data(self, points: Any) -> dict[str, Any]:
+        """The given columns of the sheet, with the unknowns taken from the last dimension of points."""
+        found = {
+            c.name: self.campaign.data[c.name] for c in self.sheet.columns if c.name in self.campaign.data
+        }
+        return found | {name: points[..., rows] for name, rows in self.rows.items()}
+
+    def restarted(self, points: Array) -> Array:
+        """Points (points, unknowns) with what is free as it would follow from the rest.
+
+        Where the search for another input begins, a fit that is not printed is better taken from that
+        input than from the one that is printed.
+        """
+        sheet = self.campaign.sheet
+        free = [
+            n for n, unknown in enumerate(self.unknowns)
+            if unknown.printed is None and not isinstance(sheet[unknown.column].rule, Given)
+        ]  # fmt: skip
+        if not free:
+            return points
+        names = {self.unknowns[n].column for n in free}
+        program = self.campaign.program(names)
+        given = [column.name for column in program.sheet.columns if isinstance(column.rule, Given)]
+        data = {name: self.campaign.data[name] for name in given}
+        data |= {name: points[..., rows] for name, rows in self.rows.items() if name in data}
+        values = evaluate(program.sheet, self.campaign.labels, data, program.guessing)
+        found = points.copy()
+        for n in free:
+            unknown = self.unknowns[n]
+            own = values.value[unknown.column][..., unknown.row]
+            found[..., n] = np.where(np.isfinite(own), own, points[..., n])
+        return found
+
+    def evaluate(self, points: Array) -> Array:
+        """The published cells (points, published) in SI at points (points, unknowns); NaN for no value."""
+        data, columns = self.data(points), [np.empty(0)] * len(self.published)
+        plain = evaluate(self.sheet, self.campaign.labels, data, self.program)
+        for way in dict.fromkeys(self.ways):
+            values = plain if way is None else way.evaluate(self.campaign, data, plain)
+            for n, (name, row) in enumerate(self.places):
+                if self.ways[n] is way:
+                    alive = values.status[name][..., row] == Status.OK
+                    found = np.where(alive, values.value[name][..., row], np.nan)
+                    columns[n] = np.broadcast_to(found, points.shape[:1])
+        empty = np.empty((len(points), 0))  # the others of a single value
+        return np.column_stack([empty, *columns])
+
+    def mismatch(self, cells: Array) -> Array:
+        """How far cells are from what was published, in half units of the last digit."""
+        with np.errstate(over="ignore"):
+            found: Array = (cells - self.centre) / self.half
+        if self.ignored:
+            found[..., list(self.ignored)] = 0.0
+        return found
+
+    def slopes(self, point: Array, box: Box) -> Array:
+        """Derivatives (published, unknowns) at a point, by central differences within the box's scale."""
+        size = np.abs(point)
+        steps = np.maximum(1e-4 * np.minimum(box.width, 0.1 * size), 1e-8 * size)
+        steps = np.where(box.width > 0, np.where(size > 0, steps, 1e-4 * box.width), 0.0)
+        moving = np.flatnonzero(steps)
+        ahead = np.repeat(point[None], 2 * len(moving), axis=0)
+        ahead[np.arange(len(moving)), moving] += steps[moving]
+        ahead[len(moving) + np.arange(len(moving)), moving] -= steps[moving]
+        cells = self.evaluate(ahead) if len(moving) else np.empty((0, len(self.published)))
+        found = np.zeros((len(self.published), len(point)))
+        found[:, moving] = ((cells[: len(moving)] - cells[len(moving) :]) / (2 * steps[moving])[:, None]).T
+        return found
+
+    def witness(self, point: Array) -> tuple[Witness, ...]:
+        """A point in words."""
+        return tuple(u.witness(float(x)) for u, x in zip(self.unknowns, point, strict=True))
+
+    def only(self, which: Sequence[int]) -> Problem:
+        """Fewer of the published values."""
+        published = tuple(self.published[n] for n in which)
+        return replace(self, published=published, ways=tuple(self.ways[n] for n in which))
+
+    @property
+    def conventions(self) -> tuple[str, ...]:
+        """The conventions that are asked for too."""
+        return tuple(name for name in self.rows if self.campaign.sheet[name].exact)
+
+    def renamed(self, which: Collection[int], cell: str) -> Problem:
+        """The same with some published values taken for those of another column."""
+        published = [
+            replace(value, cell=cell) if n in which else value for n, value in enumerate(self.published)
+        ]
+        ways = tuple(None if n in which else way for n, way in enumerate(self.ways))
+        asked = Problem.of(self.campaign, published, asked=self.conventions)
+        return replace(asked, ways=ways, ignored=self.ignored)
+
+    def ignoring(self, which: Collection[int]) -> Problem:
+        """The same, but some published values need not come out."""
+        return replace(self, ignored=self.ignored | frozenset(which))
+
+    def reprinted(self, changes: Mapping[int, Printed]) -> Problem:
+        """The same with other prints of some published values."""
+        published = [
+            replace(value, printed=changes.get(n, value.printed)) for n, value in enumerate(self.published)
+        ]
+        return replace(self, published=tuple(published))
+
+    def computed(self, way: Way, members: Collection[int]) -> Problem:
+        """The same with some published values computed in another way."""
+        ways = [way if n in members else own for n, own in enumerate(self.ways)]
+        return replace(self, ways=tuple(ways))
+
+    @cached_property
+    def touched(self) -> NDArray[np.bool_]:
+        """Whether a published cell rests on an unknown (published, unknowns), by the sheet's own graph."""
+        number, layouts = len(self.unknowns), self.campaign.values.layouts
+        rests: dict[str, NDArray[np.bool_]] = {}
+        for column in self.sheet.order:
+            size = 1 if column.axis is None else layouts[column.axis.name].size
+            found = np.zeros((number, size), dtype=bool)
+            for row, n in enumerate(self.rows.get(column.name, ())):
+                found[n, row] = True
+            for precedent in precedents(self.sheet, layouts, column):
+                theirs = precedent.take(rests[precedent.column.name])
+                found |= theirs if precedent.over is None else theirs.any(axis=-1, keepdims=True)
+            rests[column.name] = found
+        return np.array([rests[name][:, row] for name, row in self.places]).reshape(-1, number)

@@ -1,0 +1,145 @@
+"""What every search for an explanation shares: which changes are worth a search, and what became of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..result.verdict import Change, Explanation
+from .certificate import Certificate, excluded
+from .conflicts import Conflict, Conflicts
+from .minimax import Best, best, meet
+from .problem import Box, Problem
+
+__all__ = ["Explained", "Search"]
+
+HOPELESS = 3.0
+"""What is promised to stay so many half units off is not looked into further, and stays open."""
+LOOKED_INTO = 6
+"""How many of the changes of a kind are looked into that differ in little, such as a power of ten."""
+
+
+@dataclass(frozen=True)
+class Explained:
+    """An explanation, and the problem as it would be.
+
+    Parameters
+    ----------
+    explanation : Explanation
+    problem : Problem
+    box : Box
+    best : Best
+    """
+
+    explanation: Explanation
+    problem: Problem
+    box: Box
+    best: Best
+
+
+class Search:
+    """The search for what would explain that published values do not come out of one input.
+
+    A change is dropped only if it is certain that it explains nothing; what was searched for in vain is left
+    open and counted.
+
+    Parameters
+    ----------
+    problem : Problem
+        One that cannot be met.
+
+    Attributes
+    ----------
+    excluded, open : int
+        How many changes certainly explain nothing, and of how many that is not certain.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem, self.conflicts = problem, Conflicts(problem)
+        self.excluded = self.open = 0
+        self.groups: dict[tuple[str, str], list[int]] = {}
+        for n, value in enumerate(problem.published):
+            self.groups.setdefault((value.source, value.cell), []).append(n)
+
+    def resting_on(self, unknowns: Iterable[int]) -> frozenset[int]:
+        """The published values that rest on some unknowns."""
+        touched = self.problem.touched[:, list(unknowns)].any(axis=1)
+        return frozenset(np.flatnonzero(touched).tolist())
+
+    def worth(self, touches: Iterable[int]) -> bool:
+        """Whether without these values the others come out; a change that touches no more may explain it."""
+        found = self.conflicts.without(frozenset(touches))
+        if isinstance(found, Conflict):
+            self.drop(found.certain)
+            return False
+        return True
+
+    def drop(self, certain: bool) -> None:
+        """Count a change that explained nothing."""
+        if certain:
+            self.excluded += 1
+        else:
+            self.open += 1
+
+    def met(self, problem: Problem, box: Box | None = None, wide: bool = False) -> Best | None:
+        """An input that yields all values of a changed problem; None, and counted, if there is none.
+
+        Parameters
+        ----------
+        problem : Problem
+        box : Box, optional
+            That of the printed digits, if left out.
+        wide : bool
+            Whether the box is so wide that nothing is certain in it.
+        """
+        found = best(problem, box)
+        if found.mismatch > 1:
+            if not wide and Certificate(problem, box).at_least(found.weights) > 1:
+                self.drop(certain=True)
+                return None
+            found = meet(problem, box, found)
+        if found.mismatch > 1:
+            self.drop(certain=False)
+            return None
+        return found
+
+    def likeliest(self, asked: Sequence[tuple[Problem, Box | None]]) -> list[tuple[int, Best]]:
+        """Of many changes of a kind, those that explain it: those are looked into that promise most.
+
+        Parameters
+        ----------
+        asked : sequence of (Problem, Box or None)
+            As for :meth:`met`.
+
+        Returns
+        -------
+        list of (int, Best)
+            Which, and with what input.
+        """
+        promised = [best(problem, box, unless=-1.0).promised for problem, box in asked]
+        order = sorted(range(len(asked)), key=lambda n: (promised[n], n))
+        hopeful = [n for n in order[:LOOKED_INTO] if promised[n] <= HOPELESS]
+        self.open += len(asked) - len(hopeful)
+        found = [(n, self.met(*asked[n])) for n in sorted(hopeful)]
+        return [(n, now) for n, now in found if now is not None]
+
+    def alive(self, boxes: Sequence[Box], problem: Problem | None = None) -> list[int]:
+        """The boxes that may hold an input that yields all values."""
+        if not boxes:
+            return []
+        return np.flatnonzero(~excluded(problem or self.problem, boxes)).tolist()
+
+    def screened(self, boxes: Sequence[Box]) -> list[int]:
+        """The same, one box a change: the others are excluded."""
+        alive = self.alive(boxes)
+        self.excluded += len(boxes) - len(alive)
+        return alive
+
+    def explained(self, changes: Sequence[Change], problem: Problem, box: Box, found: Best) -> Explained:
+        """What changes of the print make of the published values."""
+        number = len(self.problem.published)
+        come_out = len(problem.published) - len(problem.ignored)
+        explanation = Explanation(tuple(changes), found.mismatch, come_out, number)
+        return Explained(explanation, problem, box, found)

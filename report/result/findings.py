@@ -1,0 +1,173 @@
+"""What is checked of a report: one list of checks, which every output of findings reads.
+
+The command line, the formats for machines and the pytest plugin all take a tuple of :class:`Check`. To have
+another kind of check, add a function here that makes them and its line in :func:`checks`.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from ..messages.diagnostics import Check, Diagnostic, Location
+from . import verdict_words as words
+from .verdict import OTHERWISE, UNAMENDED, UNEXPLAINED, UNPINNED, UNREASONED
+
+if TYPE_CHECKING:
+    from ...derivations.proof import Proof
+    from ..inputs.inputs import Inputs, PublishedValue
+    from .agreement import Agreement
+    from .result import Comparison, Report
+
+__all__ = [
+    "ENGINES",
+    "MISPRINTS",
+    "TOGETHER",
+    "Check",
+    "checks",
+    "names_of",
+    "of_comparison",
+    "of_diagnostics",
+    "of_engine",
+    "of_proof",
+    "of_referee",
+    "table_names",
+]
+
+ENGINES = ("numpy", "JavaScript", "xlsx")
+"""The engines that are judged, by the names they have in an Agreement; the first needs no program."""
+
+MOST_NAMED = 5
+"""Of the findings about an engine; one wrong formula spoils many cells."""
+
+
+def checks(report: Report) -> tuple[Check, ...]:
+    """Everything that was checked of a report, in the order in which it is told."""
+    return (
+        *(of_engine(agreement, report.inputs) for agreement in report.engines),
+        *(of_proof(proof, report.inputs) for proof in report.proofs),
+        *map(of_comparison, report.comparisons, names_of(c.published for c in report.comparisons)),
+        *of_referee(report),
+        *report.oddities,
+    )
+
+
+def of_proof(proof: Proof, inputs: Inputs) -> Check:
+    """Whether an equation stands."""
+    label, status = proof.equation.label, proof.status
+    said = f"{label} is {status.value}"
+    if not status.passes:
+        said += f": {next((s.sentence for s in proof.steps if not s.status.passes), proof.remark)}"
+    return Check("proof", label, status.passes, said, inputs.place)
+
+
+def of_engine(agreement: Agreement, inputs: Inputs) -> Check:
+    """Whether an engine agrees with 50 digits."""
+    at = inputs.place
+    if agreement.missing:
+        said = f"{agreement.engine} was not compared: {agreement.missing} not found"
+        return Check("engine", agreement.engine, True, said, at, skipped=True)
+    more = len(agreement.findings) - MOST_NAMED
+    named = [*agreement.findings[:MOST_NAMED], *([f"and {more} more"] if more > 0 else [])]
+    said = "; ".join(named) or agreement.summary
+    return Check("engine", agreement.engine, not agreement.findings, said, at)
+
+
+def of_comparison(comparison: Comparison, name: str) -> Check:
+    """Whether a published value is what is expected of it.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    name : str
+        As from :func:`names_of`.
+    """
+    published, cell = comparison.published, comparison.cell
+    said = f"{published.source} {cell.address} prints {published.printed.text}"
+    if cell.value is None and not comparison.as_expected:
+        said = f"{published.source} {cell.address} cannot be checked: {cell.reason}"
+    elif published.expect and comparison.verdict == "same":
+        said += f" and no longer differs; drop its '{published.expect}'"
+    elif published.expect and not comparison.as_expected:
+        said += f", recomputed {comparison.again}, and {_otherwise(comparison)}"
+    else:
+        said += f", recomputed {comparison.again} ({_word(comparison)})"
+        said += f": {published.reason}" if published.reason else ""
+    field = {UNPINNED: "recomputed", UNREASONED: "reason", UNEXPLAINED: "explained"}
+    places = published.places
+    at = places.get(field.get(comparison.finding, ""), places.get("value", Location()))
+    return Check("published", name, comparison.as_expected, said, at)
+
+
+def _otherwise(comparison: Comparison) -> str:
+    """In which way a known difference is not as it is known."""
+    published = comparison.published
+    accept = "'loopsheet check --accept FOLDER' pins it"
+    return {
+        UNPINNED: f"its known difference is not pinned: any other would pass; {accept}",
+        OTHERWISE: f"differs otherwise than is known ({published.pin}); if that is right, {accept}",
+        UNREASONED: "why it differs is not said; say it in the column 'reason'",
+        UNEXPLAINED: f"rests on '{published.explained}', which explains it no more",
+        UNAMENDED: "does not come out once the known misprints are put right",
+    }.get(comparison.finding, comparison.finding)
+
+
+def _word(comparison: Comparison) -> str:
+    """The verdict on a value, and what was certain of one that cannot be reached."""
+    found = comparison.refereed
+    return comparison.verdict if found is None else words.called(comparison.published, found)
+
+
+TOGETHER = "all together"
+"""The name of the check whether all tables come out of one input."""
+MISPRINTS = "known misprints"
+"""The name of the check whether they do once the known misprints are put right."""
+
+
+def table_names(inputs: Inputs) -> list[str]:
+    """The names of the referee's checks of tables, without asking it."""
+    sources = list(dict.fromkeys(value.source for value in inputs.published))
+    if not sources:
+        return []
+    return [*sources, TOGETHER, *([MISPRINTS] if inputs.errata else [])]
+
+
+def of_referee(report: Report) -> tuple[Check, ...]:
+    """Whether the values of each table, and of all, come out of one input; none if it was not asked."""
+    found = report.referee
+    if found.joint is None:
+        return ()
+    at, known = report.inputs.place, {v.source for v in report.inputs.published if v.expect}
+    tables = [
+        Check("table", t.source, found.as_printed or t.possible or t.source in known, words.together(t), at)
+        for t in found.tables
+    ]
+    said = "; ".join((words.together(found.joint), *words.why(found)))
+    tables.append(Check("table", TOGETHER, bool(known) or found.as_printed, said, at))
+    if found.amended is None:
+        return tuple(tables)
+    if found.joint.possible:
+        nothing = "all values come out as it is; drop the known misprints"
+        return (*tables, Check("table", MISPRINTS, False, nothing, at))
+    said = "; ".join((words.amended(found), *words.perhaps(found.misprints)))
+    return (*tables, Check("table", MISPRINTS, found.amended.possible, said, at))
+
+
+def of_diagnostics(diagnostics: Iterable[Diagnostic]) -> tuple[Check, ...]:
+    """What is wrong with the input, for the formats that tell findings to machines."""
+    return tuple(
+        Check("input", found.code, False, "; ".join(filter(None, (found.message, found.hint))), found.at)
+        for found in diagnostics
+    )
+
+
+def names_of(published: Iterable[PublishedValue]) -> list[str]:
+    """Name each published value by its cell, and by its source too where two sources print that cell."""
+    values = list(published)
+    cells = [words.address(value.cell, value.index) for value in values]
+    times = Counter(cells)
+    return [
+        cell if times[cell] == 1 else f"{cell} ({value.source})"
+        for cell, value in zip(cells, values, strict=True)
+    ]

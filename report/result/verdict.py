@@ -1,0 +1,374 @@
+"""What the referee found about published numbers, for all who tell it: nothing is computed here.
+
+A printed number stands for all values that print so. A *mismatch* is how far a value is from the middle of
+the values that print as published, in half units of the last printed digit: at most 1 prints the same.
+How all this is said: :mod:`loopsheet.report.result.verdict_words`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ..inputs.published import PublishedValue
+from ..quantity import Printed
+
+__all__ = [
+    "ALL",
+    "EXACT",
+    "INPUT",
+    "NOT_CHECKABLE",
+    "NOT_FOUND",
+    "OTHERWISE",
+    "REACHABLE",
+    "UNAMENDED",
+    "UNEXPECTED",
+    "UNEXPLAINED",
+    "UNPINNED",
+    "UNREACHABLE",
+    "UNREASONED",
+    "WITHIN",
+    "Change",
+    "Explanation",
+    "Fit",
+    "Referee",
+    "Relabelled",
+    "TableVerdict",
+    "Tried",
+    "Verdict",
+    "Witness",
+]
+
+EXACT = "exact"
+"""The recomputed value prints as published."""
+REACHABLE = "reachable"
+"""An input that prints as given yields a value that prints as published; it is kept."""
+WITHIN = "within-uncertainty"
+"""It is not reachable, but nearer than twice the standard uncertainty that the user gave."""
+UNREACHABLE = "unreachable"
+"""It is certain that no input which prints as given yields it."""
+NOT_FOUND = "not found"
+"""None was found, and that there is none could not be made certain."""
+NOT_CHECKABLE = "not-checkable"
+"""The cell has no value to compare with."""
+
+UNEXPECTED = "unexpectedly"
+"""It differs, or has no value, and nobody has said so; or somebody has, and it prints the same."""
+OTHERWISE = "otherwise than is known"
+"""The known difference is another one."""
+UNPINNED = "not pinned"
+"""That it differs is said, but not what it differs to: any difference would do."""
+UNREASONED = "without a reason"
+"""Why it differs is not said."""
+UNEXPLAINED = "no longer explained"
+"""The explanation that the known difference rests on is none any more."""
+UNAMENDED = "not by the known misprints"
+"""It does not come out once the known misprints are put right."""
+
+
+ALL = "all"
+"""The source of all tables together."""
+INPUT = "input"
+"""The source of what is given; every other is a table."""
+
+
+@dataclass(frozen=True)
+class Witness:
+    """A given cell and a value of it.
+
+    Parameters
+    ----------
+    cell : str
+    index : tuple of int
+    value : float
+        In the unit that the cell was printed in; in SI if it was not printed.
+    printed : Printed or None
+        As it was printed; None for what the publication does not print.
+    """
+
+    cell: str
+    index: tuple[int, ...]
+    value: float
+    printed: Printed | None
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What can be said of one published value.
+
+    Parameters
+    ----------
+    verdict : str
+        One of the words above.
+    low, high : float or None
+        The values in SI that inputs which print as given were seen to yield; None where nothing is known.
+    bound_low, bound_high : float or None
+        What no such input can leave, in SI, by interval arithmetic; None where that is not known.
+    mismatch : float or None
+        The least that was found, in half units of the last printed digit.
+    witness : tuple of Witness
+        The input that prints as given and yields it, if one was found.
+    u : float or None
+        Combined standard uncertainty in SI, where the user gave uncertainties.
+    missing : str
+        For what is not checkable: what is missing.
+    """
+
+    verdict: str
+    low: float | None = None
+    high: float | None = None
+    bound_low: float | None = None
+    bound_high: float | None = None
+    mismatch: float | None = None
+    witness: tuple[Witness, ...] = ()
+    u: float | None = None
+    missing: str = ""
+
+
+@dataclass(frozen=True)
+class TableVerdict:
+    """Whether all values of a table, or of several, can come out of one and the same input.
+
+    Parameters
+    ----------
+    source : str
+        ``Table 2``; :data:`ALL` for all tables together.
+    values : int
+        How many were asked for together.
+    verdict : str
+        ``exact``, ``reachable``, ``unreachable``, ``not found`` or ``not-checkable``.
+    mismatch : float or None
+        The worst of the values, for the best input that was found.
+    at_least : float or None
+        What the worst mismatch is at least, for whatever input; None without a certificate.
+    worst : PublishedValue or None
+        A value that is as far off as the worst.
+    witness : tuple of Witness
+        The best input that was found.
+    because : str
+        The table that makes it impossible, where a part of the tables already does.
+    out : int
+        How many of the values are out of reach by themselves.
+    """
+
+    source: str
+    values: int
+    verdict: str
+    mismatch: float | None = None
+    at_least: float | None = None
+    worst: PublishedValue | None = None
+    witness: tuple[Witness, ...] = ()
+    because: str = ""
+    out: int = 0
+
+    @property
+    def possible(self) -> bool:
+        """Whether one input yields them all, or nothing can be said of it."""
+        return self.verdict in (EXACT, REACHABLE, NOT_CHECKABLE)
+
+
+@dataclass(frozen=True)
+class Change:
+    """Something printed that may have been meant otherwise.
+
+    Parameters
+    ----------
+    kind : str
+        ``printed`` (computed from rounded, printed numbers), ``parameter`` (a convention is another),
+        ``misprint`` (one cell has other digits), ``truncated`` (a column was cut, not rounded), ``unit`` (off
+        by a power of ten), ``rows`` (a mean over other rows), ``label`` (two numbers stand in each other's
+        place, or a row holds another column) or ``order`` (a list stands in another order).
+    cell : str
+        The column.
+    index : tuple of int
+        The row; empty for a scalar or a whole column.
+    source : str
+        The table, for what is published; :data:`INPUT` for what is given.
+    printed : str
+        As it stands.
+    would_print : str
+        As it would have to stand.
+    also : tuple of str
+        Other ways that it could stand.
+    other : tuple of int
+        The other row, of two that have changed places.
+    span : tuple of str
+        The first and the last way that it could stand, where not all of them are listed.
+    power : int
+        The power of ten that a unit is off by.
+    count : int
+        How many printed numbers change; a manner of printing that holds for a column counts as one.
+    """
+
+    kind: str
+    cell: str
+    index: tuple[int, ...]
+    source: str
+    printed: str
+    would_print: str
+    also: tuple[str, ...] = ()
+    other: tuple[int, ...] = ()
+    span: tuple[str, ...] = ()
+    power: int = 0
+    count: int = 1
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A small change of what is printed with which everything published comes out.
+
+    Parameters
+    ----------
+    changes : tuple of Change
+    mismatch : float
+        The worst of all values then.
+    values : int
+        How many published values then come out of one input.
+    of : int
+        How many are published: those that are themselves misprinted do not come out.
+    """
+
+    changes: tuple[Change, ...]
+    mismatch: float
+    values: int
+    of: int
+
+    @property
+    def first(self) -> Change:
+        """The change; of several, the first."""
+        return self.changes[0]
+
+    @property
+    def count(self) -> int:
+        """How many printed numbers change; none, where only what is not printed is otherwise."""
+        return sum(change.count for change in self.changes)
+
+    @property
+    def as_printed(self) -> bool:
+        """Whether everything stands as it is, and some of it was only computed from rounded numbers."""
+        return all(change.kind == "printed" for change in self.changes)
+
+
+@dataclass(frozen=True)
+class Tried:
+    """How many changes of the print were tried, and what became of them.
+
+    Parameters
+    ----------
+    explaining : int
+        With these everything published comes out.
+    excluded : int
+        It is certain that these explain nothing.
+    open : int
+        These were searched for in vain, and it is not certain that they explain nothing.
+    """
+
+    explaining: int
+    excluded: int
+    open: int
+
+
+@dataclass(frozen=True)
+class Relabelled:
+    """A row of a table that is named after an equation which it cannot come from.
+
+    Parameters
+    ----------
+    source : str
+        The table.
+    cell : str
+        The column that it comes out as.
+    printed, right : str
+        The number of the equation as printed, and that of the column's own.
+    gives : tuple of (str, str)
+        What the printed equation gives instead: columns with their units; empty if nothing of the kind.
+    wanted : (str, str)
+        What the row holds and in which unit.
+    mismatch : float
+        The worst of all values, the row being that column's.
+    rivals : mapping of str to float
+        The same for other columns that it might be.
+    """
+
+    source: str
+    cell: str
+    printed: str
+    right: str
+    gives: tuple[tuple[str, str], ...]
+    wanted: tuple[str, str]
+    mismatch: float
+    rivals: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """How well a published average or fit goes with each that the workbook knows.
+
+    Parameters
+    ----------
+    published : PublishedValue
+    mismatch : mapping of column name to float
+        The worst mismatch of the tables it was made from and of itself, were it that column's; best first.
+    """
+
+    published: PublishedValue
+    mismatch: Mapping[str, float]
+
+    @property
+    def best(self) -> str:
+        """The column that goes with it best."""
+        return next(iter(self.mismatch))
+
+
+@dataclass(frozen=True)
+class Referee:
+    """All that the referee found.
+
+    Parameters
+    ----------
+    values : tuple of Verdict
+        In the order of the published values.
+    tables : tuple of TableVerdict
+        One a source, in the order they are first published.
+    joint : TableVerdict or None
+        All of them together; None where nothing is published.
+    explanations : tuple of Explanation
+        Those that change least come first; none where nothing needs one.
+    tried : Tried or None
+        Of what these were found; None where nothing needs one.
+    labels : tuple of Relabelled
+        Rows whose printed names cannot be right.
+    fits : tuple of Fit
+    free : tuple of str
+        The cells that the publication does not print.
+    errata : tuple of Change
+        The misprints of the input that are known.
+    amended : TableVerdict or None
+        All tables together if the known misprints of the input are put right; None if none are known.
+    misprints : tuple of Explanation
+        What else would have to change then, if they do not come out.
+    """
+
+    values: tuple[Verdict, ...] = ()
+    tables: tuple[TableVerdict, ...] = ()
+    joint: TableVerdict | None = None
+    explanations: tuple[Explanation, ...] = ()
+    tried: Tried | None = None
+    labels: tuple[Relabelled, ...] = ()
+    fits: tuple[Fit, ...] = ()
+    free: tuple[str, ...] = ()
+    errata: tuple[Change, ...] = ()
+    amended: TableVerdict | None = None
+    misprints: tuple[Explanation, ...] = ()
+
+    @property
+    def as_printed(self) -> bool:
+        """Whether everything published comes out of what is printed, if by way of rounded numbers."""
+        if self.joint is None:
+            return False
+        return self.joint.possible or (bool(self.explanations) and self.explanations[0].as_printed)
+
+    @property
+    def asked_why(self) -> bool:
+        """Whether explanations were looked for."""
+        return self.joint is not None and not self.joint.possible

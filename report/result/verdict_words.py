@@ -1,0 +1,431 @@
+"""What the referee found, in words: the one place of its sentences, for the terminal, the pages and machines.
+
+A sentence names cells as the sheet does, ``x_p[2]``; a page prints their symbols. What was only searched for
+is rounded to the nearest, what is certain is rounded outwards: no more is claimed than holds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal, localcontext
+from fractions import Fraction
+
+from ..inputs.published import PublishedValue
+from ..quantity import Printed
+from .verdict import (
+    ALL,
+    EXACT,
+    INPUT,
+    NOT_CHECKABLE,
+    NOT_FOUND,
+    REACHABLE,
+    UNREACHABLE,
+    WITHIN,
+    Change,
+    Explanation,
+    Fit,
+    Referee,
+    Relabelled,
+    TableVerdict,
+    Tried,
+    Verdict,
+)
+
+__all__ = [
+    "CALLED",
+    "NOTHING_EXPLAINS",
+    "POSSIBLE",
+    "address",
+    "amended",
+    "at_least",
+    "because",
+    "bounds",
+    "called",
+    "certain",
+    "contradiction",
+    "evidence",
+    "explained",
+    "fit",
+    "follows",
+    "headline",
+    "joined",
+    "lines",
+    "mismatch",
+    "name",
+    "perhaps",
+    "relabelled",
+    "suggested",
+    "together",
+    "told",
+    "tried",
+    "why",
+]
+
+CALLED = {
+    EXACT: "exact",
+    REACHABLE: "reachable",
+    WITHIN: "within uncertainty",
+    UNREACHABLE: "unreachable",
+    NOT_FOUND: "not found",
+    NOT_CHECKABLE: "no value",
+}
+"""A verdict in a table or a picture."""
+
+POSSIBLE = {
+    "misprint": "possible misprint",
+    "truncated": "possible truncation",
+    "label": "possible confusion",
+    "order": "possible disorder",
+    "unit": "possible unit",
+    "rows": "possible rows",
+    "parameter": "possible convention",
+    "printed": "possible rounding",
+}
+"""What a change would be, were it the right one."""
+
+NOTHING_EXPLAINS = (
+    "no small change of what is printed was found with which everything published comes out: no misprinted "
+    "number or two, no truncated column, no unit off by a power of ten, no mean over other rows, nothing "
+    "exchanged or in another order, nothing computed from rounded numbers, no other convention"
+)
+
+_MOST_PLACES = 16
+
+
+# --- numbers ---------------------------------------------------------------------------------------------
+
+
+def mismatch(value: float) -> str:
+    """A mismatch with one decimal, or with as many as tell on which side of one it is.
+
+    >>> mismatch(8.4107), mismatch(1.02), mismatch(0.9996), mismatch(1.0)
+    ('8.4', '1.02', '0.9996', '1.0')
+    """
+    for places in range(1, _MOST_PLACES):
+        shown = _quantized(value, places, ROUND_HALF_EVEN)
+        if (shown > 1, shown < 1) == (value > 1, value < 1):
+            return f"{shown:f}"
+    return f"{_quantized(value, 1, ROUND_HALF_EVEN):f}"
+
+
+def at_least(value: float) -> str:
+    """What a mismatch is at least: rounded down, for no more is certain.
+
+    >>> at_least(6.4637), at_least(1.04)
+    ('6.4', '1.04')
+    """
+    shown = (_quantized(value, places, ROUND_FLOOR) for places in range(1, _MOST_PLACES))
+    return next((f"{one:f}" for one in shown if one > 1), f"{Decimal(value):f}")
+
+
+def bounds(found: Verdict, printed: Printed) -> tuple[str, str] | None:
+    """What no printed input can leave, in the printed unit with one decimal more; None if it is not known."""
+    if found.bound_low is None or found.bound_high is None:
+        return None
+    places = max(0, printed.decimals + 1)
+    low, high = (Fraction(end) / printed.scale for end in (found.bound_low, found.bound_high))
+    return f"{_whole(low, places, ROUND_FLOOR):f}", f"{_whole(high, places, ROUND_CEILING):f}"
+
+
+def _half_units(value: float) -> str:
+    """A mismatch with what it counts, for sentences that may be read alone."""
+    return f"{mismatch(value)} half units of the last digit"
+
+
+def _quantized(value: float, places: int, rounding: str) -> Decimal:
+    with localcontext(prec=400):
+        return Decimal(value).quantize(Decimal(1).scaleb(-places), rounding=rounding)
+
+
+def _whole(value: Fraction, places: int, rounding: str) -> Decimal:
+    """A fraction with some decimals, rounded exactly."""
+    scaled = value * 10**places
+    number = scaled.__floor__() if rounding == ROUND_FLOOR else scaled.__ceil__()
+    with localcontext(prec=400):
+        return Decimal(number).scaleb(-places)
+
+
+# --- names -----------------------------------------------------------------------------------------------
+
+
+def address(name: str, index: Sequence[int]) -> str:
+    """A cell: ``alpha[1-2]``.
+
+    >>> address("alpha", (1, 2)), address("alpha_mean", ())
+    ('alpha[1-2]', 'alpha_mean')
+    """
+    return f"{name}[{'-'.join(map(str, index))}]" if index else name
+
+
+def called(published: PublishedValue, found: Verdict) -> str:
+    """The verdict on a value, and what is certain of one that cannot be reached."""
+    ends = bounds(found, published.printed)
+    if found.verdict != UNREACHABLE or ends is None:
+        return CALLED[found.verdict]
+    return f"{CALLED[found.verdict]}: {certain(ends)}"
+
+
+def certain(ends: tuple[str, str]) -> str:
+    """What the bounds of a value say."""
+    return f"by interval arithmetic inputs that print as given yield at least {ends[0]} and at most {ends[1]}"
+
+
+# --- tables ----------------------------------------------------------------------------------------------
+
+
+def together(table: TableVerdict) -> str:
+    """Whether all values of a table come out of one input, without a full stop."""
+    whose, off = _whose(table), "" if table.mismatch is None else _half_units(table.mismatch)
+    come = "comes" if table.values == 1 else "come"
+    match table.verdict:
+        case "exact":
+            return f"{whose} {come} out as printed, from the inputs exactly as they are printed"
+        case "reachable":
+            return f"{whose} can come out of one input that prints as given, with a worst mismatch of {off}"
+        case "unreachable":
+            because = f". {table.because} alone makes that certain" if table.because else ""
+            return f"{contradiction(table)}: {evidence(table)}{because}"
+        case "not found":
+            return (
+                f"no input that prints as given was found from which {whose} {come} out; the best leaves "
+                f"a mismatch of {off}. That there is none is not certain"
+            )
+    return "none of the published values could be asked for: their cells have no values"
+
+
+def contradiction(table: TableVerdict) -> str:
+    """What is certain of a table that does not come out."""
+    return f"{_whose(table)} cannot come out of one input that prints as given"
+
+
+def evidence(table: TableVerdict) -> str:
+    """Why it does not."""
+    parts = []
+    if table.mismatch is not None:
+        parts.append(f"the best input that was found leaves a mismatch of {_half_units(table.mismatch)}")
+    if table.at_least is not None:
+        parts.append(f"by interval arithmetic none leaves less than {at_least(table.at_least)}")
+    elif table.out == 1:
+        parts.append("one value is out of reach even by itself")
+    elif table.out:
+        parts.append(f"{table.out} values are out of reach even by themselves")
+    return "; ".join(parts)
+
+
+def _whose(table: TableVerdict) -> str:
+    n = table.values
+    if table.source == ALL:
+        return f"all {n} published values together" if n > 1 else "the published value"
+    return f"the {n} values of {table.source}" if n > 1 else f"the value of {table.source}"
+
+
+# --- what would explain it -------------------------------------------------------------------------------
+
+
+def explained(found: Explanation) -> str:
+    """What is claimed and what follows."""
+    return f"{' and '.join(claimed(change) for change in found.changes)}: {follows(found)}"
+
+
+def name(found: Explanation) -> str:
+    """What a known difference that rests on it calls it: ``misprint x_p[2]``, ``order x_m (Table 3)``."""
+    return " and ".join(map(_name, found.changes))
+
+
+def _name(change: Change) -> str:
+    where = "" if change.source == INPUT else f"({change.source})"
+    return " ".join(filter(None, (change.kind, address(change.cell, change.index), where)))
+
+
+def perhaps(explanations: Sequence[Explanation]) -> tuple[str, ...]:
+    """What would explain that values do not come out together, or that nothing does."""
+    return tuple(f"perhaps {explained(each)}" for each in explanations) or (NOTHING_EXPLAINS,)
+
+
+def why(found: Referee) -> tuple[str, ...]:
+    """The same for all published values, and how certain that is; nothing where none is asked for."""
+    if not found.asked_why:
+        return ()
+    return (*perhaps(found.explanations), *([tried(found.tried)] if found.tried is not None else []))
+
+
+def tried(found: Tried) -> str:
+    """How many changes were tried, and what became of them."""
+    number = found.explaining + found.excluded + found.open
+    return (
+        f"{number} changes were tried: {found.explaining} explain it, {found.excluded} certainly do not, "
+        f"{found.open} were searched for in vain, which is not certain"
+    )
+
+
+def headline(explanations: Sequence[Explanation]) -> str:
+    """What is said above explanations."""
+    with_which = "that was found with which everything published comes out"
+    if explanations[0].as_printed:
+        first = "nothing that is printed needs to be otherwise: it matters only what it was computed from"
+    elif len(explanations) == 1:
+        first = f"this is the smallest change of what is printed {with_which}"
+    else:
+        first = f"these are the smallest changes of what is printed {with_which.replace('was', 'were')}"
+    several = (
+        " They are equally good: the digits alone cannot decide between them."
+        if len(explanations) > 1
+        else ""
+    )
+    return f"{first}.{several} Nobody is accused"
+
+
+def follows(found: Explanation) -> str:
+    """What follows from a change."""
+    which = "all" if found.values == found.of else "the other"
+    values = f"{which} {found.values} published values come" if found.values > 1 else "the value comes"
+    return f"then {values} out of one input, with a worst mismatch of {_half_units(found.mismatch)}"
+
+
+def claimed(change: Change) -> str:
+    """What is claimed of something printed."""
+    cell, of = address(change.cell, change.index), "" if change.source == INPUT else f" of {change.source}"
+    printed, would = change.printed, change.would_print
+    match change.kind:
+        case "printed":
+            which = f"{cell}{of}" if change.cell else change.source
+            return f"{which} was computed from the printed, rounded {would}"
+        case "parameter":
+            return f"{cell} was {would}{_or(change)}, not {printed}"
+        case "truncated":
+            return f"{cell}{of} was {would}, not {printed}"
+        case "unit" if not change.index:
+            return f"the numbers of {cell}{of} are to be multiplied by 1e{change.power}"
+        case "rows":
+            return f"{cell}{of} was taken {would}{_or(change)}"
+        case "order":
+            return f"{cell}{of} stands in another order, {would}"
+        case "label" if change.index:
+            other = address(change.cell, change.other)
+            return f"{cell} and {other}{of} stand in each other's place ({printed} and {would})"
+        case "label":
+            return f"{cell}{of} is {would}"
+    return f"{cell}{of} is printed {printed} for {would}{_or(change)}"
+
+
+def _or(change: Change) -> str:
+    """The other ways in which it could stand."""
+    if change.span:
+        return f" (or {', '.join(change.also)}; anything from {change.span[0]} to {change.span[1]})"
+    return f" (or {', '.join(change.also)})" if change.also else ""
+
+
+def suggested(found: Explanation) -> str:
+    """What is claimed, shortly: what a line of the ledger says beside the cell of the first change."""
+    first, *others = found.changes
+    return " and ".join((_suggested(first), *map(claimed, others)))
+
+
+def _suggested(change: Change) -> str:
+    printed, would = change.printed, " or ".join((change.would_print, *change.also))
+    match change.kind:
+        case "truncated" | "parameter":
+            return f"may have been {would}, not {printed}"
+        case "unit" if not change.index:
+            return f"may have to be multiplied by 1e{change.power}"
+        case "rows":
+            return f"may have been taken {would}"
+        case "order":
+            return f"may belong in the order {would}"
+        case "label" if change.index:
+            return f"{printed} and {would} may have changed places"
+        case "label":
+            return f"may be {would}"
+    return f"{printed} may have to read {would}"
+
+
+def relabelled(label: Relabelled) -> str:
+    """That a row is named after an equation which it cannot come from."""
+    named = f"{label.source} names {label.cell} after {label.printed}"
+    return f"{named}, but it comes out of {label.right}: {because(label)}"
+
+
+def because(label: Relabelled) -> str:
+    """Why it cannot."""
+    given = " and ".join(f"{name} in {unit}" for name, unit in label.gives)
+    kind = f"{label.printed} gives {given}, no {label.wanted[0]} in {label.wanted[1]}"
+    if not given:
+        kind = f"no column of {label.printed} is of this kind"
+    others = "".join(f", as {name} {mismatch(off)}" for name, off in label.rivals.items())
+    return f"{kind}; the worst mismatch is {_half_units(label.mismatch)}{others}"
+
+
+def amended(found: Referee) -> str:
+    """What comes out with the known misprints put right; empty if none are known."""
+    if found.amended is None:
+        return ""
+    right = joined(
+        f"{address(each.cell, each.index)} as {each.would_print}, not {each.printed}" for each in found.errata
+    )
+    return f"with {right}, {together(found.amended)}"
+
+
+def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
+    """All of it for a terminal, a finding a line.
+
+    Parameters
+    ----------
+    found : Referee
+    meaning : callable
+        Takes a column's name; returns what it is.
+    """
+    if found.joint is None:
+        return
+    for table in (*found.tables, found.joint):
+        yield f"referee    {together(table)}"
+    for said in why(found):
+        yield f"  {said}"
+    for label in found.labels:
+        yield f"  label    {relabelled(label)}"
+    for each in found.fits:
+        yield f"  fit      {fit(each, meaning)}"
+    if found.amended is not None:
+        yield f"  amended  {amended(found)}"
+        for said in () if found.amended.possible else perhaps(found.misprints):
+            yield f"  {said}"
+
+
+# --- which average was published -------------------------------------------------------------------------
+
+
+def fit(found: Fit, meaning: Callable[[str], str]) -> str:
+    """What a published average may be, in two sentences.
+
+    Parameters
+    ----------
+    found : Fit
+    meaning : callable
+        Takes a column's name; returns what it is.
+    """
+    printed = found.published.printed
+    unit = "" if printed.unit == "1" else f" {printed.unit}"
+    offs = joined(f"{mismatch(off)} as the {meaning(name)} {name}" for name, off in found.mismatch.items())
+    return (
+        f"{printed.text}{unit} is published as the {meaning(found.published.cell)}. "
+        f"The worst mismatch is {offs}. {told(found, meaning)}"
+    )
+
+
+def told(found: Fit, meaning: Callable[[str], str]) -> str:
+    """What that says of it."""
+    good = [f"the {meaning(name)}" for name, off in found.mismatch.items() if off <= 1]
+    if not good:
+        return "None of them goes with what is published"
+    if len(good) == 1:
+        return f"Only {good[0]} goes with what is published"
+    return f"The digits do not tell {' from '.join(good)}"
+
+
+def joined(words: Iterable[str]) -> str:
+    """Words in a row.
+
+    >>> joined(["a"]), joined(["a", "b", "c"])
+    ('a', 'a, b and c')
+    """
+    *head, last = words
+    return f"{', '.join(head)} and {last}" if head else last
