@@ -128,9 +128,10 @@ class FolderChecks:
         InputError
             The folder is not as it must be.
         """
+        from .engines import ENGINES
         from .judge import oddities
         from .messages.errors import InputError
-        from .result.findings import ENGINES, names_of, table_names
+        from .result.findings import names_of, table_names
 
         try:
             prepared = self.study.prepared
@@ -264,13 +265,13 @@ class CheckItem(pytest.Item):
 
     def _with_programs(self) -> bool:
         """Whether an engine that is run by another program was selected too."""
-        from .result.findings import ENGINES
+        from .engines import ENGINES
 
         return any(
             isinstance(item, CheckItem)
             and item.checks is self.checks
             and item.kind == "engine"
-            and item.name != ENGINES[0]
+            and item.name != next(iter(ENGINES))
             for item in self.session.items
         )
 

@@ -155,7 +155,7 @@ def judged(report: Report, every: bool = True, step: Step = silent) -> Report:
 def _agreements(report: Report, values: Values, every: bool) -> tuple[Agreement, ...]:
     """How NumPy's values agree with 50 digits; and what else is installed here, if that is wanted."""
     from .judge import engines
-    from .judge.readers import Book, of_values
+    from .judge.readers import Book, Case, of_values
 
     made = Prepared(report.inputs, report.sheet)
     labels, exactly = made.labels, made.exact_data
@@ -167,7 +167,7 @@ def _agreements(report: Report, values: Values, every: bool) -> tuple[Agreement,
         written = Book(content, grid)
     except UsageError:
         written = None  # there is no such workbook, and nothing to judge
-    return engines.compare_all(judge, values, labels, made.data, written)
+    return engines.compare_all(judge, Case(values.sheet, labels, made.data, values, written))
 
 
 def refereed(report: Report, step: Step = silent) -> Report:

@@ -18,7 +18,7 @@ from loopsheet.report.engines import exact, excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.judge import engines, readers
-from loopsheet.report.judge.readers import Book, Reading
+from loopsheet.report.judge.readers import Book, Case, Reading
 from loopsheet.report.prepared import Prepared
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
@@ -65,7 +65,7 @@ def test_numpy(computed: Values, judge: engines.Judge) -> None:
 
 def test_javascript_in_node(require: Callable[..., str], judge: engines.Judge, prepared: Prepared) -> None:
     require("node")
-    agreement = judge.agreement(readers.run_javascript(prepared.sheet, prepared.labels, prepared.data))
+    agreement = judge.agreement(readers.run_javascript(Case(prepared.sheet, prepared.labels, prepared.data)))
     assert honest(agreement), agreement
     assert agreement.line.startswith("JavaScript  2117 cells, at most ")
     assert ", node " in agreement.line
@@ -79,7 +79,7 @@ def test_javascript_in_chromium(
 ) -> None:
     require(*readers._BROWSERS)
     monkeypatch.setattr(readers, "_find", without(readers._find, "node"))
-    agreement = judge.agreement(readers.run_javascript(prepared.sheet, prepared.labels, prepared.data))
+    agreement = judge.agreement(readers.run_javascript(Case(prepared.sheet, prepared.labels, prepared.data)))
     assert honest(agreement), agreement
     assert agreement.program.startswith("Chromium ")
 
@@ -88,7 +88,7 @@ def test_the_workbook_in_libreoffice(
     require: Callable[..., str], judge: engines.Judge, prepared: Prepared, book: Book
 ) -> None:
     require("soffice", "libreoffice")
-    agreement = judge.agreement(readers.run_workbook(prepared.sheet, book))
+    agreement = judge.agreement(readers.run_workbook(Case(prepared.sheet, {}, {}, book=book)))
     assert honest(agreement), agreement
     assert ", LibreOffice " in agreement.line
 
@@ -173,7 +173,7 @@ def test_a_missing_program_is_told_and_is_no_finding(
     book: Book,
 ) -> None:
     monkeypatch.setattr(readers, "_find", lambda *names: None)
-    found = engines.compare_all(judge, computed, prepared.labels, prepared.data, book)
+    found = engines.compare_all(judge, Case(prepared.sheet, prepared.labels, prepared.data, computed, book))
     assert [agreement.line for agreement in found[1:]] == [
         "JavaScript  node or Chromium not found",
         "xlsx        LibreOffice not found",
@@ -206,7 +206,7 @@ def test_a_program_that_fails_is_a_finding(
         monkeypatch.setattr(readers, "SCRIPT_SECONDS", 1)
     monkeypatch.setattr(readers, "_version", lambda path, name: f"{name} 1.0")
     monkeypatch.setattr(readers, "_find", lambda *names: ("node", str(program)))
-    agreement = judge.agreement(readers.run_javascript(prepared.sheet, prepared.labels, prepared.data))
+    agreement = judge.agreement(readers.run_javascript(Case(prepared.sheet, prepared.labels, prepared.data)))
     (finding,) = agreement.findings
     assert finding.startswith(f"JavaScript (node 1.0) failed: {said}")
     assert agreement.line == "JavaScript  failed, node 1.0"
@@ -219,7 +219,7 @@ def test_an_office_that_makes_no_file_is_a_finding(
     program.write_text(f"#!{sys.executable}\n")
     program.chmod(0o755)
     monkeypatch.setattr(readers, "_find", lambda *names: ("soffice", str(program)))
-    assert readers.run_workbook(prepared.sheet, book).failure == "made no file"
+    assert readers.run_workbook(Case(prepared.sheet, {}, {}, book=book)).failure == "made no file"
 
 
 # --- files ------------------------------------------------------------------------------------------------

@@ -7,9 +7,10 @@ from small_report import end_gauge
 
 from loopsheet.derivations.equation import Step
 from loopsheet.derivations.proof import Proof, Status, StepProof
+from loopsheet.report.engines import ENGINES
 from loopsheet.report.result import verdict_words as words
 from loopsheet.report.result.agreement import Agreement
-from loopsheet.report.result.findings import ENGINES, Check, checks, names_of, of_engine, table_names
+from loopsheet.report.result.findings import Check, checks, names_of, of_engine, table_names
 from loopsheet.report.result.result import Report
 from loopsheet.report.result.verdict import (
     REACHABLE,
@@ -43,7 +44,7 @@ def of_kind(report: Report, kind: str) -> list[Check]:
 
 
 def test_engines(small: Report) -> None:
-    assert ENGINES == ("numpy", "JavaScript", "xlsx")
+    assert tuple(ENGINES) == ("numpy", "JavaScript", "xlsx")
     toml = (small.inputs.folder / "report.toml").as_posix()
     missing = Agreement(0, 0.0, "", (), engine="xlsx", missing="LibreOffice")
     good, absent = of_kind(replace(small, engines=(Agreement(7, 1e-16, "l[1]", ()), missing)), "engine")

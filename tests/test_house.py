@@ -111,8 +111,8 @@ ONLY_FROM = {
     "report.study": {*ASKING, "report.build"},
     "report.stages": {"report.verbs", "report.study", "report.build"},
 }
-# Modules that may import by a name made at run time: the lazy public names, the registry of workbooks.
-MAY_IMPORT_BY_NAME = {"", "report.which_workbook"}
+# Modules that may import by a name made at run time: the lazy public names, the registries.
+MAY_IMPORT_BY_NAME = {"", "report.judge.engines", "report.which_workbook"}
 
 
 class Import(NamedTuple):

@@ -13,7 +13,7 @@ from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.judge.engines import compare
-from loopsheet.report.judge.readers import run_javascript
+from loopsheet.report.judge.readers import Case, run_javascript
 from loopsheet.report.plan import RowSum
 from loopsheet.report.plan.domain import SMALLEST, defined, is_positive
 from loopsheet.report.quantity import Bounds
@@ -110,7 +110,7 @@ def test_50_digits_agree_but_for_what_only_they_can_compute(values: Values) -> N
 
 def test_javascript_has_the_same_codes(values: Values, require: Callable[..., str]) -> None:
     require("node")
-    reading = run_javascript(SHEET, LABELS, DATA)
+    reading = run_javascript(Case(SHEET, LABELS, DATA))
     assert not reading.failure
     for name in SHEET.by_name:
         assert reading.status[name] == [Status(int(code)).code for code in values.status[name]], name
@@ -217,7 +217,7 @@ def test_the_engines_agree_on_it(require: Callable[..., str]) -> None:
     values = engine.evaluate(PAIRS, TESTS, STEEP)
     assert compare(values, TESTS, STEEP).findings == ()
     require("node")
-    reading = run_javascript(PAIRS, TESTS, STEEP)
+    reading = run_javascript(Case(PAIRS, TESTS, STEEP))
     for name in PAIRS.by_name:
         assert reading.status[name] == [Status(int(code)).code for code in values.status[name]], name
 

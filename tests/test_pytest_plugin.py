@@ -10,10 +10,11 @@ from pathlib import Path
 
 import pytest
 
+from loopsheet.report.engines import ENGINES
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.inputs.inputs import PublishedValue
 from loopsheet.report.pytest_plugin import _is_ours
-from loopsheet.report.result.findings import ENGINES, names_of
+from loopsheet.report.result.findings import names_of
 
 
 def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:

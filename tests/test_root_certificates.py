@@ -22,7 +22,7 @@ from loopsheet.report.cli import main
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.certified import certified
-from loopsheet.report.judge.readers import run_javascript
+from loopsheet.report.judge.readers import Case, run_javascript
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Given, Root, Sheet
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
@@ -261,7 +261,7 @@ def test_javascript_counts_the_same(require: Callable[..., str]) -> None:
     ]
     made = Sheet(tuple(columns))
     values = engine.evaluate(made, {}, {})
-    reading = run_javascript(made, {}, {})
+    reading = run_javascript(Case(made, {}, {}))
     assert reading.failure == ""
     for name in made.by_name:
         assert reading.status[name] == [CODES[Status(values.status[name][0])]], name

@@ -7,6 +7,7 @@ what no doubles could do better nor excused where they could.
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -18,11 +19,11 @@ from numpy.typing import NDArray
 
 from ..cells.layout import Layout
 from ..cells.values import CODES, Cell, Status, Values
-from ..engines import exact
+from ..engines import ENGINES, exact
 from ..result.agreement import LIMIT, Agreement
 from ..sheet import Column, Sheet
 from .bounds import bounds
-from .readers import Book, Reading, of_values, run_javascript, run_workbook
+from .readers import Case, Reading, of_values
 
 __all__ = ["LIMIT", "Agreement", "Judge", "compare", "compare_all"]
 
@@ -203,32 +204,18 @@ def compare(values: Values, labels: Mapping[str, Sequence[int]], exact_data: Map
     return Judge.of(values.sheet, values.layouts, labels, exact_data).agreement(of_values(values))
 
 
-def compare_all(
-    judge: Judge,
-    values: Values,
-    labels: Mapping[str, Sequence[int]],
-    data: Mapping[str, Any],
-    book: Book | None = None,
-) -> tuple[Agreement, ...]:
+def compare_all(judge: Judge, case: Case) -> tuple[Agreement, ...]:
     """Compare every engine that is found on this machine.
 
     Parameters
     ----------
     judge : Judge
-    values : Values
-        What NumPy found, without a batch dimension.
-    labels : mapping of axis name to sequence of int
-    data : mapping of column name to float or sequence of float
-        The given columns in SI, as doubles.
-    book : Book, optional
-        The report's workbook; without it, there is nothing to recalculate.
-
-    Returns
-    -------
-    tuple of Agreement
-        NumPy's, JavaScript's and, with a book, that of the workbook.
+    case : Case
     """
-    readings = [of_values(values), run_javascript(values.sheet, labels, data)]
-    if book is not None:
-        readings.append(run_workbook(values.sheet, book))
-    return tuple(judge.agreement(reading) for reading in readings)
+    found = []
+    for reader in ENGINES.values():
+        module, _, function = reader.partition(":")
+        reading: Reading | None = getattr(importlib.import_module(module), function)(case)
+        if reading is not None:
+            found.append(judge.agreement(reading))
+    return tuple(found)

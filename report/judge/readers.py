@@ -27,7 +27,16 @@ from ..machine.programs import ProgramFailed, run
 from ..machine.scratch import scratch
 from ..sheet import Given, Sheet
 
-__all__ = ["ALWAYS_RECALCULATE", "Book", "Reading", "of_values", "run_javascript", "run_workbook"]
+__all__ = [
+    "ALWAYS_RECALCULATE",
+    "Book",
+    "Case",
+    "Reading",
+    "of_case",
+    "of_values",
+    "run_javascript",
+    "run_workbook",
+]
 
 SCRIPT_SECONDS = 120
 BOOK_SECONDS = 300
@@ -54,6 +63,29 @@ class Book:
 
     content: bytes
     grid: Grid
+
+
+@dataclass(frozen=True)
+class Case:
+    """What an engine is to compute.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    labels : mapping of axis name to sequence of int
+    data : mapping of column name to float or sequence of float
+        The given columns in SI, as the NumPy engine gets them; NaN is a missing datum.
+    values : Values, optional
+        What NumPy found, without a batch dimension.
+    book : Book, optional
+        The report's workbook; without it, there is nothing to recalculate.
+    """
+
+    sheet: Sheet
+    labels: Mapping[str, Sequence[int]]
+    data: Mapping[str, Any]
+    values: Values | None = None
+    book: Book | None = None
 
 
 @dataclass(frozen=True)
@@ -104,6 +136,11 @@ def of_values(values: Values, engine: str = "numpy") -> Reading:
     return Reading(engine, "", numbers, codes)
 
 
+def of_case(case: Case) -> Reading | None:
+    """What NumPy found."""
+    return None if case.values is None else of_values(case.values)
+
+
 def _find(*names: str) -> tuple[str, str] | None:
     """The first of these programs that is installed: its name and its path."""
     return next(((name, path) for name in names if (path := shutil.which(name))), None)
@@ -138,35 +175,27 @@ say(JSON.stringify(out));
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
 
-def run_javascript(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[str, Any]) -> Reading:
-    """Evaluate a sheet in node; without it, in Chromium.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    labels : mapping of axis name to sequence of int
-    data : mapping of column name to float or sequence of float
-        The given columns in SI, as the NumPy engine gets them; NaN is a missing datum.
-    """
-    lists = {name: values if isinstance(values, (list, tuple)) else [values] for name, values in data.items()}
+def run_javascript(case: Case) -> Reading:
+    """Evaluate a sheet in node; without it, in Chromium."""
+    lists = {name: each if isinstance(each, (list, tuple)) else [each] for name, each in case.data.items()}
     numbers = {
         name: [float(x) if math.isfinite(float(x)) else None for x in values]
         for name, values in lists.items()
     }
-    text = json.dumps({"labels": {name: list(rows) for name, rows in labels.items()}, "data": numbers})
+    text = json.dumps({"labels": {name: list(rows) for name, rows in case.labels.items()}, "data": numbers})
     node, browser = _find("node"), _find(*_BROWSERS)
     found = node or browser
     if found is None:
         return Reading("JavaScript", missing="node or Chromium")
     program = _version(found[1], "node" if node else "Chromium")
     runtime = printed.RUNTIME.read_text(encoding="utf-8")
-    body = f"{runtime}\nconst program = {printed.program(sheet)};\n"
+    body = f"{runtime}\nconst program = {printed.program(case.sheet)};\n"
     try:
         with scratch() as here:
             out = _in_node(found[1], here, body, text) if node else _in_page(found[1], here, body, text)
         columns = json.loads(out)
-        value = {name: columns[name][0] for name in sheet.by_name}
-        status = {name: [CODES[Status(code)] for code in columns[name][1]] for name in sheet.by_name}
+        value = {name: columns[name][0] for name in case.sheet.by_name}
+        status = {name: [CODES[Status(code)] for code in columns[name][1]] for name in case.sheet.by_name}
     except ProgramFailed as failed:
         return Reading("JavaScript", program, failure=str(failed))
     except (ValueError, LookupError, TypeError) as error:
@@ -216,25 +245,23 @@ _MAIN = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
 _RELATION = "{http://schemas.openxmlformats.org/officeDocument/2006/relationships}id"
 
 
-def run_workbook(sheet: Sheet, book: Book) -> Reading:
+def run_workbook(case: Case) -> Reading | None:
     """Let LibreOffice recalculate a workbook whose results were taken out, and read it back.
 
     LibreOffice computes with doubles, and stores the 15 digits that it shows at most: what was computed may
     be half a unit of the fifteenth digit away from what is read, and :attr:`Reading.rounded` says how much
     that is. Values are read in the unit of their cells and turned into SI as fractions, which round nothing.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    book : Book
     """
+    book = case.book
+    if book is None:
+        return None
     found = _find("soffice", "libreoffice")
     if found is None:
         return Reading("xlsx", missing="LibreOffice")
     program = _version(found[1], "LibreOffice")
     try:
         cells = _recalculated(found[1], book.content)
-        value, status, rounded = _columns(sheet, book.grid, cells)
+        value, status, rounded = _columns(case.sheet, book.grid, cells)
     except ProgramFailed as failed:
         return Reading("xlsx", program, failure=str(failed))
     except (OSError, KeyError, ValueError, zipfile.BadZipFile, ElementTree.ParseError) as error:

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from .result import Comparison, Report
 
 __all__ = [
-    "ENGINES",
     "MISPRINTS",
     "TOGETHER",
     "Check",
@@ -34,9 +33,6 @@ __all__ = [
     "of_referee",
     "table_names",
 ]
-
-ENGINES = ("numpy", "JavaScript", "xlsx")
-"""The engines that are judged, by the names they have in an Agreement; the first needs no program."""
 
 MOST_NAMED = 5
 """Of the findings about an engine; one wrong formula spoils many cells."""
