@@ -59,7 +59,7 @@ def test_as_exact_as_promised(case: str) -> None:
 
 def test_the_constants_are_what_they_are_called() -> None:
     with mpmath.workdps(60):
-        first, second = map(mpmath.mpf, elementary._LN2)
+        first, second = (mpmath.mpf(float(part)) for part in elementary._LN2)
         assert abs(first + second - mpmath.ln2) < mpmath.mpf(2) ** -97
         assert (first * 2**42) % 1 == 0, "42 bits"
         assert float(1 / mpmath.ln2) == elementary._PER_LN2
@@ -101,10 +101,10 @@ def test_intervals_enclose_them() -> None:
 
 BITS = """
 import hashlib, numpy as np
-from loopsheet.report import elementary
+from loopsheet.report.engines import elementary
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.folders import PAPER
-from loopsheet.report.provenance import processor
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.machine.provenance import processor
 from loopsheet.report.study import Study
 rng = np.random.default_rng(3)
 x, y = rng.uniform(.01, 9, 20_000), rng.uniform(-9, 9, 20_000)

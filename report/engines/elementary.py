@@ -7,7 +7,7 @@ bit may be wrong, as in NumPy's: an error is at most 2 units of it. It takes lon
 
 from __future__ import annotations
 
-from functools import reduce
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -17,19 +17,28 @@ __all__ = ["exp", "log", "power"]
 
 Array = NDArray[np.float64]
 
-_LN2 = (float.fromhex("0x1.62e42fefa3800p-1"), float.fromhex("0x1.ef35793c76730p-45"))
+
+def _numbers(*values: float) -> tuple[Array, ...]:
+    """Constants as arrays: NumPy takes twice as long for a number of Python's."""
+    return tuple(map(np.array, values))
+
+
+_LN2 = _numbers(float.fromhex("0x1.62e42fefa3800p-1"), float.fromhex("0x1.ef35793c76730p-45"))
 """The logarithm of 2 in two parts. The first has 42 bits: its product with an exponent is exact."""
-_PER_LN2 = float.fromhex("0x1.71547652b82fep+0")
-_COTH = (1 / 12, -1 / 720, 1 / 30240, -1 / 1209600, 1 / 47900160, -691 / 1307674368000)
+_COTH = _numbers(1 / 12, -1 / 720, 1 / 30240, -1 / 1209600, 1 / 47900160, -691 / 1307674368000)
 """B_2k/(2k)!: the series of (r/2) coth(r/2) - 1 in r^2; as many terms as doubles tell for r up to
 ln(2)/2."""
-_ATANH = tuple(2 / (2 * k + 1) for k in range(1, 11))
+_ATANH = _numbers(*(2 / (2 * k + 1) for k in range(1, 11)))
 """The series of 2 atanh(s)/s - 2 in s^2; as many terms as doubles tell for s up to
 (sqrt(2)-1)/(sqrt(2)+1)."""
-_LEAST = 0.5**0.5
-_BEYOND = 750.0
+_PER_LN2, _HALF, _ONE, _TWO, _LEAST = _numbers(float.fromhex("0x1.71547652b82fep+0"), 0.5, 1.0, 2.0, 0.5**0.5)
+_LARGE, _FAINT = _numbers(-(2.0**64), 2.0**64), _numbers(-(2.0**-40), 2.0**-40)
+_BEYOND = _numbers(-750.0, 750.0)
 """Exponentials of more, and of less than its opposite, are no positive double."""
-_HALF = 2.0**27 + 1
+_SPLIT = np.array(2.0**27 + 1)
+_BLOCK = 1 << 13
+"""How many numbers are computed at a time: what is written down on the way then stays in the processor's
+cache."""
 
 
 def exp(x: Any) -> Any:
@@ -45,8 +54,8 @@ def exp(x: Any) -> Any:
     x = np.asarray(x, dtype=np.float64)
     known = x == x
     if known.all():
-        return _exp(x, 0.0)
-    return np.where(known, _exp(np.where(known, x, 0.0), 0.0), np.nan)
+        return _in_blocks(_exp, x)
+    return np.where(known, _in_blocks(_exp, np.where(known, x, 0.0)), np.nan)
 
 
 def log(x: Any) -> Any:
@@ -62,8 +71,8 @@ def log(x: Any) -> Any:
     x = np.asarray(x, dtype=np.float64)
     known = (x > 0) & (x < np.inf)
     if known.all():
-        return _log(x)
-    return np.where(known, _log(np.where(known, x, 1.0)), np.log(np.where(known, 1.0, x)))
+        return _in_blocks(_log, x)
+    return np.where(known, _in_blocks(_log, np.where(known, x, 1.0)), np.log(np.where(known, 1.0, x)))
 
 
 def power(x: Any, y: Any) -> Any:
@@ -79,8 +88,8 @@ def power(x: Any, y: Any) -> Any:
     x, y = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
     known = (np.abs(x) < np.inf) & (np.abs(y) < np.inf) & ((x > 0) | ((x < 0) & (y == np.rint(y))))
     if known.all() and (x > 0).all():
-        return _power(x, y)
-    found = _power(np.where(known, np.abs(x), 1.0), np.where(known, y, 0.0))
+        return _in_blocks(_power, x, y)
+    found = _in_blocks(_power, np.where(known, np.abs(x), 1.0), np.where(known, y, 0.0))
     found = np.where((x < 0) & (np.abs(np.fmod(np.where(known, y, 0.0), 2)) == 1), -found, found)
     return np.where(known, found, np.power(np.where(known, 1.0, x), y))
 
@@ -89,28 +98,65 @@ def _is_plain(x: Any) -> bool:
     return isinstance(x, (np.ndarray, np.generic, float, int))
 
 
-def _exp(x: Array, more: Any) -> Any:
+def _in_blocks(function: Callable[..., Any], *given: Array) -> Any:
+    """A function of flat arrays, of which it may write to those that it makes, a block at a time."""
+    first, *others = given
+    shape = np.broadcast_shapes(*(each.shape for each in given)) if others else first.shape
+    flat = [each if each.shape == shape else np.broadcast_to(each, shape) for each in given]
+    flat = [each.reshape(-1) for each in flat]
+    size = flat[0].size
+    if size <= _BLOCK:
+        found = function(*flat)
+    else:
+        found = np.empty(size)
+        for begin in range(0, size, _BLOCK):
+            block = slice(begin, begin + _BLOCK)
+            found[block] = function(*(each[block] for each in flat))
+    return found.reshape(shape) if shape else found[0]
+
+
+def _exp(x: Array, more: Any = None) -> Any:
     """The exponential of x + more, where more is small.
 
     exp(r) = 1 + r/((r/2) coth(r/2) - r/2) for what is left of x beside a multiple of ln(2).
     """
-    x = np.minimum(np.maximum(x, -_BEYOND), _BEYOND)
-    twos = np.rint(x * _PER_LN2)
-    first, second = x - twos * _LN2[0], twos * _LN2[1]
+    x = _clipped(x, _BEYOND)
+    twos = x * _PER_LN2
+    np.rint(twos, twos)
+    first, second = twos * _LN2[0], twos * _LN2[1]
+    np.subtract(x, first, first)
     r = first - second
-    more = more + ((first - r) - second)
+    first -= r
+    first -= second
+    if more is not None:
+        first += more
     square = r * r
-    rest = r / ((_series(_COTH, square) * square + 1) - 0.5 * r)
-    rest = rest + (more + rest * more)
-    return np.ldexp(rest + 1, twos.astype(np.int32))
+    rest = _series(_COTH, square)
+    rest *= square
+    rest += _ONE
+    np.multiply(r, _HALF, square)
+    rest -= square
+    np.divide(r, rest, rest)
+    np.multiply(rest, first, square)
+    first += square
+    rest += first
+    rest += _ONE
+    return np.ldexp(rest, twos.astype(np.int32), rest)
 
 
 def _log(x: Array) -> Any:
     """The logarithm of positive numbers: of a power of two, and 2 atanh(s) = f + s (s^2 P(s^2) - f)."""
     f, over, twos = _reduced(x)
-    s = f / over
+    s = np.divide(f, over, over)
     square = s * s
-    return twos * _LN2[0] + (f + (s * (square * _series(_ATANH, square) - f) + twos * _LN2[1]))
+    rest = _series(_ATANH, square)
+    rest *= square
+    rest -= f
+    rest *= s
+    rest += np.multiply(twos, _LN2[1], square)
+    rest += f
+    rest += np.multiply(twos, _LN2[0], square)
+    return rest
 
 
 def _power(x: Array, y: Array) -> Any:
@@ -119,33 +165,45 @@ def _power(x: Array, y: Array) -> Any:
     s = f / over
     product, lost = _product(s, over)
     # What the division lost, also by what the sum m + 1 had lost.
-    left = ((f - product) - lost - s * (f + 1 - (over - 1))) / over
+    left = ((f - product) - lost - s * (f + _ONE - (over - _ONE))) / over
     square = s * s
-    whole, part = twos * _LN2[0], 2 * s
+    whole, part = twos * _LN2[0], _TWO * s
     high = whole + part
     back = high - whole
     low = (whole - (high - back)) + (part - back)
-    low = low + (2 * left + s * square * _series(_ATANH, square) + twos * _LN2[1])
+    low += _TWO * left + s * square * _series(_ATANH, square) + twos * _LN2[1]
     high, low = high + low, low - ((high + low) - high)
-    y = np.minimum(np.maximum(y, -(2.0**64)), 2.0**64)
+    y = _clipped(y, _LARGE)
     product, lost = _product(high, y)
-    return _exp(product, np.minimum(np.maximum(lost + low * y, -(2.0**-40)), 2.0**-40))
+    return _exp(product, _clipped(lost + low * y, _FAINT))
 
 
-def _reduced(x: Array) -> tuple[Any, Any, Any]:
+def _clipped(x: Array, ends: tuple[Array, ...]) -> Array:
+    """The nearest numbers between two."""
+    found: Array = np.maximum(x, ends[0])
+    return np.minimum(found, ends[1], out=found)
+
+
+def _reduced(x: Array) -> tuple[Array, Array, Array]:
     """m - 1, m + 1 and n of x = m 2^n with m between sqrt(1/2) and sqrt(2)."""
     m, twos = np.frexp(x)
     less = m < _LEAST
-    m = np.where(less, 2 * m, m)
-    return m - 1, m + 1, twos - less
+    np.multiply(m, _TWO, m, where=less)
+    return m - _ONE, m + _ONE, np.subtract(twos, less, dtype=np.float64)
 
 
-def _series(coefficients: tuple[float, ...], z: Any) -> Any:
+def _series(coefficients: tuple[Array, ...], z: Array) -> Array:
     """A polynomial, by Horner's rule."""
-    return reduce(lambda found, coefficient: found * z + coefficient, reversed(coefficients))
+    *others, second, first = coefficients
+    found = z * first
+    found += second
+    for coefficient in reversed(others):
+        found *= z
+        found += coefficient
+    return found
 
 
-def _product(a: Any, b: Any) -> tuple[Any, Any]:
+def _product(a: Array, b: Array) -> tuple[Array, Array]:
     """A product and what its rounding lost.
 
     Source: T. J. Dekker, A floating-point technique for extending the available precision, Numerische
@@ -156,8 +214,8 @@ def _product(a: Any, b: Any) -> tuple[Any, Any]:
     return found, ((a_high * b_high - found) + a_high * b_low + a_low * b_high) + a_low * b_low
 
 
-def _halves(a: Any) -> tuple[Any, Any]:
+def _halves(a: Array) -> tuple[Array, Array]:
     """A number as a sum of two of half as many bits."""
-    large = a * _HALF
+    large = a * _SPLIT
     high = large - (large - a)
     return high, a - high
