@@ -10,7 +10,7 @@ NumPy's functions accept these arrays, so that a generated program runs on them 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import reduce
+from functools import lru_cache, reduce
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,9 @@ Array = NDArray[np.float64]
 
 WIDER = 2.0**-50
 """Four units in the last place, at most: how far elementary functions may be off, relatively."""
+
+
+_BIT, _LEAST = 2.0**-53 * (1 + 2.0**-52), 2.0**-1074
 
 
 class Intervals(NDArrayOperatorsMixin):
@@ -54,6 +57,8 @@ class Intervals(NDArrayOperatorsMixin):
         """A number as an interval: a whole one is exact, another was rounded when it was written."""
         if isinstance(value, Intervals):
             return value
+        if type(value) in (int, float):
+            return _written(float(value))
         array = np.asarray(value, dtype=np.float64)
         if isinstance(value, (np.ndarray, np.floating)):
             return cls(array, array)
@@ -95,8 +100,8 @@ class Intervals(NDArrayOperatorsMixin):
         """The sum along a dimension."""
         size = max(1, self.low.shape[axis] if self.low.ndim else 1)
         slack = size * 2.0**-52
-        low, high = (np.sum(end, axis=axis, keepdims=keepdims) for end in (self.low, self.high))
-        sizes = [np.sum(np.abs(end), axis=axis, keepdims=keepdims) for end in (self.low, self.high)]
+        low, high = (end.sum(axis=axis, keepdims=keepdims) for end in (self.low, self.high))
+        sizes = [np.abs(end).sum(axis=axis, keepdims=keepdims) for end in (self.low, self.high)]
         return _outwards(low - slack * sizes[0], high + slack * sizes[1])
 
     def middle(self) -> tuple[Intervals, Intervals]:
@@ -134,6 +139,13 @@ class Intervals(NDArrayOperatorsMixin):
         return _cleaned(low, high)
 
 
+@lru_cache(maxsize=256)
+def _written(number: float) -> Intervals:
+    """A number of a program."""
+    exact = not np.isfinite(number) or number.is_integer()
+    return Intervals(number, number) if exact else Intervals(_below(number), _above(number))
+
+
 def whole(shape: tuple[int, ...]) -> Intervals:
     """Intervals of which nothing is known."""
     return Intervals(np.full(shape, -np.inf), np.full(shape, np.inf))
@@ -154,14 +166,22 @@ def _above(value: Any) -> Array:
 
 def _cleaned(low: Any, high: Any) -> Intervals:
     """No number means that nothing is known."""
-    unknown = np.isnan(low) | np.isnan(high)
-    if not unknown.any():
+    if (low <= high).all():
         return Intervals(low, high)
+    unknown = np.isnan(low) | np.isnan(high)
     return Intervals(np.where(unknown, -np.inf, low), np.where(unknown, np.inf, high))
 
 
 def _outwards(low: Any, high: Any) -> Intervals:
-    return _cleaned(_below(low), _above(high))
+    """The neighbours of both ends, by a sum: nextafter() takes ten times as long.
+
+    Source: S. M. Rump, P. Zimmermann, S. Boldo and G. Melquiond, Computing predecessor and successor in
+    rounding to nearest, BIT Numerical Mathematics 49 (2009) 419-431.
+    """
+    below, above = low - (np.abs(low) * _BIT + _LEAST), high + (np.abs(high) * _BIT + _LEAST)
+    if (below <= above).all():
+        return Intervals(below, above)
+    return _cleaned(_below(low), _above(high))  # some end is infinite, or no number
 
 
 def _loosely(low: Any, high: Any) -> Intervals:
