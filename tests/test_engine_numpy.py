@@ -60,11 +60,12 @@ x, y, z = (Symbol(name, positive=True) for name in "xyz")
         (Min(x, y), "numpy.minimum(x, y)"),
         (Or(Ne(x, y), Ne(y, z)), "numpy.logical_or(numpy.not_equal(x, y), numpy.not_equal(y, z))"),
         (And(x > y, y > z), "numpy.logical_and(numpy.greater(x, y), numpy.greater(y, z))"),
-        (Piecewise((x, x > y), (y, True)), "numpy.where(numpy.greater(x, y), x, y)"),
-        (Piecewise((x, x > y)), "numpy.where(numpy.greater(x, y), x, numpy.nan)"),
+        (Piecewise((x, x > y), (y, True)), "choose(numpy.greater(x, y), lambda: x, lambda: y)"),
+        (Piecewise((x, x > y)), "choose(numpy.greater(x, y), lambda: x, lambda: numpy.nan)"),
         (
             Piecewise((x, x > 2), (y, x > 1), (z, True)),
-            "numpy.where(numpy.greater(x, 2), x, numpy.where(numpy.greater(x, 1), y, z))",
+            "choose(numpy.greater(x, 2), lambda: x, "
+            "lambda: choose(numpy.greater(x, 1), lambda: y, lambda: z))",
         ),
         (Rational(1, 3) * x, "(1/3)*x"),
         (Integer(2) * oo, "numpy.inf"),

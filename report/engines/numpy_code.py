@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Basic, Expr, Piecewise, S, Symbol, cse, numbered_symbols
+from sympy import Basic, Expr, Piecewise, S, Symbol, cse, log, numbered_symbols
 from sympy.printing.codeprinter import PrintMethodNotImplementedError
 from sympy.printing.numpy import NumPyPrinter
 
@@ -40,6 +41,16 @@ SAME: Any = _Same()
 """What printed functions call, if they are not told to call NumPy itself, which is faster."""
 
 
+def _choose(condition: Any, yes: Callable[[], Any], no: Callable[[], Any]) -> Any:
+    """One thing where a condition holds and another elsewhere; what no row asks for is not computed."""
+    if isinstance(condition, (np.ndarray, np.generic)):
+        if condition.all():
+            return yes()
+        if not condition.any():
+            return no()
+    return np.where(condition, yes(), no())
+
+
 class Printer(NumPyPrinter):
     """NumPy's printer, with what broadcasting over columns needs; what it cannot print, it refuses."""
 
@@ -57,6 +68,12 @@ class Printer(NumPyPrinter):
 
     def _print_Or(self, expr: Expr) -> str:
         return self._pairwise("numpy.logical_or", expr)
+
+    def _as_ordered_terms(self, expr: Expr, order: Any = None) -> list[Expr]:
+        # A difference takes one operation less than a sum with an opposite.
+        terms: list[Expr] = super()._as_ordered_terms(expr, order=order)
+        first = next((n for n, term in enumerate(terms) if not term.as_coeff_Mul()[0].is_negative), 0)
+        return [terms.pop(first), *terms]
 
     def _pairwise(self, function: str, expr: Expr) -> str:
         # sympy stacks the arguments, which must then have one shape; columns and scalars do not.
@@ -78,7 +95,9 @@ class Printer(NumPyPrinter):
     def _print_Piecewise(self, expr: Piecewise) -> str:
         pairs = [(self._print(body), self._print(condition)) for body, condition in expr.args]
         last = pairs.pop()[0] if expr.args[-1].cond == True else "numpy.nan"  # noqa: E712
-        return reduce(lambda rest, pair: f"numpy.where({pair[1]}, {pair[0]}, {rest})", reversed(pairs), last)
+        return reduce(
+            lambda rest, pair: f"choose({pair[1]}, lambda: {pair[0]}, lambda: {rest})", reversed(pairs), last
+        )
 
     def _print_RowSum(self, expr: RowSum) -> str:
         terms, axis = expr.args
@@ -106,7 +125,7 @@ def printed(printer: Printer, expression: Any) -> str:
 def compiled(name: str, arguments: Sequence[str], lines: Sequence[str], functions: Any) -> tuple[str, Any]:
     """A function of printed lines: its text, and itself."""
     source = "\n".join([f"def {name}({', '.join(arguments)}):", *(f"    {line}" for line in lines)])
-    namespace: dict[str, Any] = {"numpy": functions}
+    namespace: dict[str, Any] = {"numpy": functions, "choose": _choose}
     # Printed from our own expressions, never foreign text.
     exec(compile(source, "<generated>", "exec"), namespace)
     return source, namespace[name]
@@ -136,22 +155,59 @@ class Kernel:
 
 
 def write(
-    arguments: Sequence[Symbol], totals: Sequence[str], expressions: Sequence[Any], functions: Any = SAME
+    arguments: Sequence[Symbol],
+    totals: Sequence[str],
+    expressions: Sequence[Any],
+    functions: Any = SAME,
+    parts: Mapping[Symbol, Any] = MappingProxyType({}),
 ) -> tuple[str, Function]:
     """Print expressions as one function, common parts computed once; return its text and the function.
+
+    Parameters
+    ----------
+    arguments : sequence of Symbol
+    totals : sequence of str
+        As for :class:`Kernel`.
+    expressions : sequence of Expr
+        What it returns.
+    functions : module
+    parts : mapping of Symbol to Expr
+        What the expressions are made of besides, each of what comes before it.
 
     Raises
     ------
     SheetError
         NumPy has no word for some part of them.
     """
-    symbols = numbered_symbols("t_", exclude=arguments)
-    common, bodies = cse(expressions, symbols=symbols, order="none", list=True)
+    symbols = numbered_symbols("t_", exclude=(*arguments, *parts))
+    every = [*parts.values(), *expressions]
+    opposite = _opposite(every)
+    common, bodies = cse(
+        [each.xreplace(opposite) for each in every], symbols=symbols, order="none", list=True
+    )
     printer = Printer()
     names = [*(a.name for a in arguments), *(f"{axis}_kept" for axis in totals)]
-    lines = [f"{name} = {printed(printer, value)}" for name, value in common]
+    waiting, bodies = [*common, *zip(parts, bodies, strict=False)], bodies[len(parts) :]
+    lines, unknown = [], {name for name, _ in waiting}
+    while waiting:
+        name, value = ready = next(each for each in waiting if unknown.isdisjoint(each[1].free_symbols))
+        lines.append(f"{name} = {printed(printer, value)}")
+        waiting.remove(ready)
+        unknown.remove(name)
     lines += [f"return ({', '.join(printed(printer, body) for body in bodies)},)"]
     return compiled("kernel", names, lines, functions)
+
+
+def _opposite(expressions: Sequence[Any]) -> dict[Expr, Expr]:
+    """Logarithms of what other logarithms are of the reciprocals of: one of both is enough."""
+    found: dict[Expr, Expr] = {}
+    for each in sorted(set().union(*(e.atoms(log) for e in expressions)), key=str):
+        reciprocal = log(1 / each.args[0])
+        if reciprocal.func is log and reciprocal in found:
+            found[each] = -reciprocal
+        else:
+            found[each] = each
+    return found
 
 
 def kernel(expressions: Sequence[Basic], functions: Any = SAME) -> Kernel:

@@ -38,6 +38,10 @@ NEAR = (2.0**-17, 2.0**-30)
 """How small a step is, of fourth order and of Newton's, that leaves less than rounding does."""
 
 
+_UNWATCHED = 2
+"""How many fourth-order steps are taken before it is asked where they led to."""
+
+
 @dataclass(frozen=True)
 class Solved:
     """The unknown of every row and how many there are.
@@ -87,8 +91,8 @@ class RootProgram:
         The equation.
     step : callable
         The equation, and what is subtracted from the unknown.
-    terms : callable
-        The equation with nothing cancelling.
+    check : callable
+        The equation, and the same with nothing cancelling.
     value : callable
         The cell's value.
     source : str
@@ -108,7 +112,7 @@ class RootProgram:
     totals: tuple[str, ...]
     at: Function
     step: Function
-    terms: Function
+    check: Function
     value: Function
     source: str
     enclosing: Kernel | None = None
@@ -132,16 +136,20 @@ class RootProgram:
         fixed = kernel([*ends, *constants, *cells], functions)
         arguments = [unknown, *constants.values(), *cells]
         totals = taken_over([f, value])
-        bodies = {"at": [f], "step": [f, step(f, unknown)], "terms": [magnitude(f)], "value": [value]}
-        printed = {name: write(arguments, totals, body, functions) for name, body in bodies.items()}
+        parts, back = step(f, unknown)
+        bodies = {"at": [f], "step": [f, back], "check": [f, magnitude(f)], "value": [value]}
+        printed = {
+            name: write(arguments, totals, body, functions, parts if name == "step" else {})
+            for name, body in bodies.items()
+        }
         source = "\n".join(
             [f"# fixed\n{fixed.source}", *(f"# {n}\n{text}" for n, (text, _) in printed.items())]
         )
         named = {symbol.name: symbol for symbol in plan.leaves}
         asked = {s.name for s in (*fixed.arguments, *(() if enclosed is None else enclosed.arguments))}
         every = tuple(named[name] for name in sorted(asked - {unknown.name}))
-        at, go, terms, of_unknown = (function for _, function in printed.values())
-        return cls(node, every, terms_of(node), fixed, totals, at, go, terms, of_unknown, source, enclosed)
+        at, go, check, of_unknown = (function for _, function in printed.values())
+        return cls(node, every, terms_of(node), fixed, totals, at, go, check, of_unknown, source, enclosed)
 
     # --- numbers --------------------------------------------------------------------------------------
 
@@ -161,14 +169,18 @@ class RootProgram:
         """
         out = self.fixed.run(*(arguments[a.name] for a in self.fixed.arguments))
         fixed = [np.atleast_1d(np.asarray(each, dtype=np.float64)) for each in out]
-        ends = [np.broadcast_to(end, shape) for end in fixed[: 5 + len(self.node.turning)]]
-        rows = _Rows(self, fixed[len(ends) :], [totals[axis] for axis in self.totals])
+        ends, constants = fixed[: 5 + len(self.node.turning)], fixed[5 + len(self.node.turning) :]
+        rows = _Rows(self, constants, [totals[axis] for axis in self.totals], shape)
+        counted_by = self.enclosing if self.counted else None
         stretches, odd = self._stretches(ends, rows)
+        if len(stretches) == 1 and counted_by is None and stretches[0].crosses.all():
+            found, bisected = rows.narrow(stretches[0], ends[_START], stretches[0].crosses)
+            return Solved(rows.call(self.value, found), np.zeros(shape, dtype=np.uint8), {}, bisected)
         doubts: Mapping[int, tuple[float, float]] = {}
-        if self.enclosing is not None and self.counted:
+        if counted_by is not None:
             thin = {name: Intervals(cell, cell) for name, cell in arguments.items()}
-            masks = {axis: totals[axis].mask for axis in self.enclosing.totals}
-            cells = EnclosedRows(self.enclosing, thin, self.terms_of, masks, shape)
+            masks = {axis: totals[axis].mask for axis in counted_by.totals}
+            cells = EnclosedRows(counted_by, thin, self.terms_of, masks, shape)
             stretches, doubts = self._isolated(ends, cells, odd)
         doubtful = np.zeros(odd.size, dtype=bool)
         doubtful[list(doubts)] = True
@@ -179,10 +191,12 @@ class RootProgram:
             Status.NOROOT,
         )
         crossings, alone = [stretch.crosses for stretch in stretches], status == Status.OK
-        left = np.select(crossings, [stretch.left for stretch in stretches], np.nan)
-        right = np.select(crossings, [stretch.right for stretch in stretches], np.nan)
-        rising = np.select(crossings, [stretch.rising for stretch in stretches], np.nan)
-        found, bisected = rows.narrow(left, right, rising, ends[_START], alone)
+        left, right, after = (
+            np.select(crossings, [getattr(stretch, part) for stretch in stretches], np.nan)
+            for part in ("left", "right", "after")
+        )
+        only = _Stretch(left, right, after, alone)
+        found, bisected = rows.narrow(only, ends[_START], alone)
         value = np.where(alone, rows.call(self.value, found), np.nan)
         several: dict[int, tuple[float, ...]] = {}
         if len(shape) == 1:
@@ -194,27 +208,30 @@ class RootProgram:
         """The stretches between turning points, and where the equation has no sign at one of their ends."""
         low, high, _, at_low, at_high, *turning = ends
         places = [low]
-        signs = [np.sign(at_low if self.node.sign_low is not None else rows.call(self.at, low))]
+        values = [at_low if self.node.sign_low is not None else rows.call(self.at, low)]
         for point in turning:
             # A turning point outside the interval, or not a number, closes an empty stretch at its left end.
-            inside = (point > places[-1]) & (point < high)
-            here = np.where(inside, point, places[-1])
-            signs.append(np.where(inside, np.sign(rows.call(self.at, here)), signs[-1]))
-            places.append(here)
+            inside = point > places[-1]
+            if inside.any() and (inside := inside & (point < high)).any():
+                here = np.where(inside, point, places[-1])
+                values.append(np.where(inside, rows.call(self.at, here), values[-1]))
+                places.append(here)
         places.append(high)
-        signs.append(np.sign(at_high if self.node.sign_high is not None else rows.call(self.at, high)))
-        stretches = [
-            _Stretch(left, right, after, before * after < 0)
-            for (left, right), (before, after) in zip(pairwise(places), pairwise(signs), strict=True)
-        ]
-        return stretches, np.isnan(sum(signs))
+        values.append(at_high if self.node.sign_high is not None else rows.call(self.at, high))
+        pairs = zip(pairwise(places), pairwise(values), strict=True)
+        stretches = [_Stretch.between(*place, *value, rows.shape) for place, value in pairs]
+        odd = np.zeros(rows.shape, dtype=bool)
+        if not stretches[0].crosses.all():
+            for value in values:
+                odd |= np.isnan(value)
+        return stretches, odd
 
     def _isolated(
         self, ends: Sequence[Array], cells: EnclosedRows, odd: Mask
     ) -> tuple[list[_Stretch], Mapping[int, tuple[float, float]]]:
         """A stretch for the first root of each row, one for the second, ...; and what was not decided."""
         asked = np.flatnonzero(~odd)
-        low, high, _, *told = (end.reshape(-1)[asked] for end in ends)
+        low, high, _, *told = (np.broadcast_to(end, odd.shape).reshape(-1)[asked] for end in ends)
         signs = [np.sign(at) for at in told]  # 0 where the rule gives none
         found = cells.isolate(asked, low, high, (signs[0], signs[1]))
         stretches = []
@@ -222,8 +239,8 @@ class RootProgram:
             each = np.full((3, odd.size), np.nan)
             for row, own in zip(asked, found.brackets, strict=True):
                 each[:, row] = own[n] if len(own) > n else np.nan
-            left, right, rising = each.reshape(3, *odd.shape)
-            stretches.append(_Stretch(left, right, rising, ~np.isnan(rising)))
+            left, right, after = each.reshape(3, *odd.shape)
+            stretches.append(_Stretch(left, right, after, ~np.isnan(after)))
         return stretches, {int(asked[row]): part for row, part in found.undecided.items()}
 
     def _several(
@@ -234,9 +251,8 @@ class RootProgram:
         for stretch in stretches:
             which = np.flatnonzero(stretch.crosses & ambiguous)
             if which.size:
-                own, every = rows.only(which, ambiguous.shape), np.ones(which.size, dtype=bool)
-                ends = stretch.left[which], stretch.right[which], stretch.rising[which]
-                root, _ = own.narrow(*ends, start[which], every)
+                own, part = rows.only(which), stretch.only(which)
+                root, _ = own.narrow(part, np.broadcast_to(start, rows.shape)[which], part.crosses)
                 for row, value in zip(which.tolist(), own.call(self.value, root).tolist(), strict=True):
                     found[row].append(value)
         return {row: tuple(sorted(roots)) for row, roots in found.items()}
@@ -252,10 +268,28 @@ class _Stretch:
 
     left: Array
     right: Array
-    rising: Array
-    """The sign at the right end."""
+    after: Array
+    """The equation at the right end, or what has its sign."""
     crosses: Mask
     """Whether the sign at the left end is the other one."""
+
+    @classmethod
+    def between(
+        cls, left: Array, right: Array, before: Array, after: Array, shape: tuple[int, ...]
+    ) -> _Stretch:
+        """The stretch between two points, by what has the equation's sign there."""
+        crosses = before * after < 0
+        if not crosses.all():  # or the product is too small for a double
+            crosses = ((before < 0) & (after > 0)) | ((before > 0) & (after < 0))
+        return cls(left, right, after, np.broadcast_to(crosses, shape))
+
+    def only(self, which: NDArray[np.intp]) -> _Stretch:
+        """That of fewer rows, by their positions in the flattened shape."""
+        left, right, after = (
+            np.broadcast_to(each, self.crosses.shape).reshape(-1)[which]
+            for each in (self.left, self.right, self.after)
+        )
+        return _Stretch(left, right, after, self.crosses.reshape(-1)[which])
 
 
 @dataclass(frozen=True)
@@ -367,55 +401,100 @@ class _Rows:
     program: RootProgram
     constants: Sequence[Array]
     totals: Sequence[Kept]
+    shape: tuple[int, ...]
 
     def call(self, function: Function, at: Array) -> Array:
         """A function of the unknown."""
-        return np.broadcast_to(function(at, *self.constants, *self.totals)[0], at.shape)
+        return np.broadcast_to(function(at, *self.constants, *self.totals)[0], self.shape)
 
-    def only(self, which: NDArray[np.intp], shape: tuple[int, ...]) -> _Rows:
+    def only(self, which: NDArray[np.intp]) -> _Rows:
         """Fewer rows, by their positions in the flattened shape."""
         if self.totals:
             return self  # the constants of a sum belong to its terms, and there is one row
         fewer = [
-            c.reshape(()) if c.size == 1 else np.broadcast_to(c, shape).reshape(-1)[which]
+            c.reshape(()) if c.size == 1 else np.broadcast_to(c, self.shape).reshape(-1)[which]
             for c in self.constants
         ]
-        return _Rows(self.program, fewer, self.totals)
+        return _Rows(self.program, fewer, self.totals, which.shape)
 
-    def narrow(
+    def narrow(self, stretch: _Stretch, start: Array, wanted: Mask) -> tuple[Array, int]:
+        """The unknown in its bracket, and how many of the wanted rows had to be bisected."""
+        here, settled = self._quickly(stretch, start)
+        if settled.all():
+            return here, 0
+        rest = wanted & ~settled
+        if not rest.any():
+            return here, 0
+        start = np.broadcast_to(start, self.shape)
+        if self.totals:
+            careful, count = self._carefully(stretch.left, stretch.right, np.sign(stretch.after), start, rest)
+            return np.where(rest, careful, here), count
+        which = np.flatnonzero(rest)
+        own, part = self.only(which), stretch.only(which)
+        here = here.copy()
+        here.reshape(-1)[which], count = own._carefully(
+            part.left,
+            part.right,
+            np.sign(part.after),
+            start.reshape(-1)[which],
+            np.ones(which.size, dtype=bool),
+        )
+        return here, count
+
+    def _quickly(self, stretch: _Stretch, start: Array) -> tuple[Array, Mask]:
+        """Steps that nobody watches, and where they led to a root: near to it, and inside the bracket."""
+        here, near, most = start, np.zeros(1, dtype=bool), self.program.node.steps
+        if self.totals:
+            for _ in range(most):
+                _, back = self.program.step(here, *self.constants, *self.totals)
+                # A row that is near enough stays where it is, whatever others need.
+                here, near = np.where(near, here, here - back), near | self._near(here - back, back)
+                if near.all():
+                    break
+        else:
+            for _ in range(min(most, _UNWATCHED)):
+                _, back = self.program.step(here, *self.constants)
+                here = here - back
+            near = self._near(here, back)
+        here = np.broadcast_to(here, self.shape)
+        inside = (here >= stretch.left) & (here <= stretch.right)
+        return here, inside & near & self._settled(here)
+
+    def _near(self, here: Array, back: Array) -> Mask:
+        """Where a step was so small that the next one would be nothing."""
+        return np.abs(back) <= NEAR[bool(self.totals)] * np.abs(here)
+
+    def _settled(self, here: Array) -> Mask:
+        """Where rounding leaves nothing of the equation."""
+        left, terms = self.program.check(here, *self.constants, *self.totals)
+        settled: Mask = np.abs(left) <= NOISE * terms
+        return settled
+
+    def _carefully(
         self, left: Array, right: Array, rising: Array, start: Array, wanted: Mask
     ) -> tuple[Array, int]:
-        """The unknown in its bracket, and how many of the wanted rows had to be bisected."""
+        """Steps that stay inside the bracket, and bisection where they do not settle a row."""
         here = np.where((start > left) & (start < right), start, (left + right) / 2)
-        done, near_enough = ~wanted, NEAR[bool(self.totals)]
+        done = ~wanted
         for _ in range(self.program.node.steps):
             f, back = self.program.step(here, *self.constants, *self.totals)
             # The bracket moves on a sign only: what is no number moves neither end.
             side = f * rising
             left, right = np.where(side <= 0, here, left), np.where(side > 0, here, right)
-            there, near = here - back, np.abs(back) <= near_enough * np.abs(here)
+            there, near = here - back, self._near(here, back)
             inside = (there >= left) & (there <= right)
-            if not inside.all():
-                # A step out of the bracket is replaced by the middle of what is left of it; but beside the
-                # root the bracket may be closed up already, and the step out of it by an ulp.
-                there = np.where(
-                    inside, there, np.where(near, np.clip(there, left, right), (left + right) / 2)
-                )
+            # A step out of the bracket is replaced by the middle of what is left of it; but beside the
+            # root the bracket may be closed up already, and the step out of it by an ulp.
+            there = np.where(inside, there, np.where(near, np.clip(there, left, right), (left + right) / 2))
             # A row that is near enough stays where it is, whatever others need.
-            here = np.where(done, here, there) if done.any() else there
+            here = np.where(done, here, there)
             done = done | near
             if done.all():
                 break
-        settled = np.abs(self.call(self.program.at, here)) <= NOISE * self.call(self.program.terms, here)
-        rest = wanted & ~settled
-        count = int(np.count_nonzero(rest))
-        if count and self.totals:
+        rest = wanted & ~self._settled(here)
+        if rest.any():
             here = np.where(rest, self._bisect(left, right, rising), here)
-        elif count:
-            which = np.flatnonzero(rest)
-            own = [np.broadcast_to(each, rest.shape).reshape(-1)[which] for each in (left, right, rising)]
-            here.reshape(-1)[which] = self.only(which, rest.shape)._bisect(*own)
-        return here, count
+        return here, int(np.count_nonzero(rest))
 
     def _bisect(self, left: Array, right: Array, rising: Array) -> Array:
         """Halve brackets until no double lies between their ends; NaN where the equation has no sign."""

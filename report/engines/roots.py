@@ -6,7 +6,7 @@ engine and no model types a derivative.
 
 from __future__ import annotations
 
-from sympy import Abs, Add, Basic, Expr, Mul, Pow, Sum, Symbol, diff, exp, log
+from sympy import Abs, Add, Basic, Expr, Mul, Pow, Sum, Symbol, diff, exp, factor_terms, log
 
 from ..plan import RowSum
 
@@ -28,7 +28,7 @@ def householder(f: Expr, f1: Expr, f2: Expr, f3: Expr) -> Expr:
     return 3 * f * (2 * f1**2 - f * f2) / (6 * f1**3 - 6 * f * f1 * f2 + f**2 * f3)
 
 
-def step(function: Expr, unknown: Symbol) -> Expr:
+def step(function: Expr, unknown: Symbol) -> tuple[dict[Symbol, Expr], Expr]:
     """What is subtracted from the unknown: a fourth-order step, or Newton's where a derivative is a sum.
 
     Parameters
@@ -36,11 +36,21 @@ def step(function: Expr, unknown: Symbol) -> Expr:
     function : Expr
         What must vanish, in plain symbols.
     unknown : Symbol
+
+    Returns
+    -------
+    dict of Symbol to Expr
+        What the step is made of, each of what comes before: the derivatives of :func:`householder`, and what
+        they are divided by, in an order that takes the fewest operations.
+    Expr
+        The step, of these.
     """
     if function.has(RowSum):
-        return function / diff(function, unknown)
-    names = [Symbol(f"f_{i}", real=True) for i in range(4)]
-    return householder(*names).xreplace(dict(zip(names, derivatives(function, unknown), strict=True)))
+        return {}, function / diff(function, unknown)
+    f, f1, f2, f3, newton, by, bent = (Symbol(f"f_{i}", real=True) for i in range(7))
+    parts = dict(zip((f, f1, f2, f3), map(factor_terms, derivatives(function, unknown)), strict=True))
+    parts |= {newton: f / f1, by: newton / f1, bent: by * f2}
+    return parts, newton * (1 - bent / 2) / (1 - bent + newton * by * f3 / 6)
 
 
 def hoist(expression: Expr, unknown: Symbol, constants: dict[Expr, Symbol]) -> Expr:
@@ -60,8 +70,13 @@ def hoist(expression: Expr, unknown: Symbol, constants: dict[Expr, Symbol]) -> E
     def constant(part: Expr) -> Expr:
         if part.is_Atom:
             return part
-        sign = {"positive": True} if part.is_positive else {"real": True}
-        named = Symbol(f"c_{len(constants)}", **sign)
+        signs = {
+            "positive": part.is_positive,
+            "negative": part.is_negative,
+            "nonpositive": part.is_nonpositive,
+        }
+        sign = next((name for name, known in signs.items() if known), "real")
+        named = Symbol(f"c_{len(constants)}", **{sign: True})
         return constants.setdefault(part, named)
 
     def moving(part: Expr) -> Expr:
