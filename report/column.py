@@ -75,10 +75,25 @@ class Axis:
         """The axes that its rows are made of."""
         return ()
 
+    @property
+    def repeats(self) -> str | None:
+        """The given scalar that says how many rows it has for each of its parent's."""
+        return None
+
+    @property
+    def parts(self) -> tuple[tuple[str, str], ...]:
+        """What the numbers that name a row are called, and what they are: ``i``, ``j``, ``s``."""
+        return ((self.row, "number"),)
+
+    @property
+    def described(self) -> str:
+        """Its rows in words."""
+        return "one row each"
+
 
 @dataclass(frozen=True)
 class PairAxis(Axis):
-    """Every pair i < j of another axis' rows, in lexical order."""
+    """Pairs of another axis' rows in lexical order: every i < j, or what a subclass chooses."""
 
     of: Axis
     first: Symbol
@@ -93,6 +108,24 @@ class PairAxis(Axis):
     def parents(self) -> tuple[Axis, ...]:
         """The axis that is paired."""
         return (self.of,)
+
+    @property
+    def chosen(self) -> Boolean:
+        """Which of all pairs are rows, by the places of both members, from 1."""
+        return self.first < self.second
+
+    @property
+    def parts(self) -> tuple[tuple[str, str], ...]:
+        """The numbers of both members."""
+        return tuple(
+            (str(member), f"{which} of {self.of.name}")
+            for member, which in ((self.first, "first"), (self.second, "second"))
+        )
+
+    @property
+    def described(self) -> str:
+        """Which pairs."""
+        return f"every pair {self.chosen} of {self.of.name}"
 
 
 @dataclass(frozen=True)
@@ -118,6 +151,21 @@ class RepeatAxis(Axis):
     def parents(self) -> tuple[Axis, ...]:
         """The axis that is repeated."""
         return (self.of,)
+
+    @property
+    def repeats(self) -> str:
+        """The given scalar that says how many."""
+        return self.count
+
+    @property
+    def parts(self) -> tuple[tuple[str, str], ...]:
+        """What names the parent's row, and the number in it."""
+        return (*self.of.parts, (str(self.step), f"running number in each of {self.of.name}"))
+
+    @property
+    def described(self) -> str:
+        """How its rows are counted."""
+        return f"{self.step} = 1, 2, ... {self.count} for each of {self.of.name}"
 
 
 # --- rules -----------------------------------------------------------------------------------------------

@@ -155,10 +155,10 @@ class Sheet:
         """What each given column may be, in SI; one that says how many rows there are counts from 1."""
         found = {c.name: c.rule.bounds for c in self.columns if isinstance(c.rule, Given)}
         for axis in self.axes:
-            if isinstance(axis, RepeatAxis):
-                own = replace(found[axis.count], integer=True)
+            if axis.repeats:
+                own = replace(found[axis.repeats], integer=True)
                 some = own.low is not None and own.low >= 1
-                found[axis.count] = own if some else replace(own, low=1, low_open=False)
+                found[axis.repeats] = own if some else replace(own, low=1, low_open=False)
         return found
 
     @cached_property
@@ -217,8 +217,8 @@ class Sheet:
                 elif name_of(reference.cell) in self.by_name:
                     found.add(Reference(reference.cell))  # a scalar is the same inside and outside of sums
         for axis in _with_parents((column.axis, *self.summed_axes(column))):
-            if isinstance(axis, RepeatAxis):
-                found.add(Reference(self.by_name[axis.count].symbol))
+            if axis.repeats:
+                found.add(Reference(self.by_name[axis.repeats].symbol))
         declared = {c.name: n for n, c in enumerate(self.columns)}
         order = {axis.name: n for n, axis in enumerate(self.axes)}
         yield from sorted(

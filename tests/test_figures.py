@@ -171,7 +171,7 @@ def test_every_figure_of_the_workbook_has_its_drawing() -> None:
 
 DIGEST = """
 import hashlib
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.study import Study
 from loopsheet.report.views import figures
 import sys

@@ -108,7 +108,7 @@ print(Program.of(found).source)
 """
 CELLS = """\
 from loopsheet.report.engines import excel_grid
-from loopsheet.report.folders import PAPER
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.study import Study
 r = Study(PAPER).computed
 units = {n: s.unit for n, s in r.shown.items()}

@@ -199,8 +199,9 @@ def test_a_build_stopped_at_any_moment(
 STEPS = """
 import json, os, signal, sys
 from pathlib import Path
-from loopsheet.report import stages, staging
-from loopsheet.report.stopping import stoppable
+from loopsheet.report import stages
+from loopsheet.report.machine import staging
+from loopsheet.report.machine.stopping import stoppable
 fatal, number, out = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
 taken = 0
 def counted(real):
@@ -275,7 +276,8 @@ def test_who_builds_into_the_same_folder_waits_or_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     code = (
-        "import sys, time\nfrom pathlib import Path\nfrom loopsheet.report.staging import put, staged\n"
+        "import sys, time\nfrom pathlib import Path\n"
+        "from loopsheet.report.machine.staging import put, staged\n"
         "with staged(Path(sys.argv[1])) as stage:\n"
         "    put(stage / 'a', 'first')\n    print(flush=True)\n    sys.stdin.read()\n"
     )
@@ -312,7 +314,7 @@ def test_a_folder_that_somebody_works_in_is_not_left_over(tmp_path: Path) -> Non
 WRITE = """
 import sys
 from pathlib import Path
-from loopsheet.report.staging import put, staged
+from loopsheet.report.machine.staging import put, staged
 with staged(Path("out/inner")) as stage:
     put(stage / "small.json", "1")
     put(stage / "figures/large.svg", "x" * 100_000)

@@ -173,7 +173,8 @@ def test_examples_name_units_of_the_same_dimension() -> None:
 def test_common_units_do_without_pint() -> None:
     """Half a second of a cold build; a fresh interpreter tells."""
     code = (
-        "import sys; from loopsheet.report import inputs; from loopsheet.report.unit_text import parse_unit\n"
+        "import sys; from loopsheet.report.inputs import inputs\n"
+        "from loopsheet.report.inputs.unit_text import parse_unit\n"
         "for text in ('um', 'm/s', 'kg/m^3', 'm·s⁻²', '%', 'g', 'N/(m*s)'): parse_unit(text)\n"
         "print(sorted({'pint', 'numpy', 'sympy', 'difflib'} & sys.modules.keys()))"
     )

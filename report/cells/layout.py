@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Expr, Indexed, Symbol
+from sympy import Expr, Indexed, Symbol, lambdify
 
 from ..sheet import Axis, Column, PairAxis, RepeatAxis, Sheet, name_of
 
@@ -86,8 +86,15 @@ def _given(axis: Axis, labels: Sequence[int]) -> Layout:
     return Layout(len(labels), {axis.index: own}, {}, np.asarray(labels, dtype=np.int64).reshape(-1, 1))
 
 
+@cache
+def _chosen(axis: PairAxis) -> Callable[..., NDArray[np.bool_]]:
+    chosen: Callable[..., NDArray[np.bool_]] = lambdify((axis.first, axis.second), axis.chosen, "numpy")
+    return chosen
+
+
 def _pairs(axis: PairAxis, parent: Layout) -> Layout:
-    first, second = np.triu_indices(parent.size, k=1)
+    number = np.arange(1, parent.size + 1)
+    first, second = np.nonzero(np.broadcast_to(_chosen(axis)(number[:, None], number), (parent.size,) * 2))
     rows = {axis.index: np.arange(first.size), axis.first: first, axis.second: second}
     return Layout(first.size, rows, {}, np.hstack([parent.labels[first], parent.labels[second]]))
 

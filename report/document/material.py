@@ -17,7 +17,7 @@ from ..cells.marks import Count
 from ..cells.values import Cell
 from ..messages.diagnostics import Check
 from ..result.result import Report
-from ..sheet import Axis, Column, Given, RepeatAxis, Root
+from ..sheet import Axis, Column, Given, Root
 from ..workbook import FigureSpec, TableSpec
 from .math import Printer, latex_names, name_latex
 from .numbers import Figure, decimals, read, shown, table_format
@@ -141,12 +141,12 @@ class Material:
     @property
     def tabulated(self) -> tuple[Axis, ...]:
         """The axes whose rows are shown; generated points are too many."""
-        return tuple(axis for axis in self.report.sheet.axes if not isinstance(axis, RepeatAxis))
+        return tuple(axis for axis in self.report.sheet.axes if not axis.repeats)
 
     @property
     def untold(self) -> tuple[str, ...]:
         """The names of the axes whose rows are not shown."""
-        return tuple(axis.name for axis in self.report.sheet.axes if isinstance(axis, RepeatAxis))
+        return tuple(axis.name for axis in self.report.sheet.axes if axis.repeats)
 
     # --- figures
 

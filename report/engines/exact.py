@@ -27,7 +27,7 @@ from ..plan import Leaf, lowered_column
 from ..plan import Root as RootNode
 from ..plan.domain import LARGEST, SMALLEST, typed
 from ..quantity import Bounds
-from ..sheet import Axis, Column, Formula, Given, RepeatAxis, Root, Sheet, name_of
+from ..sheet import Axis, Column, Formula, Given, Root, Sheet, name_of
 from .certified import certified, enclosing, slope
 from .exact_roots import Enclose, brackets, of_arrays, of_mpmath
 from .intervals import Intervals
@@ -148,7 +148,7 @@ def laid_out(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[st
     sheet, labels, data
         As for :func:`evaluate`.
     """
-    repeats = [axis.count for axis in sheet.axes if isinstance(axis, RepeatAxis)]
+    repeats = [axis.repeats for axis in sheet.axes if axis.repeats]
     numbers = {name: _datum(_rows(data[name])[0], sheet.bounds[name]) for name in repeats}
     counts = {name: 0 if mpmath.isnan(number) else int(number) for name, number in numbers.items()}
     return lay_out(sheet, labels, counts)

@@ -20,7 +20,7 @@ from ..charts import Drawn
 from ..inputs.unit_text import UnitError, parse_unit
 from ..plan import Root, lowered
 from ..quantity import Bounds
-from ..sheet import Axis, Column, Given, PairAxis, RepeatAxis, Sheet
+from ..sheet import Axis, Column, Given, Sheet
 from .certified import certified
 from .excel import ordered
 from .excel_formulas import Formulas, Places, carried, guard
@@ -208,8 +208,8 @@ class _Assembly:
     def put_scalars(self) -> None:
         """The result, what is given, and the rest, each group under a title."""
         for axis in self.whole.axes:
-            if isinstance(axis, RepeatAxis) and axis.count not in self.sheet:
-                for name, at in ((axis.count, 1), (checked(axis.count), 2)):
+            if axis.repeats and axis.repeats not in self.sheet:
+                for name, at in ((axis.repeats, 1), (checked(axis.repeats), 2)):
                     self.places[name] = Place(self.names[axis.name], FIRST_ROW - _ABOVE, at)
         scalars = [column for column in self.sheet.columns if column.axis is None]
         groups = (
@@ -262,7 +262,7 @@ class _Assembly:
     def index_blocks(self) -> Iterator[Block]:
         for axis in self.whole.axes:
             layout = self.values.layouts[axis.name]
-            for part, (place, names) in enumerate(zip(self.indices[axis.name], _parts(axis), strict=True)):
+            for part, (place, names) in enumerate(zip(self.indices[axis.name], axis.parts, strict=True)):
                 title, meaning = names
                 yield Block(
                     title, "index", title, meaning, place, values=tuple(map(float, layout.labels[:, part]))
@@ -303,7 +303,7 @@ class _Assembly:
     def given_blocks(self, column: Column, block: Block, formulas: Formulas) -> Iterator[Block]:
         """What is typed, and what of it is allowed; how many rows there are is what the worksheets have."""
         bounds = self.whole.bounds[column.name].over(block.place.scale)
-        if any(isinstance(axis, RepeatAxis) and axis.count == column.name for axis in self.whole.axes):
+        if any(axis.repeats == column.name for axis in self.whole.axes):
             there = self.values.scalar(column.name)
             bounds = Bounds(there, there)
         test = guard(bounds)
@@ -398,15 +398,3 @@ def _worksheets(axes: Iterable[Axis]) -> dict[str, str]:
         names[axis.name] = next(name for name in tried if name.lower() not in taken)
         taken.add(names[axis.name].lower())
     return names
-
-
-def _parts(axis: Axis) -> tuple[tuple[str, str], ...]:
-    """What the numbers that name a row are called, and what they are: ``i``, ``j``, ``s``."""
-    if isinstance(axis, RepeatAxis):
-        return (*_parts(axis.of), (str(axis.step), f"running number in each of {axis.of.name}"))
-    if isinstance(axis, PairAxis):
-        return (
-            (str(axis.first), f"first of {axis.of.name}"),
-            (str(axis.second), f"second of {axis.of.name}"),
-        )
-    return ((axis.row, "number"),)

@@ -19,7 +19,7 @@ from ..plan import Given as GivenNode
 from ..plan import Leaf, Map, Plan, RowSum, Total, lowered
 from ..plan import Node as PlanNode
 from ..plan import Root as RootNode
-from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet, name_of
+from ..sheet import Axis, Column, PairAxis, RepeatAxis, Sheet, name_of
 from .certified import certified, slope, typed_form
 from .javascript_intervals import enclose, needed
 
@@ -265,13 +265,15 @@ def _references(sheet: Sheet, column: Column) -> Iterable[tuple[str, str | None,
         yield name_of(reference.cell), None if index is None else str(index), over.name if over else None
 
 
-def _axis(axis: Axis) -> dict[str, str]:
+def _axis(axis: Axis) -> str:
     entry = {"name": axis.name, "kind": "given", "index": str(axis.index)}
     if isinstance(axis, PairAxis):
         entry |= {"kind": "pairs", "of": axis.of.name, "first": str(axis.first), "second": str(axis.second)}
-    elif isinstance(axis, RepeatAxis):
+        chosen = Printer().doprint(axis.chosen)
+        return f'{json.dumps(entry)[:-1]}, "chosen": ({axis.first}, {axis.second}) => {chosen}}}'
+    if isinstance(axis, RepeatAxis):
         entry |= {"kind": "repeat", "of": axis.of.name, "step": str(axis.step), "count": axis.count}
-    return entry
+    return json.dumps(entry)
 
 
 def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
@@ -287,7 +289,7 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
     nodes = {name: list(own) for name, own in groupby(plan.nodes, lambda node: node.column.name)}
     for column in sheet.order:
         node = nodes[column.name][-1]
-        kind = {Given: "given", Formula: "formula", Root: "root"}[type(column.rule)]
+        kind = type(node).__name__.lower()
         entry: dict[str, Any] = {
             "name": column.name,
             "axis": None if column.axis is None else column.axis.name,
@@ -307,7 +309,7 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
         if kernels:
             parts.append(f"kernels: {kernels}")
         columns.append(f"  {{{', '.join(parts)}}}")
-    axes = ", ".join(json.dumps(_axis(axis)) for axis in sheet.axes)
+    axes = ", ".join(map(_axis, sheet.axes))
     fixed = json.dumps({name: [value] for name, value in (constants or {}).items()})
     listed = ",\n".join(columns)
     text = f'{{\n "constants": {fixed},\n "axes": [{axes}],\n "columns": [\n{listed}\n ]{_WHOLE}\n}}'

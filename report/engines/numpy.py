@@ -19,7 +19,7 @@ from ..cells.layout import Layout, lay_out, precedents
 from ..cells.values import Status, Values, how_many, inherited, rows_kept
 from ..plan import Leaf, Map, Plan, Root, lowered
 from ..plan.domain import SMALLEST
-from ..sheet import Column, RepeatAxis, Sheet
+from ..sheet import Column, Sheet
 from .numpy_code import SAME, Array, Function, Kernel, kernel
 from .numpy_root import RootProgram
 from .numpy_rows import Kept
@@ -463,11 +463,10 @@ def _counts(sheet: Sheet, values: Mapping[str, Array]) -> dict[str, int]:
     """How often each axis that repeats another does: one number for a whole batch, 0 if it is not allowed."""
     counts = {}
     for axis in sheet.axes:
-        if isinstance(axis, RepeatAxis):
-            numbers = np.unique(values[axis.count]).tolist()
+        if axis.repeats:
+            numbers = np.unique(values[axis.repeats]).tolist()
             if len(numbers) != 1:
-                raise ValueError(
-                    f"{axis.count} must be one number for the whole batch, not {', '.join(map(str, numbers))}"
-                )
-            counts[axis.count] = int(numbers[0]) if sheet.bounds[axis.count].allow(numbers[0]) else 0
+                found = ", ".join(map(str, numbers))
+                raise ValueError(f"{axis.repeats} must be one number for the whole batch, not {found}")
+            counts[axis.repeats] = int(numbers[0]) if sheet.bounds[axis.repeats].allow(numbers[0]) else 0
     return counts

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..engines.numpy import evaluate
 from ..result.verdict import INPUT, Change
-from ..sheet import Column, Formula, Given, RepeatAxis
+from ..sheet import Column, Formula, Given
 from .campaign import Array, Campaign
 from .minimax import best
 from .misprints import freed
@@ -138,7 +138,7 @@ def other_rows(search: Search) -> Iterator[Explained]:
     for n, value in enumerate(problem.published):
         column = sheet[value.cell]
         axes = sheet.summed_axes(column)
-        if column.axis is not None or len(axes) != 1 or isinstance(axes[0], RepeatAxis):
+        if column.axis is not None or len(axes) != 1 or axes[0].repeats:
             continue
         if not isinstance(column.rule, Formula) or not search.worth({n}):
             continue
@@ -176,7 +176,7 @@ def _rows(labels: NDArray[np.int64]) -> Iterator[tuple[str, NDArray[np.intp]]]:
 def other_conventions(search: Search) -> Iterator[Explained]:
     """A parameter that is a convention, and has another value than is said or taken for granted."""
     problem = search.problem
-    counts = {axis.count for axis in problem.campaign.sheet.axes if isinstance(axis, RepeatAxis)}
+    counts = {axis.repeats for axis in problem.campaign.sheet.axes}
     for column in problem.campaign.sheet.columns:
         if (
             isinstance(column.rule, Given)

@@ -14,7 +14,6 @@ from ..cells.grid import FIRST_ROW, SCALARS, Block, Grid, Place, checked, letter
 from ..cells.values import CODES, Status
 from ..quantity import Printed
 from ..result.result import Report
-from ..sheet import RepeatAxis
 from .xlsx_style import Style, open_format, said
 
 __all__ = ["Inputs"]
@@ -41,7 +40,7 @@ class Inputs:
 
     def __init__(self, report: Report, grid: Grid) -> None:
         self.report, self.grid = report, grid
-        self.counts = {axis.count for axis in grid.axes.values() if isinstance(axis, RepeatAxis)}
+        self.counts = {axis.repeats for axis in grid.axes.values() if axis.repeats}
 
     def allowed(self, block: Block) -> str:
         """What a cell must be, as a sentence without its full stop."""

@@ -9,7 +9,6 @@ from ...derivations.proof import IDENTITY
 from ...derivations.text import Writer, text_of_equation
 from ..cells.grid import CHECKED, SCALARS, Block, Grid, checked, factors, letters
 from ..result.result import Comparison, Report
-from ..sheet import RepeatAxis
 from .json import proof_grounds, proof_statuses
 from .xlsx_inputs import Inputs
 from .xlsx_marks import TITLE, counted
@@ -94,9 +93,7 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
         dict.fromkeys(b.place.worksheet for b in grid.blocks if b.kind == "given" and b.name in report.sheet)
     )
     columns = report.sheet.columns
-    counts = sorted(
-        {axis.count for axis in grid.axes.values() if isinstance(axis, RepeatAxis)} & set(report.shown)
-    )
+    counts = sorted({axis.repeats for axis in grid.axes.values() if axis.repeats} & set(report.shown))
     odd = [f"{check.word.capitalize()}: {check.message}." for check in report.oddities if check.word]
     (example, *_) = *(name for name in report.workbook.headline if name in report.sheet), columns[-1].name
     rows = next((axis.row for axis in report.sheet.axes if not axis.parents), "row")

@@ -7,7 +7,6 @@ from typing import Any
 
 from ..cells.grid import FIRST_ROW, STEPS, Block, Grid, letters
 from ..result.result import Report
-from ..sheet import Axis, PairAxis, RepeatAxis
 from .xlsx_inputs import Inputs
 from .xlsx_marks import TITLE
 from .xlsx_style import Style, height, number_format, said
@@ -64,7 +63,7 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
     """Write the worksheet that holds the rows of an axis."""
     axis, blocks, below = grid.axes[name], grid.on(name), 0
     main = [b for b in blocks if b.kind in ("given", "computed")] or list(blocks)
-    style.text(sheet, 0, 0, f"{name}: {_described(axis)}", "title")
+    style.text(sheet, 0, 0, f"{name}: {axis.described}", "title")
     if name in grid.notes:
         says = "Type over the yellow cells; all else follows. An empty one leaves its test out of all sums."
         style.text(sheet, 1, 0, says, "subtitle")
@@ -100,14 +99,6 @@ def mark_errors(
     """Show the codes of errors in red, wherever they appear."""
     rule = {"type": "text", "criteria": "begins with", "value": "#", "format": style("error")}
     sheet.conditional_format(first_row, first_column, last_row, last_column, rule)
-
-
-def _described(axis: Axis) -> str:
-    if isinstance(axis, PairAxis):
-        return f"every pair {axis.first} < {axis.second} of {axis.of.name}"
-    if isinstance(axis, RepeatAxis):
-        return f"{axis.step} = 1, 2, ... {axis.count} for each of {axis.of.name}"
-    return "one row each"
 
 
 def _width(block: Block) -> float:

@@ -12,14 +12,13 @@ function layOut(axis, layouts, labels, data) {
   const rows = {}, ordinals = {}, parent = layouts[axis.of];
   let size, label;
   if (axis.kind === "pairs") {
-    size = (parent.size * (parent.size - 1)) / 2;
-    const first = (rows[axis.first] = new Int32Array(size)), second = (rows[axis.second] = new Int32Array(size));
-    for (let i = 0, row = 0; i < parent.size; i++) {
-      for (let j = i + 1; j < parent.size; j++, row++) {
-        first[row] = i;
-        second[row] = j;
+    const first = (rows[axis.first] = []), second = (rows[axis.second] = []);
+    for (let i = 0; i < parent.size; i++) {
+      for (let j = 0; j < parent.size; j++) {
+        if (axis.chosen(i + 1, j + 1)) first.push(i), second.push(j);
       }
     }
+    size = first.length;
     label = (row) => [...parent.labels[first[row]], ...parent.labels[second[row]]];
   } else if (axis.kind === "repeat") {
     const count = data[axis.count][0] || 0; // a count that was refused is NaN: no rows
