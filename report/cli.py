@@ -139,9 +139,11 @@ def _run(arguments: Sequence[str] | None) -> int:
         options = _parse(sys.argv[1:] if arguments is None else arguments)
         with heeded(), _kept(options):
             code: int = options.run(options)
-        sys.stdout.flush()
-        if getattr(options, "timing", False):
-            print(*RUN.lines(), sep="\n", file=sys.stderr)
+            sys.stdout.flush()
+            if getattr(options, "timing", False):
+                from .machine.kept import told
+
+                print(*RUN.lines(), told(), sep="\n", file=sys.stderr)
     except LoopsheetError as error:
         return _refuse(error, options)
     except BrokenPipeError:

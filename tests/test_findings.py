@@ -144,6 +144,9 @@ def test_known_misprints(small: Report) -> None:
     (check,) = refereed(small, errata=changes, amended=out)[3:]
     assert (check.name, check.passed) == ("known misprints", True)
     assert check.message.startswith("with d[1] as 216, not 215, all 3 published values together can come out")
+    right = (replace(changes[0], printed="216"), *changes)
+    (check,) = refereed(small, errata=right, amended=out)[3:]
+    assert check.message.startswith("with d[1] as 216, as it is here and d[1] as 216, not 215, all 3")
     (check,) = refereed(
         small, errata=changes, amended=replace(out, verdict=UNREACHABLE), misprints=(MISPRINT,)
     )[3:]

@@ -400,10 +400,17 @@ def test_parts_count_their_own_time(monkeypatch: pytest.MonkeyPatch) -> None:
     assert lines[2:4] == ["  17.000 s  everything else", "  31.000 s  in all"]
 
 
-def test_it_is_told_if_one_asks(build: Built, capsys: pytest.CaptureFixture[str]) -> None:
+def test_it_is_told_if_one_asks(build: Built, cache: Path, capsys: pytest.CaptureFixture[str]) -> None:
     main(["show", "l", "gauge", "--timing"])
     told = capsys.readouterr().err
     assert [part for part in ("inputs", "values", "in all") if part not in told] == []
+    assert f"kept for the next run in {cache}" in told
+    cache.chmod(0o755)
+    main(["show", "l", "gauge", "--timing"])
+    assert "nothing was kept: there is no folder for it that belongs" in capsys.readouterr().err
+    main(["show", "l", "gauge", "--timing", "--no-cache"])
+    assert "nothing was kept, as was asked for" in capsys.readouterr().err
+    cache.chmod(0o700)
     main(["show", "l", "gauge"])
     assert capsys.readouterr().err == ""
 

@@ -109,6 +109,8 @@ def _place(source: Source, line: int, column: int) -> Location:
 
 def _advice(at: Location) -> str:
     line = (at.source or "").strip()
+    if re.match(r"\[[^\]]*(#.*)?$", line):
+        return "close the name of the table: " + re.split(r"\s|#", line)[0] + "]"
     if re.match(r"[A-Za-z_]\w*\s*=\s*[^\s\"'\[{\dtfin+-]", line):
         return "put quotes around text"
     if re.match(r"[A-Za-z_]\w*\s*=\s*[\d.,+-]+\s*[A-Za-zµμ]", line):

@@ -24,7 +24,7 @@ from .provenance import sources, versions
 from .stopping import unstoppable
 from .timing import timed
 
-__all__ = ["SETTING", "kept", "nothing_kept", "place"]
+__all__ = ["SETTING", "kept", "nothing_kept", "place", "told"]
 
 SETTING = "LOOPSHEET_CACHE"
 """The variable that names another folder; if it is empty, nothing is kept."""
@@ -96,6 +96,15 @@ def place() -> Path | None:
         return folder if _is_private(folder.lstat(), stat.S_ISDIR) else None
     except (OSError, RuntimeError, ValueError):  # no home, no room, no such name
         return None
+
+
+def told() -> str:
+    """Where things are kept, in a line for ``--timing``."""
+    if where := place():
+        return f"kept for the next run in {where}"
+    if os.environ.get(SETTING) == "":
+        return "nothing was kept, as was asked for"
+    return "nothing was kept: there is no folder for it that belongs to this user alone"
 
 
 def _place() -> Path | None:

@@ -360,7 +360,9 @@ def amended(found: Referee) -> str:
     if found.amended is None:
         return ""
     right = joined(
-        f"{address(each.cell, each.index)} as {each.would_print}, not {each.printed}" for each in found.errata
+        f"{address(each.cell, each.index)} as {each.would_print}, "
+        + ("as it is here" if each.would_print == each.printed else f"not {each.printed}")
+        for each in found.errata
     )
     return f"with {right}, {together(found.amended)}"
 

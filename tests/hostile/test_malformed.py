@@ -84,6 +84,14 @@ def test_a_parameter_that_the_sheet_wants_is_missing(
     assert 'write theta = "1.0 K"' in told
 
 
+def test_a_table_whose_name_is_not_closed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    end_gauge(tmp_path)
+    toml = tmp_path / "report.toml"
+    toml.write_text(toml.read_text().replace("[parameters]", "[parameters  # as printed"))
+    assert main(["show", "l", str(tmp_path)]) == 2
+    assert "help: close the name of the table: [parameters]" in capsys.readouterr().err
+
+
 def test_a_difference_that_no_double_holds_is_one(tmp_path: Path) -> None:
     end_gauge(tmp_path, "source,cell,index,value,unit\nH.1,l,1,1e-290,mm\n")
     toml = tmp_path / "report.toml"
