@@ -117,9 +117,9 @@ def test_every_output_tells_it(tmp_path: Path, unjudged: None, capsys: pytest.Ca
     ]
     assert ["left out, and in no formula:"] in rows
     assert ["3", "4.089 [m/s]", "n/a [1]", "41.6 [um]", REASON] in rows, "texts, which no formula counts"
-    assert "is dropped on the target 4 times; left out besides: 1. Each" in tex
+    assert "In each of 4 tests a ball is dropped on the target; left out besides: 1. A test" in tex
     prose = re.sub("<[^>]*>", "", page)
-    assert "is dropped on the target 4 times; left out besides: 1. Each" in prose
+    assert "In each of 4 tests a ball is dropped on the target; left out besides: 1. A test" in prose
     known = json.loads((out / "values.json").read_text(encoding="utf-8"))
     assert [each["sentence"] for each in known["oddities"] if each["kind"] == "left out"] == [said]
 
