@@ -15,7 +15,7 @@ from loopsheet.derivations.reductions import Median
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.intervals import Intervals
 from loopsheet.report.engines.numpy import Program
-from loopsheet.report.engines.numpy_root import EnclosedRows
+from loopsheet.report.engines.numpy_enclosed import EnclosedRows
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.judge.bounds import Made
 from loopsheet.report.judge.enclosure import Enclosure

@@ -7,23 +7,25 @@ may be. Where neither sees it, every row is decided alone (:mod:`~loopsheet.repo
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from sympy import Expr, Piecewise, Symbol, ceiling, diff, false, floor, sign
+from sympy import Add, Expr, Mul, Piecewise, Symbol, ceiling, degree, diff, exp, false, floor, sift, sign
 from sympy.logic.boolalg import Boolean
 
 from ..column import Root as RootRule
-from ..plan import Leaf, Plan, Root, lowered_column
+from ..plan import Leaf, Plan, Root, RowSum, lowered_column
 from ..plan.domain import defined, typed_symbols
 from ..sheet import Column, Sheet, SheetError
 from .intervals import Intervals
 from .mpmath_intervals import differences, holds, printed
 from .numpy_code import Kernel, kernel
+from .roots import magnitude
 
-__all__ = ["certified", "enclosing", "held", "slope", "typed_form"]
+__all__ = ["Enclosing", "certified", "enclosing", "held", "slope", "typed_form"]
 
 JUMPS = (floor, ceiling, sign, Piecewise)
 
@@ -160,7 +162,21 @@ def typed_form(sheet: Sheet, plan: Plan, node: Root) -> tuple[Expr, Symbol]:
     return form, plain
 
 
-def enclosing(sheet: Sheet, plan: Plan, node: Root) -> Kernel:
+@dataclass(frozen=True)
+class Enclosing(Kernel):
+    """What intervals are put into.
+
+    Parameters
+    ----------
+    reach : Kernel or None
+        What the exponents are at most, for the largest sizes of all that they name, where the unknown stands
+        in nothing but sums of exponentials over one axis: each of their terms rises, or falls, with it.
+    """
+
+    reach: Kernel | None = None
+
+
+def enclosing(sheet: Sheet, plan: Plan, node: Root) -> Enclosing:
     """A function of what a root names and of its unknown: the form, its slope, whether that tells its course.
 
     Parameters
@@ -174,7 +190,34 @@ def enclosing(sheet: Sheet, plan: Plan, node: Root) -> Kernel:
     form, plain = typed_form(sheet, plan, node)
     for steepness, known in (slope(form, plain), (form, false)):
         try:
-            return kernel([form, steepness, held(known)])
+            run = kernel([form, steepness, held(known)])
         except SheetError:
             continue
+        exponents = _exponents((form, steepness), plain) if known == True else None  # noqa: E712
+        reach = None if exponents is None or len(run.totals) != 1 else kernel([*map(magnitude, exponents)])
+        return Enclosing(run.arguments, run.totals, run.source, run.run, reach)
     raise SheetError(f"{node.column.name}: NumPy cannot compute {form}")
+
+
+def _exponents(expressions: tuple[Expr, ...], unknown: Symbol) -> list[Expr] | None:
+    """Those of the terms of all sums, if each is at most four cells times one exponential of the unknown."""
+    sums = sorted(set().union(*(each.atoms(RowSum) for each in expressions)), key=str)
+    hidden = {each: Symbol(f"sum_{n}") for n, each in enumerate(sums)}
+    if not sums or any(each.xreplace(hidden).has(unknown) for each in expressions):
+        return None
+    found = []
+    for terms, _ in (each.args for each in sums):
+        powers, rest = sift(Mul.make_args(terms), lambda part: part.func is exp, binary=True)
+        cells = [part.as_base_exp() for part in rest if not part.is_Number]
+        exponent = Add(*(power.args[0] for power in powers))
+        if (
+            not all(cell.is_Symbol and times.is_Integer and times > 0 for cell, times in cells)
+            or sum(times for _, times in cells) > 4
+            or unknown in {cell for cell, _ in cells}
+            or len(powers) > 1
+            or not exponent.is_polynomial()
+            or degree(exponent, unknown) > 1
+        ):
+            return None
+        found.append(exponent)
+    return found

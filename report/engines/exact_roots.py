@@ -15,11 +15,11 @@ import numpy as np
 from mpmath import iv
 from sympy import Basic, Expr, Symbol
 
+from .certified import Enclosing
 from .intervals import Intervals
 from .isolation import HALVINGS, crossings
 from .mpmath_intervals import differences, holds, printed, sign
-from .numpy_code import Kernel
-from .numpy_root import EnclosedRows
+from .numpy_enclosed import EnclosedRows
 
 __all__ = ["MOST_PARTS", "brackets", "of_arrays", "of_mpmath"]
 
@@ -124,14 +124,14 @@ def of_mpmath(
 
 
 def of_arrays(
-    kernel: Kernel, cells: Mapping[str, Intervals], terms_of: Collection[str], kept: Mapping[str, Any]
+    kernel: Enclosing, cells: Mapping[str, Intervals], terms_of: Collection[str], kept: Mapping[str, Any]
 ) -> Enclose:
     """What encloses a form by its printed program, for the cells of one row.
 
     Parameters
     ----------
     kernel, cells, terms_of, kept
-        As for :class:`~loopsheet.report.engines.numpy_root.EnclosedRows`.
+        As for :class:`~loopsheet.report.engines.numpy_enclosed.EnclosedRows`.
     """
     rows = EnclosedRows(kernel, cells, terms_of, kept, (1,))
 

@@ -58,7 +58,9 @@ class Isolated:
         self.undecided[row] = (min(low, before[0]), max(high, before[1]))
 
 
-def isolate(enclose: Enclose, low: Array, high: Array, signs: tuple[Array, Array]) -> Isolated:
+def isolate(
+    enclose: Enclose, low: Array, high: Array, signs: tuple[Array, Array], parts: int = 1
+) -> Isolated:
     """Isolate all roots of the open intervals.
 
     Parameters
@@ -70,18 +72,27 @@ def isolate(enclose: Enclose, low: Array, high: Array, signs: tuple[Array, Array
     low, high : float arrays (rows,)
     signs : tuple of float array (rows,)
         The equation's signs at both ends where intervals cannot tell them; 0 where nobody can.
+    parts : int
+        In how many an interval is asked about at first.
     """
     rows = np.arange(len(low))
     found = Isolated([[] for _ in rows])
     if not rows.size:
         return found
-    both = enclose(np.tile(rows, 2), *[np.concatenate([low, high])] * 2)[0].sign.reshape(2, -1)
-    first, last = (np.where(at == 0, told, at) for at, told in zip(both, signs, strict=True))
     settled: list[Any] = []
-    rows = np.flatnonzero(low < high)
-    a, b = low[rows], high[rows]
+    open_rows = np.flatnonzero(low < high)
+    share = np.linspace(0, 1, parts + 1)
+    edges = low[open_rows, None] * (1 - share) + high[open_rows, None] * share
+    edges[:, 0], edges[:, -1] = low[open_rows], high[open_rows]
+    asked = np.concatenate([rows, rows, np.repeat(open_rows, parts)])
+    a, b = (np.concatenate([low, high, inner.reshape(-1)]) for inner in (edges[:, :-1], edges[:, 1:]))
+    value, slope, hopeless = enclose(asked, a, b)
+    count = 2 * len(rows)
+    both = value.sign[:count].reshape(2, -1)
+    first, last = (np.where(at == 0, told, at) for at, told in zip(both, signs, strict=True))
+    rows, a, b = (each[count:] for each in (asked, a, b))
+    value, slope, hopeless = value[count:], slope[count:], hopeless[count:]
     for _ in range(HALVINGS):
-        value, slope, hopeless = enclose(rows, a, b)
         middle = a + (b - a) / 2
         done = (value.sign != 0) | (slope.sign != 0)
         settled.append([each[done] for each in (rows, a, b, value.sign, slope.sign)])
@@ -96,12 +107,13 @@ def isolate(enclose: Enclose, low: Array, high: Array, signs: tuple[Array, Array
         if not rows.size:
             break
         rows, a, b = np.tile(rows, 2), np.concatenate([a, middle]), np.concatenate([middle, b])
+        value, slope, hopeless = enclose(rows, a, b)
     for row, left, right in zip(rows.tolist(), a.tolist(), b.tolist(), strict=True):
         found.doubt(row, left, right)
-    parts = [np.concatenate(each) for each in zip(*settled, strict=True)]
-    order = np.lexsort((parts[1], parts[0]))
+    every = [np.concatenate(each) for each in zip(*settled, strict=True)]
+    order = np.lexsort((every[1], every[0]))
     by_row: list[list[Any]] = [[] for _ in low]
-    for row, *part in zip(*(each[order].tolist() for each in parts), strict=True):
+    for row, *part in zip(*(each[order].tolist() for each in every), strict=True):
         by_row[row].append(part)
     for row, own in enumerate(by_row):
         if own and row not in found.undecided:

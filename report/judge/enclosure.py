@@ -21,7 +21,8 @@ from numpy.typing import NDArray
 from ..cells.layout import Layout, rows_of
 from ..engines.intervals import Intervals, whole
 from ..engines.numpy import Program
-from ..engines.numpy_root import EnclosedRows, RootProgram
+from ..engines.numpy_enclosed import EnclosedRows
+from ..engines.numpy_root import RootProgram
 from ..engines.numpy_rows import KeptIntervals
 from ..plan.derivatives import Derivatives, Local, Slope
 from ..sheet import Column, Reference, Sheet, name_of
