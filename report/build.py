@@ -234,9 +234,9 @@ def _pictures(report: Report, formats: Collection[str], but: Collection[FigureSp
 
     for figure in (each for each in figures.of(report) if each not in but):
         if "html" in formats:
-            drawn[f"{figure.name}.svg"] = figures.svg(report, figure.draw).encode()
+            drawn[f"{figure.name}.svg"] = figures.svg(report, figure.drawing).encode()
         if "latex" in formats or "pdf" in formats:
-            drawn[f"{figure.name}.pdf"] = figures.pdf(report, figure.draw)
+            drawn[f"{figure.name}.pdf"] = figures.pdf(report, figure.drawing)
     return drawn
 
 

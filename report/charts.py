@@ -1,105 +1,135 @@
-"""What a workbook wants drawn: curves of numbers, and charts of columns for views that recalculate.
-
-The columns are of the same kind as the sheet's.
-"""
+"""What a chart is: declared once in a workbook, drawn by matplotlib, by the page's script and by Excel."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
+from sympy import Symbol
 
-from .sheet import Column, Sheet
+from ..derivations.equation import Equation, Kind
+from .sheet import Axis, Column, Formula, Sheet
 
-__all__ = ["Chart", "Curve", "Drawn", "Series"]
+__all__ = ["BLUE", "INK", "STYLES", "VERMILION", "Chart", "Drawn", "Series", "copied", "shade", "with_copies"]
 
-
-@dataclass(frozen=True)
-class Curve:
-    """A line or a set of points of a figure, in SI.
-
-    Parameters
-    ----------
-    figure : str
-        Which figure it belongs to: the name of its drawing.
-    role : str
-        What it is there: ``compression``, ``restitution``, ``fit``, ``points``, ...
-    label : str
-        What tells it from others of the same role: the test's or the pair's number.
-    x, y : float arrays of the same length
-    """
-
-    figure: str
-    role: str
-    label: str
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
+INK, VERMILION, BLUE = "#1a1a1a", "#d55e00", "#0072b2"
+"""Of Okabe and Ito: told apart by every eye."""
+STYLES = ("points", "line", "level")
+_SHADES = ((68, 1, 84), (70, 50, 127), (54, 92, 141), (39, 127, 142), (31, 161, 135))
 
 
 @dataclass(frozen=True)
 class Series:
-    """Points of a chart: two drawn columns of one axis.
+    """What a chart shows of two columns of one axis; a row without a value in both is left out.
 
     Parameters
     ----------
-    label : str
-        What the legend says; ``%s`` is where the parent's row is named if there is one series for each.
     x, y : str
-        Names of drawn columns.
+        Names of columns, of the sheet or drawn. A ``level`` has a single number as its y.
+    label : str
+        What the legend says, a plain sentence. ``%s`` stands for the rows: ``10 pairs``; where each is a line
+        of its own, ``each test`` or ``test 5``.
     style : str
-        ``points``, ``line`` or ``branch`` (one of several lines of a kind).
-    split : bool
-        Whether each row of the parent's axis is a line of its own.
+        ``points``; ``line``, where rows are repeated through all points in the order of x; ``level``, over
+        the whole width and named at its end.
+    colour : str
+        ``#rrggbb``; lines of their own go from dark to middling.
+    each : bool
+        Whether each row of the repeated axis is a line of its own, named where it ends.
+    named : bool
+        Whether the points have the names of their rows.
+    value : str
+        A single number that the label is told to be, behind it.
     """
 
-    label: str
     x: str
     y: str
+    label: str
     style: str = "line"
-    split: bool = False
+    colour: str = INK
+    each: bool = False
+    named: bool = False
+    value: str = ""
 
 
 @dataclass(frozen=True)
 class Chart:
-    """A native chart of the workbook.
+    """A chart of a figure, and of the workbook.
 
     Parameters
     ----------
-    title, x_title, y_title : str
-        The axes' titles without their units.
+    title, x, y : str
+        Plain sentences of the document; the axes get their units from the columns.
     series : tuple of Series
         The last is drawn on top.
+    log : str
+        The axes with a logarithmic scale: ``x``, ``y`` or ``xy``.
     from_zero : bool
         Whether both axes begin at zero.
+    height : float
+        In centimetres, of 16 cm of width.
     """
 
     title: str
-    x_title: str
-    y_title: str
+    x: str
+    y: str
     series: tuple[Series, ...]
+    log: str = ""
     from_zero: bool = False
+    height: float = 8
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """What a workbook wants drawn as charts: columns for their points, and the charts.
+    """The columns that only charts ask for, such as the points of a curve.
 
     Parameters
     ----------
     columns : tuple of Column
-        Formulas as the sheet's. A cell in error shows ``#N/A``, which charts leave out.
-    charts : tuple of Chart
+        Formulas as the sheet's.
     given : mapping of str to int
         Values of the given columns among them: how often an axis that only charts have repeats its parent.
     """
 
-    columns: tuple[Column, ...]
-    charts: tuple[Chart, ...]
-    given: Mapping[str, int]
+    columns: tuple[Column, ...] = ()
+    given: Mapping[str, int] = field(default_factory=dict)
 
-    def with_curves(self, sheet: Sheet) -> Sheet:
-        """The sheet with the curves: without what only copies its columns for a chart."""
-        known = set(sheet.axes)
-        return Sheet((*sheet.columns, *(c for c in self.columns if c.axis not in known)))
+
+def copied(column: Column, axis: Axis) -> str:
+    """The name of the copy of a sheet's column, or of a single number for each row, that Excel draws from."""
+    return f"plotted_{column.name}" if column.axis else f"{axis.name}_{column.name}"
+
+
+def with_copies(drawn: Drawn, sheet: Sheet, charts: Iterable[Chart]) -> Drawn:
+    """The same with copies of what charts show of the sheet, for what would draw a cell in error as zero."""
+    columns = {column.name: column for column in (*sheet.columns, *drawn.columns)}
+    found: dict[str, Column] = {}
+    for series in (series for chart in charts for series in chart.series):
+        axis = columns[series.x].axis
+        assert axis is not None
+        for column in (sheet[name] for name in (series.x, series.y) if name in sheet):
+            value = column[axis.index] if column.axis else column.symbol
+            equation = Equation("", (Symbol("drawn"), value), "", Kind.DEFINITION, "for the chart")
+            name, meaning = copied(column, axis), f"{column.name}, for the chart"
+            found[name] = Column(
+                name,
+                axis,
+                Formula(equation),
+                column.unit,
+                meaning,
+                display=f"like {column.name}",
+                positive=False,
+            )
+    return Drawn((*drawn.columns, *found.values()), drawn.given)
+
+
+def shade(part: float) -> str:
+    """The colour of a line among others, from dark (0) to middling (1): the greys climb, too.
+
+    >>> shade(0), shade(1)
+    ('#440154', '#1fa187')
+    """
+    place = part * (len(_SHADES) - 1)
+    n = min(int(place), len(_SHADES) - 2)
+    ends = zip(_SHADES[n], _SHADES[n + 1], strict=True)
+    return "#" + "".join(f"{round(low + (place - n) * (high - low)):02x}" for low, high in ends)

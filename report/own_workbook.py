@@ -66,7 +66,6 @@ def own_workbook(path: Path, code: bytes) -> Workbook:
         ledger=ledger,
         sheet=own.guarded("what sheet() returns", found.sheet),
         check_parameters=own.guarded("what check_parameters() returns", found.check_parameters, str | None),
-        curves=found.curves and own.guarded("what curves() returns", found.curves),
         drawn=found.drawn and own.guarded("what drawn() returns", found.drawn),
         drawings=found.drawings and drawings,
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from typing import TYPE_CHECKING
 
 from .inputs.inputs import Inputs, load
@@ -23,8 +24,9 @@ if TYPE_CHECKING:
     from .charts import Drawn
     from .messages.errors import Diagnostic
     from .result.agreement import Agreement
-    from .result.result import Report, Shown
+    from .result.result import Plotted, Report, Shown
     from .sheet import Column, Sheet
+    from .workbook import Workbook
 
 __all__ = [
     "Step",
@@ -32,8 +34,10 @@ __all__ = [
     "compared",
     "drawn",
     "evaluated",
+    "for_a_grid",
     "judged",
     "of_cells",
+    "plotted",
     "prepared",
     "program",
     "refereed",
@@ -116,7 +120,7 @@ def evaluated(made: Prepared, ledger: Ledger, step: Step) -> Report:
         proofs=(),
         errata=(),
         comparisons=compare(inputs.published, values),
-        curves=workbook.curves(sheet, values) if workbook.curves is not None else (),
+        plotted=cache(lambda: plotted(workbook, values, inputs)),
         versions=versions(),
     )
     return replace(report, oddities=oddities(report))
@@ -234,9 +238,28 @@ def refuse_too_many_rows(layouts: Mapping[str, Layout]) -> None:
         raise UsageError(diagnose("LS606", reason=error, known=known)) from error
 
 
-def drawn(report: Report) -> Drawn | None:
-    """What the page and the workbook draw themselves."""
-    return None if report.workbook.drawn is None else report.workbook.drawn(report.sheet)
+def drawn(workbook: Workbook, sheet: Sheet) -> Drawn:
+    """The columns that only the charts ask for."""
+    from .charts import Drawn
+
+    return workbook.drawn(sheet) if workbook.drawn is not None else Drawn()
+
+
+def plotted(workbook: Workbook, values: Values, inputs: Inputs) -> Plotted:
+    """What the charts are drawn from."""
+    from .engines.numpy import extend
+    from .result.result import Plotted
+
+    more = drawn(workbook, values.sheet)
+    every = extend(values, more.columns, more.given)
+    return Plotted(every, {c.name: shown(c, every.sheet, inputs) for c in every.sheet.columns})
+
+
+def for_a_grid(report: Report) -> Drawn:
+    """What the charts of a worksheet are drawn from."""
+    from .charts import with_copies
+
+    return with_copies(drawn(report.workbook, report.sheet), report.sheet, report.workbook.charts)
 
 
 def book(report: Report) -> tuple[Grid, bytes]:
@@ -249,7 +272,7 @@ def book(report: Report) -> tuple[Grid, bytes]:
     units = {name: how.unit for name, how in report.shown.items()}
     try:
         first, values = report.workbook.headline, report.marks.values
-        grid = excel_grid.grid(report.sheet, values, units, first, drawn(report))
+        grid = excel_grid.grid(report.sheet, values, units, first, for_a_grid(report))
     except NotPrintable as error:
         raise UsageError(
             diagnose("LS606", reason=error, known="functions that every spreadsheet has")
@@ -260,8 +283,7 @@ def book(report: Report) -> tuple[Grid, bytes]:
 def program(report: Report) -> str:
     """The sheet as the page's program, with the curves that the page draws."""
     from .engines import javascript
+    from .sheet import Sheet
 
-    curves, sheet = drawn(report), report.marks.values.sheet
-    if curves is None:
-        return javascript.program(sheet)
-    return javascript.program(curves.with_curves(sheet), curves.given)
+    curves, sheet = drawn(report.workbook, report.sheet), report.marks.values.sheet
+    return javascript.program(Sheet((*sheet.columns, *curves.columns)), curves.given)

@@ -10,8 +10,7 @@ from .quantity import Bounds
 
 if TYPE_CHECKING:
     from ..derivations.equation import Ledger
-    from .cells.values import Values
-    from .charts import Curve, Drawn
+    from .charts import Chart, Drawn
     from .sheet import Sheet
 
 __all__ = ["FigureSpec", "Measured", "Parameter", "TableSpec", "Workbook"]
@@ -75,15 +74,22 @@ class TableSpec:
 
 @dataclass(frozen=True)
 class FigureSpec:
-    """A figure of the report: which drawing, its number and its caption."""
+    """A figure of the report: its number, its caption, and what is drawn."""
 
     name: str
     number: str
     caption: str
-    draw: str
-    """Name of the drawing among the workbook's `drawings`."""
+    draw: str = ""
+    """Name of the drawing among the workbook's `drawings`; without it, its own."""
     alt: str = ""
     """What the picture shows, for those who cannot see it."""
+    chart: Chart | None = None
+    """What it shows of the sheet: all views draw it, and those that recalculate draw it again."""
+
+    @property
+    def drawing(self) -> str:
+        """The name of what draws it."""
+        return self.draw or self.name
 
 
 @dataclass(frozen=True)
@@ -115,10 +121,8 @@ class Workbook:
         The cells that are the result, first in every view.
     tables, figures
         What a reader is shown.
-    curves : callable or None
-        Takes the sheet and its values; returns what the figures draw.
     drawn : callable or None
-        Takes the sheet; returns the columns and charts that a view which recalculates draws itself.
+        Takes the sheet; returns the columns that only the charts of its figures ask for.
     prose : str
         Name of the narrative under templates/prose.
     """
@@ -142,7 +146,6 @@ class Workbook:
     """A small table of measurements that ``new`` writes; its first row is the header, with units."""
     example_parameters: Mapping[str, str] = field(default_factory=dict)
     """The parameters that go with it, as printed, by name."""
-    curves: Callable[[Sheet, Values], tuple[Curve, ...]] | None = None
     drawn: Callable[[Sheet], Drawn] | None = None
     drawings: Callable[[], Mapping[str, Callable[[Any], Any]]] | None = None
     """Returns what draws its figures, by name: each takes the report and returns a matplotlib figure."""
@@ -160,6 +163,11 @@ class Workbook:
             return sheet.bounded(bounds)
 
         object.__setattr__(self, "sheet", bounded)
+
+    @property
+    def charts(self) -> tuple[Chart, ...]:
+        """The charts of its figures."""
+        return tuple(figure.chart for figure in self.figures if figure.chart is not None)
 
     @property
     def declared(self) -> dict[str, Measured | Parameter]:

@@ -37,6 +37,7 @@ from sympy import (
 from sympy.core.parameters import evaluate
 
 from loopsheet.derivations.equation import Equation, Kind
+from loopsheet.report import stages
 from loopsheet.report.cells.grid import Block, Grid, Place, checked, factors, letters, quoted
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
@@ -49,7 +50,6 @@ from loopsheet.report.plan import RowSum, lowered_column
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
-from loopsheet.report.workbooks import soft_impact_charts
 
 x, y, z = (Symbol(name, real=True) for name in "xyz")
 P = Symbol("P", positive=True)
@@ -496,7 +496,7 @@ def test_a_sum_in_a_sum_is_named_by_its_cell() -> None:
 @pytest.fixture(scope="module")
 def paper(report: Report) -> Grid:
     units = {name: shown.unit for name, shown in report.shown.items()}
-    drawn = soft_impact_charts.drawn(report.sheet)
+    drawn = stages.for_a_grid(report)
     return excel_grid.grid(report.sheet, report.values, units, report.workbook.headline, drawn)
 
 

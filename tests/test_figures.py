@@ -25,7 +25,6 @@ from matplotlib.transforms import Bbox
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.views import figures
-from loopsheet.report.views.drawing import evenly
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 CAMPAIGNS = ("paper", "2", "3", "10", "40", "in error", "no pair", "falling", "equal")
@@ -164,7 +163,7 @@ def test_a_drawing_that_is_not_there_is_told(report_of: Callable[..., Report]) -
 
 
 def test_every_figure_of_the_workbook_has_its_drawing() -> None:
-    assert {figure.draw for figure in WORKBOOK.figures} <= set(DRAWINGS)
+    assert {figure.drawing for figure in WORKBOOK.figures} <= set(DRAWINGS)
 
 
 # ------------------------------------------------------------------------------------------ same bytes
@@ -230,7 +229,7 @@ def test_every_test_and_every_pair_of_the_paper_is_named(report_of: Callable[...
     assert {"1", "2", "3", "4", "5", "approach $x$ / µm", "force $F$ / kN", "points of 10 pairs"} <= set(
         loops
     )
-    assert r"compression fitted to them, $\alpha$ = 1.302" in loops
+    assert "compression fitted to them, $α$ = 1.302" in loops
     pairs = words(figures.draw(report, "alpha_pairs"))
     assert {f"{i}–{j}" for i, j in combinations(range(1, 6), 2)} | {"mean 1.303"} <= set(pairs)
 
@@ -238,15 +237,15 @@ def test_every_test_and_every_pair_of_the_paper_is_named(report_of: Callable[...
 def test_the_lines_are_the_reports_curves(report_of: Callable[..., Report]) -> None:
     report = report_of("paper")
     (axes,) = figures.draw(report, "loops").axes
-    curves = {(c.role, c.label): c for c in report.curves if c.figure == "loops"}
+    plotted = report.plotted().values.value
     *ways, fit = axes.lines
     assert len(ways) == 5
-    for n, line in enumerate(ways, start=1):
-        curve = curves["restitution", str(n)]
-        some = evenly(len(curve.x), np.size(line.get_xdata()))
-        np.testing.assert_array_equal(line.get_xdata(), curve.x[some] / 1e-6)
-        np.testing.assert_array_equal(line.get_ydata(), curve.y[some] / 1e3)
-    np.testing.assert_array_equal(fit.get_xdata(), curves["compression", ""].x / 1e-6)
+    for name, lines in (("unloading", ways), ("loading", [fit])):
+        x, y = np.hstack([np.array(line.get_data(), dtype=float) for line in lines])
+        # The fitted curve is one through the points of all tests.
+        order = np.argsort(plotted[f"{name}_x"], kind="stable") if lines == [fit] else slice(None)
+        np.testing.assert_array_equal(x, plotted[f"{name}_x"][order] / 1e-6)
+        np.testing.assert_array_equal(y, plotted[f"{name}_F"][order] / 1e3)
     (points,) = (a for a in axes.get_children() if isinstance(a, PathPatch))
     assert np.shape(points.get_path().vertices) == (2 * 500, 2)  # none of the paper's points is left out
 
@@ -261,20 +260,18 @@ def test_the_depth_is_shown_in_the_users_unit(report_of: Callable[..., Report]) 
 def test_what_is_left_out_of_the_picture_is_told(report_of: Callable[..., Report]) -> None:
     report = report_of("40")
     (told,) = (word for word in words(figures.draw(report, "loops")) if word.startswith("points of"))
-    points = [c for c in report.curves if (c.figure, c.role) == ("loops", "points")]
-    assert told.startswith(f"points of {len(points)} pairs, one in ")
-    assert f" of {sum(len(c.x) for c in points)} lie outside" in told
+    pairs, points = (report.values.status[name] == 0 for name in ("alpha", "F"))
+    assert told.startswith(f"points of {np.count_nonzero(pairs)} pairs, one in ")
+    assert f" of {np.count_nonzero(points)} lie outside" in told
     (told,) = (word for word in words(figures.draw(report, "alpha_pairs")) if word.startswith("outside"))
-    pairs = [c for c in report.curves if (c.figure, c.role) == ("alpha_pairs", "pair")]
-    assert re.fullmatch(rf"outside the frame: [1-9]\d* of {len(pairs)}", told)
+    assert re.fullmatch(rf"outside the frame: [1-9]\d* of {np.count_nonzero(pairs)}", told)
 
 
 @pytest.mark.parametrize(
     ("campaign", "name", "sentence"),
     [
-        ("no pair", "loops", "No loop"),
-        ("falling", "loops", "No loop"),
-        ("no pair", "alpha_pairs", "No exponent"),
+        ("no pair", "loops", "Nothing to draw"),
+        ("no pair", "alpha_pairs", "Nothing to draw"),
         ("paper", "referee", "No reachable interval"),
     ],
 )
@@ -283,6 +280,12 @@ def test_nothing_to_draw_is_said(
 ) -> None:
     (said,) = words(figures.draw(report_of(campaign), name))
     assert said.startswith(sentence)
+
+
+def test_points_without_a_fit_are_drawn_alone(report_of: Callable[..., Report]) -> None:
+    (axes,) = figures.draw(report_of("falling"), "loops").axes
+    assert not axes.lines
+    assert any(isinstance(a, PathPatch) and np.size(a.get_path().vertices) for a in axes.get_children())
 
 
 def test_the_loops_are_told_apart_without_colour(report_of: Callable[..., Report]) -> None:

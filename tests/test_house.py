@@ -64,10 +64,10 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.quantity": (set(), set()),
     "report.column": (PROVER | rooms("quantity"), ALGEBRA),
     "report.sheet": (PROVER | rooms("column", "messages", "quantity"), ALGEBRA),
-    "report.charts": (PROVER | rooms("sheet"), {"numpy"}),
+    "report.charts": (PROVER | rooms("sheet"), ALGEBRA),
     "report.cells": (DECLARED - rooms("workbook"), ALGEBRA | {"numpy", "pint"}),
     "report.workbook": (DECLARED, ALGEBRA),
-    "report.inputs": (rooms("inputs", "messages", "quantity", "sheet", "workbook"), set()),
+    "report.inputs": (rooms("charts", "inputs", "messages", "quantity", "sheet", "workbook"), set()),
     "report.inputs.unit_text": (rooms("messages"), {"pint"}),
     "report.plan": (DECLARED | rooms("plan"), ALGEBRA),
     "report.engines": (DECLARED | rooms("engines", "inputs.unit_text", "plan"), NUMERIC),
@@ -90,14 +90,9 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
         RUNTIME - {"scipy", "mpmath"},
     ),
     "report.workbooks": (DECLARED | rooms("judge", "result", "workbooks") | {"derivations"}, ALGEBRA),
-    **dict.fromkeys(
-        rooms("workbooks.soft_impact_figures", "workbooks.soft_impact_schematics"),
-        (
-            DECLARED
-            | rooms("document.numbers", "judge.loops", "result", "views.drawing", "workbooks")
-            | {"derivations"},
-            {"matplotlib", "numpy"},
-        ),
+    "report.workbooks.soft_impact_schematics": (
+        DECLARED | rooms("engines.numpy", "result", "views.drawing", "workbooks") | {"derivations"},
+        {"matplotlib", "numpy", "sympy"},
     ),
     # --- above them all: the study of a folder, what is made of it, and who asks
     "report": ({"derivations", "report"}, RUNTIME),

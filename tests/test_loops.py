@@ -11,11 +11,19 @@ from sympy import Float, lambdify
 
 from loopsheet.derivations import soft_impact as model
 from loopsheet.report.cells.values import Status, Values
-from loopsheet.report.charts import Curve
-from loopsheet.report.engines.numpy import evaluate
-from loopsheet.report.judge.loops import ForceLaw, curves
+from loopsheet.report.engines.numpy import evaluate, extend
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.result.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
-from loopsheet.report.workbooks.soft_impact_schematics import FRICTION, SCHEMATIC, hysteresis, lankarani
+from loopsheet.report.workbooks.soft_impact_charts import drawn
+from loopsheet.report.workbooks.soft_impact_schematics import (
+    FRICTION,
+    SCHEMATIC,
+    force,
+    hysteresis,
+    lankarani,
+)
 
 Array = NDArray[np.float64]
 
@@ -42,8 +50,19 @@ def consistent(tests: int, alpha: float, beta: float, C: float = 1.1e9) -> Value
     return values_of(v.tolist(), e.tolist(), x_p.tolist(), beta)
 
 
-def of(found: tuple[Curve, ...], figure: str, role: str) -> dict[str, Curve]:
-    return {c.label: c for c in found if (c.figure, c.role) == (figure, role)}
+def drawn_of(values: Values, samples: int | None = None) -> Values:
+    """The same with the columns that only the charts ask for."""
+    more = drawn(SHEET)
+    return extend(values, more.columns, {"loop_points": samples} if samples else more.given)
+
+
+def branch(values: Values, name: str) -> dict[int, tuple[Array, Array]]:
+    """The points of a branch by test: ``loading``, ``unloading``."""
+    x, F = (values.value[f"{name}_{of}"] for of in "xF")
+    ok = (values.status[f"{name}_x"] == 0) & (values.status[f"{name}_F"] == 0)
+    layout, labels = values.layouts["loops"], values.layouts["tests"].labels[:, 0]
+    which = labels[layout.named["k"]]
+    return {int(test): (x[ok & (which == test)], F[ok & (which == test)]) for test in np.unique(which[ok])}
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +77,7 @@ def test_the_branches_are_those_of_the_derivations() -> None:
     x = np.linspace(1e-6, 6e-5, 7)
     C, alpha = model.C, model.alpha
     expected = lambdify([model.x, C, alpha], model.law_c.value, "mpmath")
-    got = ForceLaw(model.law_c.value)(x, C=1.1e9, alpha=1.3)
+    got = force(model.law_c.value, x, C=1.1e9, alpha=1.3)
     exact = [float(expected(Float(v, 40), Float(1.1e9, 40), Float(1.3, 40))) for v in x]
     np.testing.assert_allclose(got, exact, rtol=4e-15)
 
@@ -67,15 +86,14 @@ def test_another_law_in_the_derivations_is_another_curve(
     paper: Values, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """No force law is typed here: what the derivations say is what is drawn."""
-    before = curves(SHEET, paper)
+    before = drawn_of(paper)
     for law in ("law_c", "law_r"):
         equation = getattr(model, law)
         doubled = replace(equation, members=(equation.members[0], 2 * equation.value))
         monkeypatch.setattr(model, law, doubled)
-    after = curves(SHEET, paper)
-    for role in ("compression", "restitution"):
-        for label, curve in of(after, "loops", role).items():
-            np.testing.assert_array_equal(curve.y, 2 * of(before, "loops", role)[label].y)
+    after = drawn_of(paper)
+    for name in ("loading_F", "unloading_F"):
+        np.testing.assert_array_equal(after.value[name], 2 * before.value[name])
 
 
 # ------------------------------------------------------------------------------------------ the loops
@@ -86,44 +104,34 @@ def test_another_law_in_the_derivations_is_another_curve(
 def test_the_area_of_a_loop_is_the_kinetic_energy_lost(alpha: float, beta: float) -> None:
     values = consistent(4, alpha, beta)
     samples = 1001
-    found = curves(SHEET, values, samples)
-    (up,) = of(found, "loops", "compression").values()
+    found = drawn_of(values, samples)
+    up, back = branch(found, "loading"), branch(found, "unloading")
     v, e = values.value["v"], values.value["e"]
-    for n, down in enumerate(of(found, "loops", "restitution").values()):
-        x_m, peak = down.x[-1], down.y[-1]
-        until = up.x <= x_m
-        area = np.trapezoid(up.y[until], up.x[until]) - np.trapezoid(down.y, down.x)
+    assert list(up) == list(back) == [1, 2, 3, 4]
+    for n, test in enumerate(back):
+        (x, F), (down_x, down_F) = up[test], back[test]
+        x_m, peak = down_x[-1], down_F[-1]
+        area = np.trapezoid(F, x) - np.trapezoid(down_F, down_x)
         lost = (1 - e[n] ** 2) * MASS * v[n] ** 2 / 2
         # A convex curve's trapezia are too large, by at most the rise of its slope times step^2 / 8.
-        steps = (up.x[-1] / (samples - 1), down.x[1] - down.x[0])
-        slopes = (alpha * peak / x_m, beta * peak / (x_m - down.x[0]))
+        steps = (x[1] - x[0], down_x[1] - down_x[0])
+        slopes = (alpha * peak / x_m, beta * peak / (x_m - down_x[0]))
         bounds = [slope * step**2 / 8 for slope, step in zip(slopes, steps, strict=True)]
         assert -bounds[1] - 1e-10 * lost <= area - lost <= bounds[0] + 1e-10 * lost
         assert sum(bounds) < 5e-6 * lost
 
 
 def test_every_loop_starts_at_the_imprint_and_closes_on_the_fitted_curve(paper: Values) -> None:
-    found = curves(SHEET, paper)
-    (up,) = of(found, "loops", "compression").values()
-    back = of(found, "loops", "restitution")
-    assert list(back) == ["1", "2", "3", "4", "5"]
-    assert (up.x[0], up.y[0]) == (0.0, 0.0)
-    assert up.x[-1] == paper.value["x_m"].max()
-    assert (np.diff(up.x) > 0).all()
-    for n, down in enumerate(back.values()):
-        assert (down.x[0], down.y[0]) == (paper.value["x_p"][n], 0.0)
-        assert (down.x[-1], down.y[-1]) == (paper.value["x_m"][n], paper.value["Cprime_eq9"][n])
-        (tip,) = up.y[up.x == down.x[-1]]
-        assert tip == pytest.approx(down.y[-1], rel=4e-15)
-
-
-def test_points_are_the_sheets_pair_by_pair(paper: Values) -> None:
-    points = of(curves(SHEET, paper), "loops", "points")
-    pairs = [f"{i}-{j}" for i in range(1, 6) for j in range(i + 1, 6)]
-    assert list(points) == pairs
-    for column, axis in (("x", "x"), ("F", "y")):
-        drawn = np.concatenate([getattr(curve, axis) for curve in points.values()])
-        np.testing.assert_array_equal(drawn, paper.value[column])
+    found = drawn_of(paper)
+    up, back = branch(found, "loading"), branch(found, "unloading")
+    assert list(up) == list(back) == [1, 2, 3, 4, 5]
+    for n, ((x, F), (down_x, down_F)) in enumerate(zip(up.values(), back.values(), strict=True)):
+        assert (x[0], F[0]) == (0.0, 0.0)
+        assert (np.diff(x) > 0).all()
+        assert (down_x[0], down_F[0]) == (paper.value["x_p"][n], 0.0)
+        assert x[-1] == down_x[-1] == paper.value["x_m"][n]
+        assert down_F[-1] == paper.value["Cprime_eq9"][n]
+        assert F[-1] == pytest.approx(down_F[-1], rel=4e-15)
 
 
 # ----------------------------------------------------------------------------------- cells in error
@@ -133,18 +141,15 @@ def test_a_pair_in_error_is_left_out() -> None:
     # Test 2 is faster than test 1 and leaves the shallower imprint: pair 1-2 has no root.
     values = values_of([2.334, 2.94, 4.089], [0.53, 0.512, 0.479], [30e-6, 29.7e-6, 41.6e-6])
     assert list(values.status["alpha"]) == [Status.NOROOT, Status.OK, Status.OK]
-    found = curves(SHEET, values)
-    assert list(of(found, "loops", "points")) == list(of(found, "alpha_pairs", "pair")) == ["1-3", "2-3"]
-    assert list(of(found, "loops", "restitution")) == ["1", "2", "3"]
+    found = drawn_of(values)
+    assert (found.status["mean_v"] == 0).all()
+    assert list(branch(found, "unloading")) == [1, 2, 3]
 
 
 def test_a_test_without_its_datum_is_left_out() -> None:
     v, e, x_p = (list(column) for column in TABLE_1.values())
     x_p[3] = float("nan")
-    found = curves(SHEET, values_of(v, e, x_p))
-    assert list(of(found, "loops", "restitution")) == ["1", "2", "3", "5"]
-    assert not any("4" in label for label in of(found, "alpha_pairs", "pair"))
-    assert all(np.isfinite(c.x).all() and np.isfinite(c.y).all() for c in found)
+    assert list(branch(drawn_of(values_of(v, e, x_p)), "unloading")) == [1, 2, 3, 5]
 
 
 def test_a_test_whose_imprint_is_deeper_than_its_approach_has_no_way_back() -> None:
@@ -154,42 +159,25 @@ def test_a_test_whose_imprint_is_deeper_than_its_approach_has_no_way_back() -> N
     values = values_of(v, e, x_p)
     shut = values.value["x_m"] <= values.value["x_p"]
     assert shut.tolist() == [True, False, False, False, False]
-    back = of(curves(SHEET, values), "loops", "restitution")
-    assert list(back) == [str(n + 1) for n in np.flatnonzero(~shut)]
+    assert list(branch(drawn_of(values), "unloading")) == (np.flatnonzero(~shut) + 1).tolist()
 
 
 def test_points_without_a_fit_have_no_loops() -> None:
     # The last test is so slow for its imprint that the best power of all points is a falling one.
     values = values_of([1.84, 5.12, 0.82], [0.706, 0.334, 0.277], [12.6e-6, 53.3e-6, 74.4e-6])
     assert list(values.status["alpha_log"]) == [Status.DOMAIN]
-    found = curves(SHEET, values)
-    assert not of(found, "loops", "compression")
-    assert not of(found, "loops", "restitution")
-    assert of(found, "loops", "points")
-
-
-def test_without_any_pair_there_is_no_curve() -> None:
-    assert curves(SHEET, values_of([2.0, 3.0], [0.5, 0.5], [30e-6, 20e-6])) == ()
+    found = drawn_of(values)
+    assert branch(found, "loading") == branch(found, "unloading") == {}
+    assert (found.status["F"] == 0).any()
 
 
 # --------------------------------------------------------------------------------- exponents by speed
 
 
 def test_the_exponents_of_the_paper_climb_with_the_mean_speed(paper: Values) -> None:
-    pairs = of(curves(SHEET, paper), "alpha_pairs", "pair")
-    assert len(pairs) == 10
-    one, two = TABLE_1["v"][0], TABLE_1["v"][1]
-    assert pairs["1-2"].x[0] == pytest.approx((one + two) / 2)
-    by_speed = sorted((c.x[0], c.y[0]) for c in pairs.values())
-    assert (np.diff([alpha for _, alpha in by_speed]) > 0).all()
-
-
-def test_the_mean_spans_the_pairs(paper: Values) -> None:
-    found = curves(SHEET, paper)
-    mean = of(found, "alpha_pairs", "mean")[""]
-    speeds = [curve.x[0] for curve in of(found, "alpha_pairs", "pair").values()]
-    assert (mean.x[0], mean.x[-1]) == (min(speeds), max(speeds))
-    assert set(mean.y) == {paper.scalar("alpha_mean")}
+    speed, alpha = drawn_of(paper).value["mean_v"], paper.value["alpha"]
+    assert speed[0] == pytest.approx(sum(TABLE_1["v"][:2]) / 2)
+    assert (np.diff(alpha[np.argsort(speed)]) > 0).all()
 
 
 # ------------------------------------------------------------------------------------ schematic figures
@@ -219,16 +207,18 @@ def test_friction_adds_while_loading_and_takes_while_unloading() -> None:
 # --------------------------------------------------------------------------------------- the workbook
 
 
-def test_the_workbook_says_what_its_figures_draw(paper: Values) -> None:
-    assert WORKBOOK.curves is not None
-    got, expected = WORKBOOK.curves(SHEET, paper), curves(SHEET, paper)
-    assert [(c.figure, c.role, c.label) for c in got] == [(c.figure, c.role, c.label) for c in expected]
+def test_curves_are_computed_when_something_draws(report: Report, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+    monkeypatch.setattr("loopsheet.report.stages.plotted", lambda *_: asked.append("curves"))
+    study = Study(PAPER)
+    assert study.computed.values.scalar("alpha_mean") == report.values.scalar("alpha_mean")
+    assert asked == []
+    for _ in range(2):
+        study.computed.plotted()
+    assert asked == ["curves"]
 
 
-def test_a_workbook_loads_no_analysis() -> None:
-    code = (
-        "import sys, loopsheet.report.workbooks.soft_impact; "
-        "print('loopsheet.report.judge.loops' in sys.modules, 'matplotlib' in sys.modules)"
-    )
+def test_a_workbook_loads_no_matplotlib() -> None:
+    code = "import sys, loopsheet.report.workbooks.soft_impact; print('matplotlib' in sys.modules)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert run.stdout.split() == ["False", "False"]
+    assert run.stdout.split() == ["False"]

@@ -122,7 +122,7 @@ SHEET = "Sheet((d, *given.values(), l))"
         (shows("tables=7"), "tables", "tables is no tuple of TableSpec"),
         (shows("published_as=7"), "published_as", "published_as is no dict of titles"),
         (changed("    sheet=", "    check_parameters=lambda x: 1 / 0,\n    sheet="), "1 / 0", "ZeroDivision"),
-        (changed("    sheet=", "    curves=lambda *_: exit(),\n    sheet="), "exit()", "SystemExit"),
+        (changed("    sheet=", "    drawn=lambda *_: exit(),\n    sheet="), "exit()", "SystemExit"),
     ],
 )
 def test_what_it_raises_is_told_with_folder_and_line(

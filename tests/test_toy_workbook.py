@@ -7,6 +7,7 @@ distance follows from (4), and the mean and the changes between sightings from (
 import ast
 import json
 import re
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -30,8 +31,9 @@ SOURCE = """\
 from sympy import Abs, Rational, Sum, Symbol, cos, pi, sin
 from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step
 from loopsheet.report.quantity import Bounds
-from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, Root, Sheet
-from loopsheet.report.workbook import Measured, Parameter, TableSpec, Workbook
+from loopsheet.report.charts import Chart, Drawn, Series
+from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
+from loopsheet.report.workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook
 
 k, i, j, p, n, n_pairs = (Symbol(s, integer=True, positive=True) for s in ("k", "i", "j", "p", "n", "n_p"))
 SIGHTINGS = Axis("sightings", k, n)
@@ -61,6 +63,37 @@ gap = Column("gap", PAIRS, Formula(eqL2), "m", "change", "g%s", "like a", positi
 eqL3 = Equation("(L3)", (Symbol("r_mean"), Sum(r_k[k], (k, 1, n)) / n), "definition", Kind.DEFINITION, "mean")
 mean = Column("r_mean", None, Formula(eqL3), "m", "mean distance", "\\\\bar{r}", display="like a")
 
+MOST = 25
+l, m, points, turn = (Symbol(s, integer=True, positive=True) for s in ("l", "m", "n_w", "n_t"))
+
+
+def drawn(sheet):
+    # From one sighting to half a period later, by the anomaly that needs no root.
+    way = RepeatAxis("way", l, points, of=SIGHTINGS, step=m, count="way_points")
+    count = Column("way_points", None, Given("chart"), exact=True)
+    E_w = Column("E_way", way, defined(E_k[k] + pi * (m - 1) / (count.symbol - 1)), "1")
+    M_w = Column("M_way", way, defined(E_w[l] - ecc * sin(E_w[l])), "1")
+    t_w = Column("t_way", way, defined(M_w[l] * T / (2 * pi)), "s", display="like t")
+    r_w = Column("r_way", way, defined(a * (1 - ecc * cos(E_w[l]))), "m", display="like a")
+    return Drawn((count, E_w, M_w, t_w, r_w), {"way_points": MOST})
+
+
+def defined(value):
+    return Formula(Equation("", (Symbol("drawn"), value), "drawn", Kind.DEFINITION, "drawn"))
+
+
+ORBIT = Chart(
+    "sightings and the way between them",
+    "time t of a sighting",
+    "distance r",
+    (
+        Series("t_way", "r_way", "half a turn after %s", each=True),
+        Series("t", "r", "%s", "points", named=True),
+        Series("t", "r_mean", "mean", "level"),
+    ),
+    log="y",
+)
+
 WORKBOOK = Workbook(
     name="kepler",
     title="Distances of a planet",
@@ -74,6 +107,8 @@ WORKBOOK = Workbook(
     ),
     sheet=lambda given: Sheet((times, period, axis, shape, M_k, E_k, r_k, gap, mean)),
     headline=("r_mean",),
+    figures=(FigureSpec("orbit", "1", "Distances over time, and the ellipse.", chart=ORBIT),),
+    drawn=drawn,
     tables=(TableSpec("seen", "Sightings", ("t", "M", "E", "r")), TableSpec("pairs", "Changes", ("gap",))),
 )
 """
@@ -177,6 +212,64 @@ def test_it_is_written_as_a_page_a_paper_and_data(folder: Path, tmp_path: Path) 
     cells = json.loads((out / "values.json").read_text(encoding="utf-8"))["cells"]
     assert cells["gap"]["axis"] == "pairs"
     assert cells["r"]["status"] == ["#DOMAIN!", "ok", "ok", "ok"]
+
+
+def test_one_declaration_of_a_chart_is_drawn_in_every_format(folder: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    build.build(Study(folder), out, ("html", "latex", "xlsx"))
+    page, paper = ((out / name).read_text(encoding="utf-8") for name in ("report.html", "report.tex"))
+    said = ("half a turn after each sighting", "3 sightings", "mean 236 Gm", "distance r / Gm")
+    picture = "".join(re.findall(r"<svg role=img.*?</svg>", page, re.DOTALL))
+    assert [text for text in said if text not in re.sub("<[^>]*>", "", picture)] == []
+    assert r"{figures/orbit.pdf}" in paper
+    assert "Distances over time" in page
+    assert "Distances over time" in paper
+    assert (out / "figures" / "orbit.pdf").is_file()
+    (data,) = re.findall(r'id="?live-data"?>(.*?)</script>', page, re.DOTALL)
+    chart = json.loads(data)["figures"]["orbit"]
+    assert [series["y"] for series in chart["series"]] == ["r_way", "r", "r_mean"]
+    assert chart["y"] == {"title": [["", "distance r"]], "unit": "Gm", "size": 1e9}
+    with zipfile.ZipFile(out / "report.xlsx") as archive:
+        drawn = archive.read("xl/charts/chart1.xml").decode()
+    assert "Figure 1: sightings and the way between them" in drawn
+    assert '<c:logBase val="10"/>' in drawn
+    # Four ways, the sightings, their mean: each with its cells and what they hold as issued.
+    series = re.findall(r"<c:ser>.*?</c:ser>", drawn, re.DOTALL)
+    assert [len(re.findall(r"<c:f>", one)) for one in series] == [2, 2, 2, 2, 2, 3]
+    assert "half a turn after sighting 2" in series[1]
+    assert "mean 236 Gm" in series[-1]
+    heights = [float(v) for v in re.findall(r"<c:v>([-\d.]+)</c:v>", series[1].partition("<c:yVal>")[2])]
+    report = Study(folder).computed
+    values = report.plotted().values
+    way = values.layouts["way"].named["k"] == 1
+    np.testing.assert_allclose(heights, values.value["r_way"][way] / 1e9, rtol=1e-12)
+    assert len(heights) == 25
+    assert report.values.sheet.by_name.keys() < values.sheet.by_name.keys()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('Series("t", "r", ', 'Series("t", "rr", ', "there is no column 'rr', which a chart names; "),
+        ('Series("t", "r", ', 'Series("a", "r", ', "'a' is a single number, and a chart needs rows"),
+        ('Series("t", "r", ', 'Series("t", "gap", ', "'gap' is not of the rows of 't'"),
+        ('"r_mean", "mean", "level"', '"r", "mean", "level"', "'r' has many rows, and is one level"),
+        ('"points", named=True', '"points", value="r"', "'r' has many rows, and stands behind a label"),
+        ('"points", named=True', '"dots"', "a chart has no style 'dots'; there are points, line or level"),
+        ('log="y"', 'log="z"', "the logarithmic axes of a chart are x, y or xy, not 'z'"),
+        ("chart=ORBIT", "chart=7", "the chart of figure 'orbit' is no Chart"),
+    ],
+)
+def test_a_chart_that_cannot_be_drawn_is_told(
+    old: str, new: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert old in SOURCE
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text.replace(old, new), encoding="utf-8")
+    assert main(["check", str(tmp_path)]) == 2
+    told = capsys.readouterr().err
+    assert "LS213" in told
+    assert said in told
 
 
 def test_the_command_line_takes_it(folder: Path) -> None:

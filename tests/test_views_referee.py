@@ -187,7 +187,7 @@ def test_the_article_compiles_without_overfull_boxes(
     specs = figures.of(paper)
     (tmp_path / "figures").mkdir()
     for spec in specs:
-        (tmp_path / "figures" / f"{spec.name}.pdf").write_bytes(figures.pdf(paper, spec.draw))
+        (tmp_path / "figures" / f"{spec.name}.pdf").write_bytes(figures.pdf(paper, spec.drawing))
     hostile = with_sources(paper, {"text": HOSTILE})
     (tmp_path / "report.tex").write_text(
         latex.render(hostile, [spec.name for spec in specs]), encoding="utf-8"

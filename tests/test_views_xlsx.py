@@ -14,7 +14,8 @@ import openpyxl
 import pytest
 from openpyxl.worksheet.formula import ArrayFormula
 
-from loopsheet.report.cells.grid import Grid
+from loopsheet.report import stages
+from loopsheet.report.cells.grid import Grid, letters
 from loopsheet.report.document.math import with_index
 from loopsheet.report.document.notation import fragments
 from loopsheet.report.engines import excel_grid
@@ -30,12 +31,11 @@ from loopsheet.report.views.xlsx_style import (
     number_format,
     open_format,
 )
-from loopsheet.report.workbooks import soft_impact_charts
 
 
 def grid_of(report: Report) -> Grid:
     units = {name: shown.unit for name, shown in report.shown.items()}
-    drawn = soft_impact_charts.drawn(report.sheet)
+    drawn = stages.for_a_grid(report)
     return excel_grid.grid(report.sheet, report.values, units, report.workbook.headline, drawn)
 
 
@@ -282,8 +282,8 @@ def test_charts_are_native_and_drawn_from_cells(content: bytes) -> None:
     loops = next(text for text in charts if "Figure 4" in text)
     assert len(re.findall("<c:ser>", loops)) == 1 + 5 + 5
     assert "points!$H$8:$H$507" in loops
-    assert "loops!$C$8:$C$48" in loops
-    assert "restitution, test 5" in loops
+    assert "loops!$C$8:$C$40" in loops
+    assert "restitution of test 5" in loops
     assert "strRef" not in re.sub(r"<c:tx>.*?</c:tx>", "", loops), "numbers that are read as labels"
     assert len(re.findall("<c:legendEntry>", loops)) == 4, "the fitted curve is named once"
 
@@ -297,9 +297,10 @@ def test_what_has_no_value_is_left_out_of_a_chart(tmp_path: Path) -> None:
     toml.write_text(toml.read_text().partition("[published]")[0])
     report = Study(tmp_path / "in").computed
     assert (report.values.status["alpha"] != 0).any()
-    content = xlsx.render(report, grid_of(report))
+    grid = grid_of(report)
+    content = xlsx.render(report, grid)
     shown = openpyxl.load_workbook(io.BytesIO(content), data_only=True)
-    assert "#N/A" in {c.value for c in shown["pairs"]["J"]}
+    assert "#N/A" in {c.value for c in shown["pairs"][letters(grid["plotted_alpha"].place.column)]}
     assert "#NOROOT!" in {c.value for c in shown["pairs"]["C"]}
     assert "published" not in shown.sheetnames
     for name, text in files(content).items():

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from ..charts import STYLES, Chart
 from ..messages.errors import listing, suggest
 from ..workbook import FigureSpec, Measured, Parameter, TableSpec
 from .unit_text import UnitError, parse_unit
@@ -36,7 +37,7 @@ def mistyped(workbook: Workbook) -> Iterator[tuple[str, str, str]]:
     for name, kind in _LISTS.items():
         each: Any = getattr(workbook, name)
         if isinstance(each, (tuple, list)) and all(isinstance(one, kind) for one in each):
-            yield from ((name, *wrong) for one in each if (wrong := _no_unit(one)))
+            yield from ((name, *wrong) for one in each if (wrong := _wrong(one)))
         else:
             kinds = "names in quotes" if kind is str else kind.__name__
             yield name, "", f"{name} is no tuple of {kinds}; one alone is written (it,)"
@@ -47,8 +48,12 @@ def mistyped(workbook: Workbook) -> Iterator[tuple[str, str, str]]:
         yield "published_as", "", "published_as is no dict of titles"
 
 
-def _no_unit(declared: object) -> tuple[str, str] | None:
-    """The unit of what the user gives, if it is none, with a sentence."""
+def _wrong(declared: object) -> tuple[str, str] | None:
+    """A unit that is none, or the name of a figure whose chart is none, with a sentence."""
+    if isinstance(declared, FigureSpec):
+        chart: Any = declared.chart
+        none = f"the chart of figure '{declared.name}' is no Chart"
+        return None if isinstance(chart, Chart | None) else (declared.name, none)
     if isinstance(declared, (Measured, Parameter)):
         try:
             parse_unit(declared.unit)
@@ -96,10 +101,35 @@ def misnamed(
             )
             yield "prose", workbook.prose, f"{where}; without prose it has the generic text"
     for figure in workbook.figures:
-        if figure.draw not in (known := drawings()):
-            yield "figures", figure.draw, _unknown("drawing", "figures", figure.draw, known)
+        if figure.drawing not in (known := drawings()):
+            yield "figures", figure.drawing, _unknown("drawing", "figures", figure.drawing, known)
+        yield from (("figures", *wrong) for wrong in _undrawable(figure, sheet, workbook))
         if not _FILE.fullmatch(figure.name):
             yield "figures", figure.name, f"'{figure.name}' cannot be the name of a figure's file"
+
+
+def _undrawable(figure: FigureSpec, sheet: Sheet, workbook: Workbook) -> Iterator[tuple[str, str]]:
+    """What no view could draw of a chart: the word in it, and a sentence."""
+    chart, drawn = figure.chart, workbook.drawn(sheet).columns if workbook.drawn else ()
+    if chart is None:
+        return
+    axes = {column.name: column.axis for column in (*sheet.columns, *drawn)}
+    if chart.log not in ("", "x", "y", "xy"):
+        yield chart.log, f"the logarithmic axes of a chart are x, y or xy, not '{chart.log}'"
+    for one in chart.series:
+        unknown = [name for name in (one.x, one.y, one.value or one.x) if name not in axes]
+        if unknown:
+            yield unknown[0], _unknown("column", "a chart", unknown[0], axes)
+        elif one.style not in STYLES:
+            yield one.style, f"a chart has no style '{one.style}'; there are {listing(STYLES)}"
+        elif axes[one.x] is None:
+            yield one.x, f"'{one.x}' is a single number, and a chart needs rows"
+        elif one.style == "level" and axes[one.y]:
+            yield one.y, f"'{one.y}' has many rows, and is one level"
+        elif one.style != "level" and axes[one.y] != axes[one.x]:
+            yield one.y, f"'{one.y}' is not of the rows of '{one.x}'"
+        elif one.value and (axes[one.value] or one.value not in sheet):
+            yield one.value, f"'{one.value}' has many rows, and stands behind a label"
 
 
 def _unknown(kind: str, where: str, name: str, known: Collection[str]) -> str:

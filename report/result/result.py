@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from ...derivations.equation import Erratum, Ledger
 from ...derivations.proof import Proof
 from ..cells.marks import Marks
 from ..cells.values import Cell, Values
-from ..charts import Curve
 from ..engines.exact import ExactValues
 from ..inputs.inputs import Inputs, PublishedValue
 from ..messages.diagnostics import Check
@@ -27,7 +26,7 @@ from .verdict import (
     Verdict,
 )
 
-__all__ = ["Comparison", "Report", "Shown"]
+__all__ = ["Comparison", "Plotted", "Report", "Shown"]
 
 
 @dataclass(frozen=True)
@@ -47,6 +46,22 @@ class Shown:
     unit: str
     scale: float
     digits: int
+
+
+@dataclass(frozen=True)
+class Plotted:
+    """What charts are drawn from.
+
+    Parameters
+    ----------
+    values : Values
+        Of the sheet and of the columns that only charts ask for.
+    shown : mapping of column name to Shown
+        The same for both.
+    """
+
+    values: Values
+    shown: Mapping[str, Shown]
 
 
 @dataclass(frozen=True)
@@ -135,8 +150,8 @@ class Report:
         Findings about the source's print, each made by a check.
     comparisons : tuple of Comparison
         In the order of published.csv.
-    curves : tuple of Curve
-        For the figures.
+    plotted : callable
+        Computes what charts ask for besides.
     engines : tuple of Agreement
         What the judge of the engines found, NumPy first; empty if it was not asked.
     oddities : tuple of Check
@@ -159,7 +174,7 @@ class Report:
     proofs: tuple[Proof, ...]
     errata: tuple[Erratum, ...]
     comparisons: tuple[Comparison, ...]
-    curves: tuple[Curve, ...] = ()
+    plotted: Callable[[], Plotted]
     engines: tuple[Agreement, ...] = ()
     oddities: tuple[Check, ...] = ()
     referee: Referee = field(default_factory=Referee)

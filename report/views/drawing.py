@@ -6,13 +6,16 @@ user's matplotlibrc says is set back to matplotlib's own defaults. Fonts are the
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ..charts import BLUE as UNLOADING
+from ..charts import INK
+from ..charts import VERMILION as LOADING
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,12 +31,9 @@ CM = 1 / 2.54
 WIDTH = 16 * CM
 """The text width of a page: drawn at the size it is printed, so that 9 pt stay 9 pt."""
 
-INK, GREY, PALE = "#1a1a1a", "#767676", "#e4e4e4"
+GREY, PALE = "#767676", "#e4e4e4"
 NEAR = 8.0
 """Points of print within which a text is seen to belong to a place."""
-
-LOADING, UNLOADING = "#d55e00", "#0072b2"
-"""Vermilion and blue of Okabe and Ito: told apart by every eye."""
 
 STYLE: dict[str, Any] = {
     "font.family": "DejaVu Sans",
@@ -103,28 +103,6 @@ def empty(axes: Axes, sentence: str) -> None:
     """Say why there is nothing to see."""
     axes.set_axis_off()
     axes.text(0.5, 0.5, sentence, ha="center", va="center", transform=axes.transAxes, color=GREY)
-
-
-def unit_text(unit: str) -> str:
-    r"""A unit behind the stroke of an axis label: µ for u, nothing that mathtext would read as its own.
-
-    >>> unit_text("um"), unit_text("m/s"), unit_text("mm")
-    ('µm', '(m/s)', 'mm')
-    """
-    pretty = re.sub(r"\b[uμ](?=(?:m|s|in)\b)", "µ", unit).replace("$", r"\$")
-    return f"({pretty})" if "/" in pretty else pretty
-
-
-def newtons(largest: float) -> tuple[str, float]:
-    """The multiple of the newton that keeps an axis' numbers short, and its size.
-
-    >>> newtons(3650.0), newtons(0.2)
-    (('kN', 1000.0), ('mN', 0.001))
-    """
-    for unit, size in (("MN", 1e6), ("kN", 1e3), ("N", 1.0)):
-        if largest >= size:
-            return unit, size
-    return "mN", 1e-3
 
 
 def evenly(size: int, most: int) -> NDArray[np.intp]:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import TYPE_CHECKING
 
 from ..document.refereed import FIGURE
 from ..document.refereed import figures as of
 from ..result.result import Report
 from ..workbook import Workbook
-from . import drawing, reach
+from . import charts, drawing, reach
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,9 +21,10 @@ __all__ = ["draw", "drawings", "of", "pdf", "svg"]
 
 
 def drawings(workbook: Workbook) -> Mapping[str, Callable[[Report], Figure]]:
-    """Every drawing by its name in a FigureSpec: the workbook's, and the referee's."""
+    """Every drawing by its name in a FigureSpec: the workbook's charts and drawings, and the referee's."""
     own = {} if workbook.drawings is None else workbook.drawings()
-    return {**own, FIGURE: reach.draw}
+    drawn = {f.drawing: partial(charts.draw, chart=f.chart) for f in workbook.figures if f.chart}
+    return {**own, **drawn, FIGURE: reach.draw}
 
 
 def draw(report: Report, name: str) -> Figure:

@@ -171,7 +171,7 @@ def render(report: Report, figures: Mapping[str, str], program: str | None = Non
 
 
 def _script(report: Report, program: str) -> str:
-    return live.script(program, _text("engines/runtime.js"), bool(live.drawn(report)))
+    return live.script(program, _text("engines/runtime.js"), bool(report.workbook.charts))
 
 
 _BETWEEN = re.compile(

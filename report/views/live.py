@@ -10,13 +10,15 @@ import hashlib
 import json
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from fractions import Fraction
 from typing import Any
 
 from sympy import Indexed, Symbol
 
 from ...derivations.reductions import REDUCTIONS
+from ..charts import Chart, Series
+from ..document.charted import PREFIXES, Words, unit_text
 from ..document.material import Material
 from ..document.math import Printer
 from ..document.parts import index_text, slug
@@ -27,11 +29,10 @@ from ..result.result import Report
 from ..result.verdict import OTHERWISE, UNEXPECTED
 from ..sheet import Column, Formula, Given, Root, name_of
 from .compact import short_script
-from .drawing import unit_text
 from .live_files import given
 from .writer import TEMPLATES
 
-__all__ = ["FIGURES", "SCRIPTS", "Part", "data", "drawn", "limits", "parts", "script"]
+__all__ = ["SCRIPTS", "Part", "data", "drawn", "limits", "parts", "script"]
 
 SCRIPTS = (
     "page.js",
@@ -42,7 +43,7 @@ SCRIPTS = (
     "tables.js",
     "published.js",
     "drawing.js",
-    "figures.js",
+    "charts.js",
     "bar.js",
     "select.js",
     "grid.js",
@@ -53,10 +54,8 @@ SCRIPTS = (
 )
 """The scripts of the page in the order in which they are read."""
 
-FIGURES = ("loops", "alpha_pairs")
-"""The drawings that the page can draw again."""
-DRAWING = frozenset({"drawing.js", "figures.js"})
-"""The scripts that only a page with such a drawing has."""
+DRAWING = frozenset({"drawing.js", "charts.js"})
+"""The scripts that only a page with charts has."""
 
 
 # --- the script ------------------------------------------------------------------------------------------
@@ -72,7 +71,7 @@ def script(program: str, runtime: str, drawings: bool = True) -> str:
     runtime : str
         What evaluates it.
     drawings : bool
-        Whether one of :data:`FIGURES` is in the page.
+        Whether a chart is in the page.
 
     Raises
     ------
@@ -138,9 +137,30 @@ def data(report: Report, document: Material) -> str:
     return json.dumps(known, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
-def drawn(report: Report) -> dict[str, str]:
-    """The figures that the page draws again, and which drawing each is."""
-    return {figure.name: figure.draw for figure in report.workbook.figures if figure.draw in FIGURES}
+def drawn(report: Report) -> dict[str, Any]:
+    """The charts of the figures that the page draws again, as its script reads them."""
+    words = Words(report) if report.workbook.charts else None
+    return {f.name: _chart(words, f.chart) for f in report.workbook.figures if f.chart and words}
+
+
+def _chart(words: Words, chart: Chart) -> dict[str, Any]:
+    """A chart without what is as it is unless somebody says so."""
+    found: dict[str, Any] = {"height": round(chart.height * 72 / 2.54, 1), "series": []}
+    for axis, scale in zip("xy", words.scales(chart), strict=True):
+        found[axis] = {"title": scale.title, "unit": unit_text(scale.unit), "size": scale.size}
+        if scale.prefixed:
+            found[axis]["prefixes"] = PREFIXES
+    found["log"] = [int(axis in chart.log) for axis in "xy"]
+    if chart.from_zero:
+        found["zero"] = 1
+    plain = {field.name: field.default for field in fields(Series)}
+    for series in chart.series:
+        one = {name: value for name, value in vars(series).items() if value != plain[name]}
+        one["label"] = words.label(series)
+        if "%s" in series.label and not series.each:
+            one["rows"] = (words.axis(series).name, words.axis(series).row)
+        found["series"].append(one)
+    return found
 
 
 def _fraction(value: Fraction) -> list[str]:
@@ -153,7 +173,7 @@ def _column(report: Report, document: Material, column: Column, grounds: list[Gr
     head = document.head(column)
     entry: dict[str, Any] = {
         "source": column.source,
-        "unit": unit_text(shown.unit).strip("()"),
+        "unit": unit_text(shown.unit).strip("()") or "1",
         "scale": shown.scale,
     }
     if limits := report.marks.limiting(column.name):

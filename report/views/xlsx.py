@@ -67,7 +67,7 @@ def render(report: Report, grid: Grid) -> bytes:
 def _write(book: Any, report: Report, grid: Grid) -> None:
     """Make the worksheets in the order in which they are read, then fill them."""
     style, inputs = Style(book), Inputs(report, grid)
-    names = [SCALARS, *([_FIGURES] if grid.drawn and grid.drawn.charts else []), *grid.axes]
+    names = [SCALARS, *([_FIGURES] if grid.drawn and report.workbook.charts else []), *grid.axes]
     names += [STEPS] if grid.on(STEPS) else []
     names += [_PUBLISHED] if report.comparisons else []
     sheets = {name: book.add_worksheet(name, _Worksheet) for name in [*names, _EQUATIONS]}

@@ -6,80 +6,105 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..cells.grid import Block, Grid
-from ..charts import Series
+from ..charts import Series, copied, shade
+from ..document.charted import Words, plain
 from ..result.result import Report
-from ..sheet import RepeatAxis
-from .xlsx_style import Style
+from .xlsx_style import Style, number_format
 
 __all__ = ["write_charts"]
 
 _SIZE = {"width": 900, "height": 540}
 _ROWS = 29
 """Rows of the worksheet that a chart covers."""
-_INK, _POINTS, _GRID = "#1F2A36", "#7A8896", "#E3E8ED"
-_BRANCHES = ("#3B1F6E", "#36528C", "#2A788E", "#22A384", "#5DBE5A", "#A5A52A", "#C2782B", "#A8323E")
+_INK, _GRID = "#1F2A36", "#E3E8ED"
 
 
 def write_charts(book: Any, sheet: Any, style: Style, report: Report, grid: Grid) -> None:
     """Draw every chart, one below the other."""
-    assert grid.drawn is not None
+    figures = [figure for figure in report.workbook.figures if figure.chart]
+    words = Words(report)
     sheet.hide_gridlines(2)
     sheet.set_landscape()
     sheet.set_paper(9)
     sheet.fit_to_pages(1, 0)
-    sheet.set_h_pagebreaks([1 + number * _ROWS for number in range(1, len(grid.drawn.charts))])
+    sheet.set_h_pagebreaks([1 + number * _ROWS for number in range(1, len(figures))])
     style.text(sheet, 0, 0, "figures: drawn from the cells, they follow every edit", "title")
-    for number, chart in enumerate(grid.drawn.charts):
+    for number, figure in enumerate(figures):
+        chart, top = figure.chart, 2 + number * _ROWS
+        assert chart is not None
         drawn = book.add_chart({"type": "scatter"})
-        every = [each for series in chart.series for each in _series(report, grid, series)]
-        for each in every:
-            drawn.add_series(each)
-        x, y = (grid[name] for name in (chart.series[0].x, chart.series[0].y))
-        drawn.set_title({"name": chart.title, "name_font": {"size": 13, "color": _INK}, "overlay": False})
-        drawn.set_x_axis(_axis(chart.x_title, x, chart.from_zero))
-        drawn.set_y_axis(_axis(chart.y_title, y, chart.from_zero))
-        labels = [each["name"] for each in every]
+        labels: list[str] = []
+        for place, series in enumerate(chart.series):
+            for each in _series(words, grid, series):
+                labels.append(each["name"])
+                if value := series.value or (series.y if series.style == "level" else ""):
+                    # Behind the chart, a formula: what is told of a number follows it.
+                    each["name"] = _told(sheet, style, top + place, labels[-1], grid[value], words)
+                drawn.add_series(each)
+        title = f"Figure {figure.number}: {plain(words.letters(chart.title))}"
+        drawn.set_title({"name": title, "name_font": {"size": 13, "color": _INK}, "overlay": False})
+        for axis, scale, set_axis in zip(
+            "xy", words.scales(chart), (drawn.set_x_axis, drawn.set_y_axis), strict=True
+        ):
+            set_axis(_axis(plain(scale.titled(scale.unit)), chart.from_zero, axis in chart.log))
         again = [place for place, label in enumerate(labels) if label in labels[:place]]
         drawn.set_legend({"position": "right", "delete_series": again} if len(labels) > 1 else {"none": True})
         drawn.set_size(_SIZE)
         drawn.show_na_as_empty_cell()
-        sheet.insert_chart(2 + number * _ROWS, 0, drawn, {"description": chart.title})
+        sheet.insert_chart(top, 0, drawn, {"description": title})
 
 
-def _axis(title: str, block: Block, from_zero: bool) -> dict[str, Any]:
+def _axis(name: str, from_zero: bool, log: bool) -> dict[str, Any]:
     return {
-        "name": title if block.unit == "1" else f"{title} / {block.unit}",
+        "name": name,
         "name_font": {"size": 11, "bold": False},
         "num_format": "General",
         "major_gridlines": {"visible": True, "line": {"color": _GRID, "width": 0.75}},
-        **({"min": 0} if from_zero else {}),
+        # Where the other axis crosses: on a logarithmic one, zero is nowhere.
+        **({"log_base": 10, "crossing": "min"} if log else {"min": 0} if from_zero else {}),
     }
 
 
-def _series(report: Report, grid: Grid, series: Series) -> Iterator[dict[str, Any]]:
-    """A chart's series: one, or one for each row of the parent's axis."""
-    x, y = grid[series.x], grid[series.y]
-    if not series.split:
-        yield _one(series.label, series.style, 0, x, y, 0, x.place.rows)
+def _told(sheet: Any, style: Style, row: int, label: str, block: Block, words: Words) -> str:
+    """Write a label with a number behind it, in the unit of its cell; the address of what is written."""
+    form = number_format(block.values, words.report.shown[block.name].digits)
+    unit = "" if block.unit == "1" else f" {block.unit}"
+    told = '"{}"&TEXT({},"{}")&"{}"'.format(label.replace('"', '""'), block.place.cell(), form, unit)
+    style.formula(sheet, row, 0, told, label + words.value(block.name), style("number"))
+    return f"={sheet.get_name()}!$A${row + 1}"
+
+
+def _series(words: Words, grid: Grid, series: Series) -> Iterator[dict[str, Any]]:
+    """A chart's series: one, or one for each row of the axis that is repeated."""
+    values = words.plotted.values
+    axis, of = values.sheet[series.x].axis, words.axis(series)
+    assert axis is not None
+    names = (copied(values.sheet[name], axis) for name in (series.x, series.y))
+    x, y = (
+        grid[name if name in grid.by_name else own]
+        for name, own in zip(names, (series.x, series.y), strict=True)
+    )
+    if axis is of or series.style == "points":
+        yield _one(plain(words.label(series, f"the {of.name}")), series, series.colour, x, y, 0, x.place.rows)
         return
-    axis = grid.axes[x.place.worksheet]
-    assert isinstance(axis, RepeatAxis)
-    parents = report.values.layouts[axis.of.name].labels.tolist()
+    parents = values.layouts[of.name].labels.tolist()
     each = x.place.rows // max(1, len(parents))
     for number, label in enumerate(parents):
-        name = series.label.replace("%s", "-".join(map(str, label)))
-        yield _one(name, series.style, number, x, y, number * each, each)
+        own, colour = f"the {of.name}", series.colour
+        if series.each:
+            own, colour = f"{of.row} {'-'.join(map(str, label))}", shade(number / max(1, len(parents) - 1))
+        yield _one(plain(words.label(series, own)), series, colour, x, y, number * each, each)
 
 
-def _one(label: str, style: str, number: int, x: Block, y: Block, first: int, rows: int) -> dict[str, Any]:
-    looks: dict[str, Any] = {"marker": {"type": "none"}, "line": {"color": _INK, "width": 2.0}}
-    if style == "points":
-        looks = {
-            "marker": {"type": "circle", "size": 3, "fill": {"color": _POINTS}, "border": {"none": True}},
-            "line": {"none": True},
-        }
-    elif style == "branch":
-        looks["line"] = {"color": _BRANCHES[number % len(_BRANCHES)], "width": 1.5}
+def _one(
+    label: str, series: Series, colour: str, x: Block, y: Block, first: int, rows: int
+) -> dict[str, Any]:
+    looks: dict[str, Any] = {"marker": {"type": "none"}, "line": {"color": colour, "width": 1.5}}
+    if series.style == "points":
+        fill = {"type": "circle", "size": 3, "fill": {"color": colour}, "border": {"none": True}}
+        looks = {"marker": fill, "line": {"none": True}}
+    elif series.style == "level":
+        looks["line"]["dash_type"] = "dash"
     stretch = slice(first, first + rows)
     return {
         "name": label,

@@ -17,12 +17,11 @@ from ...derivations.symbols import VOCABULARY, p, q, s
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
 from ..workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook
+from .soft_impact_charts import EXPONENTS, LOOPS, drawn
 from .soft_impact_limits import limits
 from .soft_impact_root import alpha_rule, two_tests
 
 if TYPE_CHECKING:
-    from ..cells.values import Values
-    from ..charts import Curve, Drawn
     from ..result.result import Report
 
 __all__ = ["WORKBOOK"]
@@ -263,31 +262,11 @@ def _tests_after_fit() -> tuple[Column, ...]:
     )  # fmt: skip
 
 
-def _curves(sheet: Sheet, values: Values) -> tuple[Curve, ...]:
-    """What the figures draw; loaded only when they are drawn."""
-    from ..judge.loops import curves
-
-    return curves(sheet, values)
-
-
-def _drawn(sheet: Sheet) -> Drawn:
-    """The figures' curves as columns; loaded only for the views that recalculate."""
-    from .soft_impact_charts import drawn
-
-    return drawn(sheet)
-
-
 def _drawings() -> dict[str, Callable[[Report], Any]]:
-    """The figures' drawings; loaded only when one is drawn."""
-    from .soft_impact_figures import draw_alpha_pairs, draw_loops
+    """The schematic drawings; loaded only when one is drawn."""
     from .soft_impact_schematics import draw_hysteresis, draw_lankarani
 
-    return {
-        "hysteresis": draw_hysteresis,
-        "lankarani": draw_lankarani,
-        "loops": draw_loops,
-        "alpha_pairs": draw_alpha_pairs,
-    }
+    return {"hysteresis": draw_hysteresis, "lankarani": draw_lankarani}
 
 
 WORKBOOK = Workbook(
@@ -367,17 +346,17 @@ WORKBOOK = Workbook(
             "4",
             "Generated points, the curve fitted through their logarithms, and the restitution curve of each "
             "test.",
-            "loops",
-            "Force over approach: the generated points of all pairs lie along one fitted loading curve; from "
-            "it one steep unloading curve for each test falls to its imprint depth.",
+            alt="Force over approach: the generated points of all pairs lie along one fitted loading curve; "
+            "from it one steep unloading curve for each test falls to its imprint depth.",
+            chart=LOOPS,
         ),
         FigureSpec(
             "alpha_pairs",
             "L1",
             "Exponent of every pair over the mean speed of its two tests.",
-            "alpha_pairs",
-            "One mark for each pair of tests, its exponent over its mean speed; a line marks the mean "
+            alt="One mark for each pair of tests, its exponent over its mean speed; a line marks the mean "
             "exponent.",
+            chart=EXPONENTS,
         ),
     ),
     published_as={
@@ -393,8 +372,7 @@ WORKBOOK = Workbook(
         ("3", "4.300", "0.4700", "44.61"),
     ),
     example_parameters={"ball_mass": "8.366 g", "beta": "1.5"},
-    curves=_curves,
-    drawn=_drawn,
+    drawn=drawn,
     drawings=_drawings,
 )
 

@@ -13,15 +13,16 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...derivations import soft_impact as model
-from ..judge.loops import SAMPLES, ForceLaw
+from ...derivations.equation import evaluated
+from ..engines.numpy import kernel
 from ..result.result import Report
 from ..views import drawing
 from ..views.drawing import GREY, INK, LOADING, PALE, UNLOADING, Array, Place
-from .soft_impact_figures import MOST_CORNERS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from sympy import Expr
 
 __all__ = ["FRICTION", "SCHEMATIC", "draw_hysteresis", "draw_lankarani", "hysteresis", "lankarani"]
 
@@ -32,6 +33,12 @@ FRICTION = 0.35
 """The largest share of the force that friction has in figure 1: large enough to be seen."""
 
 
+SAMPLES = 201
+"""Abscissae of a curve. A polyline through so many is smooth to a tenth of a point in print."""
+MOST_CORNERS = 32
+"""Corners of the edge of an area."""
+
+
 class Branch(NamedTuple):
     """A branch of a loop."""
 
@@ -39,21 +46,25 @@ class Branch(NamedTuple):
     y: Array
 
 
-def _closed(compression: ForceLaw, restitution: ForceLaw, x: Array, back: Array) -> tuple[Branch, Branch]:
+def force(law: Expr, x: Array, **constants: float) -> Array:
+    """The force of a branch of a law of the derivations at each approach, printed by the NumPy engine."""
+    made = kernel([evaluated(law)])
+    known = {"x": x, **SCHEMATIC, **constants}
+    (found,) = made.run(*(known[str(argument)] for argument in made.arguments))
+    return np.asarray(found, dtype=np.float64)
+
+
+def _closed(compression: Expr, restitution: Expr, x: Array, back: Array) -> tuple[Branch, Branch]:
     """Both branches with the constants of `SCHEMATIC`; the coefficient is the one that closes the loop."""
     end = np.array([SCHEMATIC["x_m"]])
-    (peak,) = restitution(end, **SCHEMATIC)
-    coefficient = float(peak / compression(end, C=1.0, **SCHEMATIC)[0])
-    return (
-        Branch(x, compression(x, C=coefficient, **SCHEMATIC)),
-        Branch(back, restitution(back, **SCHEMATIC)),
-    )
+    coefficient = float(force(restitution, end)[0] / force(compression, end, C=1.0)[0])
+    return Branch(x, force(compression, x, C=coefficient)), Branch(back, force(restitution, back))
 
 
 def lankarani(samples: int = SAMPLES) -> tuple[Branch, Branch]:
     """Equation (2): both branches as they stand in its cases."""
     # The author's own form: evaluated, the cases lose the second, whose domain lies in the first's.
-    up, down = (ForceLaw(case.expr.xreplace({model.C_LN: model.C})) for case in model.eq2.members[-1].args)
+    up, down = (case.expr.xreplace({model.C_LN: model.C}) for case in model.eq2.members[-1].args)
     x_m, x_p = SCHEMATIC["x_m"], SCHEMATIC["x_p"]
     return _closed(up, down, np.linspace(0.0, x_m, samples), np.linspace(x_p, x_m, samples))
 
@@ -64,7 +75,7 @@ def hysteresis(samples: int = SAMPLES) -> tuple[Branch, Branch, Branch, Branch]:
     # Denser towards x_m, where the loop with friction turns round.
     s = np.sin(np.linspace(0.0, np.pi / 2, samples))
     x, back = s * x_m, x_p + s * (x_m - x_p)
-    up, down = _closed(ForceLaw(model.law_c.value), ForceLaw(model.law_r.value), x, back)
+    up, down = _closed(model.law_c.value, model.law_r.value, x, back)
     share = _friction_share(s)
     return up, down, Branch(x, up.y * (1 + share)), Branch(back, down.y * (1 - share))
 

@@ -1,7 +1,7 @@
 // What every picture drawn in the page is made with: a frame, scales and ticks, texts that find room.
 // Measures are points of print, as in the pictures that were issued.
 
-const WIDTH = 453.54, INK = "#1a1a1a", LOADING = "#d55e00", UNLOADING = "#0072b2";
+const WIDTH = 453.54, INK = "#1a1a1a", LOADING = "#d55e00";
 const FONT = "'DejaVu Sans', Verdana, 'Noto Sans', 'Liberation Sans', Arial, sans-serif";
 
 // Round numbers between two ends: their distance is 1, 2, 2.5 or 5 times a power of ten.
@@ -17,32 +17,47 @@ function ticks(low, high, most) {
 // A width that is near enough to keep texts apart.
 const textWidth = (text, size) => size * Array.from(text).reduce((sum, c) => sum + (/[ijl.,:;|' ]/.test(c) ? 0.32 : /[mwMW]/.test(c) ? 0.93 : 0.61), 0);
 
+// Powers of ten, if there are two between the ends.
+function logTicks(low, high, most) {
+  const found = [];
+  for (let power = Math.ceil(Math.log10(low)); 10 ** power <= high; power++) found.push({ at: 10 ** power, text: brief(10 ** power) });
+  return found.length > 1 ? found : ticks(low, high, most);
+}
+
 class Picture {
-  constructor(height, { x, y, xLabel, yLabel, top = 4 }) {
-    const yTicks = ticks(y[0], y[1], Math.min(9, (height - 60) / 24));
+  constructor({ height, log }, limits, titles, top) {
+    const marks = (n, most) => (log[n] ? logTicks : ticks)(...limits[n], most);
+    const yTicks = marks(1, Math.min(9, (height - 60) / 24));
     const left = 28 + Math.max(...yTicks.map((tick) => textWidth(tick.text, 8.5)));
     this.frame = { left, right: WIDTH - 3, top, bottom: height - 36 };
-    this.limits = { x, y };
+    this.limits = limits;
+    this.log = log;
     this.taken = [];
     this.svg = draw("svg", {
       role: "img", viewBox: `0 0 ${WIDTH} ${height}`, width: Math.round((WIDTH * 4) / 3), height: Math.round((height * 4) / 3),
       "font-family": FONT, "font-size": "9", fill: INK, class: "picture",
     });
     this.svg.append(draw("rect", { width: WIDTH, height, fill: "#fff" }));
-    this.axes(ticks(x[0], x[1], 9), yTicks, xLabel, yLabel, height);
+    this.axes(marks(0, 9), yTicks, titles, height);
+  }
+
+  // How far along an axis a value stands, from 0 to 1.
+  part(n, value) {
+    const [low, high, at] = [...this.limits[n], value].map(this.log[n] ? Math.log10 : Number);
+    return (at - low) / (high - low);
   }
 
   x(value) {
-    const { left, right } = this.frame, [low, high] = this.limits.x;
-    return left + ((value - low) / (high - low)) * (right - left);
+    const { left, right } = this.frame;
+    return left + this.part(0, value) * (right - left);
   }
 
   y(value) {
-    const { top, bottom } = this.frame, [low, high] = this.limits.y;
-    return bottom - ((value - low) / (high - low)) * (bottom - top);
+    const { top, bottom } = this.frame;
+    return bottom - this.part(1, value) * (bottom - top);
   }
 
-  axes(xTicks, yTicks, xLabel, yLabel, height) {
+  axes(xTicks, yTicks, [xLabel, yLabel], height) {
     const { left, right, top, bottom } = this.frame, lines = [], marks = [], texts = [];
     for (const { at, text } of xTicks) {
       const x = this.x(at).toFixed(2);
@@ -69,15 +84,21 @@ class Picture {
   // Dots as one path, each a stroke of no length with round ends.
   dots(points, size, colour) {
     const d = points.map(([x, y]) => `M${this.x(x).toFixed(1)} ${this.y(y).toFixed(1)}h0`).join("");
-    this.svg.append(draw("path", { d, stroke: colour, "stroke-width": size, "stroke-linecap": "round", fill: "none", class: "dots" }));
+    this.svg.append(draw("path", { d, stroke: colour, "stroke-width": size, "stroke-linecap": "round", fill: "none" }));
     for (const [x, y] of points) this.avoid(this.x(x), this.y(y), 2);
   }
 
-  line(points, colour, width, name, dashes = null) {
-    const d = points.map(([x, y], n) => `${n ? "L" : "M"}${this.x(x).toFixed(2)} ${this.y(y).toFixed(2)}`).join("");
-    const attributes = { d, stroke: colour, "stroke-width": width, fill: "none", class: name, "stroke-dasharray": dashes };
+  line(points, colour, width, dashes = null) {
+    const d = points.map(({ at: [x, y] }, n) => `${n ? "L" : "M"}${this.x(x).toFixed(2)} ${this.y(y).toFixed(2)}`).join("");
+    const attributes = { d, stroke: colour, "stroke-width": width, fill: "none", "stroke-dasharray": dashes };
     this.svg.append(draw("path", { ...attributes, "stroke-linejoin": "round" }));
-    for (const [x, y] of points) this.avoid(this.x(x), this.y(y), 1);
+    for (const { at: [x, y] } of points) this.avoid(this.x(x), this.y(y), 1);
+  }
+
+  // A triangle at the edge, towards a point that is outside.
+  arrow([atX, atY], [x, y]) {
+    const turn = y > atY ? 0 : y < atY ? 180 : x > atX ? 90 : 270;
+    this.svg.append(draw("path", { d: "M-3 0h6l-3-5z", fill: LOADING, transform: `translate(${this.x(atX)} ${this.y(atY)}) rotate(${turn})` }));
   }
 
   avoid(x, y, radius) {
@@ -104,21 +125,31 @@ class Picture {
     return false;
   }
 
-  // What the marks are, above the picture: [mark, text], the mark an element around 0 0.
+  // What the marks are, above the picture: [mark, letters], the mark an element around 0 0.
   key(entries) {
     let x = 10, y = 11;
-    for (const { mark, text, plain } of entries) {
+    for (const { mark, text } of entries) {
+      const plain = plainOf(text);
       if (x > 10 && x + 19 + textWidth(plain, 8.5) > WIDTH) [x, y] = [10, y + 11];
       const group = draw("g", { transform: `translate(${x.toFixed(1)} ${y})` }, mark);
-      group.append(draw("text", { x: 19, y: 3.1, "font-size": 8.5 }, ...text));
+      group.append(draw("text", { x: 19, y: 3.1, "font-size": 8.5 }, ...lettered(text)));
       this.svg.append(group);
       x += 19 + textWidth(plain, 8.5) + 16;
     }
   }
 }
 
-const italic = (text) => draw("tspan", { "font-style": "italic" }, text);
-const unitLabel = (unit) => (unit.includes("/") ? `(${unit})` : unit);
+const plainOf = (letters) => letters.map(([, text]) => text).join("");
+
+// Letters of a symbol are slanted; some stand lower or higher, and what follows back on the line.
+function lettered(letters) {
+  let low = 0;
+  return letters.map(([kind, text]) => {
+    const to = { _: 2, "^": -3 }[kind] ?? 0, dy = to - low;
+    low = to;
+    return draw("tspan", { "font-style": kind && "italic", dy: dy || null, "font-size": to ? "70%" : null }, text);
+  });
+}
 
 // At most so many of the numbers 0 ... size - 1, evenly from the first to the last.
 function evenly(size, most) {

@@ -158,12 +158,12 @@ function refocus(element) {
   if (same) enter(same);
 }
 
-// Where nothing is to be drawn, the page has no DRAWINGS.
+// Where nothing is to be drawn, the page has nothing that draws.
 function writeFigures(look) {
-  for (const [name, drawing] of Object.entries(LIVE.figures)) {
+  for (const [name, chart] of Object.entries(LIVE.figures)) {
     const card = document.querySelector(`#figure-${CSS.escape(name)} .card`);
     if (!card) continue;
-    const made = DRAWINGS[drawing](look);
+    const made = drawChart(chart, look);
     const alt = page.kept.find(([part]) => part === card)[1].firstElementChild.getAttribute("aria-label");
     if (made) made.svg.setAttribute("aria-label", `${alt} Redrawn after an edit: ${made.says}`);
     card.replaceChildren(made?.svg ?? make("p", { class: "nothing" }, "Nothing to draw: the cells that it shows have no value."));

@@ -21,8 +21,8 @@ function writePanel(look) {
   });
   const head = make("tr", {}, ...["result", "as issued", "now"].map((text) => make("th", { scope: "col" }, text)));
   // The last of the pictures: those before it show steps on the way.
-  const [name, drawing] = Object.entries(LIVE.figures).at(-1) ?? [], drawn = name && document.querySelector(`#figure-${CSS.escape(name)} svg.picture`);
-  const picture = drawn ? drawn.cloneNode(true) : drawing && DRAWINGS[drawing](look)?.svg;
+  const [name, chart] = Object.entries(LIVE.figures).at(-1) ?? [], drawn = name && document.querySelector(`#figure-${CSS.escape(name)} svg.picture`);
+  const picture = drawn ? drawn.cloneNode(true) : chart && drawChart(chart, look)?.svg;
   picture?.setAttribute("aria-hidden", "true"); // the same stands in the report, with words
   page.panel.replaceChildren(make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows)), ...(picture ? [picture] : []));
 }

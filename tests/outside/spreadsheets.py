@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from loopsheet.report import stages
 from loopsheet.report.cells.grid import Grid, checked
 from loopsheet.report.cells.values import CODES, Status, Values
 from loopsheet.report.engines import excel_grid
@@ -131,7 +132,7 @@ def _number(value: Typed, scale: Fraction) -> float:
 def deliver(folder: Path = PAPER, drawn: bool = True) -> Delivered:
     """Compute a folder and make its workbook."""
     report = Study(folder).computed
-    charts = report.workbook.drawn(report.sheet) if drawn and report.workbook.drawn else None
+    charts = stages.for_a_grid(report) if drawn else None
     units = {name: shown.unit for name, shown in report.shown.items()}
     grid = excel_grid.grid(report.sheet, report.marks.values, units, report.workbook.headline, charts)
     return Delivered(report, grid, xlsx.render(report, grid))

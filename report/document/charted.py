@@ -1,0 +1,121 @@
+"""The words of a chart: its axes with their units, its legend, in letters that any view can draw."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from ..charts import Chart, Series
+from ..result.result import Report, Shown
+from ..sheet import Axis, RepeatAxis
+from .material import Material
+from .notation import fragments
+from .numbers import is_pure, rounded
+from .tree import Math, Refer
+
+__all__ = ["PREFIXES", "Letters", "Scale", "Words", "plain", "text_of", "unit_text"]
+
+Letters = tuple[tuple[str, str], ...]
+"""Pieces of a text: upright (``""``) or a symbol's, on the line (``i``), below or above it (``_``, ``^``)."""
+
+PREFIXES = (("M", 1e6), ("k", 1e3), ("", 1.0), ("m", 1e-3))
+"""What keeps the numbers of an axis short."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """An axis: its title, the unit of its numbers and the unit's size in SI.
+
+    Parameters
+    ----------
+    title : Letters
+    unit : str
+    size : float
+    prefixed : bool
+        Whether the unit takes one of :data:`PREFIXES`.
+    """
+
+    title: Letters
+    unit: str
+    size: float
+    prefixed: bool
+
+    def titled(self, unit: str) -> Letters:
+        """With a unit behind it."""
+        return (*self.title, ("", f" / {text}")) if (text := unit_text(unit)) else self.title
+
+
+def unit_text(unit: str) -> str:
+    """A unit behind the stroke of an axis label: µ for u, and nothing for a pure number.
+
+    >>> unit_text("um"), unit_text("m/s"), unit_text("1")
+    ('µm', '(m/s)', '')
+    """
+    pretty = re.sub(r"\b[uμ](?=(?:m|s|in)\b)", "µ", unit)
+    return "" if is_pure(unit) else f"({pretty})" if "/" in pretty else pretty
+
+
+def plain(letters: Letters) -> str:
+    """Without italics and heights."""
+    return "".join(text for _, text in letters)
+
+
+def text_of(value: float, shown: Shown) -> str:
+    """A number as the report prints it, without its unit."""
+    return rounded(value / shown.scale, shown.digits).text
+
+
+class Words:
+    """What the charts of a report say."""
+
+    def __init__(self, report: Report) -> None:
+        self.report, self.plotted = report, report.plotted()
+        self.sentences = Material(report).sentences
+
+    def letters(self, text: str) -> Letters:
+        """A plain sentence with its symbols."""
+        found: list[tuple[str, str]] = []
+        for part in self.sentences.rich(text):
+            match part:
+                case Math(latex):
+                    found += [(height or "i", letters) for height, letters in fragments(latex)]
+                case Refer(label):
+                    found.append(("", label))
+                case _:
+                    found.append(("", str(part)))
+        return tuple(found)
+
+    def scales(self, chart: Chart) -> tuple[Scale, Scale]:
+        """Both axes, in the units of the first series."""
+        first = next((series for series in chart.series if series.style != "level"), chart.series[0])
+        return self._scale(chart.x, first.x), self._scale(chart.y, first.y)
+
+    def _scale(self, title: str, name: str) -> Scale:
+        shown = self.plotted.shown[name]
+        # Of a name's letter, such as N and Pa; as SI has it, not as somebody measured in it.
+        prefixed = shown.unit[:1].isupper() and shown.unit.isalpha() and shown.scale == 1
+        return Scale(self.letters(title), shown.unit, shown.scale, prefixed)
+
+    def label(self, series: Series, rows: str = "%s") -> Letters:
+        """What the legend says of a series, up to the number behind it."""
+        said = f"each {self.axis(series).row}" if series.each and rows == "%s" else rows
+        behind = " = " if series.value else " " if series.style == "level" else ""
+        return self.letters(series.label.replace("%s", said) + behind)
+
+    def axis(self, series: Series) -> Axis:
+        """The axis whose rows a series tells of."""
+        axis = self.plotted.values.sheet[series.x].axis
+        assert axis is not None
+        return axis.of if isinstance(axis, RepeatAxis) else axis
+
+    def count(self, series: Series, number: int) -> str:
+        """So many rows: ``10 pairs``."""
+        axis = self.axis(series)
+        return f"{number} {axis.name if number != 1 else axis.row}"
+
+    def value(self, name: str) -> str:
+        """A single number as the report prints it, with its unit; empty if there is none."""
+        value, shown = self.report.values.cell(name).value, self.report.shown[name]
+        return (
+            "" if value is None else text_of(value, shown) + (f" {shown.unit}" if shown.unit != "1" else "")
+        )

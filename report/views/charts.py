@@ -1,0 +1,304 @@
+"""Draws a declared chart with matplotlib; the page and the workbook draw theirs from the same declaration."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cells.values import Status
+from ..charts import VERMILION, Chart, Series, shade
+from ..document.charted import PREFIXES, Letters, Words, text_of
+from ..result.result import Report
+from . import drawing
+from .drawing import Array, Labels, Place
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+
+__all__ = ["draw"]
+
+BESIDE_END: tuple[Place, ...] = (
+    (5, -3, "left", "top"),
+    (-4, 4, "right", "bottom"),
+    (-6, 14, "right", "bottom"),
+    (-8, 26, "right", "bottom"),
+)
+"""Where the name of a line may stand: right of its end, under it, else left above it.
+
+The last two are far enough for a line to the end."""
+AROUND: tuple[Place, ...] = (
+    (0, -4, "center", "top"),
+    (0, 4, "center", "bottom"),
+    (5, 0, "left", "center"),
+    (-5, 0, "right", "center"),
+    (4, -3, "left", "top"),
+    (-4, 3, "right", "bottom"),
+    (-4, -3, "right", "top"),
+    (4, 3, "left", "bottom"),
+)
+"""Where the name of a point may stand; it takes the first that is free."""
+
+MOST_DOTS = 500
+"""More are thinned: they would blacken the paper and bloat the file."""
+MOST_NAMES, SOME_NAMES = 21, 12
+"""All of up to 21 points are named; of more the outermost, so that a name stays at its dot; of lines some."""
+ROOM = 0.25
+"""How far beyond what lines span the frame may go for the sake of points, in shares of it."""
+CORNERS, FEWEST = 800, 12
+"""Corners of all lines of a series together, and of each at least."""
+MARGINS = (0.06, 0.1)
+
+
+# --- what there is to draw --------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Trace:
+    """The points of a series, or of one row of the axis that is repeated; `at` has the shape (2, points)."""
+
+    names: list[str]
+    at: Array
+
+
+def traces(words: Words, chart: Chart, series: Series, sizes: Sequence[float]) -> Iterator[Trace]:
+    """What a series shows, in units of these sizes."""
+    if series.style == "level":
+        return
+    values, columns = words.plotted.values, (series.x, series.y)
+    axis, of = values.sheet[series.x].axis, words.axis(series)
+    assert axis is not None
+    at = np.array([values.value[name] / size for name, size in zip(columns, sizes, strict=True)])
+    ok = np.all([values.status[name] == Status.OK for name in columns], axis=0)
+    for letter in chart.log:
+        ok &= at["xy".index(letter)] > 0
+    layout, labels = values.layouts[axis.name], values.layouts[of.name].labels
+    which = layout.rows[axis.index] * 0 if of is axis else layout.rows[of.index]
+    for row in np.unique(which[ok]):
+        here = np.flatnonzero(ok & (which == row))
+        named = labels[here] if of is axis else labels[[row]]
+        yield Trace(["–".join(map(str, label)) for label in named], at[:, here])
+
+
+def _units(words: Words, chart: Chart) -> list[tuple[str, float]]:
+    """The unit of each axis and its size: a multiple of the newton, if that keeps its numbers short."""
+    found = []
+    for scale, names in zip(
+        words.scales(chart), ([s.x for s in chart.series], [s.y for s in chart.series]), strict=True
+    ):
+        largest = max(float(np.nanmax(np.abs([*words.plotted.values.value[n], 0.0]))) for n in names)
+        sign, size = next((one for one in PREFIXES if largest >= one[1]), PREFIXES[-1])
+        found.append((sign + scale.unit, size) if scale.prefixed else (scale.unit, scale.size))
+    return found
+
+
+class Frame:
+    """The ends of both axes, and which points they leave out."""
+
+    def __init__(self, chart: Chart, lines: Array, dots: Array) -> None:
+        self.log = [axis in chart.log for axis in "xy"]
+        self.allowed = [self._allowed(lines, dots, n) for n in (0, 1)]
+        self.ends = [self._ends(chart, np.hstack([lines, dots[:, self.holds(dots)]]), n) for n in (0, 1)]
+
+    def flat(self, at: Array, n: int) -> Array:
+        """One of both coordinates as the axis has it."""
+        return np.asarray(np.log10(at[n]) if self.log[n] else at[n])
+
+    def _allowed(self, lines: Array, dots: Array, n: int) -> tuple[float, float]:
+        """Between which values a point is drawn where it is: others must not shrink to nothing for it."""
+        if lines.size:
+            low, high = np.quantile(self.flat(lines, n), [0, 1])
+            reach = ROOM * (high - low)
+        else:
+            # Five times the distance of the quartiles, three times as far as a box plot's whiskers reach.
+            low, high = np.quantile(self.flat(dots, n), [0.25, 0.75])
+            reach = (n and 5 * (high - low)) or np.inf
+        return low - reach, high + reach
+
+    def _ends(self, chart: Chart, seen: Array, n: int) -> tuple[float, float]:
+        low, high = np.quantile(self.flat(seen, n), [0, 1])
+        room = MARGINS[n] * (high - low or 0.1 * abs(high) or 1.0)
+        if self.log[n]:
+            return float(10 ** (low - room)), float(10 ** (high + room))
+        return 0.0 if chart.from_zero and low >= 0 else float(low - room), float(high + room)
+
+    def holds(self, at: Array) -> NDArray[np.bool_]:
+        """Which points are drawn where they are."""
+        (left, right), (bottom, top) = self.allowed
+        x, y = self.flat(at, 0), self.flat(at, 1)
+        return np.asarray((left <= x) & (x <= right) & (bottom <= y) & (y <= top))
+
+
+# --- how it is drawn --------------------------------------------------------------------------------------
+
+
+def draw(report: Report, chart: Chart) -> Figure:
+    """Draw a chart of a report."""
+    figure, axes = drawing.page(chart.height)
+    words = Words(report)
+    units = _units(words, chart)
+    found = [list(traces(words, chart, series, [size for _, size in units])) for series in chart.series]
+    if not any(found):
+        drawing.empty(axes, "Nothing to draw: the cells that it shows have no value.")
+        return figure
+    for axis, scale, (unit, _) in zip("xy", words.scales(chart), units, strict=True):
+        axes.set(
+            **{
+                f"{axis}label": mathtext(scale.titled(unit)),
+                f"{axis}scale": "log" if axis in chart.log else "linear",
+            }
+        )
+    _Picture(words, chart, units[1][1], figure, axes, found).draw()
+    return figure
+
+
+def mathtext(letters: Letters) -> str:
+    r"""As matplotlib writes it.
+
+    >>> mathtext((("", "force "), ("i", "F"), ("_", "m")))
+    'force $F_{m}$'
+    """
+    text = ""
+    for kind, piece in letters:
+        safe = re.sub(r"[{}_^$%#&\\]", r"\\\g<0>", piece)
+        text += f"${safe}$" if kind == "i" else f"${kind}{{{safe}}}$" if kind else piece.replace("$", r"\$")
+    return text.replace("$$", "")
+
+
+class _Picture:
+    """A chart being drawn; all numbers are in the units of its axes."""
+
+    def __init__(
+        self, words: Words, chart: Chart, size: float, figure: Figure, axes: Axes, found: list[list[Trace]]
+    ) -> None:
+        self.words, self.size, self.figure, self.axes = words, size, figure, axes
+        self.found = list(zip(chart.series, found, strict=True))
+        lines, dots = (
+            np.hstack([np.empty((2, 0)), *(t.at for s, own in self.found if s.style == style for t in own)])
+            for style in ("line", "points")
+        )
+        self.frame = Frame(chart, lines, dots)
+        axes.set(xlim=self.frame.ends[0], ylim=self.frame.ends[1])
+        self.keys: list[Line2D] = []
+        self.taken: list[tuple[Array, float]] = []
+        self.names: list[tuple[str, list[tuple[Array, Sequence[Place]]], dict[str, Any]]] = []
+
+    def draw(self) -> None:
+        """Draw all series, then what names them where there is room."""
+        self.axes.grid(visible=True)
+        for series, own in self.found:
+            if series.style == "level":
+                self.level(series)
+            elif own:
+                (self.points if series.style == "points" else self.lines)(series, own)
+        if len(self.keys) > 1 or any(key.get_marker() == "^" for key in self.keys):
+            texts = [str(key.get_label()) for key in self.keys]
+            ncols = len(texts) if sum(map(len, texts)) < 83 else 2 if len(texts[0]) < 48 else 1
+            self.figure.legend(
+                handles=self.keys, loc="outside upper left", ncols=ncols, handlelength=1.5, columnspacing=1.5
+            )
+        labels = Labels(self.figure, self.axes)
+        for at, radius in self.taken:
+            labels.avoid(at[0], at[1], radius)
+        for text, places, style in self.names:
+            any(labels.place(text, (float(x), float(y)), beside, **style) for (x, y), beside in places)
+
+    def key(self, series: Series, count: int, more: str = "", **looks: Any) -> None:
+        """An entry of the legend, which stands above the picture, where nothing can be covered."""
+        from matplotlib.lines import Line2D
+
+        rows = "%s" if series.each else self.words.count(series, count)
+        value = self.words.value(series.value) if series.value else ""
+        text = (*self.words.label(series, rows), ("", more + value))
+        self.keys.append(Line2D([], [], label=mathtext(text), **looks))
+
+    def points(self, series: Series, own: list[Trace]) -> None:
+        """Dots, thinned if they are many; what is outside of the frame is counted, and marked if named."""
+        at = np.hstack([trace.at for trace in own])
+        total = at.shape[1]
+        outermost = np.argsort(-np.abs(at[1] - np.median(at[1])), kind="stable")
+        inside = self.frame.holds(at)
+        within, beyond = np.flatnonzero(inside), outermost[~inside[outermost]][:SOME_NAMES]
+        shown = within[drawing.evenly(len(within), MOST_DOTS)]
+        size = 4.5 if total <= MOST_NAMES else 2.6
+        more = f", one in {round(len(within) / len(shown))} drawn" if len(shown) < len(within) else ""
+        if series.named:
+            named = outermost[: None if total <= MOST_NAMES else SOME_NAMES]
+            shown = np.union1d(shown, named[inside[named]])
+        elif len(within) < total:
+            more += f"; {total - len(within)} of {total} lie outside"
+        drawing.dots(self.axes, at[0, shown], at[1, shown], size, series.colour)
+        self.taken.append((at[:, shown], size / 2 + 0.75 if series.named else 1.0))
+        count = total if series.named else len(own)
+        self.key(series, count, more, ls="", marker="o", ms=min(size, 2.4), color=series.colour)
+        if series.named:
+            self.edge(at, beyond, f"outside the frame: {total - len(within)} of {total}")
+            self.name(series, [name for trace in own for name in trace.names], at, named, beyond)
+
+    def edge(self, at: Array, beyond: NDArray[np.intp], told: str) -> None:
+        """Triangles at the edges towards points that are outside."""
+        from matplotlib.lines import Line2D
+
+        (left, right), (bottom, top) = self.frame.ends
+        for x, y in at[:, beyond].T:
+            marker = "^" if y > top else "v" if y < bottom else ">" if x > right else "<"
+            place = np.clip(x, left, right), np.clip(y, bottom, top)
+            self.axes.plot(*place, marker, ms=5, color=VERMILION, clip_on=False, zorder=3)
+        if len(beyond):
+            self.keys.append(Line2D([], [], ls="", marker="^", ms=5, color=VERMILION, label=told))
+
+    def name(
+        self, series: Series, names: list[str], at: Array, named: NDArray[np.intp], beyond: NDArray[np.intp]
+    ) -> None:
+        """The names of points; the triangle at the edge says where one is, the text how far."""
+        shown = self.words.plotted.shown[series.y]
+        held = np.clip(at.T, *np.transpose(self.frame.ends))
+        for n in named:
+            far, value = n in beyond, text_of(float(at[1, n]) * self.size, shown)
+            text = f"{names[n]}: {value}" if far else names[n]
+            self.names.append((text, [(held[n], AROUND[:2] if far else AROUND)], {"fontsize": 8.5}))
+
+    def lines(self, series: Series, own: list[Trace]) -> None:
+        """One line, or one for each row, from the lowest end upwards."""
+        if not series.each:
+            at = np.hstack([trace.at for trace in own])
+            if len(own) > 1:
+                at = at[:, np.argsort(at[0], kind="stable")]
+            self.line(at[:, drawing.evenly(at.shape[1], CORNERS)], series.colour, 1.1)
+            self.key(series, len(own), color=series.colour, lw=1.1)
+            return
+        corners, width = max(FEWEST, CORNERS // len(own)), 1.4 if len(own) <= SOME_NAMES else 0.8
+        ways = [(t.names[0], t.at[:, drawing.evenly(t.at.shape[1], corners)]) for t in own]
+        ways.sort(key=lambda way: (float(way[1][1, -1]), way[0]))
+        colours = [shade(n / max(1, len(ways) - 1)) for n in range(len(ways))]
+        for (_, at), colour in zip(ways, colours, strict=True):
+            self.line(at, colour, width)
+        for n in drawing.evenly(len(ways), SOME_NAMES)[::-1]:
+            self.names.append((ways[n][0], [(ways[n][1][:, -1], BESIDE_END)], {"color": colours[n]}))
+        self.key(series, len(own), color=colours[len(colours) // 2], lw=1.4)
+
+    def line(self, at: Array, colour: str, width: float) -> None:
+        """Draw a line and keep texts off it."""
+        self.axes.plot(*at, color=colour, lw=width, zorder=2.5)
+        self.taken.append((at, 1.0))
+
+    def level(self, series: Series) -> None:
+        """A single number as a line over the whole width, named at an end that is free."""
+        value = self.words.plotted.values.scalar(series.y) / self.size
+        (left, right), (bottom, top) = self.frame.ends
+        if not bottom <= value <= top:
+            return
+        self.axes.axhline(value, color=series.colour, lw=1.0, ls=(0, (5, 3)), zorder=1.5)
+        self.taken.append((np.linspace([left, value], [right, value], 200).T, 1.0))
+        text = mathtext((*self.words.label(series), ("", self.words.value(series.y))))
+        ends: list[tuple[Array, Sequence[Place]]] = [
+            (np.array([x, value]), ((dx, 3, side, "bottom"), (dx, -3, side, "top")))
+            for x, dx, side in ((left, 4, "left"), (right, -4, "right"))
+        ]
+        self.names.insert(0, (text, ends, {}))
