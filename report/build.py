@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
 from base64 import b64decode, b64encode
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,17 +19,18 @@ from .machine.timing import timed
 from .messages.errors import UsageError, close, diagnose, listing
 from .stages import Step, book, refuse_too_many_rows, silent
 from .study import Recipe, Study
+from .views import FORMATS, ON_REQUEST
 
 if TYPE_CHECKING:
     from .prepared import Prepared
     from .result.result import Comparison, Report
     from .result.verdict import Referee
+    from .views.made import Made
     from .workbook import FigureSpec
 
-__all__ = ["FORMATS", "Built", "build", "built", "parse_formats"]
+__all__ = ["Built", "build", "built", "parse_formats"]
 
-FORMATS = ("html", "latex", "xlsx", "json", "pdf")
-DEFAULT_FORMATS = ("html", "latex", "xlsx", "json")
+DEFAULT_FORMATS = tuple(each for each in FORMATS if each not in ON_REQUEST)
 
 
 def parse_formats(words: str) -> tuple[str, ...]:
@@ -129,7 +131,8 @@ def build(
     out : Path
         Where the report goes; made if it does not exist. Other files in it are left alone.
     formats : collection of str, optional
-        Of :data:`FORMATS`. Without it, :data:`DEFAULT_FORMATS`, but no workbook that would be too large.
+        Of :data:`~loopsheet.report.views.FORMATS`. Without it, :data:`DEFAULT_FORMATS`, but no workbook
+        that would be too large.
     every_engine : bool
         Whether JavaScript and the workbook are judged too, by the programs that are installed here.
     tell : callable
@@ -162,6 +165,7 @@ def _made(
 ) -> Report:
     """Compute a report and write its files into a folder."""
     from . import cost
+    from .views.made import Made
 
     tell(_begun(study.inputs.title, study, out))
     with ExitStack() as running:
@@ -199,7 +203,7 @@ def _made(
             with timed("figures"):
                 pictures |= _pictures(finished, formats, finished.workbook.figures)
     with timed("writing"):
-        _write(finished, stage, formats, pictures, source, content, study.step)
+        _write(Made(finished, pictures, source, content), stage, formats, study.step)
     return finished
 
 
@@ -221,65 +225,35 @@ def _of_a_crate(out: Path, folder: Path) -> dict[Path, str]:
     return {name: digest for name, digest in added(out).items() if not (own and INPUTS in name.parts)}
 
 
-_WITH_FIGURES = {"html", "latex", "pdf"}
-"""The formats that show figures."""
-
-
 def _pictures(report: Report, formats: Collection[str], but: Collection[FigureSpec] = ()) -> dict[str, bytes]:
     """The files of a report's figures, by name, but some."""
     drawn: dict[str, bytes] = {}
-    if not _WITH_FIGURES & set(formats):
+    forms = {FORMATS[each][2] for each in formats} - {""}
+    if not forms:
         return drawn
     from .views import figures
 
     for figure in (each for each in figures.of(report) if each not in but):
-        if "html" in formats:
+        if "svg" in forms:
             drawn[f"{figure.name}.svg"] = figures.svg(report, figure.drawing).encode()
-        if "latex" in formats or "pdf" in formats:
+        if "pdf" in forms:
             drawn[f"{figure.name}.pdf"] = figures.pdf(report, figure.drawing)
     return drawn
 
 
-def _write(
-    report: Report,
-    stage: Path,
-    formats: Collection[str],
-    pictures: Mapping[str, bytes],
-    source: str,
-    workbook: bytes,
-    step: Step,
-) -> None:
-    from .views import json
+def _write(made: Made, stage: Path, formats: Collection[str], step: Step) -> None:
+    from .views.json import manifest
 
-    if "json" in formats:
-        put(stage / "values.json", json.values(report))
-    if "latex" in formats or "pdf" in formats:
-        from .views import latex
-
-        step("writing report.tex")
-        names = [name.removesuffix(".pdf") for name in pictures if name.endswith(".pdf")]
-        put(stage / "report.tex", latex.render(report, names))
-    for name, content in pictures.items():
+    for name, content in made.pictures.items():
         put(stage / "figures" / name, content)
-    if "html" in formats:
-        from .views import html
-
-        step("writing report.html")
-        svg = {
-            name.removesuffix(".svg"): content.decode()
-            for name, content in pictures.items()
-            if name.endswith(".svg")
-        }
-        put(stage / "report.html", html.render(report, svg, source))
-    if "xlsx" in formats:
-        put(stage / "report.xlsx", workbook)
-    if "pdf" in formats:
-        step("running latexmk")
-        latex.compile(stage)
+    for name in (each for each in FORMATS if each in formats):
+        module, file, _ = FORMATS[name]
+        step(f"writing {file}")
+        importlib.import_module(module).write(made, stage)
     outputs = {
         p.relative_to(stage).as_posix(): p.read_bytes() for p in sorted(stage.rglob("*")) if p.is_file()
     }
-    put(stage / "manifest.json", json.manifest(report, outputs, sources(), processor()))
+    put(stage / "manifest.json", manifest(made.report, outputs, sources(), processor()))
 
 
 def _possible(prepared: Prepared, formats: Collection[str] | None, tell: Step) -> Collection[str]:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .archive.differences import EPS, Differences, compare
 from .archive.read_back import Index, Manifest, read_manifest, read_result
-from .build import FORMATS, build
+from .build import build
 from .inputs.folders import built_from
 from .inputs.inputs import Find
 from .machine.kept import nothing_kept
@@ -20,19 +20,10 @@ from .result.agreement import LIMIT
 from .result.findings import Check
 from .result.result import Report
 from .study import Study
+from .views import FORMATS
 from .which_workbook import shipped_workbook
 
 __all__ = ["Verification", "verify"]
-
-_FORMATS = {
-    "html": "report.html",
-    "latex": "report.tex",
-    "xlsx": "report.xlsx",
-    "json": "values.json",
-    "pdf": "report.pdf",
-}
-"""Each format by the file that only it writes."""
-
 
 _HALF = "a build was killed while it put its files in place: some are of it, some are older"
 
@@ -86,7 +77,7 @@ def verify(
     folder = built_from(out, then.inputs) if folder is None else folder
     with scratch() as place, nothing_kept():
         again = place / "out"
-        formats = [format for format in FORMATS if _FORMATS[format] in then.outputs]
+        formats = [name for name, (_, file, _) in FORMATS.items() if file in then.outputs]
         report, _ = build(Study(folder, find, step), again, formats, len(then.engines) > 1)
         now = read_manifest(again)
         differences = _numbers(out, again, report) if "values.json" in then.outputs else None

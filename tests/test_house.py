@@ -86,7 +86,15 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     ),
     "report.views": (
         DECLARED
-        | rooms("archive.differences", "document", "inputs.unit_text", "machine.programs", "result", "views"),
+        | rooms(
+            "archive.differences",
+            "document",
+            "inputs.unit_text",
+            "machine.programs",
+            "machine.staging",
+            "result",
+            "views",
+        ),
         RUNTIME - {"scipy", "mpmath"},
     ),
     "report.workbooks": (DECLARED | rooms("judge", "result", "workbooks") | {"derivations"}, ALGEBRA),
@@ -107,7 +115,7 @@ ONLY_FROM = {
     "report.stages": {"report.verbs", "report.study", "report.build"},
 }
 # Modules that may import by a name made at run time: the lazy public names, the registries.
-MAY_IMPORT_BY_NAME = {"", "report.judge.engines", "report.which_workbook"}
+MAY_IMPORT_BY_NAME = {"", "report.build", "report.judge.engines", "report.which_workbook"}
 
 
 class Import(NamedTuple):

@@ -1,4 +1,4 @@
-"""A new index set, rule, workbook or engine is one module and one line, and goes through all there is."""
+"""A new index set, rule, workbook, engine or view is one module and one line, and every part takes it."""
 
 from __future__ import annotations
 
@@ -79,14 +79,23 @@ def run(case):
     value["dh"][-1] *= 1 + 1e-9
     return Reading("abacus", "abacus 1.0", value, {name: ["ok"] * len(each) for name, each in value.items()})
 """
+VIEW = """\
+from loopsheet.report.machine.staging import put
+
+def write(made, stage):
+    lines = (f"{name} = {made.report.values.value[name][0]}" for name in made.report.sheet.by_name)
+    put(stage / "stairs.txt", "\\n".join(lines))
+"""
 TOYS = {
     "report/toy_axis.py": AXIS,
     "report/toy_rule.py": RULE,
     "report/workbooks/stairs.py": WORKBOOK,
     "report/engines/abacus.py": ENGINE,
+    "report/views/note.py": VIEW,
 }
 LINES = {
     "report/workbooks/__init__.py": '    "stairs": "loopsheet.report.workbooks.stairs",\n',
+    "report/views/__init__.py": '    "note": ("loopsheet.report.views.note", "stairs.txt", ""),\n',
     "report/engines/__init__.py": '    "abacus": "loopsheet.report.engines.abacus:run",\n',
 }
 FOLDER = {
@@ -137,6 +146,14 @@ def test_an_index_set_a_rule_and_a_workbook_reach_every_view(run: Run, tmp_path:
     assert "1-3" not in page
     with zipfile.ZipFile(tmp_path / "report.xlsx") as book:
         assert b"each two neighbours of readings" in book.read("xl/sharedStrings.xml")
+
+
+def test_a_view_is_a_format_of_build(run: Run, tmp_path: Path) -> None:
+    done = run("build", "--to", "note", "--out", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "stairs.txt").read_text(encoding="utf-8").splitlines()[0] == "h = 0.175"
+    assert {path.name for path in tmp_path.iterdir()} == {"stairs.txt", "manifest.json"}
+    assert "note" in run("build", "--to", "nte").stderr
 
 
 def test_every_engine_computes_them_and_a_new_one_is_judged_with_the_others(

@@ -221,10 +221,6 @@ def test_a_manifest_cannot_make_us_look_elsewhere(campaign: Path) -> None:
     assert failed(found) == {"output": ["../report.toml"]}
 
 
-def test_every_format_of_a_report_is_known_by_a_file() -> None:
-    assert set(verification._FORMATS) == set(build.FORMATS)
-
-
 @pytest.mark.parametrize("form", ["json", "junit", "github", "markdown"])
 def test_findings_in_every_format(
     form: str, campaign: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from loopsheet.report.result.result import Report
-from loopsheet.report.views import figures, latex
+from loopsheet.report.views import figures, latex, pdf
 
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ Șα"
 
@@ -100,11 +100,11 @@ def test_the_paper_compiles_without_complaint(
     for name in names:
         (tmp_path / "figures" / f"{name}.pdf").write_bytes(figures.pdf(report, name))
     (tmp_path / "report.tex").write_text(latex.render(hostile, names), encoding="utf-8")
-    latex.compile(tmp_path)
+    pdf.compile(tmp_path)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["figures", "report.pdf", "report.tex"]
     first = (tmp_path / "report.pdf").read_bytes()
     (tmp_path / "report.pdf").unlink()
-    latex.compile(tmp_path)
+    pdf.compile(tmp_path)
     assert (tmp_path / "report.pdf").read_bytes() == first
 
     log = _log(tmp_path)
@@ -119,15 +119,15 @@ def test_the_paper_compiles_without_complaint(
 
 def test_missing_tex_is_told_with_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shutil, "which", lambda name: None)
-    with pytest.raises(latex.TexMissing, match=r"latexmk.*not installed"):
-        latex.compile(tmp_path)
+    with pytest.raises(pdf.TexMissing, match=r"latexmk.*not installed"):
+        pdf.compile(tmp_path)
 
 
 def test_a_failure_is_told_with_the_lines_of_the_log(tmp_path: Path, require: Callable[..., str]) -> None:
     require("latexmk")
     (tmp_path / "report.tex").write_text("\\documentclass{article}\\begin{document}\\nothing\\end{document}")
-    with pytest.raises(latex.TexFailed, match="Undefined control sequence"):
-        latex.compile(tmp_path)
+    with pytest.raises(pdf.TexFailed, match="Undefined control sequence"):
+        pdf.compile(tmp_path)
     assert [p.name for p in tmp_path.iterdir()] == ["report.tex"]
 
 
@@ -140,5 +140,5 @@ def test_tex_reads_nothing_outside_its_folder(file: str, tmp_path: Path, require
     (folder / "report.tex").write_text(
         f"\\documentclass{{article}}\\begin{{document}}\\input{{{file}}}\\end{{document}}"
     )
-    with pytest.raises(latex.TexFailed):
-        latex.compile(folder)
+    with pytest.raises(pdf.TexFailed):
+        pdf.compile(folder)

@@ -7,6 +7,7 @@ import hashlib
 import re
 from collections.abc import Mapping
 from functools import cached_property
+from pathlib import Path
 
 from ...derivations.equation import Equation
 from ..cells.values import Cell
@@ -15,17 +16,19 @@ from ..document.numbers import is_pure
 from ..document.parts import Item, why_address
 from ..document.tables import Tables
 from ..document.tree import Column, Entry, Math, Number, Refer, Silent, Unit
+from ..machine.staging import put
 from ..result.result import Report
 from . import live
 from .compact import short_markup, short_style
 from .compact_svg import inlined
 from .escape import Markup, html
+from .made import Made
 from .mathml import mathml, mathml_block
 from .typeset import block
 from .units import unit_html
 from .writer import TEMPLATES, Writer
 
-__all__ = ["csp", "render"]
+__all__ = ["csp", "render", "write"]
 
 
 class HtmlWriter(Writer):
@@ -168,6 +171,16 @@ def render(report: Report, figures: Mapping[str, str], program: str | None = Non
         missing=Tables(material).missing(),
     )
     return _squeezed(short_markup(whole))
+
+
+def write(made: Made, stage: Path) -> None:
+    """Write report.html."""
+    figures = {
+        name.removesuffix(".svg"): svg.decode()
+        for name, svg in made.pictures.items()
+        if name.endswith(".svg")
+    }
+    put(stage / "report.html", render(made.report, figures, made.program))
 
 
 def _script(report: Report, program: str) -> str:

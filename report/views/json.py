@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,14 +13,21 @@ import numpy as np
 from ...derivations.text import text_of_equation
 from ..cells.marks import Count
 from ..cells.values import Status
+from ..machine.staging import put
 from ..result import verdict_data
 from ..result.result import Report
 from ..result.verdict import Verdict
 from ..sheet import Column, Formula, Given, RepeatAxis
+from .made import Made
 
-__all__ = ["manifest", "proof_grounds", "proof_statuses", "values"]
+__all__ = ["manifest", "proof_grounds", "proof_statuses", "values", "write"]
 
 SCHEMA = 1
+
+
+def write(made: Made, stage: Path) -> None:
+    """Write values.json."""
+    put(stage / "values.json", values(made.report))
 
 
 def values(report: Report) -> str:

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import io
 from datetime import datetime
+from pathlib import Path
 from typing import Any
 
 from xlsxwriter import Workbook as Book
 from xlsxwriter.worksheet import Worksheet
 
 from ..cells.grid import SCALARS, STEPS, Grid
+from ..machine.staging import put
 from ..result.result import Report
+from .made import Made
 from .xlsx_charts import write_charts
 from .xlsx_inputs import Inputs
 from .xlsx_marks import mark_outside
@@ -23,7 +26,7 @@ from .xlsx_pages import write_equations, write_published, write_report
 from .xlsx_style import Style
 from .xlsx_tables import write_axis, write_steps
 
-__all__ = ["render"]
+__all__ = ["render", "write"]
 
 _CREATED = datetime(2000, 1, 1)
 """No clock: the same bytes for the same report."""
@@ -39,6 +42,11 @@ class _Worksheet(Worksheet):  # type: ignore[misc] # XlsxWriter comes without ty
 
     def _prepare_formula(self, formula: str, expand_future_functions: bool = False) -> str:
         return formula.removeprefix("{").removeprefix("=").removesuffix("}")
+
+
+def write(made: Made, stage: Path) -> None:
+    """Write report.xlsx."""
+    put(stage / "report.xlsx", made.workbook)
 
 
 def render(report: Report, grid: Grid) -> bytes:

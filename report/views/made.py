@@ -1,0 +1,38 @@
+"""What a view may write from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ..result.result import Report
+
+__all__ = ["Made"]
+
+
+@dataclass(frozen=True)
+class Made:
+    """A finished report, and what is made of it for several views at once.
+
+    Parameters
+    ----------
+    report : Report
+    pictures : mapping of str to bytes
+        The files of its figures, in the forms that the formats show.
+    program : str
+        The sheet for a page that recalculates itself.
+    workbook : bytes
+        The sheet as an xlsx file.
+    """
+
+    report: Report
+    pictures: Mapping[str, bytes]
+    program: str = ""
+    workbook: bytes = b""
+
+    def figures(self, form: str) -> dict[str, bytes]:
+        """The figures of a form by their names."""
+        ending = f".{form}"
+        return {
+            name.removesuffix(ending): each for name, each in self.pictures.items() if name.endswith(ending)
+        }
