@@ -7,7 +7,6 @@ import random
 import re
 import struct
 import subprocess
-import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -15,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 import html5lib
-import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -32,7 +30,7 @@ from loopsheet.report.quantity import Bounds, Printed
 from loopsheet.report.referee import print_as, prints_same
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
-from loopsheet.report.views import compact, compact_svg, figures, html, live
+from loopsheet.report.views import compact, figures, html, live
 
 ROOT = Path(__file__).resolve().parent.parent
 LIVE = ROOT / "templates" / "live"
@@ -215,68 +213,6 @@ def test_short_script_runs_as_the_long_one(require: Callable[..., str], tmp_path
     )
     assert long == short
     assert len(compact.short_script(text)) < len(text)
-
-
-SVG = "{http://www.w3.org/2000/svg}"
-Way = list[tuple[float, float]]
-
-
-def ways(path: str) -> list[Way]:
-    """Where a path goes, told by steps or by places, each time that the pen is set down."""
-    here, start, found = (0.0, 0.0), (0.0, 0.0), []
-    for letter, rest in re.findall(r"([A-Za-z])([^A-Za-z]*)", path):
-        numbers = [float(number) for number in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", rest)]
-        if letter in "zh":
-            here = start if letter == "z" else (here[0] + numbers[0], here[1])
-        size = {"Q": 4, "C": 6}.get(letter.upper(), 2)
-        for first in range(0, len(numbers) - size + 1, size) if letter not in "zh" else ():
-            some = numbers[first : first + size]
-            points = list(zip(some[::2], some[1::2], strict=True))
-            if letter.islower():
-                points = [(here[0] + x, here[1] + y) for x, y in points]
-            if letter in "Mm" and first == 0:
-                found.append([])
-            found[-1] += points
-            here = points[-1]
-            start = here if letter in "Mm" else start
-    return found
-
-
-def drawn_ways(svg: str) -> list[Way]:
-    """All ways of a picture; what is used in several places is drawn there."""
-    root, found = ET.fromstring(svg), []
-    named = {element.get("id"): element for element in root.iter() if element.get("id")}
-    outline = "scale(0.015625)"  # a letter that a font would draw
-    inside = {path for defs in root.iter(f"{SVG}defs") for path in defs.iter(f"{SVG}path")}
-    for element in root.iter():
-        if element.tag == f"{SVG}path" and element not in inside:
-            found += ways(element.get("d", ""))
-        elif element.tag == f"{SVG}use" and element.get("x"):
-            other = named[next(v for name, v in element.items() if name.endswith("href")).removeprefix("#")]
-            if other.get("transform") != outline:
-                at = float(element.get("x", "")), float(element.get("y", ""))
-                found += [[(x + at[0], y + at[1]) for x, y in way] for way in ways(other.get("d", ""))]
-    return found
-
-
-def test_short_picture_goes_the_same_ways_and_says_the_same(report: Report) -> None:
-    for figure in report.workbook.figures:
-        long = figures.svg(report, figure.name)
-        short = compact_svg.short_svg(long)
-        assert len(short) < len(long) / 2
-        root = ET.fromstring(short)
-        said = ["".join(element.itertext()) for element in root.iter("{http://www.w3.org/2000/svg}text")]
-        wanted = re.findall(r"<!-- ((?:(?!-->)[\s\S])*) -->", long)
-        assert len(said) == len(wanted)
-        assert all(ours == theirs or "$" in theirs for ours, theirs in zip(said, wanted, strict=True))
-        theirs = [np.array(way) for way in drawn_ways(long)]
-        for ours in map(np.array, drawn_ways(short)):
-            same = (
-                place for place, way in enumerate(theirs)
-                if way.shape == ours.shape and np.abs(way - ours).max() < 0.012  # two roundings
-            )  # fmt: skip
-            theirs.pop(next(same))
-        assert theirs == []
 
 
 # ------------------------------------------------------------------------------------------ numbers

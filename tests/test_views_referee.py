@@ -36,7 +36,6 @@ from loopsheet.report.result.verdict import (
 from loopsheet.report.result.verdict_words import CALLED, at_least, bounds, mismatch, together
 from loopsheet.report.study import Study
 from loopsheet.report.views import figures, html, latex, reach
-from loopsheet.report.views.compact_svg import inlined
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ ((( report )))"
@@ -423,7 +422,7 @@ def test_what_is_out_of_reach_is_said_in_words(paper: Report) -> None:
 def test_the_picture_is_the_same_bytes_and_small(paper: Report) -> None:
     assert figures.svg(paper, FIGURE) == figures.svg(paper, FIGURE)
     assert figures.pdf(paper, FIGURE) == figures.pdf(paper, FIGURE)
-    pictures, style = inlined({FIGURE: figures.svg(paper, FIGURE)})
+    pictures, style = html.inlined({FIGURE: figures.svg(paper, FIGURE)})
     assert len(pictures[FIGURE]) + len(style) < 8_000
 
 
@@ -473,7 +472,7 @@ def test_a_hostile_source_is_drawn_as_text(paper: Report, source: str) -> None:
         assert box.x1 <= drawn.bbox.x1, text
     for (one, its), (other, others) in combinations(boxes, 2):
         assert not its.overlaps(others), f"{one!r} overlaps {other!r}"
-    short, _ = inlined({FIGURE: figures.svg(report, FIGURE)})
+    short, _ = html.inlined({FIGURE: figures.svg(report, FIGURE)})
     image = html.picture(short[FIGURE], source)
     assert "<script" not in image
     parsed = html5lib.parse(image, namespaceHTMLElements=False)

@@ -58,9 +58,6 @@ STYLE: dict[str, Any] = {
     "xtick.labelsize": 8.5,
     "ytick.labelsize": 8.5,
     "path.simplify_threshold": 0.1,
-    # Outlines, not text: the SVG is shown as an image, which may load no font.
-    "svg.fonttype": "path",
-    "svg.hashsalt": "loopsheet",
 }
 
 

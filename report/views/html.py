@@ -20,7 +20,6 @@ from ..machine.staging import put
 from ..result.result import Report
 from . import live
 from .compact import short_markup, short_style
-from .compact_svg import inlined
 from .escape import Markup, html
 from .made import Made
 from .mathml import mathml, mathml_block
@@ -104,7 +103,9 @@ class HtmlWriter(Writer):
         return self(Unit(item.head.unit))
 
 
+_MEASURES = re.compile(r' (?:width|height|viewBox)="[^"]*"')
 _OPENING = re.compile(r"<svg\b[^>]*>")
+_STYLE = re.compile(r' style="([^"]*)"')
 _SIZE = re.compile(r'\b(width|height)="([\d.]+)(pt|px|)"')
 
 
@@ -116,8 +117,17 @@ def picture(svg: str, alt: str) -> Markup:
     said = Markup('<svg role="img" aria-label="{}"').format(html(alt))
     opening = _OPENING.search(svg)
     assert opening is not None
-    attributes = _SIZE.sub(_pixels, opening.group().removeprefix("<svg"))
-    return said + Markup(attributes + svg[opening.end() :])
+    # The sheet of the page says how the rest of it looks.
+    attributes = "".join(_SIZE.sub(_pixels, each) for each in _MEASURES.findall(opening.group()))
+    return said + Markup(f"{attributes}>{svg[opening.end() :]}")
+
+
+def inlined(svgs: Mapping[str, str]) -> tuple[dict[str, str], str]:
+    """Pictures that stand in one page, and the style sheet that they share: each style is told once."""
+    styles = dict.fromkeys(style for svg in svgs.values() for style in _STYLE.findall(svg))
+    names = {style: f"s{number:x}" for number, style in enumerate(styles)}
+    short = {name: _STYLE.sub(lambda found: f' class="{names[found[1]]}"', svg) for name, svg in svgs.items()}
+    return short, "".join(f".{name}{{{style}}}" for style, name in names.items())
 
 
 def _pixels(found: re.Match[str]) -> str:
