@@ -67,7 +67,10 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.charts": (PROVER | rooms("sheet"), ALGEBRA),
     "report.cells": (DECLARED - rooms("workbook"), ALGEBRA | {"numpy", "pint"}),
     "report.workbook": (DECLARED, ALGEBRA),
-    "report.inputs": (rooms("charts", "inputs", "messages", "quantity", "sheet", "workbook"), set()),
+    "report.inputs": (
+        rooms("cells.address", "charts", "inputs", "messages", "quantity", "sheet", "workbook"),
+        set(),
+    ),
     "report.inputs.unit_text": (rooms("messages"), {"pint"}),
     "report.plan": (DECLARED | rooms("plan"), ALGEBRA),
     "report.engines": (DECLARED | rooms("engines", "inputs.unit_text", "plan"), NUMERIC),

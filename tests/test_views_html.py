@@ -12,9 +12,10 @@ import html5lib
 import pytest
 from large_campaigns import write
 
+from loopsheet.report.cells.address import index_text
 from loopsheet.report.document import tree as tree_module
 from loopsheet.report.document.material import Material
-from loopsheet.report.document.parts import MOST, index_text
+from loopsheet.report.document.parts import MOST
 from loopsheet.report.document.tables import Tables
 from loopsheet.report.document.tree import Node
 from loopsheet.report.inputs.folders import PAPER

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
+from ..cells.address import address
 from ..result.agreement import LIMIT
 from .read_back import Column, Index, Result
 
@@ -127,8 +128,8 @@ def compare(
             else:
                 given = old.rule == new.rule == "given"
                 rank = 0 if given else 1 if not old.axis else 2
-                address = _address(name, index)
-                moved.append((rank, Move(address, new.unit, given, was[0], now[0], (was[1], now[1]))))
+                named = address(name, index)
+                moved.append((rank, Move(named, new.unit, given, was[0], now[0], (was[1], now[1]))))
     return Differences(
         before.name,
         after.name,
@@ -178,9 +179,5 @@ def _only_in(one: Result, other: Result) -> list[str]:
             found.append(name)
             continue
         rows = [index for index in column.cells if index not in other.columns[name].cells]
-        found += [_address(name, index) for index in rows]
+        found += [address(name, index) for index in rows]
     return found
-
-
-def _address(name: str, index: Sequence[int]) -> str:
-    return f"{name}[{'-'.join(map(str, index))}]" if index else name

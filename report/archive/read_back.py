@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..cells.address import address
 from ..messages.errors import InputError, Location, diagnose
 
 __all__ = ["Column", "Manifest", "Result", "read_manifest", "read_result"]
@@ -261,5 +262,5 @@ def _published(entry: Any) -> tuple[str, str]:
     if not isinstance(entry, dict):
         raise _Wrong("'published' is not what it should be")
     index = _list(entry, "index")
-    cell = f"{_word(entry, 'cell')}[{'-'.join(map(str, index))}]" if index else _word(entry, "cell")
+    cell = address(_word(entry, "cell"), index)
     return f"{_word(entry, 'source')} {cell}", f"{_word(entry, 'printed')}: {_word(entry, 'verdict')}"

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..quantity import Bounds
 from ..sheet import Column, Formula, Root, Sheet
+from .address import address
 from .layout import Layout, Precedent, precedents
 
 __all__ = ["CODES", "Cell", "Status", "Values", "how_many", "inherited", "rows_kept"]
@@ -143,7 +144,7 @@ class Cell:
     @property
     def address(self) -> str:
         """``alpha[1-2]``, ``x_m[3]``, ``alpha_mean``."""
-        return f"{self.name}[{'-'.join(map(str, self.label))}]" if self.label else self.name
+        return address(self.name, self.label)
 
     @property
     def reason(self) -> str:

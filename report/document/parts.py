@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from ..cells.address import index_text
 from ..cells.values import Cell, Status
 from ..quantity import Printed
 from ..result.result import Comparison
 from .numbers import Figure, is_pure
 
 __all__ = [
-    "MARK", "MOST", "Group", "Head", "Item", "Pair", "Remark", "address", "described", "index_text", "slug",
+    "MARK", "MOST", "Group", "Head", "Item", "Pair", "Remark", "cell_id", "described", "slug",
     "why_address",
 ]  # fmt: skip
 
@@ -21,19 +22,14 @@ MOST = 300
 """Rows that a page shows of an index set made of others, and cells to look at: nobody reads more."""
 
 
-def index_text(label: tuple[int, ...]) -> str:
-    """The label of a row as attributes hold it: ``2``, ``1-2``, empty for a scalar."""
-    return "-".join(map(str, label))
-
-
-def address(name: str, label: tuple[int, ...]) -> str:
+def cell_id(name: str, label: tuple[int, ...]) -> str:
     """The identifier of a cell: ``cell-alpha-1-2``."""
     return slug(f"cell-{name}-{index_text(label)}" if label else f"cell-{name}")
 
 
 def why_address(cell: Cell) -> str:
     """The identifier of the sentence that says why a cell has no value."""
-    return address(cell.name, cell.label).replace("cell-", "why-", 1)
+    return cell_id(cell.name, cell.label).replace("cell-", "why-", 1)
 
 
 def slug(label: str) -> str:
@@ -119,7 +115,7 @@ class Item:
     @property
     def identifier(self) -> str:
         """Its name in the page."""
-        return address(self.cell.name, self.cell.label)
+        return cell_id(self.cell.name, self.cell.label)
 
     @property
     def data(self) -> str:

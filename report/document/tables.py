@@ -7,6 +7,7 @@ from functools import cached_property
 from itertools import groupby, islice
 from typing import Any, NamedTuple
 
+from ..cells.address import index_text
 from ..inputs.measurements import LeftOut
 from ..inputs.published import PublishedValue
 from ..result import verdict_words as words
@@ -15,7 +16,7 @@ from ..sheet import Axis
 from ..workbook import TableSpec
 from .material import Material
 from .numbers import is_pure, read, table_format
-from .parts import MOST, Group, Head, Pair, described, index_text, slug, why_address
+from .parts import MOST, Group, Head, Pair, described, slug, why_address
 from .refereed import GOOD, Value, shown_mismatch
 from .tree import (
     Code,

@@ -10,9 +10,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from ...derivations.equation import Equation
+from ..cells.address import index_text
 from ..workbook import FigureSpec
 from . import numbers
-from .parts import Item, address, index_text
+from .parts import Item, cell_id
 
 __all__ = [
     "Block", "Blocks", "Claim", "Code", "Column", "Count", "Entry", "Figure", "Formula", "Headline", "Hint",
@@ -159,7 +160,7 @@ class Silent(Node):
     @property
     def identifier(self) -> str:
         """Its name in the page."""
-        return address(self.name, self.label)
+        return cell_id(self.name, self.label)
 
 
 Entry = Inlines | Item | Silent

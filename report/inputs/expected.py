@@ -6,6 +6,7 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
+from ..cells.address import index_text
 from ..messages.errors import Findings, Location, listing, suggest
 
 __all__ = ["EXAMPLE", "Expectation", "check_expected"]
@@ -83,5 +84,5 @@ def check_expected(
             continue
         indices = cells[name][1] if name else {(test,) for test in tests}
         if index not in indices:
-            known = listing("-".join(map(str, one)) or "no index" for one in sorted(indices))
-            findings.add("LS506", each.at, name=name or "test", text="-".join(map(str, index)), known=known)
+            known = listing(index_text(one) or "no index" for one in sorted(indices))
+            findings.add("LS506", each.at, name=name or "test", text=index_text(index), known=known)

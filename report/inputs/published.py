@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from ..cells.address import index_text
 from ..messages.errors import Findings, Location, listing, suggest
 from .csvtable import Field, Table, match_columns, read_table
 from .number_text import NumberError, read_number, read_printed
@@ -255,7 +256,7 @@ def check_published(
             continue
         unit, indices = cells[value.cell]
         if value.index not in indices and "index" not in value.unread:
-            text = "-".join(map(str, value.index))
+            text = index_text(value.index)
             findings.add(
                 "LS506", value.places.get("index"), name=value.cell, text=text, known=_indices(indices)
             )
@@ -281,4 +282,4 @@ def _convertible(written: str, unit: str) -> str | None:
 def _indices(indices: Collection[tuple[int, ...]]) -> str:
     if () in indices:
         return "nothing: it is a single number"
-    return listing("-".join(map(str, index)) for index in sorted(indices))
+    return listing(index_text(index) for index in sorted(indices))

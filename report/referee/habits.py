@@ -9,6 +9,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cells.address import index_text
 from ..engines.numpy import evaluate
 from ..result.verdict import INPUT, Change
 from ..sheet import Column, Formula, Given
@@ -158,7 +159,7 @@ def _rows(labels: NDArray[np.int64]) -> Iterator[tuple[str, NDArray[np.intp]]]:
     """Rows of an axis, and what is said of them: the likelier mistakes first."""
     number = len(labels)
     every = np.arange(number)
-    names = ["-".join(map(str, label)) for label in labels.tolist()]
+    names = [index_text(label) for label in labels.tolist()]
     for row, name in enumerate(names):
         yield f"without {name}", np.delete(every, row)
     for row, name in enumerate(names):

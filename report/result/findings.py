@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from ..cells.address import address
 from ..messages.diagnostics import Check, Diagnostic, Location
 from . import verdict_words as words
 from .verdict import OTHERWISE, UNAMENDED, UNEXPLAINED, UNPINNED, UNREASONED
@@ -161,7 +162,7 @@ def of_diagnostics(diagnostics: Iterable[Diagnostic]) -> tuple[Check, ...]:
 def names_of(published: Iterable[PublishedValue]) -> list[str]:
     """Name each published value by its cell, and by its source too where two sources print that cell."""
     values = list(published)
-    cells = [words.address(value.cell, value.index) for value in values]
+    cells = [address(value.cell, value.index) for value in values]
     times = Counter(cells)
     return [
         cell if times[cell] == 1 else f"{cell} ({value.source})"

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal, localcontext
 from fractions import Fraction
 
+from ..cells.address import address
 from ..inputs.published import PublishedValue
 from ..quantity import Printed
 from .verdict import (
@@ -146,15 +147,6 @@ def _whole(value: Fraction, places: int, rounding: str) -> Decimal:
 
 
 # --- names -----------------------------------------------------------------------------------------------
-
-
-def address(name: str, index: Sequence[int]) -> str:
-    """A cell: ``alpha[1-2]``.
-
-    >>> address("alpha", (1, 2)), address("alpha_mean", ())
-    ('alpha[1-2]', 'alpha_mean')
-    """
-    return f"{name}[{'-'.join(map(str, index))}]" if index else name
 
 
 def called(published: PublishedValue, found: Verdict) -> str:

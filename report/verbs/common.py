@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, TextIO
 
+from ..cells.address import index_text
 from ..inputs.folders import WORD
 from ..messages.diagnostics import visible
 
@@ -177,8 +178,8 @@ def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
     labels = report.values.labels(column)
     if not index:
         return column, labels
-    wanted = [label for label in labels if "-".join(map(str, label)) == index]
+    wanted = [label for label in labels if index_text(label) == index]
     if not wanted:
-        known = listing(["-".join(map(str, label)) for label in labels])
+        known = listing([index_text(label) for label in labels])
         raise UsageError(diagnose("LS604", kind=f"row of {name}", text=index, known=known, suggestion=""))
     return column, wanted

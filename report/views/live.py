@@ -17,11 +17,12 @@ from typing import Any
 from sympy import Indexed, Symbol
 
 from ...derivations.reductions import REDUCTIONS
+from ..cells.address import index_text
 from ..charts import Chart, Series
 from ..document.charted import PREFIXES, Words, unit_text
 from ..document.material import Material
 from ..document.math import Printer
-from ..document.parts import index_text, slug
+from ..document.parts import slug
 from ..document.tree import Inlines, Math, Unit
 from ..inputs.unit_text import parse_unit
 from ..quantity import Bounds, Printed

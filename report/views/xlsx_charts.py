@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from ..cells.address import index_text
 from ..cells.grid import Block, Grid
 from ..charts import Series, copied, shade
 from ..document.charted import Words, plain
@@ -92,7 +93,7 @@ def _series(words: Words, grid: Grid, series: Series) -> Iterator[dict[str, Any]
     for number, label in enumerate(parents):
         own, colour = f"the {of.name}", series.colour
         if series.each:
-            own, colour = f"{of.row} {'-'.join(map(str, label))}", shade(number / max(1, len(parents) - 1))
+            own, colour = f"{of.row} {index_text(label)}", shade(number / max(1, len(parents) - 1))
         yield _one(plain(words.label(series, own)), series, colour, x, y, number * each, each)
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from ...derivations.proof import IDENTITY
 from ...derivations.text import Writer, text_of_equation
+from ..cells.address import index_text
 from ..cells.grid import CHECKED, SCALARS, Block, Grid, checked, factors, letters
 from ..result.result import Comparison, Report
 from .json import proof_grounds, proof_statuses
@@ -185,7 +186,7 @@ def _write_comparison(
     value, cell = comparison.published, comparison.cell
     given = grid[value.cell].kind == "given"
     printed, place = value.printed, grid[checked(value.cell) if given else value.cell].place
-    for at, words in enumerate((value.source, value.cell, "-".join(map(str, value.index)), printed.unit)):
+    for at, words in enumerate((value.source, value.cell, index_text(value.index), printed.unit)):
         style.text(sheet, row, at, words)
     decimals = printed.decimals
     shown = style("number", f"0.{'0' * decimals}" if decimals > 0 else "0")

@@ -1,0 +1,21 @@
+"""How a cell is called, in messages, files and pages alike."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+__all__ = ["address", "index_text"]
+
+
+def index_text(index: Sequence[int]) -> str:
+    """The row of a cell: ``2``, ``1-2``, empty for a scalar."""
+    return "-".join(map(str, index))
+
+
+def address(name: str, index: Sequence[int]) -> str:
+    """A cell: its column and its row.
+
+    >>> address("alpha", (1, 2)), address("alpha_mean", ())
+    ('alpha[1-2]', 'alpha_mean')
+    """
+    return f"{name}[{index_text(index)}]" if index else name
