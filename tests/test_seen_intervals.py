@@ -14,7 +14,7 @@ from loopsheet.report.document.material import Material
 from loopsheet.report.inputs.published import PublishedValue
 from loopsheet.report.quantity import Printed
 from loopsheet.report.referee import print_as
-from loopsheet.report.result.result import Comparison
+from loopsheet.report.result.result import Comparison, Report
 from loopsheet.report.result.verdict import EXACT, REACHABLE
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
 from loopsheet.report.stages import refereed
@@ -110,6 +110,14 @@ def test_what_inputs_were_seen_to_yield_contains_what_is_shown_with_it() -> None
             certain += 1
     assert known > 3 * SHEETS
     assert certain > 20
+
+
+def test_what_only_rounding_moves_rests_on_no_free_unknown(paper: Report) -> None:
+    """The mass of the ball is free: exponents do not rest on it, whatever their last digits do, forces do."""
+    found = {each.published.cell: each.refereed for each in paper.comparisons}
+    for name, known in (("alpha_log", True), ("alpha_mean", True), ("alpha", True), ("Cprime_eq9", False)):
+        assert found[name] is not None
+        assert (found[name].low is not None) == known, name
 
 
 # --- one that is known --------------------------------------------------------------------------------------

@@ -22,6 +22,8 @@ COVERAGE = 2.0
 HALVINGS = 50
 MOST = 1 << 24
 """Cells that are computed at once in search of what is furthest."""
+ROUNDED = 2.0**-20
+"""A relative derivative of less is what rounding leaves of none: the value does not rest on the unknown."""
 CLOSE = 0.1
 """How near to the middle of its print a witness needs to come, in half units of the last digit."""
 
@@ -137,8 +139,11 @@ class _Alone:
                 bounds = self.certificate.bounds[n]
                 bound_low, bound_high = _number(bounds.low), _number(bounds.high)
                 word = self._else(n, bounds.low, bounds.high)
+        by = np.abs(self.slopes[n] * problem.box.start)
         free = [
-            m for m, unknown in enumerate(problem.unknowns) if unknown.printed is None and self.slopes[n, m]
+            m
+            for m, unknown in enumerate(problem.unknowns)
+            if unknown.printed is None and self.slopes[n, m] and not 0 < by[m] <= ROUNDED * abs(self.here[n])
         ]
         low, high = (None, None) if free else (float(np.nanmin(seen)), float(np.nanmax(seen)))
         return Verdict(
