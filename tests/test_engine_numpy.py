@@ -1,5 +1,6 @@
 """The NumPy engine: what it prints, scopes of sums, batches, and what it refuses."""
 
+import tracemalloc
 from collections.abc import Mapping
 from typing import Any
 
@@ -374,3 +375,35 @@ def test_the_program_can_be_read() -> None:
         in PROGRAM.source
     )
     assert "# alpha\n# fixed\ndef kernel(" in PROGRAM.source
+
+
+@pytest.mark.parametrize("shape", [(60,), (7, 3)])
+def test_the_blocks_in_which_a_batch_is_computed_do_not_show(
+    monkeypatch: pytest.MonkeyPatch, shape: tuple[int, ...]
+) -> None:
+    data = noisy(shape, seed=11)
+    whole = run(data)
+    monkeypatch.setattr(engine, "WIDEST", 1000)
+    blocks = run(data)
+    for kind in ("value", "status", "broken"):
+        for name, one in getattr(whole, kind).items():
+            np.testing.assert_array_equal(getattr(blocks, kind)[name], one, err_msg=f"{kind} of {name}")
+    beta = run({"beta": np.linspace(1, 2, 50)[:, None]})
+    assert beta.value["v"].shape == (5,)
+    assert beta.value["alpha"].shape == (50, 10)
+    assert (
+        beta.value["alpha"][33].tolist() == run({"beta": np.linspace(1, 2, 50)[33]}).value["alpha"].tolist()
+    )
+
+
+def test_a_large_batch_needs_little_more_memory_than_its_values() -> None:
+    names = ("v", "e", "x_p", "beta", "alpha", "alpha_mean")
+    few = Sheet(tuple(SHEET[name] for name in names))
+    program, data = Program.of(few, functions=np), noisy((50_000,), seed=12)
+    given = {name: data[name] for name in names[:3]} | {"beta": 1.5}
+    engine.evaluate(few, {"tests": range(1, 6)}, given, program)
+    tracemalloc.start()
+    found = engine.evaluate(few, {"tests": range(1, 6)}, given, program)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 2 * sum(each.nbytes for each in (*found.value.values(), *found.status.values()))

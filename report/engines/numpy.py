@@ -7,6 +7,7 @@ made by :mod:`~loopsheet.report.engines.numpy_code` from the sheet's own express
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -32,6 +33,8 @@ Masks = Mapping[str, NDArray[np.bool_]]
 
 BLOCK = 1 << 13
 """How many roots are sought at a time: their intermediate results then stay in the processor's cache."""
+WIDEST = 1 << 16
+"""How many cells the widest column has, at most, of what is computed of a batch at a time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +114,25 @@ class Program:
         data : mapping of column name to float array (..., rows)
             The given columns in SI; NaN is a missing datum. Leading dimensions broadcast.
         """
-        return _Run(self, self.laid(labels, counts), data).values()
+        laid, batch = (
+            self.laid(labels, counts),
+            np.broadcast_shapes(*(own.shape[:-1] for own in data.values())),
+        )
+        widest = max(map(laid.size, self.sheet.columns))
+        blocks = [block for block, _ in _blocks((*batch, widest), WIDEST)] if batch else []
+        if len(blocks) < 2:
+            return _Run(self, laid, data).values()
+        split = {name for name, own in data.items() if own.ndim > len(batch) and len(own) > 1}
+        found = [
+            _Run(
+                self, laid, {name: own[block] if name in split else own for name, own in data.items()}
+            ).values()
+            for block in blocks
+        ]
+        for column in self.sheet.columns:
+            if not split.isdisjoint(laid.names[column.name]):
+                split.add(column.name)
+        return _joined(found, split, [min(block.stop, batch[0]) - block.start for block in blocks])
 
     def laid(self, labels: Mapping[str, Sequence[int]], counts: Mapping[str, int]) -> Laid:
         """The sheet over rows; that of the last ones is kept."""
@@ -359,7 +380,7 @@ class _Run:
         shape = np.broadcast_shapes(*(a.shape for a in arguments), inherited.shape)
         value, status = np.empty(shape), np.empty(shape, dtype=np.uint8)
         several: dict[int, tuple[float, ...]] = {}
-        for block, own in _blocks(shape):
+        for block, own in _blocks(shape, BLOCK):
             part = [a[block] if a.ndim == len(shape) and a.shape[0] > 1 else a for a in arguments]
             solved = program.solve(dict(zip(names, part, strict=True)), totals, own)
             value[block], status[block] = solved.value, solved.status
@@ -377,12 +398,31 @@ def _held(value: Array, positive: bool) -> NDArray[np.bool_]:
     return finite & (value >= SMALLEST) if positive else finite
 
 
-def _blocks(shape: tuple[int, ...]) -> Iterator[tuple[slice, tuple[int, ...]]]:
-    """Slices of the first dimension that make blocks of about :data:`BLOCK` cells, and their shapes."""
-    each = max(1, BLOCK // max(1, int(np.prod(shape[1:]))))
+def _blocks(shape: tuple[int, ...], most: int) -> Iterator[tuple[slice, tuple[int, ...]]]:
+    """Slices of the first dimension that make blocks of about so many cells, and their shapes."""
+    each = max(1, most // max(1, math.prod(shape[1:])))
     for start in range(0, shape[0], each):
         stop = min(start + each, shape[0])
         yield slice(start, stop), (stop - start, *shape[1:])
+
+
+def _joined(found: list[Values], split: Collection[str], lengths: Sequence[int]) -> Values:
+    """The blocks of a batch as one; a column that rests on nothing that was split is the same in all."""
+
+    def whole(kind: str) -> dict[str, Any]:
+        every: list[dict[str, Any]] = [getattr(block, kind) for block in found]
+        joined = {}
+        for name in list(every[0]):
+            parts = [block.pop(name) for block in every]  # what is joined needs no memory any more
+            if name in split:
+                rest = np.broadcast_shapes(*(part.shape[1:] for part in parts))
+                sizes = zip(parts, lengths, strict=True)
+                joined[name] = np.concatenate([np.broadcast_to(part, (size, *rest)) for part, size in sizes])
+            else:
+                joined[name] = parts[0]
+        return joined
+
+    return replace(found[0], value=whole("value"), status=whole("status"), broken=whole("broken"))
 
 
 def evaluate(
