@@ -81,15 +81,15 @@ def isolate(
         return found
     settled: list[Any] = []
     open_rows = np.flatnonzero(low < high)
-    share = np.linspace(0, 1, parts + 1)
-    edges = low[open_rows, None] * (1 - share) + high[open_rows, None] * share
-    edges[:, 0], edges[:, -1] = low[open_rows], high[open_rows]
+    first, last = low[open_rows, None], high[open_rows, None]
+    inner = np.minimum(first + (last - first) * np.arange(1, parts) / parts, last)
+    edges = np.concatenate([first, inner, last], axis=1)
     asked = np.concatenate([rows, rows, np.repeat(open_rows, parts)])
-    a, b = (np.concatenate([low, high, inner.reshape(-1)]) for inner in (edges[:, :-1], edges[:, 1:]))
+    a, b = (np.concatenate([low, high, own.reshape(-1)]) for own in (edges[:, :-1], edges[:, 1:]))
     value, slope, hopeless = enclose(asked, a, b)
     count = 2 * len(rows)
     both = value.sign[:count].reshape(2, -1)
-    first, last = (np.where(at == 0, told, at) for at, told in zip(both, signs, strict=True))
+    before, after = (np.where(at == 0, told, at) for at, told in zip(both, signs, strict=True))
     rows, a, b = (each[count:] for each in (asked, a, b))
     value, slope, hopeless = value[count:], slope[count:], hopeless[count:]
     for _ in range(HALVINGS):
@@ -118,7 +118,7 @@ def isolate(
     for row, own in enumerate(by_row):
         if own and row not in found.undecided:
             try:
-                found.brackets[row] = crossings((low[row], high[row]), (first[row], last[row]), own)
+                found.brackets[row] = crossings((low[row], high[row]), (before[row], after[row]), own)
             except Doubtful as doubtful:
                 found.doubt(row, *doubtful.part)
     return found

@@ -43,11 +43,12 @@ SAME: Any = _Same()
 
 def _choose(condition: Any, yes: Callable[[], Any], no: Callable[[], Any]) -> Any:
     """One thing where a condition holds and another elsewhere; what no row asks for is not computed."""
-    if isinstance(condition, (np.ndarray, np.generic)):
-        if condition.all():
-            return yes()
-        if not condition.any():
-            return no()
+    if isinstance(condition, np.ndarray) and (condition.all() or not condition.any()):
+        found = yes() if condition.all() else no()
+        batch = np.ndim(found) < condition.ndim > 1
+        return (
+            np.broadcast_to(found, np.broadcast_shapes(np.shape(found), condition.shape)) if batch else found
+        )
     return np.where(condition, yes(), no())
 
 

@@ -93,7 +93,7 @@ class EnclosedRows:
         exponents = reach.run(
             *(size[a.name].max(initial=0.0) if a.name in size else most for a in reach.arguments)
         )
-        return bool(max(exponents) <= TAME[2])
+        return bool(np.isfinite(most) and max(exponents) <= TAME[2])
 
     def enclose(self, rows: NDArray[np.intp], low: Array, high: Array) -> tuple[Intervals, Intervals, Mask]:
         """The equation, its slope, whole where it does not tell the course, and whether to give the row up.
@@ -125,12 +125,10 @@ class EnclosedRows:
     def _run(self, rows: NDArray[np.intp], low: Array, high: Array) -> list[Intervals]:
         """What the kernel gives for intervals of the unknown, a row each."""
         draws, batch = math.prod(self.shape[:-1]), rows // self.shape[-1]
-        points = np.concatenate([low, high])
-        places = np.arange(len(points))
-        if self.by_points and draws > 1:
-            batch = np.tile(batch, 2)
-        elif self.by_points:
-            points, places = np.unique(points, return_inverse=True)
+        if self.by_points:
+            ends = np.tile(batch, 2) + 1j * np.concatenate([low, high])
+            points, places = np.unique(ends, return_inverse=True)
+            batch = points.real.astype(np.intp)
 
         def of_rows(end: Array) -> Array:
             if end.size == 1:
@@ -144,7 +142,7 @@ class EnclosedRows:
         def taken(name: str) -> Any:
             found = self.cells.get(name)
             if found is None:  # the unknown
-                return points[:, None] if self.by_points else Intervals(low[:, None], high[:, None])
+                return points.imag[:, None] if self.by_points else Intervals(low[:, None], high[:, None])
             take = of_terms if name in self.terms_of else of_rows
             first = take(found.low)
             if self.by_points:

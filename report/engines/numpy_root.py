@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Expr, Integer, Symbol
+from sympy import Expr, Integer, Symbol, diff
 
 from ..cells.values import Status
 from ..plan import Plan, Root, RowSum, taken_over
@@ -79,8 +79,9 @@ class RootProgram:
         The axes that these sum over; they are called with the unknown, the constants and the totals.
     at : callable
         The equation.
-    step : callable
-        The equation, and what is subtracted from the unknown.
+    newton, step : callable
+        The equation, and what is subtracted from the unknown: by Newton, and of fourth order where no
+        derivative is a sum.
     check : callable
         The equation, and the same with nothing cancelling.
     value : callable
@@ -101,6 +102,7 @@ class RootProgram:
     fixed: Kernel
     totals: tuple[str, ...]
     at: Function
+    newton: Function
     step: Function
     check: Function
     value: Function
@@ -127,7 +129,14 @@ class RootProgram:
         arguments = [unknown, *constants.values(), *cells]
         totals = taken_over([f, value])
         parts, back = step(f, unknown)
-        bodies = {"at": [f], "step": [f, back], "check": [f, magnitude(f)], "value": [value]}
+        newton = [f, f / diff(f, unknown)]
+        bodies = {
+            "at": [f],
+            "newton": newton,
+            "step": [f, back],
+            "check": [f, magnitude(f)],
+            "value": [value],
+        }
         printed = {
             name: write(arguments, totals, body, functions, parts if name == "step" else {})
             for name, body in bodies.items()
@@ -138,8 +147,10 @@ class RootProgram:
         named = {symbol.name: symbol for symbol in plan.leaves}
         asked = {s.name for s in (*fixed.arguments, *(() if enclosed is None else enclosed.arguments))}
         every = tuple(named[name] for name in sorted(asked - {unknown.name}))
-        at, go, check, of_unknown = (function for _, function in printed.values())
-        return cls(node, every, terms_of(node), fixed, totals, at, go, check, of_unknown, source, enclosed)
+        at, straight, go, check, of_unknown = (function for _, function in printed.values())
+        return cls(
+            node, every, terms_of(node), fixed, totals, at, straight, go, check, of_unknown, source, enclosed
+        )
 
     # --- numbers --------------------------------------------------------------------------------------
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -22,7 +22,7 @@ NOISE = 16 * float(np.finfo(float).eps)
 NEAR = (2.0**-17, 2.0**-30)
 """How small a step is, of fourth order and of Newton's, that leaves less than rounding does."""
 UNWATCHED = 2
-"""How many fourth-order steps are taken before it is asked where they led to."""
+"""How many of Newton's steps follow one of fourth order before it is asked where they led to."""
 
 
 class Equation(Protocol):
@@ -32,6 +32,8 @@ class Equation(Protocol):
     def node(self) -> Root: ...
     @property
     def at(self) -> Function: ...
+    @property
+    def newton(self) -> Function: ...
     @property
     def step(self) -> Function: ...
     @property
@@ -100,44 +102,40 @@ class Rows:
         rest = wanted & ~settled
         if not rest.any():
             return here, 0
-        start = np.broadcast_to(start, self.shape)
+        bracket = stretch.left, stretch.right, np.sign(stretch.after)
+        return self._again(rest, here, Rows._carefully, *bracket, start)
+
+    def _again(
+        self, some: Mask, here: Array, find: Callable[..., tuple[Array, int]], *given: Array
+    ) -> tuple[Array, int]:
+        """What is found of some rows alone, beside what others have."""
         if self.totals:
-            careful, count = self._carefully(stretch.left, stretch.right, np.sign(stretch.after), start, rest)
-            return np.where(rest, careful, here), count
-        which = np.flatnonzero(rest)
-        own, part = self.only(which), stretch.only(which)
-        here = here.copy()
-        here.reshape(-1)[which], count = own._carefully(
-            part.left,
-            part.right,
-            np.sign(part.after),
-            start.reshape(-1)[which],
-            np.ones(which.size, dtype=bool),
-        )
+            found, count = find(self, *given)
+            return np.where(some, found, here), count
+        which, here = np.flatnonzero(some), here.copy()
+        own = (np.broadcast_to(each, self.shape).reshape(-1)[which] for each in given)
+        here.reshape(-1)[which], count = find(self.only(which), *own)
         return here, count
 
     def _quickly(self, stretch: Stretch, start: Array) -> tuple[Array, Mask]:
         """Steps that nobody watches, and where they led to a root: near to it, and inside the bracket."""
         here, near, most = start, np.zeros(1, dtype=bool), self.program.node.steps
-        if self.totals:
-            for _ in range(most):
-                _, back = self.program.step(here, *self.constants, *self.totals)
-                # A row that is near enough stays where it is, whatever others need.
-                here, near = np.where(near, here, here - back), near | self._near(here - back, back)
-                if near.all():
-                    break
-        else:
-            for _ in range(min(most, UNWATCHED)):
-                _, back = self.program.step(here, *self.constants)
-                here = here - back
-            near = self._near(here, back)
+        if not self.totals:
+            here, most = here - self.program.step(here, *self.constants)[1], min(most - 1, UNWATCHED)
+        for _ in range(most):
+            _, back = self.program.newton(here, *self.constants, *self.totals)
+            # A row that is near enough stays where it is, whatever others need.
+            here = np.where(near, here, here - back) if near.any() else here - back
+            near = near | self._near(here, back, NEAR[1])
+            if near.all():
+                break
         here = np.broadcast_to(here, self.shape)
         inside = (here >= stretch.left) & (here <= stretch.right)
         return here, inside & near & self._settled(here)
 
-    def _near(self, here: Array, back: Array) -> Mask:
+    def _near(self, here: Array, back: Array, enough: float) -> Mask:
         """Where a step was so small that the next one would be nothing."""
-        return np.abs(back) <= NEAR[bool(self.totals)] * np.abs(here)
+        return np.abs(back) <= enough * np.abs(here)
 
     def _settled(self, here: Array) -> Mask:
         """Where rounding leaves nothing of the equation."""
@@ -145,18 +143,16 @@ class Rows:
         settled: Mask = np.abs(left) <= NOISE * terms
         return settled
 
-    def _carefully(
-        self, left: Array, right: Array, rising: Array, start: Array, wanted: Mask
-    ) -> tuple[Array, int]:
+    def _carefully(self, left: Array, right: Array, rising: Array, start: Array) -> tuple[Array, int]:
         """Steps that stay inside the bracket, and bisection where they do not settle a row."""
         here = np.where((start > left) & (start < right), start, (left + right) / 2)
-        done = ~wanted
+        done = np.zeros(here.shape, dtype=bool)
         for _ in range(self.program.node.steps):
             f, back = self.program.step(here, *self.constants, *self.totals)
             # The bracket moves on a sign only: what is no number moves neither end.
             side = f * rising
             left, right = np.where(side <= 0, here, left), np.where(side > 0, here, right)
-            there, near = here - back, self._near(here, back)
+            there, near = here - back, self._near(here, back, NEAR[bool(self.totals)])
             inside = (there >= left) & (there <= right)
             # A step out of the bracket is replaced by the middle of what is left of it; but beside the
             # root the bracket may be closed up already, and the step out of it by an ulp.
@@ -166,18 +162,16 @@ class Rows:
             done = done | near
             if done.all():
                 break
-        rest = wanted & ~self._settled(here)
-        if rest.any():
-            here = np.where(rest, self._bisect(left, right, rising), here)
-        return here, int(np.count_nonzero(rest))
+        rest = ~self._settled(here)
+        return self._again(rest, here, Rows._bisect, left, right, rising) if rest.any() else (here, 0)
 
-    def _bisect(self, left: Array, right: Array, rising: Array) -> Array:
+    def _bisect(self, left: Array, right: Array, rising: Array) -> tuple[Array, int]:
         """Halve brackets until no double lies between their ends; NaN where the equation has no sign."""
         while True:
             middle = left + (right - left) / 2
             inside = (middle > left) & (middle < right)
             if not inside.any():
-                return right
+                return right, right.size
             side = self.call(self.program.at, middle) * rising
             left = np.where(inside & (side <= 0), middle, left)
             right = np.where(inside & (side > 0), middle, np.where(inside & np.isnan(side), np.nan, right))
