@@ -490,3 +490,37 @@ def test_what_is_ignored_stays_so() -> None:
         assert signal.getsignal(signal.SIGHUP) == signal.SIG_DFL
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+# --- a process beside a build, told to end at an awkward moment ---
+
+WORKER = """
+import os, signal, threading, time
+from loopsheet.report.machine import stopping
+
+def told():
+    os.kill(os.getpid(), signal.SIGTERM)
+
+class Awkward:
+    def __del__(self):
+        told()
+
+def work():
+    {moment}
+    time.sleep(20)
+    print("worked")
+
+start = threading.Thread.start
+if "{moment}" == "pass":
+    threading.Thread.start = lambda self: (start(self), told())
+stopping.worker(os.getppid(), work)
+"""
+
+
+@pytest.mark.parametrize("moment", ["pass", "told()", "Awkward()"])
+def test_a_worker_that_is_told_to_end_says_nothing(moment: str) -> None:
+    """Before somebody catches it, in the work, and in a destructor, where Python only tells of it."""
+    done = subprocess.run(
+        [sys.executable, "-c", WORKER.format(moment=moment)], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
