@@ -122,3 +122,18 @@ def test_what_a_user_may_draw_is_there() -> None:
     assert "stroke-dasharray" in ours
     assert picture(paint) == ours
     assert not re.search("nan|inf", ours)
+
+
+def test_the_numbers_of_a_logarithmic_axis_are_texts() -> None:
+    ours = picture(lambda figure: figure.add_subplot(yscale="log", ylim=(0.2, 300)))
+    said = ["".join(element.itertext()) for element in ET.fromstring(ours).iter(f"{SVG}text")]
+    assert {"100", "101", "102"} <= set(said)  # the last digit stands above the line
+    assert 'dy="-3"' in ours
+    assert "mathdefault" not in ours
+
+
+@pytest.mark.parametrize("notation", [r"\frac{a}{b}", r"\sqrt{2}", r"\bar{x}", r"\mathbb{R}", r"\ln x"])
+def test_notation_that_is_more_than_letters_is_drawn(notation: str) -> None:
+    ours = picture(lambda figure: figure.text(0.1, 0.5, f"a ${notation}$"))
+    assert not list(ET.fromstring(ours).iter(f"{SVG}text"))
+    assert len(list(ET.fromstring(ours).iter(f"{SVG}path"))) > 1

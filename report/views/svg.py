@@ -16,6 +16,8 @@ from matplotlib.image import imsave
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
+from ..document.notation import Part, fragments, read
+
 __all__ = ["written"]
 
 Clip = tuple[float, float, float, float] | None
@@ -210,31 +212,28 @@ def _tenths(number: int) -> str:
 
 # --- texts -----------------------------------------------------------------------------------------------
 
-_GREEK = {"alpha": "α", "beta": "β", "mu": "µ"}
-_MATH = re.compile(
-    r"\\(?P<greek>[a-z]+)|_\{?(?P<low>\w+)\}?|(?P<prime>')|(?P<letter>[^\W\d_])"
-    r"|(?P<other>[^{}^_\\])|(?P<more>.)"
-)
+_DRAWN = {"fraction", "root", "limits", "under", "cases", "accent", "upright"}
+"""Notation that no letters beside one another tell, and commands that are not known here."""
+_SHIFTS = {"_": 1.5, "^": -3.0}
 
 
 def _letters(text: str) -> str | None:
-    """A text as SVG: what stands between dollar signs is slanted or lowered; None if it is more than that."""
-    made, low = "", False
-    for place, part in enumerate(re.split(r"(?<!\\)\$", text)):
-        if place % 2 == 0:
-            made += '<tspan dy="-1.5">\u200b</tspan>' if low and part else ""
-            made += escape(part.replace(r"\$", "$"), quote=False)
-            low = low and not part
-            continue
-        for found in _MATH.finditer(part):
-            if found["more"] or (found["greek"] or "mu") not in _GREEK:
-                return None
-            letter = _GREEK[found["greek"]] if found["greek"] else found["low"] or found["letter"]
-            if letter is None:
-                made += "′" if found["prime"] else escape(found["other"], quote=False)
-                continue
-            shift = f' dy="{"-" if low else ""}1.5"' if low != bool(found["low"]) else ""
-            low = bool(found["low"])
-            size = ' font-size="70%"' if low else ""
-            made += f'<tspan font-style="italic"{shift}{size}>{letter}</tspan>'
+    """A text as SVG: what stands between dollar signs is slanted, lowered or raised; None if it is more."""
+    made, low = "", 0.0
+    for place, part in enumerate(re.split(r"(?<!\\)\$", re.sub(r"\\mathdefault\{(.*?)\}\$", r"\1$", text))):
+        if place % 2 and not _is_flat(read(part)):
+            return None
+        pieces = fragments(part) if place % 2 else [("", part.replace(r"\$", "$"))]
+        for height, piece in pieces if part else ():
+            to = _SHIFTS.get(height, 0.0)
+            style = ' font-style="italic"' if place % 2 and re.search(r"[^\W\d]", piece) else ""
+            style += f' dy="{to - low:g}"' if to != low else ""
+            style += ' font-size="70%"' if height else ""
+            letters = escape(piece, quote=False)
+            made += f"<tspan{style}>{letters}</tspan>" if style else letters
+            low = to
     return made
+
+
+def _is_flat(part: Part) -> bool:
+    return part.kind not in _DRAWN and all(map(_is_flat, part.parts))

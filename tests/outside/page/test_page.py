@@ -9,7 +9,9 @@ import driving
 import pytest
 from campaign_sizes import SEED, Sizes
 from driving import Live
+from test_toy_workbook import FILES as ORBIT
 
+from loopsheet.report import build
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.messages.errors import InputError
 from loopsheet.report.study import Study
@@ -64,6 +66,22 @@ def test_figures_are_drawn_again(live: Live) -> None:
     assert live.page.locator(drawn).count() == 1
     live.click("live-undo")
     assert live.page.locator(drawn).count() == 0
+
+
+def test_a_chart_of_ones_own_is_drawn_again(open_page: Open, tmp_path: Path) -> None:
+    for name, text in ORBIT.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    build.build(Study(tmp_path), tmp_path / "out", ("html",))
+    live = open_page(tmp_path / "out" / "report.html")
+    live.type("t", 2, "110")
+    first = live.paths("orbit")
+    live.type("t", 2, "120")
+    again = live.paths("orbit")
+    assert len(first) == len(again) > 5
+    assert first != again
+    assert not re.search("NaN|Infinity|undefined", "".join(again))
+    said = live.page.locator("#figure-orbit svg text").all_text_contents()
+    assert {"half a turn after each sighting", "3 sightings", "distance r / Gm", "2", "3", "4"} <= set(said)
 
 
 def test_pair_without_a_root_says_why_as_the_terminal_does(
