@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from keyword import iskeyword
+from typing import Any
 
 from sympy import Basic, Expr, Indexed, Symbol
 from sympy.logic.boolalg import Boolean
@@ -166,6 +167,11 @@ class Sheet:
         """For each given column that is bound, a datum and what it must satisfy, for engines to print."""
         data = {name: Symbol(name, real=True) for name, own in self.bounds.items() if own != Bounds()}
         return {name: (datum, within(datum, self.bounds[name])) for name, datum in data.items()}
+
+    @cached_property
+    def plans(self) -> dict[frozenset[str], Any]:
+        """What it was lowered to, by the columns that are known: several ask, and it takes long."""
+        return {}
 
     # --- the graph ------------------------------------------------------------------------------------
 

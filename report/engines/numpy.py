@@ -23,7 +23,7 @@ from ..plan.domain import SMALLEST
 from ..sheet import Column, Sheet
 from .numpy_code import SAME, Array, Function, Kernel, kernel
 from .numpy_root import RootProgram
-from .numpy_rows import Kept
+from .numpy_rows import Kept, chosen
 from .numpy_sheet import sheet_function
 
 __all__ = ["Kernel", "Program", "evaluate", "extend", "kernel", "parts"]
@@ -286,7 +286,7 @@ class _Run:
         value, found = self._solved(column, program, arguments, status)
         beyond = np.isinf(value) | (column.positive & (value > 0) & (value < SMALLEST))
         odd = [(found == Status.OK) & condition for condition in (np.isnan(value), beyond)]
-        found = np.select(odd, [Status.DOMAIN, Status.OVERFLOW], found).astype(np.uint8)
+        found = chosen(odd, [Status.DOMAIN, Status.OVERFLOW], found).astype(np.uint8)
         return self._computed(column, value, found, requires, status)
 
     def _computed(
@@ -333,8 +333,8 @@ class _Run:
         if node.positive != False:  # noqa: E712 - sympy's false
             beyond = beyond | ((value == 0) & self._holds(node.positive, column))
         beyond = beyond & self._holds(node.defined, column)
-        found = np.select([held, beyond], [Status.OK, Status.OVERFLOW], Status.DOMAIN)
-        return found.astype(np.uint8)
+        found: Codes = chosen([held, beyond], [Status.OK, Status.OVERFLOW], Status.DOMAIN).astype(np.uint8)
+        return found
 
     def _holds(self, condition: Any, column: Column) -> Any:
         """Whether a condition on the cells that a column names holds."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
-from types import MappingProxyType
+from types import MappingProxyType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -24,21 +24,10 @@ Array = NDArray[np.float64]
 Function = Callable[..., tuple[Array, ...]]
 
 
-class _Same:
-    """NumPy, but its functions whose last bits hang on the processor are our own."""
-
-    exp, log, power = (
-        staticmethod(elementary.exp),
-        staticmethod(elementary.log),
-        staticmethod(elementary.power),
-    )
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(np, name)
-
-
-SAME: Any = _Same()
-"""What printed functions call, if they are not told to call NumPy itself, which is faster."""
+SAME: Any = ModuleType("numpy")
+vars(SAME).update(vars(np), exp=elementary.exp, log=elementary.log, power=elementary.power)
+"""NumPy, but its functions whose last bits hang on the processor are our own: what printed functions call, if
+they are not told to call NumPy itself, which is faster."""
 
 
 def _choose(condition: Any, yes: Callable[[], Any], no: Callable[[], Any]) -> Any:

@@ -23,7 +23,7 @@ from .certified import Enclosing, certified, enclosing
 from .intervals import Intervals
 from .numpy_code import SAME, Array, Function, Kernel, kernel, write
 from .numpy_enclosed import EnclosedRows
-from .numpy_rows import Kept
+from .numpy_rows import Kept, chosen
 from .numpy_steps import Rows, Stretch
 from .roots import hoist, magnitude, step
 
@@ -186,14 +186,14 @@ class RootProgram:
         doubtful = np.zeros(odd.size, dtype=bool)
         doubtful[list(doubts)] = True
         number = sum((stretch.crosses.astype(np.uint8) for stretch in stretches), np.zeros(shape, np.uint8))
-        status = np.select(
+        status = chosen(
             [odd, doubtful.reshape(shape), number == 1, number > 1],
             [Status.DOMAIN, Status.UNDECIDED, Status.OK, Status.TWOROOTS],
             Status.NOROOT,
         )
         crossings, alone = [stretch.crosses for stretch in stretches], status == Status.OK
         left, right, after = (
-            np.select(crossings, [getattr(stretch, part) for stretch in stretches], np.nan)
+            chosen(crossings, [getattr(stretch, part) for stretch in stretches], np.nan)
             for part in ("left", "right", "after")
         )
         only = Stretch(left, right, after, alone)

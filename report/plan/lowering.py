@@ -32,9 +32,12 @@ def lowered(sheet: Sheet, known: Collection[str] = ()) -> Plan:
     known : collection of str
         Columns that are computed already: they have no node.
     """
-    lowering = Lowering(sheet)
-    nodes = [node for c in sheet.order if c.name not in known for node in lowering.column(c)]
-    return Plan(tuple(nodes), lowering.leaves)
+    key = frozenset(known)
+    if key not in sheet.plans:
+        lowering = Lowering(sheet)
+        nodes = [node for c in sheet.order if c.name not in known for node in lowering.column(c)]
+        sheet.plans[key] = Plan(tuple(nodes), lowering.leaves)
+    return sheet.plans[key]  # type: ignore[no-any-return]
 
 
 def lowered_column(sheet: Sheet, column: Column) -> Plan:

@@ -125,8 +125,8 @@ class Campaign:
         return self.made.sheets[cut]
 
     @cached_property
-    def enclosed(self) -> dict[Any, Any]:
-        """What certificates keep: the cells of each program over what prints as given."""
+    def shared(self) -> dict[Any, Any]:
+        """What all problems of a program share: its cells over what prints as given, and their graph."""
         return {}
 
     def unknowns(self, sheet: Sheet, cut: Sequence[str], asked: Sequence[str] = ()) -> Iterator[Unknown]:

@@ -115,16 +115,14 @@ def _sought(
 ) -> Best:
     """The best point for a problem as it is, whether it counts roots or not."""
     point = np.clip(box.start, box.low, box.high)
-    cells = problem.evaluate(point[None])[0]
+    cells, slopes = problem.around(point, box)
     worst, trust, weights = _worst(problem, cells), 1.0, np.zeros(len(cells))
     counted = _Counted.of(box, point)
     low, high, moving = counted.to(box.low), counted.to(box.high), np.flatnonzero(counted.scale)
-    stale, slow, promised = slopes is not None, 0, worst
+    slow, promised = 0, worst
     for _ in range(STEPS):
         if not worst > until or not np.isfinite(worst) or not moving.size:
             break
-        if slopes is None:
-            slopes, stale = problem.slopes(point, box), False
         here = counted.to(point)
         scaled = (slopes * counted.slope(point))[:, moving] / problem.half[:, None]
         scaled[list(problem.ignored)] = 0.0
@@ -137,15 +135,11 @@ def _sought(
         there = here.copy()
         there[moving] += step
         there = np.clip(counted.back(there), box.low, box.high)
-        its = problem.evaluate(there[None])[0]
+        its, around = problem.around(there, box)
         new = _worst(problem, its)
         gain, hoped = worst - new, worst - promised
         if gain > 0:
-            point, cells, worst = there, its, new
-        if stale and (gain < 0.5 * hoped or hoped < ENOUGH):
-            slopes = None  # derivatives of another point have led as far as they can
-            continue
-        stale = True
+            point, cells, slopes, worst = there, its, around, new
         if gain > 0.75 * hoped:
             trust = min(2 * trust, 1e6)
         elif gain < 0.25 * hoped:
@@ -260,7 +254,7 @@ def _linear(slopes: Array, off: Array, low: Array, high: Array) -> tuple[Array, 
     rows = np.block([[slopes, -ones], [-slopes, -ones]])
     cost = np.zeros(moving + 1)
     cost[-1] = 1
-    bounds = [*zip(low.tolist(), high.tolist(), strict=True), (0, None)]
+    bounds = np.column_stack([np.append(low, 0), np.append(high, np.inf)])
     found = linprog(cost, A_ub=rows, b_ub=np.concatenate([-off, off]), bounds=bounds, method="highs")
     if found.x is None:
         return np.zeros(moving), float(np.abs(off).max()), np.zeros(number)

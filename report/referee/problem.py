@@ -110,6 +110,11 @@ class Problem:
         """The columns that are computed."""
         return self.program.sheet
 
+    @property
+    def asked_of(self) -> tuple[Any, ...]:
+        """What is the same for all problems of a campaign that compute the same of the same unknowns."""
+        return id(self.sheet), *self.rows  # the campaign keeps its sheets
+
     @cached_property
     def guessing(self) -> Problem:
         """The same for a search: its roots are not counted, so that nothing may be told that it evaluates."""
@@ -147,6 +152,16 @@ class Problem:
         """Column and row of each published value."""
         values = self.campaign.values
         return [(p.cell, values.row(self.campaign.sheet[p.cell], p.index)) for p in self.published]
+
+    @cached_property
+    def _asked(self) -> dict[Way | None, dict[str, tuple[list[int], list[int]]]]:
+        """For each way and column, the places of the published values among all, and their rows."""
+        found: dict[Way | None, dict[str, tuple[list[int], list[int]]]] = {}
+        for n, (way, (name, row)) in enumerate(zip(self.ways, self.places, strict=True)):
+            which, rows = found.setdefault(way, {}).setdefault(name, ([], []))
+            which.append(n)
+            rows.append(row)
+        return found
 
     @cached_property
     def rows(self) -> dict[str, list[int]]:
@@ -191,17 +206,14 @@ class Problem:
 
     def evaluate(self, points: Array) -> Array:
         """The published cells (points, published) in SI at points (points, unknowns); NaN for no value."""
-        data, columns = self.data(points), [np.empty(0)] * len(self.published)
+        data, found = self.data(points), np.empty((len(points), len(self.published)))
         plain = evaluate(self.sheet, self.campaign.labels, data, self.program)
         for way in dict.fromkeys(self.ways):
             values = plain if way is None else way.evaluate(self.campaign, data, plain)
-            for n, (name, row) in enumerate(self.places):
-                if self.ways[n] is way:
-                    alive = values.status[name][..., row] == Status.OK
-                    found = np.where(alive, values.value[name][..., row], np.nan)
-                    columns[n] = np.broadcast_to(found, points.shape[:1])
-        empty = np.empty((len(points), 0))  # the others of a single value
-        return np.column_stack([empty, *columns])
+            for name, (which, rows) in self._asked[way].items():
+                alive = values.status[name][..., rows] == Status.OK
+                found[:, which] = np.where(alive, values.value[name][..., rows], np.nan)
+        return found
 
     def mismatch(self, cells: Array) -> Array:
         """How far cells are from what was published, in half units of the last digit."""
@@ -211,19 +223,35 @@ class Problem:
             found[..., list(self.ignored)] = 0.0
         return found
 
-    def slopes(self, point: Array, box: Box) -> Array:
-        """Derivatives (published, unknowns) at a point, by central differences within the box's scale."""
+    def around(self, point: Array, box: Box) -> tuple[Array, Array]:
+        """The published cells at a point, and the derivatives (published, unknowns) of those not ignored.
+
+        These are central differences within the box's scale, in one batch with the point.
+        """
         size = np.abs(point)
         steps = np.maximum(1e-4 * np.minimum(box.width, 0.1 * size), 1e-8 * size)
         steps = np.where(box.width > 0, np.where(size > 0, steps, 1e-4 * box.width), 0.0)
-        moving = np.flatnonzero(steps)
-        ahead = np.repeat(point[None], 2 * len(moving), axis=0)
+        moving = np.flatnonzero(self._moving & (steps > 0))
+        points = np.repeat(point[None], 1 + 2 * len(moving), axis=0)
+        ahead, behind = points[1::2], points[2::2]
         ahead[np.arange(len(moving)), moving] += steps[moving]
-        ahead[len(moving) + np.arange(len(moving)), moving] -= steps[moving]
-        cells = self.evaluate(ahead) if len(moving) else np.empty((0, len(self.published)))
+        behind[np.arange(len(moving)), moving] -= steps[moving]
+        cells = self.evaluate(points)
         found = np.zeros((len(self.published), len(point)))
-        found[:, moving] = ((cells[: len(moving)] - cells[len(moving) :]) / (2 * steps[moving])[:, None]).T
-        return found
+        found[:, moving] = ((cells[1::2] - cells[2::2]) / (2 * steps[moving])[:, None]).T
+        return cells[0], found
+
+    def slopes(self, point: Array, box: Box) -> Array:
+        """The derivatives of all published cells alone."""
+        return replace(self, ignored=frozenset()).around(point, box)[1]
+
+    @cached_property
+    def _moving(self) -> NDArray[np.bool_]:
+        """The unknowns that those rest on which must come out; of other ways than the sheet's all may."""
+        asked = [n for n in range(len(self.published)) if n not in self.ignored]
+        if any(self.ways[n] is not None for n in asked):
+            return np.ones(len(self.unknowns), dtype=bool)
+        return np.asarray(self.touched[asked].any(axis=0))
 
     def witness(self, point: Array) -> tuple[Witness, ...]:
         """A point in words."""
@@ -267,6 +295,14 @@ class Problem:
     @cached_property
     def touched(self) -> NDArray[np.bool_]:
         """Whether a published cell rests on an unknown (published, unknowns), by the sheet's own graph."""
+        known, key = self.campaign.shared, ("rests", *self.asked_of)
+        if key not in known:
+            known[key] = self._rests()
+        found = [known[key][name][:, row] for name, row in self.places]
+        return np.array(found).reshape(-1, len(self.unknowns))
+
+    def _rests(self) -> dict[str, NDArray[np.bool_]]:
+        """Whether a cell of each column rests on an unknown (unknowns, rows)."""
         number, layouts = len(self.unknowns), self.campaign.values.layouts
         rests: dict[str, NDArray[np.bool_]] = {}
         for column in self.sheet.order:
@@ -278,4 +314,4 @@ class Problem:
                 theirs = precedent.take(rests[precedent.column.name])
                 found |= theirs if precedent.over is None else theirs.any(axis=-1, keepdims=True)
             rests[column.name] = found
-        return np.array([rests[name][:, row] for name, row in self.places]).reshape(-1, number)
+        return rests
