@@ -227,18 +227,17 @@ def _of_a_crate(out: Path, folder: Path) -> dict[Path, str]:
 
 def _pictures(report: Report, formats: Collection[str], but: Collection[FigureSpec] = ()) -> dict[str, bytes]:
     """The files of a report's figures, by name, but some."""
-    drawn: dict[str, bytes] = {}
-    forms = {FORMATS[each][2] for each in formats} - {""}
+    forms = sorted({FORMATS[each][2] for each in formats} - {""}, reverse=True)
     if not forms:
-        return drawn
+        return {}
     from .views import figures
 
-    for figure in (each for each in figures.of(report) if each not in but):
-        if "svg" in forms:
-            drawn[f"{figure.name}.svg"] = figures.svg(report, figure.drawing).encode()
-        if "pdf" in forms:
-            drawn[f"{figure.name}.pdf"] = figures.pdf(report, figure.drawing)
-    return drawn
+    return {
+        f"{each.name}.{form}": content
+        for each in figures.of(report)
+        if each not in but
+        for form, content in figures.files(report, each.drawing, forms).items()
+    }
 
 
 def _write(made: Made, stage: Path, formats: Collection[str], step: Step) -> None:

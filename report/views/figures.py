@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,7 @@ from . import charts, drawing, reach
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["draw", "drawings", "of", "pdf", "svg"]
+__all__ = ["draw", "drawings", "files", "of", "pdf", "svg"]
 
 
 def drawings(workbook: Workbook) -> Mapping[str, Callable[[Report], Figure]]:
@@ -57,11 +57,7 @@ def svg(report: Report, name: str) -> str:
     report, name
         As for :func:`draw`.
     """
-    from .svg import written
-
-    figure = draw(report, name)
-    with drawing.styled():
-        return written(figure, f"{name}-")
+    return files(report, name, ["svg"])["svg"].decode()
 
 
 def pdf(report: Report, name: str) -> bytes:
@@ -72,8 +68,28 @@ def pdf(report: Report, name: str) -> bytes:
     report, name
         As for :func:`draw`.
     """
-    figure, buffer = draw(report, name), io.BytesIO()
+    return files(report, name, ["pdf"])["pdf"]
+
+
+def files(report: Report, name: str, forms: Collection[str]) -> dict[str, bytes]:
+    """A drawing that is made once, as a file of each form.
+
+    Parameters
+    ----------
+    report, name
+        As for :func:`draw`.
+    forms : collection of str
+        ``svg``, ``pdf``.
+    """
+    from .svg import written
+
+    figure, found = draw(report, name), dict[str, bytes]()
     with drawing.styled():
-        nobody = {"CreationDate": None, "Producer": None, "Creator": None}
-        figure.savefig(buffer, format="pdf", metadata=nobody)
-    return buffer.getvalue()
+        if "svg" in forms:
+            found["svg"] = written(figure, f"{name}-").encode()
+        if "pdf" in forms:
+            buffer = io.BytesIO()
+            nobody = {"CreationDate": None, "Producer": None, "Creator": None}
+            figure.savefig(buffer, format="pdf", metadata=nobody)
+            found["pdf"] = buffer.getvalue()
+    return found
