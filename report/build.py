@@ -17,7 +17,7 @@ from .machine.provenance import processor, sources
 from .machine.staging import put, staged
 from .machine.timing import timed
 from .messages.errors import UsageError, close, diagnose, listing
-from .stages import Step, book, refuse_too_many_rows, silent
+from .stages import Step, book, refereed_values, refuse_too_many_rows, silent
 from .study import Recipe, Study
 from .views import FORMATS, ON_REQUEST
 
@@ -178,7 +178,8 @@ def _made(
         study.prepared.check_cells()
         refereeing = None
         if study.inputs.published:
-            refereeing = running.enter_context(Background(_refereed, study.recipe))
+            plain = study.computed.values.plain
+            refereeing = running.enter_context(Background(_refereed, study.recipe, plain))
         engines = study.engines if every_engine else study.numpy
         source = study.program if "html" in formats else ""
         if proving is not None:
@@ -212,10 +213,13 @@ def _proofs(recipe: Recipe) -> dict[str, Any]:
     return Study.of(recipe).proof_data
 
 
-def _refereed(recipe: Recipe) -> tuple[Referee, tuple[Comparison, ...]]:
-    """In a process of its own: what the referee finds."""
-    report = Study.of(recipe).refereed
-    return report.referee, report.comparisons
+def _refereed(recipe: Recipe, plain: tuple[Any, ...]) -> tuple[Referee, tuple[Comparison, ...]]:
+    """In a process of its own: what the referee finds of values that are computed."""
+    from .cells.values import Values
+
+    made = Study.of(recipe).prepared
+    made = replace(made, inputs=made.check_cells())
+    return refereed_values(made, Values(made.sheet, made.layouts, *plain))
 
 
 def _of_a_crate(out: Path, folder: Path) -> dict[Path, str]:

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from .charts import Drawn
     from .messages.errors import Diagnostic
     from .result.agreement import Agreement
-    from .result.result import Plotted, Report, Shown
+    from .result.result import Comparison, Plotted, Report, Shown
+    from .result.verdict import Referee
     from .sheet import Column, Sheet
     from .workbook import Workbook
 
@@ -41,6 +42,7 @@ __all__ = [
     "prepared",
     "program",
     "refereed",
+    "refereed_values",
     "refuse_too_many_rows",
     "shown",
     "silent",
@@ -183,12 +185,19 @@ def refereed(report: Report, step: Step = silent) -> Report:
     step : callable
         Told what is begun.
     """
+    found, comparisons = refereed_values(Prepared(report.inputs, report.sheet), report.values, step)
+    return replace(report, referee=found, comparisons=comparisons)
+
+
+def refereed_values(
+    made: Prepared, values: Values, step: Step = silent
+) -> tuple[Referee, tuple[Comparison, ...]]:
+    """The same of values alone: the verdicts, and every published value with its own."""
     from . import referee
     from .referee.judging import referee as judge
 
-    data = Prepared(report.inputs, report.sheet).data
-    found = judge(report.sheet, report.inputs, report.values, data, step)
-    return replace(report, referee=found, comparisons=referee.refereed(report.comparisons, found))
+    found = judge(made.sheet, made.inputs, values, made.data, step)
+    return found, referee.refereed(referee.compare(made.inputs.published, values), found)
 
 
 def compared(report: Report) -> Report:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -187,6 +188,11 @@ class Values:
     roots: Mapping[str, Mapping[int, tuple[float, ...]]] = field(default_factory=dict)
     counted: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
     broken: Mapping[str, NDArray[np.uint8]] = field(default_factory=dict)
+
+    @property
+    def plain(self) -> tuple[Any, ...]:
+        """All but sheet and layouts, in their order: plain data for another process, which has those."""
+        return self.value, self.status, self.roots, self.counted, self.broken
 
     def labels(self, column: Column) -> list[tuple[int, ...]]:
         """How the rows of a column are called; one empty label for a scalar."""
