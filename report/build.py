@@ -7,6 +7,7 @@ from base64 import b64decode, b64encode
 from collections.abc import Callable, Collection
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -195,14 +196,14 @@ def _made(
         finished = replace(proved, engines=engines)
         study.step("drawing the figures")
         with timed("figures"):
-            pictures = _pictures(finished, formats)
+            pictures = _pictures(study, finished, formats)
         if refereeing is not None:
             study.step("refereeing what was published")
             with timed("waiting for the referee"):
                 referee, comparisons = refereeing.result()
             finished = replace(finished, referee=referee, comparisons=comparisons)
             with timed("figures"):
-                pictures |= _pictures(finished, formats, finished.workbook.figures)
+                pictures |= _pictures(study, finished, formats, finished.workbook.figures)
     with timed("writing"):
         _write(Made(finished, pictures, source, content), stage, formats, study.step)
     return finished
@@ -229,19 +230,23 @@ def _of_a_crate(out: Path, folder: Path) -> dict[Path, str]:
     return {name: digest for name, digest in added(out).items() if not (own and INPUTS in name.parts)}
 
 
-def _pictures(report: Report, formats: Collection[str], but: Collection[FigureSpec] = ()) -> dict[str, bytes]:
-    """The files of a report's figures, by name, but some."""
-    forms = sorted({FORMATS[each][2] for each in formats} - {""}, reverse=True)
+def _pictures(
+    study: Study, report: Report, formats: Collection[str], but: Collection[FigureSpec] = ()
+) -> dict[str, bytes]:
+    """The files of a report's figures, by name, but some; those that show no data are kept."""
+    forms = sorted({FORMATS[each][2] for each in formats} - {""})
     if not forms:
         return {}
     from .views import figures
 
-    return {
-        f"{each.name}.{form}": content
-        for each in figures.of(report)
-        if each not in but
-        for form, content in figures.files(report, each.drawing, forms).items()
-    }
+    found = dict[str, bytes]()
+    for each in figures.of(report):
+        if each in but:
+            continue
+        draw = partial(figures.files, report, each.drawing, forms)
+        files = study.kept("drawing", draw, each.drawing, *forms, by="workbook") if each.fixed else draw()
+        found |= {f"{each.name}.{form}": b64decode(content) for form, content in files.items()}
+    return found
 
 
 def _write(made: Made, stage: Path, formats: Collection[str], step: Step) -> None:

@@ -85,6 +85,8 @@ class FigureSpec:
     """What the picture shows, for those who cannot see it."""
     chart: Chart | None = None
     """What it shows of the sheet: all views draw it, and those that recalculate draw it again."""
+    fixed: bool = False
+    """Whether it is the same for all data: then it is drawn once for all."""
 
     @property
     def drawing(self) -> str:

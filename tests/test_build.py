@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import pickle
 import re
 import shutil
 import subprocess
@@ -120,6 +121,11 @@ def test_same_bytes_everywhere(issued: Path, tmp_path: Path) -> None:
     found = hashes(home / "o")
     assert found == hashes(issued / "out")
     assert len(found) > 8
+
+
+def test_the_referee_says_the_same_of_values_that_it_is_told(paper: Report) -> None:
+    found = build._refereed(Study(PAPER).recipe, pickle.loads(pickle.dumps(paper.values.plain)))
+    assert found == (paper.referee, paper.comparisons)
 
 
 @pytest.mark.usefixtures("unjudged")

@@ -24,6 +24,7 @@ from loopsheet.report.referee.campaign import Campaign
 from loopsheet.report.referee.certificate import Certificate
 from loopsheet.report.referee.minimax import best
 from loopsheet.report.referee.problem import Problem
+from loopsheet.report.referee.ways import from_printed
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
 from loopsheet.report.study import Study
 
@@ -74,6 +75,20 @@ def test_derivatives_hold_those_of_every_sample(campaign: Campaign) -> None:
         slack = 1e-4 * np.abs(found) + 1e-6 * np.abs(found).max()
         assert (found >= slopes.low - slack).all()
         assert (found <= slopes.high + slack).all()
+
+
+def test_derivatives_of_some_values_are_those_of_all(campaign: Campaign) -> None:
+    problem = table(campaign, "Table 2", "Table 3", "text")
+    box, every = problem.box, range(len(problem.published))
+    all_of_them = problem.slopes(box.start, box)
+    for n in every:
+        alone, among = problem.only([n]), problem.ignoring(set(every) - {n})
+        assert (alone.slopes(box.start, box)[0] == all_of_them[n]).all()
+        assert (among.around(box.start, box)[1][n] == all_of_them[n]).all()
+        assert 0 < np.count_nonzero(alone._moving) < len(problem.unknowns)
+    mean = next(n for n in every if problem.published[n].cell == "alpha_mean")
+    printed = {"alpha": np.full(10, 1.3)}
+    assert problem.computed(from_printed(campaign, ["alpha_mean"], printed), [mean])._moving.all()
 
 
 def test_no_sample_beats_the_certified_mismatch(campaign: Campaign) -> None:

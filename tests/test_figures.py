@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+from base64 import b64decode
 from collections.abc import Callable
 from functools import cache
 from itertools import combinations
@@ -196,6 +197,21 @@ def test_same_bytes_in_another_process_time_zone_and_with_other_settings(
     assert run.returncode == 0, run.stderr
     assert run.stdout.splitlines() == expected
     assert run.stderr == ""
+
+
+def test_what_is_drawn_once_for_all_shows_no_data(report_of: Callable[..., Report]) -> None:
+    fixed = [each.drawing for each in WORKBOOK.figures if each.fixed]
+    assert fixed == ["hysteresis", "lankarani"]
+    for name in fixed:
+        drawn = {tuple(figures.files(report_of(which), name, ["svg", "pdf"]).items()) for which in CAMPAIGNS}
+        assert len(drawn) == 1, name
+
+
+def test_a_drawing_as_two_files_is_that_of_each(report_of: Callable[..., Report]) -> None:
+    for name in DRAWINGS:
+        report = report_of("paper")
+        files = {form: b64decode(text) for form, text in figures.files(report, name, ["svg", "pdf"]).items()}
+        assert files == {"svg": figures.svg(report, name).encode(), "pdf": figures.pdf(report, name)}
 
 
 def test_a_drawing_leaves_the_settings_of_matplotlib_alone(report_of: Callable[..., Report]) -> None:

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 from small_report import end_gauge
 
 from loopsheet.derivations import proof
 from loopsheet.report import stages
+from loopsheet.report.build import build
 from loopsheet.report.cli import main
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.machine.kept import SETTING
 from loopsheet.report.messages.errors import InputError
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
+from loopsheet.report.views import figures
 
 
 def parts(study: Study) -> set[str]:
@@ -55,6 +58,30 @@ def test_a_proof_that_was_made_elsewhere_is_the_same(report: Report) -> None:
     assert (other.proved.proofs, other.proved.errata) == (report.proofs, report.errata)
     assert other.proofs([report.ledger["(11)"]]) == (report.proof("(11)"),)
     assert report.errata
+
+
+def test_a_figure_that_shows_no_data_is_drawn_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(SETTING, str(tmp_path / "cache"))
+    folder, drawn = shutil.copytree(PAPER, tmp_path / "paper"), list[str]()
+    (folder / "published.csv").write_text("source,cell,index,value,unit\n")
+    draw = figures.draw
+
+    def told(report: Report, name: str) -> Any:
+        drawn.append(name)
+        return draw(report, name)
+
+    monkeypatch.setattr(figures, "draw", told)
+    build(Study(folder), tmp_path / "out", ("html", "latex"))
+    every = {path.name: path.read_bytes() for path in (tmp_path / "out" / "figures").iterdir()}
+    assert drawn == ["hysteresis", "lankarani", "loops", "alpha_pairs"]
+    data = folder / "measurements.csv"
+    data.write_text(data.read_text().replace("29.7", "29.81"))
+    build(Study(folder), tmp_path / "out", ("html", "latex"))
+    assert drawn[4:] == ["loops", "alpha_pairs"]
+    now = {path.name: path.read_bytes() for path in (tmp_path / "out" / "figures").iterdir()}
+    assert {name for name in every if now[name] == every[name]} == {
+        f"{name}.{form}" for name in drawn[:2] for form in ("svg", "pdf")
+    }
 
 
 def test_the_program_of_the_page_hangs_on_what_is_given_and_not_on_the_numbers(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from base64 import b64decode, b64encode
 from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from typing import TYPE_CHECKING
@@ -57,7 +58,7 @@ def svg(report: Report, name: str) -> str:
     report, name
         As for :func:`draw`.
     """
-    return files(report, name, ["svg"])["svg"].decode()
+    return b64decode(files(report, name, ["svg"])["svg"]).decode()
 
 
 def pdf(report: Report, name: str) -> bytes:
@@ -68,11 +69,11 @@ def pdf(report: Report, name: str) -> bytes:
     report, name
         As for :func:`draw`.
     """
-    return files(report, name, ["pdf"])["pdf"]
+    return b64decode(files(report, name, ["pdf"])["pdf"])
 
 
-def files(report: Report, name: str, forms: Collection[str]) -> dict[str, bytes]:
-    """A drawing that is made once, as a file of each form.
+def files(report: Report, name: str, forms: Collection[str]) -> dict[str, str]:
+    """A drawing that is made once, as a file of each form, in base64.
 
     Parameters
     ----------
@@ -83,13 +84,12 @@ def files(report: Report, name: str, forms: Collection[str]) -> dict[str, bytes]
     """
     from .svg import written
 
-    figure, found = draw(report, name), dict[str, bytes]()
+    figure, buffer, found = draw(report, name), io.BytesIO(), dict[str, bytes]()
     with drawing.styled():
         if "svg" in forms:
             found["svg"] = written(figure, f"{name}-").encode()
         if "pdf" in forms:
-            buffer = io.BytesIO()
             nobody = {"CreationDate": None, "Producer": None, "Creator": None}
             figure.savefig(buffer, format="pdf", metadata=nobody)
             found["pdf"] = buffer.getvalue()
-    return found
+    return {form: b64encode(content).decode() for form, content in found.items()}

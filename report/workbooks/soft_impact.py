@@ -332,6 +332,7 @@ WORKBOOK = Workbook(
             "A loop of force over approach: up along the loading curve, down along the unloading curve to "
             "the imprint depth. Two hatched areas, the works of friction, enclose a grey one, the plastic "
             "work.",
+            fixed=True,
         ),
         FigureSpec(
             "lankarani",
@@ -340,6 +341,7 @@ WORKBOOK = Workbook(
             "lankarani",
             "Force over approach: the loading curve rises from zero to the maximum approach, the unloading "
             "curve falls from there to the imprint depth.",
+            fixed=True,
         ),
         FigureSpec(
             "loops",
