@@ -6,7 +6,6 @@ import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..charts import STYLES, Chart
 from ..messages.errors import listing, suggest
 from ..workbook import FigureSpec, Measured, Parameter, TableSpec
 from .unit_text import UnitError, parse_unit
@@ -51,6 +50,8 @@ def mistyped(workbook: Workbook) -> Iterator[tuple[str, str, str]]:
 def _wrong(declared: object) -> tuple[str, str] | None:
     """A unit that is none, or the name of a figure whose chart is none, with a sentence."""
     if isinstance(declared, FigureSpec):
+        from ..charts import Chart  # with sympy, which an answer that is kept does without
+
         chart: Any = declared.chart
         none = f"the chart of figure '{declared.name}' is no Chart"
         return None if isinstance(chart, Chart | None) else (declared.name, none)
@@ -110,6 +111,8 @@ def misnamed(
 
 def _undrawable(figure: FigureSpec, sheet: Sheet, workbook: Workbook) -> Iterator[tuple[str, str]]:
     """What no view could draw of a chart: the word in it, and a sentence."""
+    from ..charts import STYLES
+
     chart, drawn = figure.chart, workbook.drawn(sheet).columns if workbook.drawn else ()
     if chart is None:
         return
