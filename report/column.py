@@ -257,7 +257,7 @@ class Root:
     start : Expr
         A first guess. It costs steps, never truth: the bracket decides.
     steps : int
-        How many fourth-order steps every cell gets. One that they do not settle is bisected to the end.
+        How many steps a cell gets. One that they do not settle is bisected to the end.
     none : str
         What it means when there is no root, for the reader.
     two : str

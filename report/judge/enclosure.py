@@ -3,8 +3,8 @@
 The sheet's program runs on intervals as it is. A root is enclosed by certain signs of its equation on both
 sides of it: between turning points it changes sign at most once, which is certified or counted here, so that
 with certain signs at the ends and no turning point inside there is one root, whatever the values inside the
-intervals. Derivatives
-are the sheet's own, made by algebra (:mod:`~loopsheet.report.conditions`), and added up along all ways.
+intervals. Derivatives are the sheet's own, made by algebra (:mod:`~loopsheet.report.plan.derivatives`), and
+added up along all ways.
 
 A mean-value form then bounds the cells far better than the program alone:
 f(X) lies in f(m) + f'(X) (X - m).

@@ -222,7 +222,7 @@ class Root:
     positive : bool
         Whether its value is positive although no double may hold it, by what is assumed of what it names.
     steps : int
-        How many fourth-order steps every row takes.
+        How many steps a row takes at most before it is bisected.
     """
 
     column: Column
