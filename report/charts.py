@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
-from sympy import Symbol
+from sympy import Expr, Symbol
 
 from ..derivations.equation import Equation, Kind
 from .sheet import Axis, Column, Formula, Sheet
 
-__all__ = ["BLUE", "INK", "STYLES", "VERMILION", "Chart", "Drawn", "Series", "copied", "shade", "with_copies"]
+__all__ = [
+    "BLUE", "INK", "STYLES", "VERMILION", "Chart", "Drawn", "Series", "copied", "drawn", "shade",
+    "with_copies",
+]  # fmt: skip
 
 INK, VERMILION, BLUE = "#1a1a1a", "#d55e00", "#0072b2"
 """Of Okabe and Ito: told apart by every eye."""
@@ -95,32 +99,29 @@ class Drawn:
     given: Mapping[str, int] = field(default_factory=dict)
 
 
+def drawn(name: str, axis: Axis, value: Expr, unit: str = "1", meaning: str = "", **more: Any) -> Column:
+    """A column that only charts ask for; what else a :class:`Column` takes is `more`."""
+    equation = Equation("", (Symbol("drawn"), value), "", Kind.DEFINITION, "for the chart")
+    return Column(name, axis, Formula(equation), unit, meaning, positive=False, **more)
+
+
 def copied(column: Column, axis: Axis) -> str:
     """The name of the copy of a sheet's column, or of a single number for each row, that Excel draws from."""
     return f"plotted_{column.name}" if column.axis else f"{axis.name}_{column.name}"
 
 
-def with_copies(drawn: Drawn, sheet: Sheet, charts: Iterable[Chart]) -> Drawn:
+def with_copies(own: Drawn, sheet: Sheet, charts: Iterable[Chart]) -> Drawn:
     """The same with copies of what charts show of the sheet, for what would draw a cell in error as zero."""
-    columns = {column.name: column for column in (*sheet.columns, *drawn.columns)}
+    columns = {column.name: column for column in (*sheet.columns, *own.columns)}
     found: dict[str, Column] = {}
     for series in (series for chart in charts for series in chart.series):
         axis = columns[series.x].axis
         assert axis is not None
         for column in (sheet[name] for name in (series.x, series.y) if name in sheet):
             value = column[axis.index] if column.axis else column.symbol
-            equation = Equation("", (Symbol("drawn"), value), "", Kind.DEFINITION, "for the chart")
             name, meaning = copied(column, axis), f"{column.name}, for the chart"
-            found[name] = Column(
-                name,
-                axis,
-                Formula(equation),
-                column.unit,
-                meaning,
-                display=f"like {column.name}",
-                positive=False,
-            )
-    return Drawn((*drawn.columns, *found.values()), drawn.given)
+            found[name] = drawn(name, axis, value, column.unit, meaning, display=f"like {column.name}")
+    return Drawn((*own.columns, *found.values()), own.given)
 
 
 def shade(part: float) -> str:

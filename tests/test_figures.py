@@ -120,7 +120,7 @@ def test_every_drawing_draws_as_svg_and_pdf(
     report = report_of(campaign)
     svg = figures.svg(report, name)
     root = ElementTree.fromstring(svg)
-    assert root.get("width") == f"{16 / 2.54 * 72:.1f}pt"
+    assert root.get("width") == f"{16 / 2.54 * 96:.0f}"
     assert len(svg) < 65_000
     assert set(re.findall(r'https?://[^"]*', svg)) == {"http://www.w3.org/2000/svg"}
     pdf = figures.pdf(report, name)

@@ -16,7 +16,7 @@ from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
-from loopsheet.report.workbooks.soft_impact_charts import drawn
+from loopsheet.report.workbooks.soft_impact_charts import columns
 from loopsheet.report.workbooks.soft_impact_schematics import (
     FRICTION,
     SCHEMATIC,
@@ -52,7 +52,7 @@ def consistent(tests: int, alpha: float, beta: float, C: float = 1.1e9) -> Value
 
 def drawn_of(values: Values, samples: int | None = None) -> Values:
     """The same with the columns that only the charts ask for."""
-    more = drawn(SHEET)
+    more = columns(SHEET)
     return extend(values, more.columns, {"loop_points": samples} if samples else more.given)
 
 

@@ -31,7 +31,7 @@ SOURCE = """\
 from sympy import Abs, Rational, Sum, Symbol, cos, pi, sin
 from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step
 from loopsheet.report.quantity import Bounds
-from loopsheet.report.charts import Chart, Drawn, Series
+from loopsheet.report.charts import Chart, Drawn, Series, drawn
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
 from loopsheet.report.workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook
 
@@ -67,19 +67,15 @@ MOST = 25
 l, m, points, turn = (Symbol(s, integer=True, positive=True) for s in ("l", "m", "n_w", "n_t"))
 
 
-def drawn(sheet):
+def curves(sheet):
     # From one sighting to half a period later, by the anomaly that needs no root.
     way = RepeatAxis("way", l, points, of=SIGHTINGS, step=m, count="way_points")
     count = Column("way_points", None, Given("chart"), exact=True)
-    E_w = Column("E_way", way, defined(E_k[k] + pi * (m - 1) / (count.symbol - 1)), "1")
-    M_w = Column("M_way", way, defined(E_w[l] - ecc * sin(E_w[l])), "1")
-    t_w = Column("t_way", way, defined(M_w[l] * T / (2 * pi)), "s", display="like t")
-    r_w = Column("r_way", way, defined(a * (1 - ecc * cos(E_w[l]))), "m", display="like a")
+    E_w = drawn("E_way", way, E_k[k] + pi * (m - 1) / (count.symbol - 1))
+    M_w = drawn("M_way", way, E_w[l] - ecc * sin(E_w[l]))
+    t_w = drawn("t_way", way, M_w[l] * T / (2 * pi), "s", display="like t")
+    r_w = drawn("r_way", way, a * (1 - ecc * cos(E_w[l])), "m", display="like a")
     return Drawn((count, E_w, M_w, t_w, r_w), {"way_points": MOST})
-
-
-def defined(value):
-    return Formula(Equation("", (Symbol("drawn"), value), "drawn", Kind.DEFINITION, "drawn"))
 
 
 ORBIT = Chart(
@@ -108,7 +104,7 @@ WORKBOOK = Workbook(
     sheet=lambda given: Sheet((times, period, axis, shape, M_k, E_k, r_k, gap, mean)),
     headline=("r_mean",),
     figures=(FigureSpec("orbit", "1", "Distances over time, and the ellipse.", chart=ORBIT),),
-    drawn=drawn,
+    drawn=curves,
     tables=(TableSpec("seen", "Sightings", ("t", "M", "E", "r")), TableSpec("pairs", "Changes", ("gap",))),
 )
 """

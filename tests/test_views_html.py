@@ -25,7 +25,7 @@ from loopsheet.report.study import Study
 from loopsheet.report.views import figures, html, latex
 
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ ((( report ))) {{ 7 * 7 }}"
-SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="360pt" height="180pt"><path d="M0 0"/></svg>'
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="480" height="240"><path d="M0 0"/></svg>'
 XHTML = "{http://www.w3.org/1999/xhtml}"
 SVG_NAME = "{http://www.w3.org/2000/svg}"
 

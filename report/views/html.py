@@ -106,7 +106,6 @@ class HtmlWriter(Writer):
 _MEASURES = re.compile(r' (?:width|height|viewBox)="[^"]*"')
 _OPENING = re.compile(r"<svg\b[^>]*>")
 _STYLE = re.compile(r' style="([^"]*)"')
-_SIZE = re.compile(r'\b(width|height)="([\d.]+)(pt|px|)"')
 
 
 def picture(svg: str, alt: str) -> Markup:
@@ -118,7 +117,7 @@ def picture(svg: str, alt: str) -> Markup:
     opening = _OPENING.search(svg)
     assert opening is not None
     # The sheet of the page says how the rest of it looks.
-    attributes = "".join(_SIZE.sub(_pixels, each) for each in _MEASURES.findall(opening.group()))
+    attributes = "".join(_MEASURES.findall(opening.group()))
     return said + Markup(f"{attributes}>{svg[opening.end() :]}")
 
 
@@ -128,10 +127,6 @@ def inlined(svgs: Mapping[str, str]) -> tuple[dict[str, str], str]:
     names = {style: f"s{number:x}" for number, style in enumerate(styles)}
     short = {name: _STYLE.sub(lambda found: f' class="{names[found[1]]}"', svg) for name, svg in svgs.items()}
     return short, "".join(f".{name}{{{style}}}" for style, name in names.items())
-
-
-def _pixels(found: re.Match[str]) -> str:
-    return f'{found[1]}="{round(float(found[2]) * (4 / 3 if found[3] == "pt" else 1))}"'
 
 
 def csp(style: str, script: str = "") -> str:

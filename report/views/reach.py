@@ -215,7 +215,7 @@ def _abscissa(axes: Axes, lines: int) -> None:
     axes.tick_params(axis="x", length=0)
     axes.set_xlabel("distance from the published value, in units of its last digit")
     ends = [(x, y) for x in at for y in (lines - 0.4, -0.6)]
-    _strokes(axes, ends, edgecolor=GRID, lw=0.5, zorder=0.7)
+    _strokes(axes, ends, color=GRID, lw=0.5, zorder=0.7)
 
 
 def _band(axes: Axes, places: Sequence[tuple[float, Row]]) -> None:
@@ -227,29 +227,16 @@ def _band(axes: Axes, places: Sequence[tuple[float, Row]]) -> None:
 
 
 def _boxes(axes: Axes, boxes: Sequence[tuple[float, float, float]], half: float, **style: Any) -> None:
-    """Rectangles as one path: their place, and where they begin and end."""
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path
-
-    if not boxes:
-        return
-    corners: list[tuple[float, float]] = []
+    """Rectangles: their place, and where they begin and end."""
     for place, low, high in boxes:
-        x0, x1 = _scaled([low, high])
-        top, foot = place - half, place + half
-        corners += [(x0, top), (x1, top), (x1, foot), (x0, foot), (x0, top)]
-    codes = [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY] * len(boxes)
-    axes.add_artist(PathPatch(Path(corners, codes), **style))
+        left, right = _scaled([low, high])
+        axes.barh(place, right - left, 2 * half, left, **style)
 
 
 def _strokes(axes: Axes, ends: Sequence[tuple[float, float]], **style: Any) -> None:
-    """Lines as one path: where each begins and where it ends."""
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path
-
-    if ends:
-        codes = [Path.MOVETO, Path.LINETO] * (len(ends) // 2)
-        axes.add_artist(PathPatch(Path(ends, codes), fill=False, **style))
+    """Lines: where each begins and where it ends."""
+    for pair in zip(ends[::2], ends[1::2], strict=True):
+        axes.plot(*zip(*pair, strict=True), **style)
 
 
 def _bars(axes: Axes, places: Sequence[tuple[float, Row]]) -> None:
@@ -279,7 +266,7 @@ def _marks(axes: Axes, places: Sequence[tuple[float, Row]]) -> None:
             middle = float(_scaled(sum(row.band) / 2))
             for way in (0.24, -0.24):
                 ends += [(middle - across, place - way), (middle + across, place + way)]
-    _strokes(axes, ends, edgecolor=LOADING, lw=1.8, zorder=4)
+    _strokes(axes, ends, color=LOADING, lw=1.8, zorder=4)
 
 
 def _key(figure: Figure, places: Sequence[tuple[float, Row]]) -> None:

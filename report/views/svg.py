@@ -51,11 +51,11 @@ class _Writer(RendererBase):
 
     def svg(self) -> str:
         """The whole picture."""
-        width, height = (f"{length:.1f}" for length in self.size)
-        opening = f'<svg xmlns="http://www.w3.org/2000/svg" {_LOOKS} width="{width}pt" height="{height}pt"'
+        (width, height), (wide, high) = self.size, (round(length * 4 / 3) for length in self.size)
+        opening = f'<svg xmlns="http://www.w3.org/2000/svg" {_LOOKS} width="{wide}" height="{high}"'
         defs = "".join(f'{one} id="{self.prefix}{n}"{rest}' for n, (one, rest) in enumerate(self.defined))
         defs = f"<defs>{defs}</defs>" if defs else ""
-        return f'{opening} viewBox="0 0 {width} {height}">{"".join(self.parts)}{defs}</svg>'
+        return f'{opening} viewBox="0 0 {width:.1f} {height:.1f}">{"".join(self.parts)}{defs}</svg>'
 
     # --- what matplotlib asks a renderer for ---
 

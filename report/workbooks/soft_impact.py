@@ -17,7 +17,7 @@ from ...derivations.symbols import VOCABULARY, p, q, s
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
 from ..workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook
-from .soft_impact_charts import EXPONENTS, LOOPS, drawn
+from .soft_impact_charts import EXPONENTS, LOOPS, columns
 from .soft_impact_limits import limits
 from .soft_impact_root import alpha_rule, two_tests
 
@@ -328,9 +328,8 @@ WORKBOOK = Workbook(
             "Hysteresis loop of an impact. The hatched areas are lost to internal friction, while loading "
             "and while unloading; the grey area between them is the work of plastic deformation. The model "
             "has the grey loop alone.",
-            "hysteresis",
-            "A loop of force over approach: up along the loading curve, down along the unloading curve to "
-            "the imprint depth. Two hatched areas, the works of friction, enclose a grey one, the plastic "
+            alt="A loop of force over approach: up along the loading curve, down along the unloading curve "
+            "to the imprint depth. Two hatched areas, the works of friction, enclose a grey one, the plastic "
             "work.",
             fixed=True,
         ),
@@ -338,9 +337,8 @@ WORKBOOK = Workbook(
             "lankarani",
             "2",
             "Force in the model of Lankarani and Nikravesh (2): loading and unloading with the exponent 3/2.",
-            "lankarani",
-            "Force over approach: the loading curve rises from zero to the maximum approach, the unloading "
-            "curve falls from there to the imprint depth.",
+            alt="Force over approach: the loading curve rises from zero to the maximum approach, the "
+            "unloading curve falls from there to the imprint depth.",
             fixed=True,
         ),
         FigureSpec(
@@ -374,7 +372,7 @@ WORKBOOK = Workbook(
         ("3", "4.300", "0.4700", "44.61"),
     ),
     example_parameters={"ball_mass": "8.366 g", "beta": "1.5"},
-    drawn=drawn,
+    drawn=columns,
     drawings=_drawings,
 )
 

@@ -5,15 +5,14 @@ The points of every curve are columns with formulas: the branches of (3) as the 
 
 from __future__ import annotations
 
-from sympy import Expr, Symbol
+from sympy import Symbol
 from sympy.core.parameters import evaluate
 
 from ...derivations import soft_impact as model
-from ...derivations.equation import Equation, Kind
-from ..charts import BLUE, VERMILION, Chart, Drawn, Series
-from ..sheet import Column, Formula, Given, PairAxis, RepeatAxis, Sheet
+from ..charts import BLUE, VERMILION, Chart, Drawn, Series, drawn
+from ..sheet import Column, Given, PairAxis, RepeatAxis, Sheet
 
-__all__ = ["EXPONENTS", "LOOPS", "POINTS_PER_BRANCH", "drawn"]
+__all__ = ["EXPONENTS", "LOOPS", "POINTS_PER_BRANCH", "columns"]
 
 POINTS_PER_BRANCH = 33
 """Abscissae of each branch; straight lines between so many look like a curve."""
@@ -45,13 +44,8 @@ speaks for: on the paper's data the exponents climb with it without exception.""
 _row, _step, _size = (Symbol(name, integer=True, positive=True) for name in ("l", "m", "n_loops"))
 
 
-def drawn(sheet: Sheet) -> Drawn:
-    """The columns that the charts ask for besides those of a sheet of the soft-impact workbook.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    """
+def columns(sheet: Sheet) -> Drawn:
+    """The columns that the charts ask for besides those of a sheet of the soft-impact workbook."""
     tests, pairs = (sheet[name].axis for name in ("v", "alpha"))
     assert tests is not None
     assert isinstance(pairs, PairAxis)
@@ -60,44 +54,20 @@ def drawn(sheet: Sheet) -> Drawn:
     C_log, alpha_log, beta = (sheet[name].symbol for name in ("C_log", "alpha_log", "beta"))
     count = Column(loops.count, None, Given("chart"), meaning="points of each branch", exact=True)
     closed = ((x_m > x_p, "a loop is drawn where the imprint is shallower than the approach"),)
-
-    def column(name: str, equation: Equation, meaning: str, unit: str, display: str = "") -> Column:
-        rule = Formula(equation)
-        return Column(name, loops, rule, unit, meaning, display=display, positive=False, requires=closed)
-
-    x_c, x_r = (
-        Column(name, loops, Formula(model.law_c), "m", positive=False)
-        for name in ("loading_x", "unloading_x")
-    )
     share = (_step - 1) / (count.symbol - 1)
+    v = sheet["v"]
     with evaluate(False):
-        up = _definition(x_m * share, "equal parts of the way to the maximum approach")
-        down = _definition(
-            x_p + (x_m - x_p) * share, "equal parts of the way from the imprint to the maximum approach"
-        )
-        speed = _definition(
-            (sheet["v"][pairs.first] + sheet["v"][pairs.second]) / 2, "mean speed of the pair's tests"
-        )
-    compression = model.law_c.at(
-        {model.x: x_c[_row], model.C: C_log, model.alpha: alpha_log, model.F: Symbol("F")}
+        up, down, speed = x_m * share, x_p + (x_m - x_p) * share, (v[pairs.first] + v[pairs.second]) / 2
+    x_c, x_r = (
+        drawn(f"{way}ing_x", loops, x, "m", f"approach while {way}ing", display="like x_p", requires=closed)
+        for way, x in (("load", up), ("unload", down))
     )
+    compression = {model.x: x_c[_row], model.C: C_log, model.alpha: alpha_log}
     # The maximum force is that of (9): it is the continuity of (3), so that the loop closes on the fit.
-    restitution = model.law_r.at(
-        {
-            model.x: x_r[_row], model.Cprime: peak, model.beta: beta, model.x_m: x_m, model.x_p: x_p,
-            model.F: Symbol("F"),
-        }
-    )  # fmt: skip
-    columns = (
-        count,
-        column("loading_x", up, "approach while loading", "m", "like x_p"),
-        column("loading_F", compression, "force while loading, on the fitted curve", "N"),
-        column("unloading_x", down, "approach while unloading", "m", "like x_p"),
-        column("unloading_F", restitution, "force while unloading", "N"),
-        Column("mean_v", pairs, Formula(speed), "m/s", "mean impact speed of the pair", display="like v"),
+    restitution = {model.x: x_r[_row], model.Cprime: peak, model.beta: beta, model.x_m: x_m, model.x_p: x_p}
+    F_c, F_r = (
+        drawn(f"{way}ing_F", loops, law.at(where).value, "N", f"force while {way}ing", requires=closed)
+        for way, law, where in (("load", model.law_c, compression), ("unload", model.law_r, restitution))
     )
-    return Drawn(columns, {loops.count: POINTS_PER_BRANCH})
-
-
-def _definition(value: Expr, because: str) -> Equation:
-    return Equation("", (Symbol("drawn"), value), because, Kind.DEFINITION, "for the chart")
+    mean_v = drawn("mean_v", pairs, speed, "m/s", "mean impact speed of the pair", display="like v")
+    return Drawn((count, x_c, F_c, x_r, F_r, mean_v), {loops.count: POINTS_PER_BRANCH})
