@@ -55,7 +55,7 @@ def reader_allows(name: str, value: float) -> bool:
 @pytest.mark.parametrize("name", GIVEN)
 def test_engines_refuse_what_the_reader_refuses(node: Node, name: str) -> None:
     """And whatever becomes of the other cells, they say of each what 50 digits say."""
-    row, refused, tally = len(PAPER.data[name]) - 1, 0, Tally()
+    row, refused, tally, hanging = len(PAPER.data[name]) - 1, 0, Tally(), Tally()
     for value in (*NUMBERS, *NOT_FINITE):
         campaign = edited(name, row, value)
         ours, _ = numpy_reads(campaign, engine.Program.of(SHEET))
@@ -64,10 +64,10 @@ def test_engines_refuse_what_the_reader_refuses(node: Node, name: str) -> None:
         refused += not allowed
         assert (ours.status[name][row] == "ok") == (theirs.status[name][row] == "ok") == allowed, value
         if campaign.data["points_per_pair"][0] < 1e4 or not allowed:  # so many take 50 digits their time
-            compare(campaign, node, tally)
+            # Without a rebound to speak of, roundings decide whether x_m is above x_p.
+            compare(campaign, node, hanging if name == "e" and abs(value) < 1e-50 else tally)
     assert 3 < refused < len(NUMBERS) + len(NOT_FINITE)
-    # Without a rebound to speak of, roundings decide whether x_m is above x_p.
-    assert tally.excused.total() <= 2 * (name == "e")
+    assert tally.excused.total() == 0
 
 
 def test_what_is_refused_says_what_is_allowed() -> None:
