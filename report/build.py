@@ -86,6 +86,8 @@ def built(
     of : callable
         What there is to tell of the report, as data that JSON can hold.
     """
+    if not study.folder.is_dir():
+        _ = study.inputs  # which tells, before the outputs' folder makes it
     with staged(out, tell, lambda place: _of_a_crate(place, study.folder)) as stage:
         said: list[str] = []
 

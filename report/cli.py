@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext, redirect_stdout
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn, TextIO, cast
+from typing import TYPE_CHECKING, Any, NoReturn, TextIO, cast
 
 from .machine.stopping import heeded, stoppable
 from .machine.timing import RUN
@@ -58,7 +58,19 @@ _FIRST = "'loopsheet new my-campaign' makes a folder to start from, 'loopsheet -
 
 
 class _Parser(argparse.ArgumentParser):
-    """Tells what is wrong as all else is told."""
+    """Tells what is wrong as all else is told, and takes options before, after and between the words."""
+
+    _mixing = False
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As argparse does, which of a verb's own words takes only those that stand together."""
+        if self._mixing or self._subparsers is not None:
+            return super().parse_known_args(args, namespace)
+        self._mixing = True  # what mixes asks here, twice
+        try:
+            return self.parse_known_intermixed_args(args, namespace)
+        finally:
+            self._mixing = False
 
     def error(self, message: str) -> NoReturn:
         raise _wrong(message, self.prog)

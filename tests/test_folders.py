@@ -196,6 +196,24 @@ def test_a_wrong_command_line_is_answered_as_all_else_is(
     assert not [line for line in err.splitlines() if line.startswith("usage:")]
 
 
+@pytest.mark.parametrize(
+    "words",
+    [("show", "l", "--plan", "gauge"), ("show", "l", "gauge", "--plan"), ("show", "--plan", "l", "gauge")],
+)
+def test_options_stand_anywhere(words: tuple[str, ...], gauge: Path, run: Run) -> None:
+    assert run(*words)[:2] == run("show", "l", "gauge", "--plan")[:2]
+    assert run(*words)[0] == 0
+
+
+def test_the_file_that_makes_a_folder_one_names_it(gauge: Path, run: Run) -> None:
+    assert run("show", "l", "gauge/report.toml") == run("show", "l", "gauge")
+
+
+def test_what_is_no_folder_is_not_made_one(gauge: Path, run: Run) -> None:
+    code, _, err = run("build", "nowhere")
+    assert (code, err.splitlines()[0]) == (2, "error[LS101]: no such folder: 'nowhere'")
+
+
 def test_new_says_how_its_folder_is_named(tmp_path: Path, run: Run) -> None:
     last = {name: run("new", name)[1].splitlines()[-1] for name in ("mine", "paper", "my own")}
     assert [line.removeprefix("edit them, then: loopsheet build ") for line in last.values()] == [

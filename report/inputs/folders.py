@@ -53,7 +53,8 @@ def report_folder(word: str | None = None) -> Path:
         near = sorted(written(path.parent) for path in Path().glob("*/report.toml"))
         raise UsageError(diagnose("LS615", known=listing(f"'{name}'" for name in (*near[:3], WORD))))
     if word != WORD:
-        return Path(word)
+        path = Path(word)
+        return path.parent if path.name == "report.toml" and is_report(path.parent) else path
     if is_report(Path(WORD)):
         raise UsageError(diagnose("LS616", Location(f"./{WORD}/report.toml"), text=WORD))
     return PAPER

@@ -61,6 +61,15 @@ function recall() {
   followLink();
 }
 
+// What another window of this very report keeps is shown here too: neither then writes over the other.
+function followOther({ key, newValue }) {
+  const state = key !== MINE ? null : newValue ? readState(() => newValue) : page.history.issued;
+  if (!state || sameState(state, page.history.now)) return;
+  page.history.push(state);
+  show();
+  note("Edited in another window. Undo leads back.");
+}
+
 // --- in a link ---------------------------------------------------------------------------------------------
 
 function linkTo(state) {

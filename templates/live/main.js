@@ -273,6 +273,7 @@ function listen() {
   // it, or the bar would grow and take the button from under the pointer.
   byId("live-dock").addEventListener("mousedown", (event) => event.target.closest("button") && event.preventDefault());
   addEventListener("beforeunload", onLeave);
+  addEventListener("storage", followOther);
   addEventListener("hashchange", () => followLink() && show());
   document.addEventListener("click", (event) => {
     const button = event.target.closest?.("button");

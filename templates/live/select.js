@@ -58,6 +58,10 @@ function plainNumber(text) {
 function cellText(cell) {
   const input = cell.querySelector("input[data-cell]");
   if (input) return input.value;
+  if (cell.className === "tools") {
+    const why = cell.parentElement.matches(".excluded") ? cell.querySelector("input").value || "no reason was given" : "";
+    return cell.closest("thead") ? "left out" : why;
+  }
   // A head says what the column is called in a file; a list of different quantities has none.
   const below = cell.closest("thead") && cell.closest("table:not(.list)")?.tBodies[0].rows[0]?.cells[cell.cellIndex];
   const name = below && (below.querySelector("input[data-cell]") ?? below).dataset.cell;
@@ -73,7 +77,8 @@ function asTable(rows) {
 const asMarkup = (element) => new XMLSerializer().serializeToString(element);
 
 function copyTable(table) {
-  const rows = Array.from(table.rows, (row) => Array.from(row.cells).filter((cell) => cell.className !== "tools"));
+  const all = table.querySelector(".excluded"); // a test that is left out takes its reason along
+  const rows = Array.from(table.rows, (row) => Array.from(row.cells).filter((cell) => all || cell.className !== "tools"));
   copyText(asTable(rows));
   say(`Copied ${plural(rows.length, "row")}.`);
 }

@@ -183,3 +183,13 @@ def test_every_table_has_a_button_that_copies_all_of_it(page: Live) -> None:
     page.page.locator("#table-measured > button").click()
     assert clipboard(page)[0].splitlines()[:2] == ["test\tv [m/s]\te [1]\tx_p [µm]", "1\t2.334\t0.530\t23.5"]
     assert "Copied 6 rows" in page.text("live-said")
+
+
+def test_a_table_is_copied_with_what_is_left_out_of_it(page: Live) -> None:
+    page.page.locator('[data-use="3"]').click()
+    page.page.locator('[data-use="4"]').click()
+    page.page.locator('[data-reason="3"]').fill("bounced twice")
+    page.press("Enter")
+    page.page.locator("#table-measured > button").click()
+    rows = [row.split("\t") for row in clipboard(page)[0].splitlines()]
+    assert [row[4] for row in rows] == ["left out", "", "", "bounced twice", "no reason was given", ""]

@@ -67,6 +67,26 @@ def edit(live: Live) -> None:
     live.type("beta", "", "1.40")
 
 
+def test_two_windows_show_the_same_edits(open_page: Open, copied: Path) -> None:
+    """Neither writes over what the other one keeps."""
+    one = open_page(copied)
+    other = Live(one.page.context.new_page(), copied)
+    other.load()
+    one.type("x_p", 2, "30.0")
+    other.page.wait_for_function(
+        "document.querySelector('#live-note').textContent.includes('another window')"
+    )
+    other.type("v", 1, "2.5")
+    one.page.wait_for_function("document.querySelector('#live-note').textContent.includes('another window')")
+    for live in (one, other):
+        assert (live.input("x_p", 2).input_value(), live.input("v", 1).input_value()) == ("30.0", "2.5")
+    assert one.cells() == other.cells()
+    other.click("live-reset")
+    one.page.wait_for_function("!document.querySelector('#live-banner').textContent")
+    assert as_issued(one)
+    assert other.errors == []
+
+
 def test_edits_are_there_after_a_reload(open_page: Open, copied: Path) -> None:
     live = open_page(copied)
     edit(live)
