@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, Phase, assume, given, settings
+from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
 from hypothesis import strategies as st
 from hypothesis.internal.conjecture import providers
@@ -215,11 +215,13 @@ def drawn(strategy: st.SearchStrategy[Campaign], number: int, seed: int) -> list
     found: dict[str, Campaign] = {}
 
     def keep(campaign: Campaign) -> None:
-        assume(repr(campaign) not in found)  # hypothesis likes to repeat itself
-        found[repr(campaign)] = campaign
+        found.setdefault(repr(campaign), campaign)
 
-    for_each(strategy, number, seed, keep)
-    return list(found.values())
+    asked = number
+    while len(found) < number:  # hypothesis likes to repeat itself, and wants the same answer then
+        for_each(strategy, asked, seed, keep)
+        asked *= 2
+    return list(found.values())[:number]
 
 
 # --- what the engines find ---
