@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 from base64 import b64decode, b64encode
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from functools import partial
@@ -97,8 +97,8 @@ def built(
 
         def make() -> dict[str, Any]:
             report = _made(study, stage, out, formats, every_engine, say)
-            files = {name: b64encode((stage / name).read_bytes()).decode() for name in _names(stage)}
-            return {"title": report.title, "said": said[1:], "files": files, "told": of(report)}
+            files = {name: (stage / name).read_bytes() for name in _names(stage)}
+            return {"title": report.title, "said": said[1:], "files": _as_texts(files), "told": of(report)}
 
         # What other programs made of it hangs on them, too.
         if every_engine or "pdf" in (formats or ()):
@@ -109,8 +109,8 @@ def built(
         if not said:
             for sentence in (_begun(found["title"], study, out), *found["said"]):
                 tell(sentence)
-            for name, content in found["files"].items():
-                put(stage / name, b64decode(content))
+            for name, content in _as_bytes(found["files"]).items():
+                put(stage / name, content)
         names = _names(stage)
     return Built(tuple(out / name for name in names), found["told"])
 
@@ -153,6 +153,15 @@ def build(
         report = _made(study, stage, out, formats, every_engine, tell)
         names = _names(stage)
     return report, [out / name for name in names]
+
+
+def _as_texts(files: Mapping[str, bytes]) -> dict[str, str]:
+    """Files as JSON can hold them."""
+    return {name: b64encode(content).decode() for name, content in files.items()}
+
+
+def _as_bytes(texts: Mapping[str, str]) -> dict[str, bytes]:
+    return {name: b64decode(text) for name, text in texts.items()}
 
 
 def _names(stage: Path) -> list[str]:
@@ -241,14 +250,15 @@ def _pictures(
         return {}
     from .views import figures
 
-    found = dict[str, bytes]()
-    for each in figures.of(report):
-        if each in but:
-            continue
-        draw = partial(figures.files, report, each.drawing, forms)
-        files = study.kept("drawing", draw, each.drawing, *forms, by="workbook") if each.fixed else draw()
-        found |= {f"{each.name}.{form}": b64decode(content) for form, content in files.items()}
-    return found
+    def files(figure: FigureSpec) -> dict[str, bytes]:
+        draw = partial(figures.files, report, figure.drawing, forms)
+        if not figure.fixed:
+            return draw()
+        own = figure.drawing, *forms
+        return _as_bytes(study.kept("drawing", lambda: _as_texts(draw()), *own, by="workbook"))
+
+    wanted = (figure for figure in figures.of(report) if figure not in but)
+    return {f"{figure.name}.{form}": content for figure in wanted for form, content in files(figure).items()}
 
 
 def _write(made: Made, stage: Path, formats: Collection[str], step: Step) -> None:

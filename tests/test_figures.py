@@ -5,7 +5,6 @@ import os
 import re
 import subprocess
 import sys
-from base64 import b64decode
 from collections.abc import Callable
 from functools import cache
 from itertools import combinations
@@ -210,7 +209,7 @@ def test_what_is_drawn_once_for_all_shows_no_data(report_of: Callable[..., Repor
 def test_a_drawing_as_two_files_is_that_of_each(report_of: Callable[..., Report]) -> None:
     for name in DRAWINGS:
         report = report_of("paper")
-        files = {form: b64decode(text) for form, text in figures.files(report, name, ["svg", "pdf"]).items()}
+        files = figures.files(report, name, ["svg", "pdf"])
         assert files == {"svg": figures.svg(report, name).encode(), "pdf": figures.pdf(report, name)}
 
 

@@ -114,10 +114,8 @@ class Program:
         data : mapping of column name to float array (..., rows)
             The given columns in SI; NaN is a missing datum. Leading dimensions broadcast.
         """
-        laid, batch = (
-            self.laid(labels, counts),
-            np.broadcast_shapes(*(own.shape[:-1] for own in data.values())),
-        )
+        laid = self.laid(labels, counts)
+        batch = np.broadcast_shapes(*(own.shape[:-1] for own in data.values()))
         widest = max(map(laid.size, self.sheet.columns))
         blocks = [block for block, _ in _blocks((*batch, widest), WIDEST)] if batch else []
         if len(blocks) < 2:

@@ -111,16 +111,13 @@ def staged(
             with scratch(out) as stage:
                 yield stage
                 with unstoppable():
-                    gone = _added(stage, out, added)
-                    names = [p.relative_to(stage) for p in stage.rglob("*") if p.is_file()]
-                    stale = set(_stale(out, names, _listed(out) or {}))
-                    kept = _move_in(stage, out, killed, gone)
-                    for name in (*gone, *stale):
+                    kept, removed = _move_in(stage, out, killed, _added(stage, out, added))
+                    for name in removed:
                         _remove([out / parent for parent in name.parents[:-1]])
         for name, free in kept.items():
             tell(f"{name.as_posix()} was not as built: it is kept as {free.as_posix()}")
-        if removed := sorted(name.as_posix() for name in stale.union(gone) if name not in kept):
-            tell(f"{', '.join(removed)}: removed, as of the report before")
+        if told := sorted({name.as_posix() for name in removed if name not in kept}):
+            tell(f"{', '.join(told)}: removed, as of the report before")
     except OSError as error:
         _remove(made)
         file, place = Path(error.filename or ""), out
@@ -165,8 +162,8 @@ def _remove(made: list[Path]) -> None:
 
 def _move_in(
     stage: Path, out: Path, killed: list[dict[Path, str]], gone: Mapping[Path, str]
-) -> dict[Path, Path]:
-    """Put the staged files in place, all or none; return what was kept, and as what.
+) -> tuple[dict[Path, Path], list[Path]]:
+    """Put the staged files in place, all or none; return what was kept, and as what, and what was removed.
 
     The manifest comes last and never speaks of half an output. What an earlier build made and this one does
     not is taken away, unless somebody changed it. `killed` is what other builds were about to put here;
@@ -179,6 +176,7 @@ def _move_in(
     for name in names:
         _refuse_what_is_in_the_way(out, name)
     before, built = stage / ".before", _listed(out)
+    removed = [*gone, *_stale(out, names, built or {})]
     done: list[tuple[Path, Path | None]] = []
     kept_as: dict[Path, Path] = {}
     try:
@@ -186,7 +184,7 @@ def _move_in(
             kept_as[name] = _free(name, out)
             done.append((out / kept_as[name], None))
             shutil.copy2(out / name, out / kept_as[name])
-        for name in (*gone, *_stale(out, names, built or {}), *names):
+        for name in (*removed, *names):
             target = out / name
             kept = _kept(target, before / name)
             done.append((target, kept))
@@ -203,7 +201,7 @@ def _move_in(
                 os.replace(kept, target)
         reason = error.strerror or str(error)
         raise OutputError(diagnose("LS601", text=str(out), reason=reason)) from error
-    return kept_as
+    return kept_as, removed
 
 
 def _kept(target: Path, place: Path) -> Path | None:

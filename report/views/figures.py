@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from base64 import b64decode, b64encode
 from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from typing import TYPE_CHECKING
@@ -58,7 +57,7 @@ def svg(report: Report, name: str) -> str:
     report, name
         As for :func:`draw`.
     """
-    return b64decode(files(report, name, ["svg"])["svg"]).decode()
+    return files(report, name, ["svg"])["svg"].decode()
 
 
 def pdf(report: Report, name: str) -> bytes:
@@ -69,11 +68,11 @@ def pdf(report: Report, name: str) -> bytes:
     report, name
         As for :func:`draw`.
     """
-    return b64decode(files(report, name, ["pdf"])["pdf"])
+    return files(report, name, ["pdf"])["pdf"]
 
 
-def files(report: Report, name: str, forms: Collection[str]) -> dict[str, str]:
-    """A drawing that is made once, as a file of each form, in base64.
+def files(report: Report, name: str, forms: Collection[str]) -> dict[str, bytes]:
+    """A drawing that is made once, as a file of each form.
 
     Parameters
     ----------
@@ -92,4 +91,4 @@ def files(report: Report, name: str, forms: Collection[str]) -> dict[str, str]:
             nobody = {"CreationDate": None, "Producer": None, "Creator": None}
             figure.savefig(buffer, format="pdf", metadata=nobody)
             found["pdf"] = buffer.getvalue()
-    return {form: b64encode(content).decode() for form, content in found.items()}
+    return found

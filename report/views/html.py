@@ -180,11 +180,7 @@ def render(report: Report, figures: Mapping[str, str], program: str | None = Non
 
 def write(made: Made, stage: Path) -> None:
     """Write report.html."""
-    figures = {
-        name.removesuffix(".svg"): svg.decode()
-        for name, svg in made.pictures.items()
-        if name.endswith(".svg")
-    }
+    figures = {name: svg.decode() for name, svg in made.figures("svg").items()}
     put(stage / "report.html", render(made.report, figures, made.program))
 
 

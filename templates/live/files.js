@@ -3,6 +3,9 @@
 // Everything but plain words is quoted, so that a program that opens tables runs nothing.
 const csvField = (text) => (/^[\w.+\- [\]/()^*%°µμ²³⁻]*$/.test(text) ? text : `"${text.replaceAll('"', '""')}"`);
 
+// What stands in the column of tests that are left out.
+const leftOut = ({ used, reason }) => (used ? "" : reason || "no reason was given");
+
 function measurementsCsv(state) {
   const names = Object.keys(LIVE.units), given = Object.keys(LIVE.uncertainties);
   const heads = names.flatMap((name) => {
@@ -10,12 +13,13 @@ function measurementsCsv(state) {
     return given.includes(name) ? [`${name} ${unit}`, `u(${name}) ${unit}`] : [`${name} ${unit}`];
   });
   const tests = savedTests(state), someOut = tests.some(({ used }) => !used);
-  const lines = tests.map(({ label, used, reason, cells }) => {
+  const lines = tests.map((test) => {
+    const { label, cells } = test;
     const fields = names.flatMap((name) => {
       const known = LIVE.uncertainties[name];
       return known ? [cells[name], known[label] ?? lastDigitUncertainty(cells[name])] : [cells[name]];
     });
-    return [String(label), ...fields, ...(someOut ? [used ? "" : reason || "no reason was given"] : [])];
+    return [String(label), ...fields, ...(someOut ? [leftOut(test)] : [])];
   });
   if (someOut) heads.push("left out");
   return [["test", ...heads], ...lines].map((fields) => fields.map(csvField).join(",") + "\n").join("");

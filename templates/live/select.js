@@ -59,8 +59,8 @@ function cellText(cell) {
   const input = cell.querySelector("input[data-cell]");
   if (input) return input.value;
   if (cell.className === "tools") {
-    const why = cell.parentElement.matches(".excluded") ? cell.querySelector("input").value || "no reason was given" : "";
-    return cell.closest("thead") ? "left out" : why;
+    const { label } = cell.parentElement.dataset, test = page.history.now.tests.find((one) => String(one.label) === label);
+    return test ? leftOut(test) : "left out";
   }
   // A head says what the column is called in a file; a list of different quantities has none.
   const below = cell.closest("thead") && cell.closest("table:not(.list)")?.tBodies[0].rows[0]?.cells[cell.cellIndex];
