@@ -83,6 +83,7 @@ def solve_for(unknown: Expr, left: Expr, right: Expr, facts: Facts = NOTHING) ->
     for here, there in ((left, right), (right, left)):
         if here == unknown and not there.has(unknown):
             return Solved(there)
+    # As it stands first: clearing denominators costs more, and may divide by what can vanish.
     for cleared in (False, True):
         difference = left - right
         difference = in_terms(_numerator(difference) if cleared else difference)
@@ -142,6 +143,7 @@ def _undo(unknown: Expr, here: Expr, there: Expr, facts: Facts) -> Solved | None
             case Mul():
                 pivots.append(Mul(*rest))
                 there /= Mul(*rest)
+            # x^p = y has one positive x where y is positive, for any p but 0.
             case Pow() if here.base == inner and facts.positive(inner):
                 pivots.append(here.exp)
                 powers.append(there)
@@ -208,6 +210,7 @@ def _powers(expression: Expr) -> Expr:
     def product(argument: Expr) -> Expr:
         total: Expr = Integer(1)
         for term in Add.make_args(expand(expand_log(argument))):
+            # exp(c log y) = y^c; a product of two logarithms is no power of anything.
             logs = [factor for factor in Mul.make_args(term) if isinstance(factor, log)]
             total *= logs[0].args[0] ** (term / logs[0]) if len(logs) == 1 else exp(term)
         return total
@@ -241,6 +244,7 @@ def vanishes(residual: Expr) -> bool:
     residual = _powers(in_terms(residual))
     if residual == 0:
         return True
+    # A fraction vanishes with its numerator; from here on, the cheapest attempt first.
     numerator = expand(_numerator(expand_power_base(residual)))
     attempts: tuple[Callable[[], Any], ...] = (
         lambda: numerator,

@@ -78,6 +78,7 @@ class Arranged:
         for symbol in dict.fromkeys(symbols):
             if symbol not in equation.symbols or symbol in self.solved:
                 continue
+            # The others are computed from it already: it would rest on itself.
             if symbol in self.below(other for other in equation.symbols if other != symbol):
                 continue
             found = solve_for(symbol, *equation.sides)
@@ -114,6 +115,7 @@ class Arranged:
         if self.sizes:
             return False  # other sizes were not tried
         solution: dict[Expr, Expr] = {}
+        # From what rests on nothing upwards: each value is then one of free symbols alone.
         for symbol in self.below(self.solved):
             if symbol in self.solved:
                 solution[symbol] = self.solved[symbol][0].xreplace(solution)

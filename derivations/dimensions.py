@@ -113,6 +113,7 @@ def dimension_of_unit(unit: str, exponents: Mapping[str, Expr] | None = None) ->
     >>> dimension_of_unit("N*s/m") == dimension_of_unit("kg/s")
     True
     """
+    # A name, and a power of it: a number, a fraction in parentheses or a symbol's name.
     factor = r"([^*/^()]+)(?:\^(\([^()]+\)|[^*/^()]+))?"
     if not re.fullmatch(rf"{factor}([*/]{factor})*", unit):
         raise DimensionError(f"{unit!r} is no unit: {_WRITTEN}")
@@ -121,6 +122,7 @@ def dimension_of_unit(unit: str, exponents: Mapping[str, Expr] | None = None) ->
         name = named.strip()
         if name == "1":
             continue
+        # `N m` would be read as one name.
         if name not in _UNITS and all(part in _UNITS for part in name.split()):
             raise DimensionError(f"{unit!r} leaves out a * or a / in {name!r}")
         if name not in _UNITS:
@@ -191,6 +193,7 @@ class Dimensions:
             return PURE
         names = re.findall(r"\^([A-Za-z_]\w*)", quantity.unit)
         others = {name: self.vocabulary[name] for name in names if name in self.vocabulary}
+        # N/m^alpha of row k has the alpha of row k in its exponent.
         if isinstance(cell, Indexed):
             return dimension_of_unit(quantity.unit, {name: q[cell.indices[0]] for name, q in others.items()})
         return dimension_of_unit(quantity.unit, {name: q.symbol for name, q in others.items()})

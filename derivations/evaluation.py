@@ -100,8 +100,10 @@ def _nodes(digits: int, halvings: int) -> tuple[tuple[Any, ...], tuple[Any, ...]
     steps = 4 * (digits // 7) << halvings
     places, weights = [], []
     with mpmath.workdps(digits + _GUARD):
+        # Beyond |t| = 6 no weight is left, whatever the digits.
         for n in range(-6 * steps, 6 * steps + 1):
             t = mpmath.mpf(n) / steps
+            # x = 1/(1 + exp(-pi sinh t)): near both ends the weights fall doubly exponentially.
             grow = mpmath.exp(-mpmath.pi * mpmath.sinh(t))
             place = 1 / (1 + grow)
             weight = mpmath.pi * mpmath.cosh(t) * grow * place**2 / steps
@@ -185,6 +187,7 @@ class Program:
         return [self._slot(expression) for expression in expressions], len(self._tapes[0])
 
     def _slot(self, expression: Any) -> int:
+        # What stands outside of a loop is known inside; what stands inside is forgotten when it ends.
         for known in self._known:
             if expression in known:
                 return known[expression]
@@ -252,7 +255,9 @@ class Program:
         tape = self._tapes.pop()
         self._known.pop()
         at = {Integral: self._integral, Sum: self._sum, Median: self._median}[type(expression)]
+        # A body that does not run with the variable is no part of the tape: it must be there before.
         arguments = (*ends, *((body,) if self._levels[body] < level else ()))
+        # The loop stands in the innermost loop that anything in it runs with, and is taken out of all others.
         outer = max(
             [self._levels[slot] for slot in ends]
             + [self._levels[slot] for _, _, used in tape for slot in used if self._levels[slot] < level]

@@ -81,6 +81,7 @@ class _Trial:
         """Neighbouring sides and their relative difference."""
         values = [self.value(side) for side in sides]
         size = max(map(abs, values))
+        # `not <=` so that a NaN disagrees.
         if any(not abs(a - b) <= AGREES * size for a, b in pairwise(values)):
             size = self.size(*sides)  # a sum that cancels is small against its terms
         for a, b in pairwise(values):
@@ -211,6 +212,7 @@ def examine(system: System, seed: str) -> Outcome:
 
 def _witness(trial: _Trial, point: list[Any], counted: int) -> Outcome | None:
     """Where a premise is not solved: move one value until it holds, and look at the claim there."""
+    # The first places of a point are the sizes of its columns, which are whole and cannot be moved.
     for place in range(len(trial.space.sizes), len(point)):
         moved = _solved_for(trial, point, place)
         if moved is None:

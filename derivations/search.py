@@ -234,6 +234,7 @@ class _Trial:
             if residuals is None or not self.unequal():
                 break
             step = self._step(point, residuals)
+            # The linear step may leave the domain, or go too far: it is halved until it brings something.
             for halvings in range(6):
                 nearer = self._moved(point, {place: part / 2**halvings for place, part in step.items()})
                 tried = self.at(nearer)
@@ -241,6 +242,7 @@ class _Trial:
                     break
             else:
                 return None
+            # A norm of squares that falls by less than half: near a root, Newton's falls by much more.
             slow += _norm(tried) > _norm(residuals) / 2
             point, residuals = nearer, tried
             if slow > _SLOW or not all(map(_is_near, point, start)):
@@ -254,6 +256,7 @@ class _Trial:
             columns.append([(b - a) / _NUDGE for a, b in zip(residuals, nudged, strict=True)])
         jacobian = mpmath.matrix(columns).T
         square = jacobian * jacobian.T
+        # The shortest of all steps that satisfy the linear equations J s = -r: s = J' (J J')^-1 (-r).
         # Equations that follow from others have no direction of their own.
         slack = _NUDGE * (1 + max(square[n, n] for n in range(len(residuals))))
         for n in range(len(residuals)):

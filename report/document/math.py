@@ -198,6 +198,7 @@ class Printer(LatexPrinter):  # type: ignore[misc] # sympy has no types
             if isinstance(factor, Mul):
                 other, inner = self._units(factor)
                 negative ^= other
+                # A product in parentheses stands for itself if it has a fraction, else joins what is there.
                 if closed or units[-1][1] or len(inner) > 1 or inner[0][1]:
                     units += inner
                 else:
@@ -209,6 +210,7 @@ class Printer(LatexPrinter):  # type: ignore[misc] # sympy has no types
                 units.append((above, below))  # a number such as 1/2 stands for itself, in front
                 closed = True
                 continue
+            # `a/b*c`: a factor behind a fraction is not pulled up into its numerator.
             if closed or (above and units[-1][1] and not one):
                 units.append(([], []))
                 closed = False
@@ -355,6 +357,7 @@ class Printer(LatexPrinter):  # type: ignore[misc] # sympy has no types
         while left:
             low, sign, high = left.pop(0)
             chain = [low, sign, high]
+            # a < b, b < c is read a < b < c: a chain grows at either end until no relation fits.
             grown = True
             while grown:
                 grown = False

@@ -93,6 +93,7 @@ def _by_stretch(form: Expr, points: tuple[Expr, ...], unknown: Symbol, cells: Ce
     if len(points) > 2 and not all(a.b < b.a for a, b in pairwise(places)):
         return False  # a point that may lie outside does not divide the interval
     for left, right in pairwise(places):
+        # Where a turning point may be depends on the inputs: both neighbours are taken as far as they reach.
         found = run(*spans, [left.a, right.b])
         if found is None or not (found[0].a >= 0 or found[0].b <= 0):
             return False
@@ -202,6 +203,7 @@ def enclosing(sheet: Sheet, plan: Plan, node: Root) -> Enclosing:
 def _exponents(expressions: tuple[Expr, ...], unknown: Symbol) -> list[Expr] | None:
     """Those of the terms of all sums, if each is at most four cells times one exponential of the unknown."""
     sums = sorted(set().union(*(each.atoms(RowSum) for each in expressions)), key=str)
+    # With the sums put away nothing of the unknown may be left.
     hidden = {each: Symbol(f"sum_{n}") for n, each in enumerate(sums)}
     if not sums or any(each.xreplace(hidden).has(unknown) for each in expressions):
         return None

@@ -99,6 +99,7 @@ class Intervals(NDArrayOperatorsMixin):
     def total(self, axis: int = -1, keepdims: bool = True) -> Intervals:
         """The sum along a dimension."""
         size = max(1, self.low.shape[axis] if self.low.ndim else 1)
+        # n - 1 roundings, each of at most half an ulp of a partial sum, whatever the order of adding.
         slack = size * 2.0**-52
         low, high = (end.sum(axis=axis, keepdims=keepdims) for end in (self.low, self.high))
         sizes = [np.abs(end).sum(axis=axis, keepdims=keepdims) for end in (self.low, self.high)]
@@ -204,6 +205,7 @@ def _at_ends(function: Callable[[Any], Any], a: Intervals) -> tuple[Any, Any]:
 
 
 def _multiply(a: Intervals, b: Intervals) -> Intervals:
+    # A number, which has one array for both ends, goes second: two products in place of four.
     if a.low is a.high:
         a, b = b, a
     ends = [x * y for x in (a.low, a.high) for y in ((b.low,) if b.low is b.high else (b.low, b.high))]

@@ -84,6 +84,7 @@ def isolate(
     first, last = low[open_rows, None], high[open_rows, None]
     inner = np.minimum(first + (last - first) * np.arange(1, parts) / parts, last)
     edges = np.concatenate([first, inner, last], axis=1)
+    # One call for both ends of every row, as intervals without width, and for the first parts.
     asked = np.concatenate([rows, rows, np.repeat(open_rows, parts)])
     a, b = (np.concatenate([low, high, own.reshape(-1)]) for own in (edges[:, :-1], edges[:, 1:]))
     value, slope, hopeless = enclose(asked, a, b)
@@ -97,6 +98,7 @@ def isolate(
         done = (value.sign != 0) | (slope.sign != 0)
         settled.append([each[done] for each in (rows, a, b, value.sign, slope.sign)])
         rows, a, b, middle, hopeless = (each[~done] for each in (rows, a, b, middle, hopeless))
+        # Many open parts side by side: the slope's interval stays too wide, and halving would not end.
         crowded = np.bincount(rows, minlength=len(low))[rows] > CROWD
         whole = crowded | hopeless | ~((middle > a) & (middle < b))
         for row, left, right in zip(*(each[whole].tolist() for each in (rows, a, b)), strict=True):
@@ -111,6 +113,7 @@ def isolate(
     for row, left, right in zip(rows.tolist(), a.tolist(), b.tolist(), strict=True):
         found.doubt(row, left, right)
     every = [np.concatenate(each) for each in zip(*settled, strict=True)]
+    # By row, then from left to right: parts were settled in the order of their size.
     order = np.lexsort((every[1], every[0]))
     by_row: list[list[Any]] = [[] for _ in low]
     for row, *part in zip(*(each[order].tolist() for each in every), strict=True):
@@ -151,11 +154,13 @@ def crossings(
     found = []
     place, before, way = ends[0], signs[0], 0
     for left, right, sign, slope in [*parts, (ends[1], ends[1], signs[1], 0)]:
+        # Parts side by side in which it rises are one stretch; so are those in which it falls.
         if sign == 0 and way * slope >= 0 and slope:
             way = slope
             continue
         if sign == 0 and left < right:
             raise Doubtful(left, right)
+        # Between two parts with a sign lies a stretch of one slope: one root, or none.
         if left > place:
             if before * sign == 0:
                 raise Doubtful(place, left)

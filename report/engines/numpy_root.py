@@ -185,6 +185,7 @@ class RootProgram:
             return Solved(rows.call(self.value, found), np.zeros(shape, dtype=np.uint8), {}, bisected)
         doubtful = np.zeros(odd.size, dtype=bool)
         doubtful[list(doubts)] = True
+        # One sign change a stretch at most: the stretches that cross are the roots.
         number = sum((stretch.crosses.astype(np.uint8) for stretch in stretches), np.zeros(shape, np.uint8))
         status = chosen(
             [odd, doubtful.reshape(shape), number == 1, number > 1],
@@ -196,6 +197,7 @@ class RootProgram:
             chosen(crossings, [getattr(stretch, part) for stretch in stretches], np.nan)
             for part in ("left", "right", "after")
         )
+        # Rows have their only root in different stretches; one stretch for all keeps the steps vectorised.
         only = Stretch(left, right, after, alone)
         found, bisected = rows.narrow(only, ends[_START], alone)
         value = np.where(alone, rows.call(self.value, found), np.nan)

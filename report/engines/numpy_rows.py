@@ -45,6 +45,7 @@ class Kept:
         number = np.broadcast_to(self.number.astype(np.intp), (*ordered.shape[:-1], 1))
         if not ordered.size:
             return np.full(number.shape, np.nan)
+        # Of an odd number of rows both are the same; a batch without rows is cut off below.
         middle = (np.maximum(number - 1, 0) // 2, np.minimum(number // 2, ordered.shape[-1] - 1))
         low, high = (np.take_along_axis(ordered, place, axis=-1) for place in middle)
         return np.where(number > 0, (low + high) / 2, np.nan)
@@ -137,6 +138,7 @@ class KeptBetween:
         least, most = thin[self.low], thin[self.low]
         least[self.wide] = np.minimum(first, last).sum(axis=-1, keepdims=True)
         most[self.wide] = np.maximum(first, last).sum(axis=-1, keepdims=True)
+        # Twice the terms' own error: what adding them loses is far below the other half.
         slack = 2.0**-30 * (sizes[self.low] + sizes[self.high])
         return Intervals(least - slack, most + slack)
 

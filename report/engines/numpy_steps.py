@@ -120,6 +120,7 @@ class Rows:
     def _quickly(self, stretch: Stretch, start: Array) -> tuple[Array, Mask]:
         """Steps that nobody watches, and where they led to a root: near to it, and inside the bracket."""
         here, near, most = start, np.zeros(1, dtype=bool), self.program.node.steps
+        # One step of fourth order, and Newton's polish what it leaves: cheaper than watching a bracket.
         if not self.totals:
             here, most = here - self.program.step(here, *self.constants)[1], min(most - 1, UNWATCHED)
         for _ in range(most):
@@ -168,6 +169,7 @@ class Rows:
     def _bisect(self, left: Array, right: Array, rising: Array) -> tuple[Array, int]:
         """Halve brackets until no double lies between their ends; NaN where the equation has no sign."""
         while True:
+            # Not (left + right)/2, which may overflow.
             middle = left + (right - left) / 2
             inside = (middle > left) & (middle < right)
             if not inside.any():

@@ -49,6 +49,7 @@ def step(function: Expr, unknown: Symbol) -> tuple[dict[Symbol, Expr], Expr]:
         return {}, function / diff(function, unknown)
     f, f1, f2, f3, newton, by, bent = (Symbol(f"f_{i}", real=True) for i in range(7))
     parts = dict(zip((f, f1, f2, f3), map(factor_terms, derivatives(function, unknown)), strict=True))
+    # householder() divided through by f1^3: three quotients, and no power that could overflow.
     parts |= {newton: f / f1, by: newton / f1, bent: by * f2}
     return parts, newton * (1 - bent / 2) / (1 - bent + newton * by * f3 / 6)
 

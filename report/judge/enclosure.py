@@ -178,10 +178,12 @@ class Enclosure(_Rows):
             (value,) = run_at(Intervals(point, point), *rest, *totals)
             return Intervals.of(value).broadcast(shape)
 
+        # Signs at the outermost ends: a root for any values inside lies between them.
         before = at_low.sign if node.sign_low is not None else at(low.low).sign
         after = at_high.sign if node.sign_high is not None else at(high.high).sign
         one = before * after < 0
         for turn in turning:
+            # A turning point that may lie inside would allow for a second root.
             one &= (turn.high <= low.low) | (turn.low >= high.high)
         if program.enclosing is not None:
             one &= self._counted(program, cells, low, high, (at_low.sign, at_high.sign)) == 1

@@ -59,6 +59,7 @@ def _furthest(report: Report, tests: Sequence[int]) -> tuple[int, str]:
     sheet = Sheet((*report.sheet.ancestors(column), column))
     data = {one.name: report.values.value[one.name] for one in sheet.columns if isinstance(one.rule, Given)}
     own = report.inputs.tests
+    # One draw for each suspect, in which its measured cells are missing: one evaluation for all.
     without = np.array([[test == other for other in own] for test in tests])
     for name in data.keys() & report.inputs.measured.keys():
         data[name] = np.where(without, np.nan, data[name])
