@@ -13,8 +13,8 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 LOCK := .venv-lock/bin/uv pip compile --quiet --universal --python-version 3.11 \
 	--fork-strategy fewest --generate-hashes --custom-compile-command "make lock" $(UPGRADE)
-# Files go to the workers whole: the tests of one share what they made.
-PYTEST := $(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadfile $(if $(SEED),--seed $(SEED))
+# Files go to the workers whole: the tests of one share what they made; the longest first (tests/conftest.py).
+PYTEST := $(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder $(if $(SEED),--seed $(SEED))
 
 .DEFAULT_GOAL := help
 .PHONY: help report test campaigns mutants bench wheel lock clean

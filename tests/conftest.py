@@ -127,6 +127,20 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--seed", type=int, default=SEED, help=f"which ones (default: {SEED})")
 
 
+LONGEST = (
+    "test_browsers.py", "test_same_anywhere.py", "test_seen_intervals.py", "test_build.py", "test_misra1a.py",
+    "test_libreoffice.py", "test_folders.py", "test_cli.py", "test_page_access.py", "test_page_digits.py",
+    "test_page_lasting.py", "test_pytest_plugin.py", "test_environments.py", "test_hyperformula.py",
+    "test_figures.py", "test_ledger.py", "test_page.py", "test_open_xml.py", "test_campaigns.py",
+)  # fmt: skip
+"""The files that take longest, as they are measured: begun first, none is left over for a single worker."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    places = {name: place for place, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: places.get(item.path.name, len(LONGEST)))
+
+
 def drawn(config: pytest.Config) -> str:
     return f"campaigns: {config.getoption('campaigns')}, seed {config.getoption('seed')}"
 

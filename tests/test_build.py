@@ -15,6 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from small_report import end_gauge
 
 from loopsheet.report import build, cost
 from loopsheet.report.cli import main
@@ -29,6 +30,13 @@ def copy_paper(folder: Path) -> Path:
     """A folder of one's own, a copy of the shipped one."""
     shutil.copytree(PAPER, folder)
     return folder
+
+
+@pytest.fixture
+def gauge(tmp_path: Path) -> Path:
+    """A small report folder, for what is the same whatever is written."""
+    (tmp_path / "gauge").mkdir()
+    return end_gauge(tmp_path / "gauge")
 
 
 def hashes(folder: Path) -> dict[str, str]:
@@ -157,24 +165,22 @@ def test_manifest_names_every_output_by_its_content(tmp_path: Path) -> None:
     assert manifest["versions"]["loopsheet"]
 
 
-@pytest.mark.usefixtures("unjudged")
-def test_other_files_in_the_output_folder_stay(tmp_path: Path) -> None:
+def test_other_files_in_the_output_folder_stay(tmp_path: Path, gauge: Path) -> None:
     out = tmp_path / "out"
     out.mkdir()
     (out / "notes.txt").write_text("mine")
-    build.build(Study(PAPER), out, ("json",))
+    build.build(Study(gauge), out, ("json",))
     assert (out / "notes.txt").read_text() == "mine"
     assert sorted(p.name for p in out.iterdir()) == ["manifest.json", "notes.txt", "values.json"]
 
 
-@pytest.mark.usefixtures("unjudged")
 def test_a_failure_while_writing_leaves_everything_as_it_was(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, gauge: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from loopsheet.report.views import json as view
 
     out = tmp_path / "out"
-    build.build(Study(PAPER), out, ("json",))
+    build.build(Study(gauge), out, ("json",))
     before = hashes(out)
 
     def breaks(*_: object) -> str:
@@ -182,10 +188,10 @@ def test_a_failure_while_writing_leaves_everything_as_it_was(
 
     monkeypatch.setattr(view, "manifest", breaks)
     with pytest.raises(RuntimeError, match="while writing"):
-        build.build(Study(PAPER), out, ("json",))
+        build.build(Study(gauge), out, ("json",))
     assert hashes(out) == before
     with pytest.raises(RuntimeError, match="while writing"):
-        build.build(Study(PAPER), tmp_path / "fresh" / "deep", ("json",))
+        build.build(Study(gauge), tmp_path / "fresh" / "deep", ("json",))
     assert not (tmp_path / "fresh").exists()
 
 
@@ -276,16 +282,17 @@ def test_a_digit_more_is_shown_than_the_least_precise_measured_number_has(
     assert line.split()[1] == alpha_mean
 
 
-@pytest.mark.usefixtures("unjudged")
-def test_a_move_that_fails_half_way_is_taken_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_move_that_fails_half_way_is_taken_back(
+    tmp_path: Path, gauge: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Fail at each replacement in turn: every time the old output is there to the last byte."""
     import os as system
 
-    folder, out = copy_paper(tmp_path / "in"), tmp_path / "out"
-    build.build(Study(folder), out, ("json",))
+    out = tmp_path / "out"
+    build.build(Study(gauge), out, ("json",))
     before = hashes(out)
-    toml = folder / "report.toml"
-    toml.write_text(toml.read_text().replace("Soft steel", "Other steel"))
+    toml = gauge / "report.toml"
+    toml.write_text(toml.read_text().replace("0.1 K", "0.2 K"))
     real = system.replace
     for fatal in range(2):
         calls = iter(range(100))
@@ -298,27 +305,25 @@ def test_a_move_that_fails_half_way_is_taken_back(tmp_path: Path, monkeypatch: p
         with monkeypatch.context() as patch:
             patch.setattr(system, "replace", breaks)
             with pytest.raises(OutputError, match="No space left"):
-                build.build(Study(folder), out, ("json",))
+                build.build(Study(gauge), out, ("json",))
         assert hashes(out) == before, fatal
 
 
-@pytest.mark.usefixtures("unjudged")
-def test_what_is_in_the_way_is_named_and_nothing_is_touched(tmp_path: Path) -> None:
+def test_what_is_in_the_way_is_named_and_nothing_is_touched(tmp_path: Path, gauge: Path) -> None:
     out = tmp_path / "out"
     (out / "values.json").mkdir(parents=True)
     (out / "manifest.json").write_text("mine")
     with pytest.raises(OutputError, match=r"values\.json"):
-        build.build(Study(PAPER), out, ("json",))
+        build.build(Study(gauge), out, ("json",))
     assert (out / "manifest.json").read_text() == "mine"
     assert sorted(p.name for p in out.iterdir()) == ["manifest.json", "values.json"]
 
 
-@pytest.mark.usefixtures("unjudged")
-def test_what_an_earlier_build_made_goes_unless_it_was_changed(tmp_path: Path) -> None:
+def test_what_an_earlier_build_made_goes_unless_it_was_changed(tmp_path: Path, gauge: Path) -> None:
     out = tmp_path / "out"
-    build.build(Study(PAPER), out, ("json", "latex"))
+    build.build(Study(gauge), out, ("json", "latex"))
     (out / "report.tex").write_text("changed by hand")
-    build.build(Study(PAPER), out, ("json",))
+    build.build(Study(gauge), out, ("json",))
     assert sorted(p.name for p in out.rglob("*") if p.is_file()) == [
         "manifest.json",
         "report.tex",
