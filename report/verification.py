@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .archive.differences import EPS, Differences, compare
-from .archive.read_back import Index, Manifest, read_manifest, read_result
 from .build import build
+from .files.form import Index
+from .files.manifest import Manifest, read_manifest
+from .files.values import NAME, read_result
 from .inputs.folders import built_from
 from .inputs.inputs import Find
 from .machine.kept import nothing_kept
@@ -86,7 +88,7 @@ def verify(
         checks = (
             *_same("input", then.inputs, now.inputs, "the input"),
             *_same("source", then.sources, now.sources, "the"),
-            *_same("library", then.versions, now.versions, ""),
+            *_same("library", then.software, now.software, ""),
             *_outputs(out, then, now, rounded),
             *_moves(differences),
         )
@@ -95,7 +97,7 @@ def verify(
 
 def _rounded_otherwise(then: Manifest, now: Manifest, found: Differences | None) -> str:
     """What another processor did to the outputs, in words; empty if that is not all that happened."""
-    of = (then.inputs, then.sources, then.versions), (now.inputs, now.sources, now.versions)
+    of = (then.inputs, then.sources, then.software), (now.inputs, now.sources, now.software)
     if of[0] != of[1] or then.processor == now.processor or found is None or found.any or not found.noise:
         return ""
     return f"another processor rounds {found.noise} numbers otherwise"
@@ -157,11 +159,11 @@ def _is_inside(out: Path, file: Path) -> bool:
 
 def _numbers(out: Path, again: Path, report: Report) -> Differences | None:
     try:
-        before = read_result(out)
+        before = read_result(out / NAME)
     except InputError:
         return None  # missing or changed by hand: told of the file
-    after = read_result(again)
-    if before.columns == after.columns:
+    after = read_result(again / NAME)
+    if before.cells == after.cells:
         return compare(before, after)  # nothing to allow for
     return compare(before, after, _allowed(report))
 

@@ -5,27 +5,39 @@ from __future__ import annotations
 import json
 import math
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from loopsheet.report.archive.differences import Differences, Move, compare
-from loopsheet.report.archive.read_back import Column, Result
 from loopsheet.report.cli import main
+from loopsheet.report.files.form import Index
+from loopsheet.report.files.values import Column, Published, Result
 from loopsheet.report.views.differences import as_markdown, as_text, moved
 
 EPS = sys.float_info.epsilon
-V = Column("m/s", "tests", "given", {(1,): (2.0, "ok"), (2,): (3.0, "ok")})
-A = Column("1", "pairs", "(11) a = v", {(1, 2): (1.25, "ok")})
-M = Column("1", "", "(12) m = a", {(): (1.25, "ok")})
+
+
+def listed(unit: str, axis: str, rule: str, cells: dict[Index, float]) -> Column:
+    return Column(
+        unit=unit, axis=axis, rule=rule,
+        index=list(cells), value=list(cells.values()), status=["ok"] * len(cells),
+    )  # fmt: skip
+
+
+V = listed("m/s", "tests", "given", {(1,): 2.0, (2,): 3.0})
+A = listed("1", "pairs", "(11) a = v", {(1, 2): 1.25})
+M = Column(unit="1", rule="(12) m = a", value=1.25, status="ok")
+PUBLISHED = Published(source="Table 2", cell="a", index=[1, 2], printed="1.2", verdict="same")
 RESULT = Result(
-    "before", "t", "w", {"v": V, "a": A, "m": M}, {"(11)": "proved"}, {"Table 2 a[1-2]": "1.2: same"}
-)
+    schema=1, title="t", workbook="w",
+    cells={"v": V, "a": A, "m": M}, proofs={"(11)": "proved"}, published=[PUBLISHED],
+)  # fmt: skip
 
 
 def with_column(name: str, column: Column) -> Result:
-    return replace(RESULT, name="after", columns={**RESULT.columns, name: column})
+    return replace(RESULT, cells={**RESULT.cells, name: column})
 
 
 def test_a_result_is_itself() -> None:
@@ -45,27 +57,27 @@ def test_a_result_is_itself() -> None:
     ],
 )
 def test_rounding_is_eight_eps_of_the_larger(after: float, is_noise: bool) -> None:
-    found = compare(RESULT, with_column("m", replace(M, cells={(): (after, "ok")})))
+    found = compare(RESULT, with_column("m", replace(M, value=after)))
     assert (found.noise, len(found.moved)) == ((1, 0) if is_noise else (0, 1))
     assert found.any is not is_noise
 
 
 def test_what_a_condition_allows_is_rounding_too() -> None:
-    after = with_column("m", replace(M, cells={(): (1.25 + 1e-13, "ok")}))
+    after = with_column("m", replace(M, value=1.25 + 1e-13))
     assert compare(RESULT, after).any
     assert not compare(RESULT, after, {"m": {(): 2e-13}}).any
     assert compare(RESULT, after, {"m": {(): 5e-14}}).any
 
 
 def test_a_number_that_vanishes_has_moved() -> None:
-    (move,) = compare(RESULT, with_column("m", replace(M, cells={(): (None, "#NOROOT!")}))).moved
+    (move,) = compare(RESULT, with_column("m", replace(M, value=None, status="#NOROOT!"))).moved
     assert (move.before, move.after, move.status, move.relative) == (1.25, None, ("ok", "#NOROOT!"), None)
     assert moved(move) == ("1.25", "#NOROOT!", "")
 
 
 def test_another_status_without_a_number_has_moved() -> None:
-    none = with_column("m", replace(M, cells={(): (None, "#NOROOT!")}))
-    other = with_column("m", replace(M, cells={(): (None, "#DOMAIN!")}))
+    none = with_column("m", replace(M, value=None, status="#NOROOT!"))
+    other = with_column("m", replace(M, value=None, status="#DOMAIN!"))
     assert compare(none, none).same == 4
     assert len(compare(none, other).moved) == 1
 
@@ -73,10 +85,10 @@ def test_another_status_without_a_number_has_moved() -> None:
 def test_what_the_user_gave_comes_first_then_scalars() -> None:
     after = replace(
         RESULT,
-        columns={
-            "a": replace(A, cells={(1, 2): (1.3, "ok")}),
-            "v": replace(V, cells={(1,): (2.0, "ok"), (2,): (3.5, "ok")}),
-            "m": replace(M, cells={(): (1.3, "ok")}),
+        cells={
+            "a": replace(A, value=[1.3]),
+            "v": replace(V, value=[2.0, 3.5]),
+            "m": replace(M, value=1.3),
         },
     )
     found = compare(RESULT, after)
@@ -103,9 +115,8 @@ def test_another_equation_or_unit_is_another_method(column: Column, said: str) -
 
 
 def test_another_proof_verdict_or_workbook_is_told() -> None:
-    after = replace(
-        RESULT, workbook="x", proofs={"(11)": "refuted", "(12)": "proved"}, published={"text m": "1: same"}
-    )
+    text = replace(PUBLISHED, source="text", cell="m", index=[], printed="1")
+    after = replace(RESULT, workbook="x", proofs={"(11)": "refuted", "(12)": "proved"}, published=[text])
     found = compare(RESULT, after)
     assert [(c.name, c.before, c.after) for c in found.method] == [
         ("workbook", "w", "x"),
@@ -119,7 +130,7 @@ def test_another_proof_verdict_or_workbook_is_told() -> None:
 def test_rows_and_columns_come_and_go() -> None:
     after = replace(
         RESULT,
-        columns={"v": replace(V, cells={(1,): (2.0, "ok"), (3,): (1.0, "ok")}), "a": A, "new": M},
+        cells={"v": replace(V, index=[1, 3], value=[2.0, 1.0]), "a": A, "new": M},
     )
     found = compare(RESULT, after)
     assert (found.added, found.removed) == (("v[3]", "new"), ("v[2]", "m"))

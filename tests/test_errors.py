@@ -15,9 +15,10 @@ from pathlib import Path
 import pytest
 
 from loopsheet.report.archive.crate import write as write_crate
-from loopsheet.report.archive.read_back import read_manifest, read_result
 from loopsheet.report.archive.scaffold import new
 from loopsheet.report.cli import _parse
+from loopsheet.report.files.manifest import read_manifest
+from loopsheet.report.files.values import read_result
 from loopsheet.report.inputs.folders import built_from, report_folder
 from loopsheet.report.inputs.inputs import check_cells, load
 from loopsheet.report.machine.staging import replaced
@@ -195,7 +196,7 @@ def new_in_a_used_folder() -> None:
 
 def result_without_cells() -> None:
     Path("values.json").write_text('{"schema": 1, "title": "t", "workbook": "w"}')
-    read_result(Path())
+    read_result(Path("values.json"))
 
 
 def crate(date: str, licence: str, digest: str = "") -> None:

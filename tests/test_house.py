@@ -59,7 +59,8 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     **dict.fromkeys(PROVER, (PROVER, ALGEBRA)),
     # --- the rooms of report/, from the ground up: each may look into those that stand before it
     "report.messages": (rooms("messages"), set()),
-    "report.machine": (rooms("machine", "messages"), set()),
+    "report.files": (rooms("files", "messages"), {"msgspec"}),
+    "report.machine": (rooms("files", "machine", "messages"), set()),
     "report.machine.provenance": (set(), {"numpy"}),
     "report.quantity": (set(), set()),
     "report.column": (PROVER | rooms("quantity"), ALGEBRA),
@@ -76,13 +77,16 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.engines": (DECLARED | rooms("engines", "inputs.unit_text", "plan"), NUMERIC),
     "report.engines.elementary": (set(), {"numpy"}),
     "report.engines.intervals": (rooms("engines.elementary"), {"numpy"}),
-    "report.result": (DECLARED | rooms("engines.exact", "inputs", "result"), {"mpmath", "numpy"}),
+    "report.result": (
+        DECLARED | rooms("engines.exact", "files", "inputs", "result"),
+        {"mpmath", "msgspec", "numpy"},
+    ),
     "report.judge": (
         DECLARED | rooms("engines", "inputs", "judge", "machine", "plan", "result") | {"derivations"},
         NUMERIC,
     ),
     "report.referee": (DECLARED | rooms("engines", "inputs", "judge", "referee", "result"), NUMERIC),
-    "report.archive": (DECLARED | rooms("archive", "inputs", "machine", "result"), set()),
+    "report.archive": (DECLARED | rooms("archive", "files", "inputs", "machine", "result"), {"msgspec"}),
     "report.document": (
         DECLARED | rooms("document", "inputs.measurements", "inputs.published", "result"),
         {"markdown_it", "mpmath", "numpy", "sympy"},
@@ -92,6 +96,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
         | rooms(
             "archive.differences",
             "document",
+            "files",
             "inputs.unit_text",
             "machine.programs",
             "machine.staging",

@@ -24,8 +24,8 @@ from campaign_sizes import Sizes
 from small_report import end_gauge
 
 from loopsheet.report import stages
-from loopsheet.report.archive.read_back import read_manifest
 from loopsheet.report.cli import main
+from loopsheet.report.files.manifest import read_manifest
 from loopsheet.report.machine import staging
 from loopsheet.report.machine.background import Background
 from loopsheet.report.machine.scratch import PREFIX, scratch

@@ -43,7 +43,9 @@ def server(tmp_path: Path) -> Iterator[Server]:
     (tmp_path / "secret").write_text("secret")
     (out / "link.html").symlink_to(tmp_path / "secret")
     listed = dict.fromkeys(["report.html", "link.html", "gone.html", "../secret", "/etc/passwd"], "0")
-    (out / "manifest.json").write_text(json.dumps({"outputs": listed}))
+    (out / "manifest.json").write_text(
+        json.dumps({"schema": 1, "inputs": {}, "outputs": listed, "versions": {}})
+    )
     with Server(out) as made:
         yield made
 

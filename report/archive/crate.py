@@ -9,19 +9,21 @@ from __future__ import annotations
 
 import datetime
 import hashlib
-import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 from urllib.parse import quote
 
+from msgspec.structs import replace
+
+from ..files.crate import Crate, Entity, Reference
+from ..files.form import indented, load
+from ..files.manifest import Manifest, read_manifest
 from ..inputs.folders import INPUTS, built_from
 from ..machine.scratch import scratch
 from ..machine.staging import put
 from ..machine.stopping import unstoppable
 from ..messages.errors import LoopsheetError, OutputError, UsageError, diagnose
-from .read_back import Manifest, read_manifest
 
 __all__ = ["NAME", "added", "crate", "write"]
 
@@ -49,8 +51,6 @@ _WHAT = {
     "values.json": "Every number in SI, unrounded, with its status and its equation",
     "manifest.json": "The sha256 of what went in and of what came out, and the versions of what computed it",
 }
-
-Entity = dict[str, Any]
 
 
 def write(
@@ -138,20 +138,20 @@ def added(out: Path) -> dict[Path, str]:
     The metadata does not hold its own sha256: it is written again from its words and the manifest.
     """
     try:
-        graph = json.loads((out / NAME).read_text(encoding="utf-8"))["@graph"]
-        entities = {entity["@id"]: entity for entity in graph}
-        if entities["#build"]["name"] != _BUILD:
+        graph = load(out / NAME, Crate).graph
+        entities = {entity.id: entity for entity in graph}
+        if entities["#build"].name != _BUILD:
             return {}
-        files = [entity for entity in graph if entity["@type"] == "File"]
-        inputs = {Path(file["name"]): str(file["sha256"]) for file in files if _is_input(file["name"])}
-        root, sizes = entities["./"], {file["name"]: int(str(file["contentSize"])) for file in files}
-        licence = entities[root["license"]["@id"]]
-        people = [entity for entity in graph if entity["@type"] in ("Person", "Organization")]
-    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        files = [entity for entity in graph if entity.type == "File"]
+        inputs = {Path(file.name): file.sha256 for file in files if _is_input(file.name)}
+        root, sizes = entities["./"], {file.name: int(file.content_size) for file in files}
+        licence = entities[root.license.id if root.license else ""]
+        people = [entity for entity in graph if entity.type in ("Person", "Organization")]
+    except (ValueError, LookupError):
         return {}  # no crate, or none of ours
     try:
-        metadata = crate(read_manifest(out), sizes, root["datePublished"], licence, people).encode()
-    except (LoopsheetError, LookupError, TypeError, ValueError):
+        metadata = crate(read_manifest(out), sizes, root.date_published, licence, people).encode()
+    except (LoopsheetError, LookupError):
         metadata = b""  # not of this manifest
     return {**inputs, Path(NAME): hashlib.sha256(metadata).hexdigest()}
 
@@ -167,22 +167,11 @@ def _date(text: str) -> str:
 
 def _licence(text: str) -> Entity:
     if _ADDRESS.fullmatch(text):
-        return {
-            "@id": text,
-            "@type": "CreativeWork",
-            "name": text,
-            "description": "The licence of this report",
-        }
+        return Entity(id=text, type="CreativeWork", name=text, description="The licence of this report")
     if _SPDX.fullmatch(text):
         said = f"The licence that SPDX calls {text}"
         address = f"https://spdx.org/licenses/{text}"
-        return {
-            "@id": address,
-            "@type": "CreativeWork",
-            "name": text,
-            "description": said,
-            "identifier": text,
-        }
+        return Entity(id=address, type="CreativeWork", name=text, description=said, identifier=text)
     raise UsageError(diagnose("LS612", text=text))
 
 
@@ -190,7 +179,7 @@ def _people(author: str, organization: str) -> Iterator[Entity]:
     """Yield the author and the organization, if there are any."""
     person, house = _named("Person", "#author", author), _named("Organization", "#organization", organization)
     if author:
-        yield person | ({"affiliation": {"@id": house["@id"]}} if organization else {})
+        yield replace(person, affiliation=Reference(id=house.id)) if organization else person
     if organization:
         yield house
 
@@ -199,8 +188,8 @@ def _named(kind: str, here: str, text: str) -> Entity:
     """Read ``NAME`` or ``NAME <https://...>``: the address, an ORCID or a home page, is then who it is."""
     name, _, address = text.removesuffix(">").rpartition(" <")
     if name and text.endswith(">") and _ADDRESS.fullmatch(address):
-        return {"@id": address, "@type": kind, "name": name, "url": address}
-    return {"@id": here, "@type": kind, "name": text}
+        return Entity(id=address, type=kind, name=name, url=address)
+    return Entity(id=here, type=kind, name=text)
 
 
 def crate(
@@ -215,63 +204,61 @@ def crate(
         Every file of the crate but the metadata itself, and its bytes.
     date : str
         YYYY-MM-DD.
-    licence : dict
-        The entity of the licence.
-    people : sequence of dict
-        The entities of the author and the publisher, as far as there are any.
+    licence : Entity
+    people : sequence of Entity
+        The author and the publisher, as far as there are any.
     """
     given = {f"{INPUTS}/{name}": digest for name, digest in manifest.inputs.items()}
     files = list(_files({name: size for name, size in sizes.items() if name not in given}, manifest.outputs))
     inputs = list(_files({name: sizes[name] for name in given}, given))
     software = list(_software(manifest))
-    action = {
-        "@id": "#build",
-        "@type": "CreateAction",
-        "name": _BUILD,
-        "description": "Computed every file of this folder from the inputs",
-        "instrument": {"@id": software[0]["@id"]},
-        "object": _refer(inputs),
-        "result": _refer(files),
-    }
+    named = {entity.type: Reference(id=entity.id) for entity in people}
+    action = Entity(
+        id="#build",
+        type="CreateAction",
+        name=_BUILD,
+        description="Computed every file of this folder from the inputs",
+        instrument=Reference(id=software[0].id),
+        object=_refer(inputs),
+        result=_refer(files),
+        agent=next(iter(named.values()), None),
+    )
     title = manifest.title or "A report of loopsheet"
-    root: Entity = {
-        "@id": "./",
-        "@type": "Dataset",
-        "name": title,
-        "description": f"{title}: a report whose every number is traced to an equation and recomputed",
-        "datePublished": date,
-        "license": {"@id": licence["@id"]},
-        "hasPart": _refer([*files, *inputs]),
-        "mentions": {"@id": "#build"},
-    }
-    for entity in people:
-        root["author" if entity["@type"] == "Person" else "publisher"] = {"@id": entity["@id"]}
-        action.setdefault("agent", {"@id": entity["@id"]})
-    descriptor = {
-        "@id": NAME,
-        "@type": "CreativeWork",
-        "conformsTo": {"@id": SPECIFICATION},
-        "about": {"@id": "./"},
-    }
-    context = [f"{SPECIFICATION}/context", {"sha256": "http://schema.org/sha256"}]
+    root = Entity(
+        id="./",
+        type="Dataset",
+        name=title,
+        description=f"{title}: a report whose every number is traced to an equation and recomputed",
+        date_published=date,
+        license=Reference(id=licence.id),
+        has_part=_refer([*files, *inputs]),
+        mentions=Reference(id=action.id),
+        author=named.get("Person"),
+        publisher=named.get("Organization"),
+    )
+    conforms = Reference(id=SPECIFICATION)
+    descriptor = Entity(id=NAME, type="CreativeWork", conforms_to=conforms, about=Reference(id=root.id))
+    context: list[str | dict[str, str]] = [f"{SPECIFICATION}/context", {"sha256": "http://schema.org/sha256"}]
     graph = [descriptor, root, *files, action, *inputs, *software, *people, licence]
-    return json.dumps({"@context": context, "@graph": graph}, indent=1, ensure_ascii=False) + "\n"
+    return indented(Crate(context=context, graph=graph))
 
 
-def _refer(entities: list[Entity]) -> list[Entity]:
-    return [{"@id": entity["@id"]} for entity in entities]
+def _refer(entities: list[Entity]) -> list[Reference]:
+    return [Reference(id=entity.id) for entity in entities]
 
 
 def _files(sizes: Mapping[str, int], hashes: Mapping[str, str]) -> Iterator[Entity]:
     for name, size in sorted(sizes.items()):
-        entity: Entity = {"@id": quote(name), "@type": "File", "name": name}
         other = "What the report was computed from" if _is_input(name) else "A figure of the report"
-        entity["description"] = _WHAT.get(name, other)
-        entity["encodingFormat"] = _MEDIA.get(Path(name).suffix, "application/octet-stream")
-        entity["contentSize"] = str(size)
-        if name in hashes:
-            entity["sha256"] = hashes[name]
-        yield entity
+        yield Entity(
+            id=quote(name),
+            type="File",
+            name=name,
+            description=_WHAT.get(name, other),
+            encoding_format=_MEDIA.get(Path(name).suffix, "application/octet-stream"),
+            content_size=str(size),
+            sha256=hashes.get(name, ""),
+        )
 
 
 def _is_input(name: str) -> bool:
@@ -280,33 +267,33 @@ def _is_input(name: str) -> bool:
 
 def _software(manifest: Manifest) -> Iterator[Entity]:
     """Yield loopsheet first, with its sources as parts and its libraries as what it needs."""
-    versions = dict(manifest.versions)
+    versions = dict(manifest.software)
     own = versions.pop("loopsheet", "unknown")
     parts = [
-        {
-            "@id": f"#loopsheet-{quote(part)}",
-            "@type": "SoftwareSourceCode",
-            "name": f"loopsheet: {part}",
-            "version": own,
-            "sha256": digest,
-        }
+        Entity(
+            id=f"#loopsheet-{quote(part)}",
+            type="SoftwareSourceCode",
+            name=f"loopsheet: {part}",
+            version=own,
+            sha256=digest,
+        )
         for part, digest in manifest.sources.items()
     ]
     needed = [
-        {
-            "@id": f"#{quote(name)}-{quote(version)}",
-            "@type": "SoftwareApplication",
-            "name": name,
-            "softwareVersion": version,
-        }
+        Entity(
+            id=f"#{quote(name)}-{quote(version)}",
+            type="SoftwareApplication",
+            name=name,
+            software_version=version,
+        )
         for name, version in versions.items()
     ]
-    yield {
-        "@id": f"#loopsheet-{quote(own)}",
-        "@type": "SoftwareApplication",
-        "name": "loopsheet",
-        "softwareVersion": own,
-        "hasPart": _refer(parts),
-        "softwareRequirements": _refer(needed),
-    }
+    yield Entity(
+        id=f"#loopsheet-{quote(own)}",
+        type="SoftwareApplication",
+        name="loopsheet",
+        software_version=own,
+        has_part=_refer(parts),
+        software_requirements=_refer(needed),
+    )
     yield from (*parts, *needed)

@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..cells.address import address
+from ..files.form import Index
+from ..files.values import Column, Result
 from ..result.agreement import LIMIT
-from .read_back import Column, Index, Result
 
 __all__ = ["Change", "Differences", "Move", "compare"]
 
@@ -97,7 +98,10 @@ class Differences:
 
 
 def compare(
-    before: Result, after: Result, allowed: Mapping[str, Mapping[Index, float]] | None = None
+    before: Result,
+    after: Result,
+    allowed: Mapping[str, Mapping[Index, float]] | None = None,
+    names: tuple[str, str] = ("before", "after"),
 ) -> Differences:
     """Compare two results.
 
@@ -110,17 +114,20 @@ def compare(
     before, after : Result
     allowed : mapping of column name to mapping of index to float, optional
         How much each cell may differ, in SI; used where it is more.
+    names : tuple of str
+        What they are called.
     """
     same = noise = 0
     moved: list[tuple[int, Move]] = []
-    for name, old in before.columns.items():
-        new = after.columns.get(name)
+    for name, old in before.cells.items():
+        new = after.cells.get(name)
         if new is None:
             continue
+        there = new.cells
         for index, was in old.cells.items():
-            if index not in new.cells:
+            if index not in there:
                 continue
-            now = new.cells[index]
+            now = there[index]
             if was == now:
                 same += 1
             elif _within(was, now, (allowed or {}).get(name, {}).get(index, 0.0)):
@@ -131,15 +138,14 @@ def compare(
                 named = address(name, index)
                 moved.append((rank, Move(named, new.unit, given, was[0], now[0], (was[1], now[1]))))
     return Differences(
-        before.name,
-        after.name,
+        *names,
         same,
         noise,
         tuple(move for _, move in sorted(moved, key=lambda item: item[0])),
         (*_rules(before, after), *_changes(before.proofs, after.proofs)),
         tuple(_only_in(after, before)),
         tuple(_only_in(before, after)),
-        tuple(_changes(before.published, after.published)),
+        tuple(_changes(_verdicts(before), _verdicts(after))),
     )
 
 
@@ -151,8 +157,8 @@ def _within(was: tuple[float | None, str], now: tuple[float | None, str], allowe
 
 def _rules(before: Result, after: Result) -> list[Change]:
     found = []
-    for name, old in before.columns.items():
-        new = after.columns.get(name)
+    for name, old in before.cells.items():
+        new = after.cells.get(name)
         if new is not None and _method(old) != _method(new):
             found.append(Change(name, _method(old), _method(new)))
     if before.workbook != after.workbook:
@@ -165,6 +171,14 @@ def _method(column: Column) -> str:
     return f"{column.rule or 'not told'} [{column.unit}]{over}"
 
 
+def _verdicts(result: Result) -> dict[str, str]:
+    """Of each published value, as ``Table 2 alpha[1-2]``, what it prints and the verdict on it."""
+    return {
+        f"{each.source} {address(each.cell, each.index)}": f"{each.printed}: {each.verdict}"
+        for each in result.published
+    }
+
+
 def _changes(before: Mapping[str, str], after: Mapping[str, str]) -> list[Change]:
     names = dict.fromkeys([*before, *after])
     pairs = [Change(name, before.get(name, ""), after.get(name, "")) for name in names]
@@ -174,10 +188,10 @@ def _changes(before: Mapping[str, str], after: Mapping[str, str]) -> list[Change
 def _only_in(one: Result, other: Result) -> list[str]:
     """Columns, and rows of columns that both have; one name for rows that all columns of an axis gain."""
     found = []
-    for name, column in one.columns.items():
-        if name not in other.columns:
+    for name, column in one.cells.items():
+        if name not in other.cells:
             found.append(name)
             continue
-        rows = [index for index in column.cells if index not in other.columns[name].cells]
-        found += [address(name, index) for index in rows]
+        there = other.cells[name].cells
+        found += [address(name, index) for index in column.cells if index not in there]
     return found

@@ -29,7 +29,7 @@ __all__ = ["SETTING", "kept", "nothing_kept", "place", "told"]
 SETTING = "LOOPSHEET_CACHE"
 """The variable that names another folder; if it is empty, nothing is kept."""
 
-UNTOLD = ("markupsafe", "pint", "scipy")
+UNTOLD = ("markupsafe", "msgspec", "pint", "scipy")
 """Libraries that the manifest does not tell of."""
 
 LARGEST = 300_000_000

@@ -20,6 +20,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, unquote, urlsplit
 
+from ..files.form import load
+from ..files.manifest import NAME, Manifest
 from .provenance import ROOT
 
 __all__ = ["Server"]
@@ -113,11 +115,10 @@ class Server:
     def _file(self, name: str) -> tuple[HTTPStatus, str, bytes]:
         """A file of the output, which the manifest tells of; no name leads elsewhere."""
         try:
-            listed = json.loads((self._out / "manifest.json").read_bytes())["outputs"]
             path = (self._out / name).resolve()
-            if name in listed and path.is_relative_to(self._out.resolve()):
+            if name in load(self._out / NAME, Manifest).outputs and path.is_relative_to(self._out.resolve()):
                 return HTTPStatus.OK, _TYPES.get(path.suffix, "application/octet-stream"), path.read_bytes()
-        except (OSError, ValueError, KeyError, TypeError):
+        except (OSError, ValueError):
             pass  # it is just being built, or gone
         return HTTPStatus.NOT_FOUND, "text/plain", b""
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import os
 import shutil
 from collections.abc import Callable, Collection, Iterator, Mapping
@@ -227,10 +226,12 @@ def _refuse_what_is_in_the_way(out: Path, name: Path) -> None:
 
 def _listed(folder: Path) -> dict[Path, str] | None:
     """The sha256 of what a build made, as its manifest says; None if there is none of ours."""
+    from ..files.form import Malformed, load
+    from ..files.manifest import NAME, Manifest
+
     try:
-        listed = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))["outputs"]
-        return {Path(name): str(digest) for name, digest in listed.items()}
-    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        return {Path(name): digest for name, digest in load(folder / NAME, Manifest).outputs.items()}
+    except Malformed:
         return None
 
 

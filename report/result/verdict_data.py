@@ -7,8 +7,11 @@ outwards.
 from __future__ import annotations
 
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
-from typing import Any
 
+from msgspec.structs import asdict
+
+from ..files import values as form
+from ..files.form import alike
 from . import verdict_words as words
 from .verdict import Change, Explanation, Fit, Referee, Relabelled, TableVerdict, Verdict, Witness
 
@@ -46,75 +49,58 @@ def bounds(found: Verdict | None) -> list[float | None] | None:
     return [certain(found.bound_low), certain(found.bound_high, upwards=True)]
 
 
-def data(found: Referee) -> dict[str, Any]:
+def data(found: Referee) -> form.Referee:
     """All that the referee found, but for the values by themselves."""
-    return {
-        "tables": [_table(table) for table in found.tables],
-        "joint": found.joint and _table(found.joint),
-        "tried": found.tried
-        and {
-            "explaining": found.tried.explaining,
-            "excluded": found.tried.excluded,
-            "open": found.tried.open,
-        },
-        "explanations": [*map(_explanation, found.explanations), *map(_relabelled, found.labels)],
-        "fits": [_fit(fit) for fit in found.fits],
-        "free": list(found.free),
-        "amended": found.amended and _table(found.amended),
-        "misprints": [_explanation(each) for each in found.misprints],
-    }
+    return form.Referee(
+        tables=[_table(table) for table in found.tables],
+        joint=None if found.joint is None else _table(found.joint),
+        tried=None if found.tried is None else alike(found.tried, form.Tried),
+        explanations=[*map(_explanation, found.explanations), *map(_relabelled, found.labels)],
+        fits=[_fit(fit) for fit in found.fits],
+        free=list(found.free),
+        amended=None if found.amended is None else _table(found.amended),
+        misprints=[_explanation(each) for each in found.misprints],
+    )
 
 
-def _witness(found: Witness) -> dict[str, Any]:
-    return {"cell": found.cell, "index": list(found.index), "value": float(f"{found.value:.9g}")}
+def _witness(found: Witness) -> form.Witness:
+    return form.Witness(cell=found.cell, index=list(found.index), value=float(f"{found.value:.9g}"))
 
 
-def _table(found: TableVerdict) -> dict[str, Any]:
-    return {
-        "source": found.source,
-        "verdict": found.verdict,
-        "values": found.values,
-        "mismatch": short(found.mismatch),
-        "at_least": certain(found.at_least),
-        "because": found.because or None,
-        "witness": [_witness(each) for each in found.witness],
-    }
+def _table(found: TableVerdict) -> form.Table:
+    return form.Table(
+        source=found.source,
+        verdict=found.verdict,
+        values=found.values,
+        mismatch=short(found.mismatch),
+        at_least=certain(found.at_least),
+        because=found.because or None,
+        witness=[_witness(each) for each in found.witness],
+    )
 
 
-def _change(found: Change) -> dict[str, Any]:
-    return {
-        "kind": found.kind,
-        "source": found.source,
-        "cell": found.cell,
-        "index": list(found.index),
-        "printed": found.printed,
-        "would_print": found.would_print,
-        "also": list(found.also),
-    }
+def _explanation(found: Explanation) -> form.Explanation:
+    return form.Explanation(
+        **asdict(alike(found.first, form.Change)),
+        besides=[alike(change, form.Change) for change in found.changes[1:]],
+        mismatch=short(found.mismatch),
+        changes=found.count,
+        sentence=words.explained(found),
+    )
 
 
-def _explanation(found: Explanation) -> dict[str, Any]:
-    return {
-        **_change(found.first),
-        "besides": [_change(change) for change in found.changes[1:]],
-        "mismatch": short(found.mismatch),
-        "changes": found.count,
-        "sentence": words.explained(found),
-    }
-
-
-def _relabelled(found: Relabelled) -> dict[str, Any]:
+def _relabelled(found: Relabelled) -> form.Explanation:
     change = Change("label", found.cell, (), found.source, found.printed, found.right)
-    return {
-        **_change(change),
-        "besides": [],
-        "mismatch": short(found.mismatch),
-        "changes": change.count,
-        "sentence": words.relabelled(found),
-    }
+    return form.Explanation(
+        **asdict(alike(change, form.Change)),
+        besides=[],
+        mismatch=short(found.mismatch),
+        changes=change.count,
+        sentence=words.relabelled(found),
+    )
 
 
-def _fit(found: Fit) -> dict[str, Any]:
+def _fit(found: Fit) -> form.Fit:
     value = found.published
     mismatch = {name: short(off) for name, off in found.mismatch.items()}
-    return {"source": value.source, "cell": value.cell, "is": found.best, "mismatch": mismatch}
+    return form.Fit(source=value.source, cell=value.cell, best=found.best, mismatch=mismatch)

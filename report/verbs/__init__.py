@@ -3,7 +3,7 @@
 A verb is listed here and imports what it needs when it runs, so that ``--help`` answers at once.
 """
 
-from . import build, check, crate, diff, new, prove, show, verify, watch, why
+from . import build, check, crate, diff, new, prove, schema, show, verify, watch, why
 
 VERBS = {
     "build": build,
@@ -16,5 +16,6 @@ VERBS = {
     "verify": verify,
     "diff": diff,
     "crate": crate,
+    "schema": schema,
 }
 """In the order of ``--help``."""

@@ -137,6 +137,8 @@ def _print(report: Report, found: Sequence[Check]) -> None:
 
 def _details(report: Report) -> dict[str, Any]:
     """What JSON tells besides the checks: numbers instead of sentences."""
+    from msgspec import to_builtins
+
     from ..result.verdict_data import data
     from ..views.json import proof_grounds
 
@@ -156,5 +158,5 @@ def _details(report: Report) -> dict[str, Any]:
             }
             for c in report.comparisons
         ],
-        "referee": data(report.referee),
+        "referee": to_builtins(data(report.referee)),
     }

@@ -24,10 +24,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print what is different; exit code 1 if anything is, beyond rounding."""
     from ..archive.differences import compare
-    from ..archive.read_back import read_result
+    from ..files.values import NAME, read_result
     from ..inputs.folders import result
     from ..views.differences import FORMATS
 
-    found = compare(read_result(result(options.before)), read_result(result(options.after)))
+    before, after = (
+        path / NAME if path.is_dir() else path for path in map(result, (options.before, options.after))
+    )
+    names = before.as_posix(), after.as_posix()
+    found = compare(read_result(before), read_result(after), names=names)
     print(FORMATS[options.format](found, options.most), end="")
     return FINDINGS if found.any else OK

@@ -14,7 +14,7 @@ from .build import out_argument, summary
 from .common import OK, Progress, folder_argument, keeping_arguments
 
 if TYPE_CHECKING:
-    from ..archive.read_back import Result
+    from ..files.values import Result
 
 HELP = "build a report again whenever something in its folder is saved, and show it"
 
@@ -119,10 +119,10 @@ def _again(folder: Path, out: Path, formats: tuple[str, ...], tell: Callable[...
 
 def _result(out: Path) -> Result | None:
     """What an earlier build left, if that can be read."""
-    from ..archive.read_back import read_result
+    from ..files.values import NAME, read_result
     from ..messages.errors import InputError
 
     try:
-        return read_result(out)
+        return read_result(out / NAME)
     except InputError:
         return None

@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from msgspec import UNSET
 
 from ...derivations.text import text_of_equation
 from ..cells.marks import Count
 from ..cells.values import Status
+from ..files import values as form
+from ..files.form import alike, text
+from ..files.manifest import Manifest
 from ..machine.staging import put
 from ..result import verdict_data
-from ..result.result import Report
+from ..result.result import Comparison, Report
 from ..result.verdict import Verdict
 from ..sheet import Column, Formula, Given, RepeatAxis
 from .made import Made
 
 __all__ = ["manifest", "proof_grounds", "proof_statuses", "values", "write"]
-
-SCHEMA = 1
 
 
 def write(made: Made, stage: Path) -> None:
@@ -36,73 +37,75 @@ def values(report: Report) -> str:
     The rows that an axis makes of each row of another are as many as pairs times points: they follow
     from the rows of that one by the rule that is told, and are counted only.
     """
-    return _text(
-        {
-            "schema": SCHEMA,
-            "workbook": report.workbook.name,
-            "title": report.title,
-            "cells": {column.name: _column(report, column) for column in report.sheet.columns},
-            "oddities": [
-                {"kind": check.kind, "name": check.name, "word": check.word, "sentence": check.message}
+    return text(
+        form.Result(
+            schema=1,
+            workbook=report.workbook.name,
+            title=report.title,
+            cells={column.name: _column(report, column) for column in report.sheet.columns},
+            oddities=[
+                form.Oddity(kind=check.kind, name=check.name, word=check.word, sentence=check.message)
                 for check in report.oddities
                 if check.word
             ],
-            "proofs": proof_statuses(report),
-            "rests_on": proof_grounds(report),
-            "errata": [{"about": e.about, "kind": e.kind, "sentence": e.sentence} for e in report.errata],
-            "published": [_published(comparison) for comparison in report.comparisons],
-            **({"referee": verdict_data.data(report.referee)} if report.referee.joint is not None else {}),
-        }
+            proofs=proof_statuses(report),
+            rests_on=proof_grounds(report),
+            errata=[alike(erratum, form.Erratum) for erratum in report.errata],
+            published=[_published(comparison) for comparison in report.comparisons],
+            referee=UNSET if report.referee.joint is None else verdict_data.data(report.referee),
+        )
     )
 
 
-def _column(report: Report, column: Column) -> dict[str, Any]:
+def _column(report: Report, column: Column) -> form.Column:
     values, statuses = report.values.value[column.name], report.values.status[column.name]
     if isinstance(column.axis, RepeatAxis) and isinstance(column.rule, Formula):
         return _generated(report, column, column.axis)
     numbers = [float(v) if s == Status.OK else None for v, s in zip(values, statuses, strict=True)]
     codes = [Status(int(s)).code for s in statuses]
-    entry: dict[str, Any] = {"axis": None, "unit": column.unit, "rule": _rule(report, column)}
-    if column.axis is None:
-        entry |= {"value": numbers[0], "status": codes[0]}
-    else:
+
+    def told(rows: list[Any]) -> Any:
+        return rows[0] if column.axis is None else rows
+
+    entry: dict[str, Any] = {}
+    if column.axis is not None:
         labels = report.values.layouts[column.axis.name].labels.tolist()
-        index = [label[0] for label in labels] if len(labels[0]) == 1 else labels
-        entry |= {"axis": column.axis.name, "index": index, "value": numbers, "status": codes}
+        index = [label[0] for label in labels] if len(labels[0]) == 1 else list(map(tuple, labels))
+        entry = {"axis": column.axis.name, "index": index}
     if column.name in report.values.roots:
         reasons = [cell.reason or None for cell in report.values.cells(column.name)]
-        entry["reason"] = reasons[0] if column.axis is None else reasons
+        entry["reason"] = told(reasons)
     if isinstance(column.rule, Given):
         entry["u"] = _given_uncertainty(report, column)
     if column.limits:
         marks = [mark or None for mark in report.marks.of(column.name)]
-        entry["mark"] = marks[0] if column.axis is None else marks
+        entry["mark"] = told(marks)
     if column.name in report.values.counted:
         entry["rows"] = dict(report.values.counted[column.name])
     if marked := [_marked(count) for count in report.marks.behind(column) if count.number]:
         entry["marked"] = marked
-    return entry
+    return form.Column(
+        unit=column.unit, rule=_rule(report, column), value=told(numbers), status=told(codes), **entry
+    )
 
 
-def _generated(report: Report, column: Column, axis: RepeatAxis) -> dict[str, Any]:
+def _generated(report: Report, column: Column, axis: RepeatAxis) -> form.Column:
     """How many generated rows a column has, by their status."""
     codes, sizes = np.unique(report.values.status[column.name], return_counts=True)
-    return {
-        "axis": axis.name,
-        "of": axis.of.name,
-        "unit": column.unit,
-        "rule": _rule(report, column),
-        "size": report.values.layouts[axis.name].size,
-        "status": {
-            Status(code).code: size for code, size in zip(codes.tolist(), sizes.tolist(), strict=True)
-        },
-    }
+    return form.Column(
+        axis=axis.name,
+        of=axis.of.name,
+        unit=column.unit,
+        rule=_rule(report, column),
+        size=report.values.layouts[axis.name].size,
+        status={Status(code).code: size for code, size in zip(codes.tolist(), sizes.tolist(), strict=True)},
+    )
 
 
-def _marked(count: Count) -> dict[str, Any]:
+def _marked(count: Count) -> form.Marked:
     """How many of the rows that a scalar rests on carry a mark."""
     margin = count.margin
-    return {"cell": margin.of.name, "mark": margin.limit.mark, "rows": count.number, "of": count.size}
+    return form.Marked(cell=margin.of.name, mark=margin.limit.mark, rows=count.number, of=count.size)
 
 
 def _rule(report: Report, column: Column) -> str:
@@ -151,23 +154,23 @@ def _natural(label: str) -> tuple[bool, int, str]:
     return (label.startswith("(L"), int(digits or 0), label)
 
 
-def _published(comparison: Any) -> dict[str, Any]:
+def _published(comparison: Comparison) -> form.Published:
     value = comparison.published
-    return {
-        "source": value.source,
-        "cell": value.cell,
-        "index": list(value.index),
-        "printed": value.printed.text,
-        "unit": value.printed.unit,
-        "value": comparison.cell.value,
-        "again": comparison.again,
-        "distance": comparison.distance,
-        "verdict": comparison.word,
-        "interval": _interval(comparison.refereed),
-        "bounds": verdict_data.bounds(comparison.refereed),
-        "expected": comparison.as_expected,
-        "finding": comparison.finding or None,
-    }
+    return form.Published(
+        source=value.source,
+        cell=value.cell,
+        index=list(value.index),
+        printed=value.printed.text,
+        unit=value.printed.unit,
+        value=comparison.cell.value,
+        again=comparison.again,
+        distance=comparison.distance,
+        verdict=comparison.word,
+        interval=_interval(comparison.refereed),
+        bounds=verdict_data.bounds(comparison.refereed),
+        expected=comparison.as_expected,
+        finding=comparison.finding or None,
+    )
 
 
 def _interval(verdict: Verdict | None) -> list[float | None] | None:
@@ -192,38 +195,16 @@ def manifest(report: Report, outputs: Mapping[str, bytes], sources: Mapping[str,
     def hashes(files: Mapping[str, bytes]) -> dict[str, str]:
         return {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
 
-    return _text(
-        {
-            "schema": SCHEMA,
-            "title": report.title,
-            "inputs": hashes(report.inputs.files),
-            "outputs": hashes(outputs),
-            "sources": dict(sources),
-            "versions": dict(report.versions),
-            "engines": {agreement.engine: agreement.program for agreement in report.engines},
-            "processor": processor,
-            "values": "as doubles compute them" if report.exactly is None else "correctly rounded",
-        }
+    return text(
+        Manifest(
+            schema=1,
+            title=report.title,
+            inputs=hashes(report.inputs.files),
+            outputs=hashes(outputs),
+            sources=dict(sources),
+            versions=dict(report.versions),
+            engines={agreement.engine: agreement.program for agreement in report.engines},
+            processor=processor,
+            values="as doubles compute them" if report.exactly is None else "correctly rounded",
+        )
     )
-
-
-def _text(content: dict[str, Any]) -> str:
-    """JSON with a line for each entry of the second level: small, and still good to compare line by line.
-
-    A NaN is no JSON and must not occur: the encoder raises.
-    """
-
-    def dump(value: Any) -> str:
-        return json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(", ", ": "))
-
-    parts = []
-    for key, value in content.items():
-        if isinstance(value, dict) and value:
-            inner = ",\n".join(f"  {dump(k)}: {dump(v)}" for k, v in value.items())
-            parts.append(f" {dump(key)}: {{\n{inner}\n }}")
-        elif isinstance(value, list) and value:
-            inner = ",\n".join(f"  {dump(v)}" for v in value)
-            parts.append(f" {dump(key)}: [\n{inner}\n ]")
-        else:
-            parts.append(f" {dump(key)}: {dump(value)}")
-    return "{\n" + ",\n".join(parts) + "\n}\n"

@@ -1,0 +1,299 @@
+"""values.json: every cell in SI with its status, the proofs, and the verdicts on what is published."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from msgspec import UNSET, Meta, UnsetType, field
+
+from .form import Form, Index, Schema, Text, read
+
+__all__ = [
+    "NAME",
+    "Change",
+    "Column",
+    "Erratum",
+    "Explanation",
+    "Fit",
+    "Marked",
+    "Oddity",
+    "Published",
+    "Referee",
+    "Result",
+    "Table",
+    "Tried",
+    "Witness",
+    "read_result",
+]
+
+NAME = "values.json"
+
+Number = float | None
+Bounds = list[Number] | None
+Cells = list[Number] | Number
+Words = list[str | None] | str | None
+Row = int | Annotated[Index, Meta(min_length=1)]
+
+
+class Marked(Form, frozen=True, kw_only=True):
+    """How many of the rows that a scalar rests on, `rows` `of` so many, carry a mark."""
+
+    cell: Text
+    mark: Text
+    rows: int
+    of: int
+
+
+class Column(Form, frozen=True, kw_only=True):
+    """One column: of an index set lists, of a scalar one cell; rows made of each row of another are counted.
+
+    Parameters
+    ----------
+    axis : str or null
+        The index set.
+    of : str
+        Whose rows those of the axis are made of: such rows are as many as pairs times points.
+    unit : str
+        SI; 1 for a pure number.
+    rule : str
+        Its equation with its number; ``given`` for what the user gave, empty if it is not told.
+    index : list
+        The number of each row, or the numbers of its tests.
+    size : int
+        The number of rows that are counted and not listed.
+    value : number or null
+        In SI, unrounded; null where there is none.
+    status : str
+        ``ok`` or the code of an error; how many rows have each, where they are counted.
+    reason : str or null
+        Why there is no root, or more than one.
+    u : number or null
+        The standard uncertainty of what the user gave.
+    mark : str or null
+        That it lies outside of what its source allows.
+    rows : table of int
+        Over how many rows of each index set a reduction ran.
+    marked : list
+        What carries a mark among the rows that it rests on.
+    """
+
+    axis: Text | None = None
+    of: Text | UnsetType = UNSET
+    unit: Text
+    rule: Text = ""
+    size: int | UnsetType = UNSET
+    index: list[Row] | UnsetType = UNSET
+    value: Cells | UnsetType = UNSET
+    status: list[str] | dict[str, int] | str
+    reason: Words | UnsetType = UNSET
+    u: Cells | UnsetType = UNSET
+    mark: Words | UnsetType = UNSET
+    rows: dict[str, int] | UnsetType = UNSET
+    marked: list[Marked] | UnsetType = UNSET
+
+    def __post_init__(self) -> None:
+        if self.axis is None:
+            fit = isinstance(self.value, float | int | None) and isinstance(self.status, str)
+        elif self.of is not UNSET:
+            fit = self.size is not UNSET and isinstance(self.status, dict)
+        else:
+            parts = self.index, self.value, self.status
+            fit = all(isinstance(part, list) for part in parts)
+            fit = fit and len({*map(len, parts), len(set(self.index))}) == 1  # type: ignore[arg-type]
+        if not fit:
+            raise ValueError("its rows do not fit together")
+
+    @property
+    def cells(self) -> dict[Index, tuple[Number, str]]:
+        """The value in SI and the status of every row that is listed."""
+        if isinstance(self.status, str):
+            return {(): (self.value, self.status)}  # type: ignore[dict-item]
+        if self.index is UNSET:
+            return {}
+        labels = (label if isinstance(label, tuple) else (label,) for label in self.index)
+        return dict(zip(labels, zip(self.value, self.status, strict=True), strict=True))  # type: ignore[arg-type]
+
+
+class Oddity(Form, frozen=True, kw_only=True):
+    """What is odd about the data themselves."""
+
+    kind: Text
+    name: Text
+    word: Text
+    sentence: Text
+
+
+class Erratum(Form, frozen=True, kw_only=True):
+    """What is wrong with the print of the source."""
+
+    about: Text
+    kind: Text
+    sentence: Text
+
+
+class Published(Form, frozen=True, kw_only=True):
+    """A published value beside its recomputation.
+
+    Parameters
+    ----------
+    source, cell, index
+        Where it stands, and which cell it is.
+    printed, unit : str
+        As it is printed.
+    value : number or null
+        The cell, in SI.
+    again : str
+        The cell, printed in the same way.
+    distance : number or null
+        The cell minus what is published, in units of its last printed digit.
+    verdict : str
+        The referee's word; without it, whether the cell prints the same.
+    interval, bounds : two numbers or null
+        What inputs that print as given were seen to yield, and what none of them can leave, in SI.
+    expected : bool
+        Whether there is nothing to find.
+    finding : str or null
+    """
+
+    source: Text
+    cell: Text
+    index: list[int]
+    printed: Text
+    unit: Text = ""
+    value: Number = None
+    again: Text = ""
+    distance: Number = None
+    verdict: Text
+    interval: Bounds = None
+    bounds: Bounds = None
+    expected: bool = True
+    finding: Text | None = None
+
+
+class Witness(Form, frozen=True, kw_only=True):
+    """A cell of the best input that was found, in the unit that it is printed in."""
+
+    cell: Text
+    index: list[int]
+    value: float
+
+
+class Table(Form, frozen=True, kw_only=True):
+    """A table as a whole.
+
+    Parameters
+    ----------
+    source, verdict : str
+    values : int
+        How many.
+    mismatch : number or null
+        The worst of them for the best input that was found, in half units of the last printed digit.
+    at_least : number or null
+        What no input can leave less than.
+    because : str or null
+    witness : list
+        That input.
+    """
+
+    source: Text
+    verdict: Text
+    values: int
+    mismatch: Number
+    at_least: Number
+    because: Text | None
+    witness: list[Witness]
+
+
+class Tried(Form, frozen=True, kw_only=True):
+    """How many changes explain what is published, how many certainly do not, and of how many it is open."""
+
+    explaining: int
+    excluded: int
+    open: int
+
+
+class Change(Form, frozen=True, kw_only=True):
+    """Something that may have been printed wrongly, and how it would be printed; `also` are other digits."""
+
+    kind: Text
+    source: Text
+    cell: Text
+    index: list[int]
+    printed: Text
+    would_print: Text
+    also: list[Text]
+
+
+class Explanation(Change, frozen=True, kw_only=True):
+    """A change with which all comes out; what has to change besides, and how many changes that makes."""
+
+    besides: list[Change]
+    mismatch: Number
+    changes: int
+    sentence: Text
+
+
+class Fit(Form, frozen=True, kw_only=True):
+    """The column that a published one goes with best, and the mismatch of each."""
+
+    source: Text
+    cell: Text
+    best: Text = field(name="is")
+    mismatch: dict[str, Number]
+
+
+class Referee(Form, frozen=True, kw_only=True):
+    """What the referee found: the tables, all together, and what would have to be printed otherwise."""
+
+    tables: list[Table]
+    joint: Table | None
+    tried: Tried | None
+    explanations: list[Explanation]
+    fits: list[Fit]
+    free: list[Text]
+    amended: Table | None
+    misprints: list[Explanation]
+
+
+class Result(Form, frozen=True, kw_only=True):
+    """What a report was computed to.
+
+    Parameters
+    ----------
+    schema : 1
+    workbook, title : str
+    cells : table of Column
+        In the order of the sheet.
+    oddities : list of Oddity
+    proofs : table of str
+        The status of each equation.
+    rests_on : table of lists
+        What each proved equation finally rests on.
+    errata : list of Erratum
+    published : list of Published
+    referee : Referee
+        Missing where nothing is published.
+    """
+
+    schema: Schema
+    workbook: Text
+    title: Text
+    cells: dict[Text, Column]
+    oddities: list[Oddity] = field(default_factory=list)
+    proofs: dict[Text, Text]
+    rests_on: dict[Text, list[Text]] = field(default_factory=dict)
+    errata: list[Erratum] = field(default_factory=list)
+    published: list[Published]
+    referee: Referee | UnsetType = UNSET
+
+
+def read_result(path: Path) -> Result:
+    """Read a values.json.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
+    return read(path, Result, "LS607")
