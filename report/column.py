@@ -15,6 +15,7 @@ from sympy.logic.boolalg import Boolean
 
 from ..derivations.equation import Equation
 from ..derivations.reductions import REDUCTIONS
+from .content import content
 from .quantity import Bounds
 
 __all__ = [
@@ -416,6 +417,18 @@ class Column:
         if isinstance(self.rule, Formula):
             return (self.rule.expression, *conditions)
         return (*self.rule.expressions, *conditions) if isinstance(self.rule, Root) else conditions
+
+    @cached_property
+    def content(self) -> str:
+        """All that an engine makes anything of: columns that share it are computed by the same program."""
+        rule, own = self.rule, tuple[Any, ...]()
+        if isinstance(rule, Given):
+            own = (rule.bounds,)
+        elif isinstance(rule, Root):
+            turning = len(rule.turning), bool(rule.turning_by)
+            own = (rule.unknown, rule.steps, *turning, rule.sign_low is None, rule.sign_high is None)
+        every = (self.name, self.axis, self.positive, type(rule).__name__, own, self.expressions)
+        return content((*every, len(self.requires)))
 
 
 # --- what a rule names -----------------------------------------------------------------------------------

@@ -170,7 +170,7 @@ def test_a_median_is_enclosed_with_its_derivatives() -> None:
         high = low + rng.choice([0.01, 1.0, 3.0], size)
         layouts = engine.evaluate(sheet, labels, {"x": low}, program).layouts
         enclosure = Enclosure(sheet, program, layouts, {"x": Intervals(low, high)})
-        slopes = enclosure.derivatives(made.derivatives, made.program, {"x": np.arange(size)})["m"]
+        slopes = enclosure.derivatives(made.nodes, made.program, {"x": np.arange(size)})["m"]
         found = enclosure.value["m"]
         inside = low + rng.random((100, size)) * (high - low)
         value = engine.evaluate(sheet, labels, {"x": inside}, program).value["m"][:, 0]

@@ -223,14 +223,14 @@ def settled(program: RootProgram, values: tuple[Array, Array, Array, Array], ste
     named = {"beta": beta, "v_i": v[:, 0], "v_j": v[:, 1], "e_i": e[:, 0], "e_j": e[:, 1]}
     named |= {"x_p_i": x_p[:, 0], "x_p_j": x_p[:, 1]}
     with np.errstate(all="ignore"):
-        fewer = replace(program, node=replace(program.node, steps=steps))
+        fewer = replace(program, steps=steps)
         found = fewer.solve(named, {}, (len(beta),))
     return int(np.count_nonzero(found.status == Status.OK)), found.bisected
 
 
 def test_the_steps_settle_all_but_a_few_rows_and_the_others_are_bisected() -> None:
     program = PROGRAM.roots["alpha"]
-    assert program.node.steps == 4
+    assert program.steps == 4
     data = pairs(20_000, 0.2, 3.0, seed=5)
     left = {steps: settled(program, data, steps) for steps in (1, 2, 4, 6)}
     count = left[4][0]
@@ -244,7 +244,7 @@ def test_bisected_rows_are_as_good_as_the_others(monkeypatch: pytest.MonkeyPatch
     beta, v, e, x_p = pairs(3000, 1.0, 1.5, seed=6)
     good = solve(beta, v, e, x_p)
     program = PROGRAM.roots["alpha"]
-    one_step = replace(program, node=replace(program.node, steps=1))
+    one_step = replace(program, steps=1)
     monkeypatch.setitem(PROGRAM.roots, "alpha", one_step)  # type: ignore[arg-type]
     again = solve(beta, v, e, x_p)
     np.testing.assert_array_equal(good.status["alpha"], again.status["alpha"])

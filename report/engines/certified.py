@@ -7,10 +7,10 @@ may be. Where neither sees it, every row is decided alone (:mod:`~loopsheet.repo
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from sympy import Add, Expr, Mul, Piecewise, Symbol, ceiling, degree, diff, exp, false, floor, sift, sign
@@ -22,7 +22,7 @@ from ..plan.domain import defined, typed_symbols
 from ..sheet import Column, Sheet, SheetError
 from .intervals import Intervals
 from .mpmath_intervals import differences, holds, printed
-from .numpy_code import Kernel, kernel
+from .numpy_code import SAME, Kernel, kernel
 from .roots import magnitude
 
 __all__ = ["Enclosing", "certified", "enclosing", "held", "slope", "typed_form"]
@@ -123,7 +123,8 @@ def _one_way(form: Expr, ends: tuple[Expr, ...], unknown: Symbol, cells: Cells) 
 def _run(expressions: list[Any], span: Mapping[Symbol, Intervals]) -> list[Intervals]:
     """Expressions over all that their symbols may be."""
     function = kernel(expressions)
-    given: Any = [span[symbol] for symbol in function.arguments]
+    named = {symbol.name: each for symbol, each in span.items()}
+    given: Any = [named[name] for name in function.arguments]
     with np.errstate(all="ignore"):
         return [Intervals.of(each) for each in function.run(*given, *(_AnyRows() for _ in function.totals))]
 
@@ -176,6 +177,17 @@ class Enclosing(Kernel):
 
     reach: Kernel | None = None
 
+    @property
+    def plain(self) -> dict[str, Any]:
+        """What it is, as data."""
+        return {**super().plain, "reach": self.reach and self.reach.plain}
+
+    @classmethod
+    def of_plain(cls, plain: Mapping[str, Any], functions: Any = SAME) -> Self:
+        """That of such data."""
+        reach = plain["reach"] and Kernel.of_plain(plain["reach"])
+        return replace(super().of_plain(plain, functions), reach=reach)
+
 
 def enclosing(sheet: Sheet, plan: Plan, node: Root) -> Enclosing:
     """A function of what a root names and of its unknown: the form, its slope, whether that tells its course.
@@ -196,7 +208,7 @@ def enclosing(sheet: Sheet, plan: Plan, node: Root) -> Enclosing:
             continue
         exponents = _exponents((form, steepness), plain) if known == True else None  # noqa: E712
         reach = None if exponents is None or len(run.totals) != 1 else kernel([*map(magnitude, exponents)])
-        return Enclosing(run.arguments, run.totals, run.source, run.run, reach)
+        return Enclosing(run.arguments, run.totals, run.source, reach=reach)
     raise SheetError(f"{node.column.name}: NumPy cannot compute {form}")
 
 

@@ -352,8 +352,8 @@ class _Scope:
         leaves, written = plan.named, {name: total.written for name, total in plan.totals.items()}
         named = {
             name: self.function(written[name]) if name in written else self._read_leaf(leaves[name])
-            for argument in kernel.arguments
-            if (name := argument.name) != plain.name
+            for name in kernel.arguments
+            if name != plain.name
         }
         kept = {}
         for name in kernel.totals:

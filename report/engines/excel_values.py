@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..cells.layout import precedents
 from ..cells.values import CODES, Status, Values, inherited, rows_kept
 from .excel_roots import READY, Unrolled
-from .numpy import Program, parts
+from .numpy import Program, parts, program_texts
 from .numpy_code import Array
 
 __all__ = ["auxiliary_values"]
@@ -30,7 +30,10 @@ def auxiliary_values(values: Values, unrolled: Unrolled) -> dict[str, tuple[floa
     codes = inherited(named, rows_kept(named, values.layouts, values.status), values.status, rows)
     asked = (unrolled.issued, np.ones(rows)), (unrolled.counted, _counted(values, column.name))
     told = {cell.name: known for cell, known in asked if cell is not None}
-    found = parts(Program.of_plan(sheet, unrolled.plan), replace(values, value={**values.value, **told}))
+    found = parts(
+        Program.of_texts(sheet, program_texts(sheet, unrolled.plan), lambda: unrolled.plan),
+        replace(values, value={**values.value, **told}),
+    )
     cells = {cell.name: found[cell.part.symbol.name] for cell in unrolled.cells}
     ready = codes == Status.OK
     alone = ready & (cells[unrolled.number.name] == 1)

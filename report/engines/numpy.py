@@ -8,7 +8,7 @@ made by :mod:`~loopsheet.report.engines.numpy_code` from the sheet's own express
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -20,13 +20,14 @@ from ..cells.layout import Layout, lay_out, precedents
 from ..cells.values import Status, Values, how_many, inherited, rows_kept
 from ..plan import Leaf, Map, Plan, Root, lowered
 from ..plan.domain import SMALLEST
+from ..plan.kept import of_sheet
 from ..sheet import Column, Sheet
-from .numpy_code import SAME, Array, Function, Kernel, kernel
-from .numpy_root import RootProgram
+from .numpy_code import SAME, Array, Function, Kernel, compiled, kernel
+from .numpy_root import RootProgram, root_texts
 from .numpy_rows import Kept, chosen
 from .numpy_sheet import sheet_function
 
-__all__ = ["Kernel", "Program", "evaluate", "extend", "kernel", "parts"]
+__all__ = ["Kernel", "Program", "evaluate", "extend", "kernel", "parts", "program_texts"]
 
 Codes = NDArray[np.uint8]
 Masks = Mapping[str, NDArray[np.bool_]]
@@ -37,6 +38,26 @@ WIDEST = 1 << 16
 """How many cells the widest column has, at most, of what is computed of a batch at a time."""
 
 
+def program_texts(sheet: Sheet, plan: Plan) -> dict[str, Any]:
+    """The functions of a plan, printed: data of which :class:`Program` is made.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    plan : Plan
+        What computes something of it.
+
+    Raises
+    ------
+    SheetError
+        A formula has a part that NumPy cannot compute.
+    """
+    nodes = {node.column.name: node for node in plan.nodes if isinstance(node, Root)}
+    roots = {name: root_texts(sheet, plan, node) for name, node in nodes.items()}
+    asked = {name: texts["arguments"] for name, texts in roots.items()}
+    return {"sheet": sheet_function(plan, asked), "roots": roots}
+
+
 @dataclass(frozen=True, eq=False)
 class Program:
     """The function of a sheet, and the parts that it asks for.
@@ -44,9 +65,10 @@ class Program:
     Parameters
     ----------
     sheet : Sheet
-    plan : Plan
+    lower : callable
+        Returns the plan that the functions were printed from.
     function : callable
-        Printed from the plan; called with a run.
+        Called with a run.
     roots : mapping of column name to RootProgram
     source : str
         The text of all of it.
@@ -55,7 +77,7 @@ class Program:
     """
 
     sheet: Sheet
-    plan: Plan
+    lower: Callable[[], Plan]
     function: Function
     roots: Mapping[str, RootProgram]
     source: str
@@ -64,7 +86,7 @@ class Program:
 
     @classmethod
     def of(cls, sheet: Sheet, known: Collection[str] = (), functions: Any = SAME) -> Program:
-        """Generate the program of a sheet.
+        """Generate the program of a sheet, or take it as it was printed before.
 
         Parameters
         ----------
@@ -80,25 +102,38 @@ class Program:
         SheetError
             A formula has a part that NumPy cannot compute.
         """
-        return cls.of_plan(sheet, lowered(sheet, known), functions)
+
+        def lower() -> Plan:
+            return lowered(sheet, known)
+
+        texts = of_sheet(sheet, "NumPy program", sorted(known), lambda: program_texts(sheet, lower()))
+        return cls.of_texts(sheet, texts, lower, functions)
 
     @classmethod
-    def of_plan(cls, sheet: Sheet, plan: Plan, functions: Any = SAME) -> Program:
-        """Generate the program of a plan that computes something of a sheet.
+    def of_texts(
+        cls, sheet: Sheet, texts: Mapping[str, Any], lower: Callable[[], Plan], functions: Any = SAME
+    ) -> Program:
+        """The program of printed functions.
 
-        Raises
-        ------
-        SheetError
+        Parameters
+        ----------
+        sheet : Sheet
+        texts : mapping
+            From :func:`program_texts`.
+        lower : callable
+            Returns the plan they were printed from: asked for if a cell is in error.
+        functions : module
             As for :meth:`of`.
         """
-        roots = {
-            node.column.name: RootProgram.of(sheet, plan, node, functions)
-            for node in plan.nodes
-            if isinstance(node, Root)
-        }
-        source, function = sheet_function(plan, roots, functions)
+        roots = {name: RootProgram.of(root, functions) for name, root in texts["roots"].items()}
         parts = (f"# {name}\n{root.source}" for name, root in roots.items())
-        return cls(sheet, plan, function, roots, "\n\n".join([source, *parts]), functions)
+        function = compiled(texts["sheet"], functions)
+        return cls(sheet, lower, function, roots, "\n\n".join([texts["sheet"], *parts]), functions)
+
+    @cached_property
+    def plan(self) -> Plan:
+        """What the functions were printed from."""
+        return self.lower()
 
     def run(
         self, labels: Mapping[str, Sequence[int]], counts: Mapping[str, int], data: Mapping[str, Array]
@@ -340,7 +375,7 @@ class _Run:
         if asked is None:
             return bool(condition)
         named = self.program.plan.named
-        arguments = [self._fetched(named[symbol.name]) for symbol in asked.arguments]
+        arguments = [self._fetched(named[name]) for name in asked.arguments]
         found = asked.run(*arguments, *(self.kept(column.name, axis) for axis in asked.totals))[0]
         return np.broadcast_to(found, np.broadcast_shapes(np.shape(found), (self.laid.size(column),))).astype(
             bool
@@ -366,7 +401,7 @@ class _Run:
         self, column: Column, program: RootProgram, arguments: Sequence[Array], inherited: Codes
     ) -> tuple[Array, Codes]:
         totals = {axis.name: self.kept(column.name, axis.name) for axis in self.sheet.axes}
-        names = [argument.name for argument in program.arguments]
+        names = program.arguments
         if program.totals:
             batch = [kept.number.shape for kept in totals.values()]
             batch += [inherited.shape, *((*a.shape[:-1], 1) for a in arguments)]
@@ -479,7 +514,7 @@ def parts(program: Program, values: Values) -> dict[str, Array]:
     Parameters
     ----------
     program : Program
-        Of the plan, from :meth:`Program.of_plan`.
+        Of the plan.
     values : Values
         All columns that the plan names.
 

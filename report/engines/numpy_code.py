@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import reduce
+from dataclasses import dataclass, field
+from functools import cached_property, reduce
 from types import MappingProxyType, ModuleType
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,9 @@ from ..plan import RowMedian, RowSum, taken_over
 from ..sheet import SheetError
 from . import elementary
 
-__all__ = ["SAME", "Array", "Function", "Kernel", "Printer", "compiled", "kernel", "printed", "write"]
+__all__ = [
+    "SAME", "Array", "Function", "Kernel", "Printer", "compiled", "kernel", "printed", "text_of", "write",
+]  # fmt: skip
 
 Array = NDArray[np.float64]
 Function = Callable[..., tuple[Array, ...]]
@@ -112,46 +114,65 @@ def printed(printer: Printer, expression: Any) -> str:
         raise SheetError(f"NumPy cannot compute this: {error}") from error
 
 
-def compiled(name: str, arguments: Sequence[str], lines: Sequence[str], functions: Any) -> tuple[str, Any]:
-    """A function of printed lines: its text, and itself."""
-    source = "\n".join([f"def {name}({', '.join(arguments)}):", *(f"    {line}" for line in lines)])
+def text_of(name: str, arguments: Sequence[str], lines: Sequence[str]) -> str:
+    """The text of a function of printed lines."""
+    return "\n".join([f"def {name}({', '.join(arguments)}):", *(f"    {line}" for line in lines)])
+
+
+def compiled(source: str, functions: Any) -> Any:
+    """The function that a text is of."""
     namespace: dict[str, Any] = {"numpy": functions, "choose": _choose}
     # Printed from our own expressions, never foreign text.
     exec(compile(source, "<generated>", "exec"), namespace)
-    return source, namespace[name]
+    return namespace[source[len("def ") : source.index("(")]]
 
 
 @dataclass(frozen=True)
 class Kernel:
-    """One printed function: what it is called with, its text, and the function itself.
+    """One printed function.
 
     Parameters
     ----------
-    arguments : tuple of Symbol
+    arguments : tuple of str
         What it is called with, in order.
     totals : tuple of str
         The axes it sums over, or takes a median over: after its arguments, it is called with what does
         that for each, a :class:`~loopsheet.report.engines.numpy_rows.Kept`.
     source : str
         Its text.
-    run : callable
-        Returns one array for each expression.
+    functions : module
+        What it calls: :data:`SAME`, or NumPy.
     """
 
-    arguments: tuple[Symbol, ...]
+    arguments: tuple[str, ...]
     totals: tuple[str, ...]
     source: str
-    run: Function
+    functions: Any = field(default=SAME, repr=False)
+
+    @cached_property
+    def run(self) -> Function:
+        """The function itself; it returns one array for each expression."""
+        function: Function = compiled(self.source, self.functions)
+        return function
+
+    @property
+    def plain(self) -> dict[str, Any]:
+        """What it is, as data."""
+        return {"arguments": self.arguments, "totals": self.totals, "source": self.source}
+
+    @classmethod
+    def of_plain(cls, plain: Mapping[str, Any], functions: Any = SAME) -> Self:
+        """That of such data."""
+        return cls(tuple(plain["arguments"]), tuple(plain["totals"]), plain["source"], functions)
 
 
 def write(
     arguments: Sequence[Symbol],
     totals: Sequence[str],
     expressions: Sequence[Any],
-    functions: Any = SAME,
     parts: Mapping[Symbol, Any] = MappingProxyType({}),
-) -> tuple[str, Function]:
-    """Print expressions as one function, common parts computed once; return its text and the function.
+) -> str:
+    """Print expressions as one function, common parts computed once.
 
     Parameters
     ----------
@@ -160,7 +181,6 @@ def write(
         As for :class:`Kernel`.
     expressions : sequence of Expr
         What it returns.
-    functions : module
     parts : mapping of Symbol to Expr
         What the expressions are made of besides, each of what comes before it.
 
@@ -185,7 +205,7 @@ def write(
         waiting.remove(ready)
         unknown.remove(name)
     lines += [f"return ({', '.join(printed(printer, body) for body in bodies)},)"]
-    return compiled("kernel", names, lines, functions)
+    return text_of("kernel", names, lines)
 
 
 def _opposite(expressions: Sequence[Any]) -> dict[Expr, Expr]:
@@ -213,4 +233,5 @@ def kernel(expressions: Sequence[Basic], functions: Any = SAME) -> Kernel:
     totals = taken_over(expressions)
     axes = {Symbol(axis) for axis in totals}
     arguments = sorted(set().union(*(e.free_symbols for e in expressions)) - axes, key=str)
-    return Kernel(tuple(arguments), totals, *write(arguments, totals, expressions, functions))
+    names = tuple(argument.name for argument in arguments)
+    return Kernel(names, totals, write(arguments, totals, expressions), functions)

@@ -76,8 +76,8 @@ class EnclosedRows:
 
     def _tame(self, low: Array, high: Array) -> bool:
         """Whether doubles hold all terms of the sums, with nearly all of their digits."""
-        reach, names = self.kernel.reach, [argument.name for argument in self.kernel.arguments]
-        cells = {name: self.cells[name] for name in names if name in self.cells}
+        reach = self.kernel.reach
+        cells = {name: self.cells[name] for name in self.kernel.arguments if name in self.cells}
         if reach is None or not low.size or any(cell.low is not cell.high for cell in cells.values()):
             return False
         if any(name not in self.terms_of and cell.low.size > 1 for name, cell in cells.items()):
@@ -91,7 +91,7 @@ class EnclosedRows:
             return False
         most = max(np.abs(low).max(), np.abs(high).max())
         exponents = reach.run(
-            *(size[a.name].max(initial=0.0) if a.name in size else most for a in reach.arguments)
+            *(size[name].max(initial=0.0) if name in size else most for name in reach.arguments)
         )
         return bool(np.isfinite(most) and max(exponents) <= TAME[2])
 
@@ -149,7 +149,7 @@ class EnclosedRows:
                 return first
             return Intervals(first, first if found.low is found.high else take(found.high))
 
-        given = [taken(argument.name) for argument in self.kernel.arguments]
+        given = [taken(name) for name in self.kernel.arguments]
         masks = [of_terms(self.kept[axis]) for axis in self.kernel.totals]
         sums: Any = [
             KeptBetween(mask, *np.split(places, 2)) if self.by_points else KeptIntervals(mask)

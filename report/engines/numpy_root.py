@@ -21,13 +21,13 @@ from ..plan import Plan, Root, RowSum, taken_over
 from ..sheet import Sheet
 from .certified import Enclosing, certified, enclosing
 from .intervals import Intervals
-from .numpy_code import SAME, Array, Function, Kernel, kernel, write
+from .numpy_code import SAME, Array, Function, Kernel, compiled, kernel, write
 from .numpy_enclosed import EnclosedRows
 from .numpy_rows import Kept, chosen
 from .numpy_steps import Rows, Stretch
 from .roots import hoist, magnitude, step
 
-__all__ = ["RootProgram", "Solved", "terms_of"]
+__all__ = ["RootProgram", "Solved", "root_texts", "terms_of"]
 
 Mask = NDArray[np.bool_]
 
@@ -60,18 +60,73 @@ def terms_of(node: Root) -> frozenset[str]:
     return frozenset(symbol.name for total in node.form.atoms(RowSum) for symbol in total.free_symbols)
 
 
+_BODIES = ("at", "newton", "step", "check", "value")
+"""The functions of a root's unknown."""
+
+
+def root_texts(sheet: Sheet, plan: Plan, node: Root) -> dict[str, Any]:
+    """The functions of one root, printed: data of which :class:`RootProgram` is made.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    plan : Plan
+        Of the sheet.
+    node : Root
+        Of the plan.
+    """
+    enclosed = None if certified(sheet, node.column) else enclosing(sheet, plan, node)
+    if enclosed is not None:
+        node = replace(node, turning=())  # what nobody proved is not used
+    unknown, constants = node.unknown, dict[Expr, Symbol]()
+    f, value = (hoist(each, unknown, constants) for each in (node.form, node.value))
+    ends = [
+        Integer(0) if end is None else end  # no sign is given: the equation is evaluated
+        for end in (node.low, node.high, node.start, node.sign_low, node.sign_high, *node.turning)
+    ]
+    # Cells that need no computation are constants too.
+    axes = {Symbol(axis) for axis in taken_over([f, value])}
+    cells = sorted((f.free_symbols | value.free_symbols) - {unknown, *constants.values(), *axes}, key=str)
+    fixed = kernel([*ends, *constants, *cells])
+    arguments = [unknown, *constants.values(), *cells]
+    totals = taken_over([f, value])
+    parts, back = step(f, unknown)
+    asked = {*fixed.arguments, *(() if enclosed is None else enclosed.arguments)} - {unknown.name}
+    named = plan.named
+    return {
+        "arguments": {name: (axis := named[name].axis) and axis.name for name in sorted(asked)},
+        "terms_of": sorted(terms_of(node)),
+        "told": [node.sign_low is not None, node.sign_high is not None],
+        "turning": len(node.turning),
+        "steps": node.steps,
+        "fixed": fixed.plain,
+        "totals": totals,
+        "at": write(arguments, totals, [f]),
+        "newton": write(arguments, totals, [f, f / diff(f, unknown)]),
+        "step": write(arguments, totals, [f, back], parts),
+        "check": write(arguments, totals, [f, magnitude(f)]),
+        "value": write(arguments, totals, [value]),
+        "enclosing": enclosed and enclosed.plain,
+    }
+
+
 @dataclass(frozen=True)
 class RootProgram:
     """Everything a root needs, printed.
 
     Parameters
     ----------
-    node : Root
-        Of the plan.
-    arguments : tuple of Symbol
-        What :meth:`solve` is called with: cells, totals and sizes that the root names.
+    arguments : mapping of name to str or None
+        What :meth:`solve` is called with: cells, totals and sizes that the root names, in order, each with
+        the axis whose rows it has.
     terms_of : frozenset of str
         Those of them whose rows are the terms of its sums.
+    told : tuple of bool
+        Whether the rule gives the sign at the lower end, and at the upper one.
+    turning : int
+        How many turning points it has.
+    steps : int
+        How many steps a row takes at most before it is bisected.
     fixed : Kernel
         What does not change with the unknown: low, high, start, the sign at each end (a number only where
         the rule gives it), the turning points, then the constants of the functions below.
@@ -96,9 +151,11 @@ class RootProgram:
         search that proves nothing does without until it has found something.
     """
 
-    node: Root
-    arguments: tuple[Symbol, ...]
+    arguments: Mapping[str, str | None]
     terms_of: frozenset[str]
+    told: tuple[bool, bool]
+    turning: int
+    steps: int
     fixed: Kernel
     totals: tuple[str, ...]
     at: Function
@@ -111,46 +168,19 @@ class RootProgram:
     counted: bool = True
 
     @classmethod
-    def of(cls, sheet: Sheet, plan: Plan, node: Root, functions: Any = SAME) -> RootProgram:
-        """Print the functions of one root."""
-        enclosed = None if certified(sheet, node.column) else enclosing(sheet, plan, node)
-        if enclosed is not None:
-            node = replace(node, turning=())  # what nobody proved is not used
-        unknown, constants = node.unknown, dict[Expr, Symbol]()
-        f, value = (hoist(each, unknown, constants) for each in (node.form, node.value))
-        ends = [
-            Integer(0) if end is None else end  # no sign is given: the equation is evaluated
-            for end in (node.low, node.high, node.start, node.sign_low, node.sign_high, *node.turning)
-        ]
-        # Cells that need no computation are constants too.
-        axes = {Symbol(axis) for axis in taken_over([f, value])}
-        cells = sorted((f.free_symbols | value.free_symbols) - {unknown, *constants.values(), *axes}, key=str)
-        fixed = kernel([*ends, *constants, *cells], functions)
-        arguments = [unknown, *constants.values(), *cells]
-        totals = taken_over([f, value])
-        parts, back = step(f, unknown)
-        newton = [f, f / diff(f, unknown)]
-        bodies = {
-            "at": [f],
-            "newton": newton,
-            "step": [f, back],
-            "check": [f, magnitude(f)],
-            "value": [value],
-        }
-        printed = {
-            name: write(arguments, totals, body, functions, parts if name == "step" else {})
-            for name, body in bodies.items()
-        }
-        source = "\n".join(
-            [f"# fixed\n{fixed.source}", *(f"# {n}\n{text}" for n, (text, _) in printed.items())]
-        )
-        named = {symbol.name: symbol for symbol in plan.leaves}
-        asked = {s.name for s in (*fixed.arguments, *(() if enclosed is None else enclosed.arguments))}
-        every = tuple(named[name] for name in sorted(asked - {unknown.name}))
-        at, straight, go, check, of_unknown = (function for _, function in printed.values())
+    def of(cls, texts: Mapping[str, Any], functions: Any = SAME) -> RootProgram:
+        """The functions of the texts that :func:`root_texts` prints."""
+        fixed = Kernel.of_plain(texts["fixed"], functions)
+        low, high = texts["told"]
+        bodies = [texts[name] for name in _BODIES]
+        at, newton, step, check, value = (compiled(text, functions) for text in bodies)
+        parts = (f"# {name}\n{text}" for name, text in zip(_BODIES, bodies, strict=True))
         return cls(
-            node, every, terms_of(node), fixed, totals, at, straight, go, check, of_unknown, source, enclosed
-        )
+            texts["arguments"], frozenset(texts["terms_of"]), (low, high), texts["turning"], texts["steps"],
+            fixed, tuple(texts["totals"]), at, newton, step, check, value,
+            "\n".join([f"# fixed\n{fixed.source}", *parts]),
+            None if texts["enclosing"] is None else Enclosing.of_plain(texts["enclosing"]),
+        )  # fmt: skip
 
     # --- numbers --------------------------------------------------------------------------------------
 
@@ -168,9 +198,9 @@ class RootProgram:
         shape : tuple of int
             Of the rows, batch first.
         """
-        out = self.fixed.run(*(arguments[a.name] for a in self.fixed.arguments))
+        out = self.fixed.run(*(arguments[name] for name in self.fixed.arguments))
         fixed = [np.atleast_1d(np.asarray(each, dtype=np.float64)) for each in out]
-        ends, constants = fixed[: 5 + len(self.node.turning)], fixed[5 + len(self.node.turning) :]
+        ends, constants = fixed[: 5 + self.turning], fixed[5 + self.turning :]
         rows = Rows(self, constants, [totals[axis] for axis in self.totals], shape)
         counted_by = self.enclosing if self.counted else None
         stretches, odd = self._stretches(ends, rows)
@@ -210,10 +240,10 @@ class RootProgram:
     def _stretches(self, ends: Sequence[Array], rows: Rows) -> tuple[list[Stretch], Mask]:
         """The stretches between turning points, and where the equation has no sign at one of their ends."""
         low, high, _, at_low, at_high, *turning = ends
-        if self.node.sign_low is None or self.node.sign_high is None:
+        if not all(self.told):
             both = rows.call(self.at, np.stack([np.broadcast_to(end, rows.shape) for end in (low, high)]))
-            at_low = both[0] if self.node.sign_low is None else at_low
-            at_high = both[1] if self.node.sign_high is None else at_high
+            at_low = at_low if self.told[0] else both[0]
+            at_high = at_high if self.told[1] else both[1]
         places, values = [low], [at_low]
         for point in turning:
             # A turning point outside the interval, or not a number, closes an empty stretch at its left end.

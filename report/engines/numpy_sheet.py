@@ -14,21 +14,19 @@ from sympy import Expr, Symbol
 from sympy.logic.boolalg import Boolean
 
 from ..plan import Given, Leaf, Map, Node, Part, Plan, Root, Total, free_name
-from .numpy_code import Printer, compiled, printed
-from .numpy_root import RootProgram
+from .numpy_code import Printer, printed, text_of
 
 __all__ = ["sheet_function"]
 
 
-def sheet_function(plan: Plan, roots: Mapping[str, RootProgram], functions: Any) -> tuple[str, Any]:
-    """Print a plan; return the text and the function.
+def sheet_function(plan: Plan, roots: Mapping[str, Iterable[str]]) -> str:
+    """Print a plan.
 
     Parameters
     ----------
     plan : Plan
-    roots : mapping of column name to RootProgram
-    functions : module
-        What computes exponentials, logarithms and powers.
+    roots : mapping of column name to iterable of str
+        What each root is called with.
 
     Raises
     ------
@@ -38,7 +36,7 @@ def sheet_function(plan: Plan, roots: Mapping[str, RootProgram], functions: Any)
     writing = _Writing(plan, roots)
     for node, values in writing.nodes:
         writing.node(node, values)
-    return compiled("sheet", ["run"], writing.lines or ["pass"], functions)
+    return text_of("sheet", ["run"], writing.lines or ["pass"])
 
 
 def _expressions(node: Node, own: Mapping[str, Symbol]) -> tuple[Any, ...]:
@@ -106,7 +104,7 @@ class _Sharing(Printer):
 class _Writing:
     """The lines so far, and the names that have been given a value in them."""
 
-    def __init__(self, plan: Plan, roots: Mapping[str, RootProgram]) -> None:
+    def __init__(self, plan: Plan, roots: Mapping[str, Iterable[str]]) -> None:
         self.plan, self.roots = plan, roots
         self.lines: list[str] = []
         self.done: set[Symbol] = set()
@@ -137,9 +135,10 @@ class _Writing:
             self.define(symbol, f'run.formula("{name}", {", ".join(map(self.text, values))})')
         else:
             assert isinstance(node, Root)
-            self.need(self.roots[name].arguments)
+            named = {symbol.name: symbol for symbol in self.plan.leaves}
+            self.need(named[argument] for argument in self.roots[name])
             asked = f", requires=({', '.join(map(self.text, values))},)" if values else ""
-            arguments = ", ".join(map(str, self.roots[name].arguments))
+            arguments = ", ".join(self.roots[name])
             self.define(symbol, f'run.root("{name}", [{arguments}]{asked})')
 
     def text(self, expression: Any) -> str:

@@ -9,7 +9,6 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..plan import Root
 from .numpy_code import Array, Function
 from .numpy_rows import Kept
 
@@ -29,7 +28,7 @@ class Equation(Protocol):
     """What is printed of a root (:class:`~loopsheet.report.engines.numpy_root.RootProgram`)."""
 
     @property
-    def node(self) -> Root: ...
+    def steps(self) -> int: ...
     @property
     def at(self) -> Function: ...
     @property
@@ -119,7 +118,7 @@ class Rows:
 
     def _quickly(self, stretch: Stretch, start: Array) -> tuple[Array, Mask]:
         """Steps that nobody watches, and where they led to a root: near to it, and inside the bracket."""
-        here, near, most = start, np.zeros(1, dtype=bool), self.program.node.steps
+        here, near, most = start, np.zeros(1, dtype=bool), self.program.steps
         # One step of fourth order, and Newton's polish what it leaves: cheaper than watching a bracket.
         if not self.totals:
             here, most = here - self.program.step(here, *self.constants)[1], min(most - 1, UNWATCHED)
@@ -148,7 +147,7 @@ class Rows:
         """Steps that stay inside the bracket, and bisection where they do not settle a row."""
         here = np.where((start > left) & (start < right), start, (left + right) / 2)
         done = np.zeros(here.shape, dtype=bool)
-        for _ in range(self.program.node.steps):
+        for _ in range(self.program.steps):
             f, back = self.program.step(here, *self.constants, *self.totals)
             # The bracket moves on a sign only: what is no number moves neither end.
             side = f * rising

@@ -7,8 +7,8 @@ cancels here too. This bound over |c|, at least 1, is the condition of the cell.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -17,8 +17,9 @@ from scipy import sparse
 
 from ..cells.layout import Layout, precedents
 from ..cells.values import Status, Values, rows_kept
-from ..engines.numpy import Program, parts
-from ..plan.derivatives import Derivatives, Local, Slope, derivatives
+from ..engines.numpy import Program, parts, program_texts
+from ..plan.derivatives import Local, Slope, derivatives, with_unknowns
+from ..plan.kept import of_sheet
 from ..result.agreement import LIMIT
 from ..sheet import Sheet
 
@@ -57,21 +58,32 @@ def bounds(
         for column in sheet.columns
         if sheet.summed_axes(column)
     }
-    return _Spread(values, parts(made.program, values), made.derivatives, kept).bounds()
+    return _Spread(values, parts(made.program, values), made.nodes, kept).bounds()
 
 
 @dataclass(frozen=True)
 class Made:
-    """The derivatives of a sheet, and the program of their plan."""
+    """The derivatives of a sheet: its nodes, each after those that it names, and what computes them."""
 
-    derivatives: Derivatives
+    nodes: tuple[Local, ...]
     program: Program
 
     @classmethod
     def of(cls, sheet: Sheet) -> Made:
-        """Make them."""
-        found = derivatives(sheet)
-        return cls(found, Program.of_plan(found.sheet, found.plan))
+        """Make them, or take them as they were made before."""
+
+        def make() -> dict[str, Any]:
+            found = derivatives(sheet)
+            texts = program_texts(with_unknowns(sheet, found.again), found.plan)
+            return {"nodes": [asdict(node) for node in found.nodes], "again": found.again, "program": texts}
+
+        told = of_sheet(sheet, "derivatives", (), make)
+        nodes = (
+            Local(**{**node, "slopes": tuple(Slope(**slope) for slope in node["slopes"])})
+            for node in told["nodes"]
+        )
+        whole = with_unknowns(sheet, told["again"])
+        return cls(tuple(nodes), Program.of_texts(whole, told["program"], lambda: derivatives(sheet).plan))
 
 
 EXPANDED = 1 << 24
@@ -87,27 +99,27 @@ class _Spread:
     """
 
     def __init__(
-        self, found: Values, parts: Mapping[str, Array], made: Derivatives, kept: Mapping[str, Masks]
+        self, found: Values, parts: Mapping[str, Array], nodes: Sequence[Local], kept: Mapping[str, Masks]
     ) -> None:
-        self.sheet, self.found, self.parts, self.made, self.kept = found.sheet, found, parts, made, kept
-        self.sizes = {node.name: self.size(node) for node in made.nodes}
+        self.sheet, self.found, self.parts, self.nodes, self.kept = found.sheet, found, parts, nodes, kept
+        self.sizes = {node.name: self.size(node) for node in nodes}
         ends = np.cumsum(list(self.sizes.values())).tolist()
         self.start = {name: end - self.sizes[name] for name, end in zip(self.sizes, ends, strict=True)}
         self.sources = ends[-1] if ends else 0
         self.rounding = np.zeros(self.sources)
-        alone = [node.name for node in made.nodes if node.axis is None]
+        alone = [node.name for node in nodes if node.axis is None]
         self.scalar = {name: n for n, name in enumerate(alone)}
         self.whole = np.zeros((len(alone), self.sources))
         self.direct: dict[str, Any] = {}
         self.scalars: dict[str, Any] = {}
 
     def size(self, node: Local) -> int:
-        return 1 if node.axis is None else self.found.layouts[node.axis.name].size
+        return 1 if node.axis is None else self.found.layouts[node.axis].size
 
     def bounds(self) -> dict[str, Array]:
         found = {}
         with np.errstate(all="ignore"):  # a derivative beyond all doubles leaves nothing known of the cell
-            for node in self.made.nodes:
+            for node in self.nodes:
                 self.spread(node)
             of_scalars = self.weighed(self.whole)
             for name in self.sheet.by_name:
@@ -138,7 +150,7 @@ class _Spread:
         scalars = sparse.csr_array((size, len(self.scalar)))
         for slope in node.slopes:
             values, columns = self.parts[slope.value], self.rows_named(slope)
-            by = self.made.plan.node_of(slope.by)
+            by = slope.by
             positions = np.arange(values.size)
             if node.over is not None:
                 values, positions = np.where(self.summed(node), values, 0.0), np.zeros_like(positions)
@@ -163,12 +175,12 @@ class _Spread:
 
     def rows_named(self, slope: Slope) -> NDArray[np.intp]:
         """The row of what a slope is by, for each row of the slope."""
-        number, leaf = self.parts[slope.value].size, self.made.plan.leaves[slope.by]
-        if leaf.axis is None:
+        number = self.parts[slope.value].size
+        if slope.axis is None:
             return np.zeros(number, dtype=np.intp)
-        if leaf.index is None:
+        if slope.index is None:
             return np.arange(number)
-        return self.found.layouts[leaf.axis.name].rows[leaf.index]
+        return self.found.layouts[slope.axis].named[slope.index]
 
     def share(self, node: Local, name: str, rows: NDArray[np.intp]) -> Array:
         """How much of the change of each row a median makes: that of the middle, or half of two there.
@@ -187,8 +199,8 @@ class _Spread:
     def summed(self, node: Local) -> NDArray[np.bool_]:
         """The rows that a sum runs over."""
         assert node.over is not None
-        everything = np.ones(self.found.layouts[node.over.name].size, dtype=bool)
-        return self.kept[node.of].get(node.over.name, everything)
+        everything = np.ones(self.found.layouts[node.over].size, dtype=bool)
+        return self.kept[node.of].get(node.over, everything)
 
 
 def _weighed(derivatives: Any, errors: Array) -> Array:

@@ -24,7 +24,7 @@ from ..engines.numpy import Program
 from ..engines.numpy_enclosed import EnclosedRows
 from ..engines.numpy_root import RootProgram
 from ..engines.numpy_rows import KeptIntervals
-from ..plan.derivatives import Derivatives, Local, Slope
+from ..plan.derivatives import Local, Slope
 from ..sheet import Column, Reference, Sheet, name_of
 
 __all__ = ["Enclosure"]
@@ -139,11 +139,10 @@ class Enclosure(_Rows):
         """A column by its root."""
         column, program = self.sheet[name], self.program.roots[name]
         cells = {}
-        for argument, each in zip(program.arguments, arguments, strict=True):
-            axis = self.program.plan.leaves[argument].axis
-            over = axis if argument.name in program.terms_of else None
+        for (argument, axis), each in zip(program.arguments.items(), arguments, strict=True):
+            over = axis if argument in program.terms_of else None
             own = Intervals.of(each)
-            cells[argument.name] = own if over is None else self.kept(name, over.name).every(own)
+            cells[argument] = own if over is None else self.kept(name, over).every(own)
         return self._hold(column, *self._root(program, column, cells), requires)
 
     def _hold(self, column: Column, found: Intervals, sure: Mask, requires: Sequence[Any] = ()) -> Intervals:
@@ -166,9 +165,9 @@ class Enclosure(_Rows):
         run_fixed: Any = program.fixed.run
         run_at: Any = program.at
         run_value: Any = program.value
-        fixed = [Intervals.of(each) for each in run_fixed(*(cells[a.name] for a in program.fixed.arguments))]
-        node, totals = program.node, [self.kept(column.name, axis) for axis in program.totals]
-        ends, rest = fixed[: 5 + len(node.turning)], fixed[5 + len(node.turning) :]
+        fixed = [Intervals.of(each) for each in run_fixed(*(cells[each] for each in program.fixed.arguments))]
+        totals = [self.kept(column.name, axis) for axis in program.totals]
+        ends, rest = fixed[: 5 + program.turning], fixed[5 + program.turning :]
         # What a sum runs over are its terms: such a root is one, and not one a term.
         rows = [(*each.shape[:-1], 1) if totals else each.shape for each in rest]
         shape = np.broadcast_shapes(*(each.shape for each in ends), *rows, (self.number(column),))
@@ -179,8 +178,8 @@ class Enclosure(_Rows):
             return Intervals.of(value).broadcast(shape)
 
         # Signs at the outermost ends: a root for any values inside lies between them.
-        before = at_low.sign if node.sign_low is not None else at(low.low).sign
-        after = at_high.sign if node.sign_high is not None else at(high.high).sign
+        before = at_low.sign if program.told[0] else at(low.low).sign
+        after = at_high.sign if program.told[1] else at(high.high).sign
         one = before * after < 0
         for turn in turning:
             # A turning point that may lie inside would allow for a second root.
@@ -227,16 +226,14 @@ class Enclosure(_Rows):
     # --- derivatives ----------------------------------------------------------------------------------
 
     def derivatives(
-        self, made: Derivatives, program: Program, sources: Mapping[str, NDArray[np.intp]]
+        self, nodes: Sequence[Local], program: Program, sources: Mapping[str, NDArray[np.intp]]
     ) -> dict[str, Intervals]:
         """Total derivatives of every column by given cells.
 
         Parameters
         ----------
-        made : Derivatives
-            Of the sheet.
-        program : Program
-            Of its plan.
+        nodes, program
+            As those of :class:`~loopsheet.report.judge.bounds.Made`.
         sources : mapping of column name to integer array (rows,)
             For given columns, the number of each row among all that derivatives are taken by.
 
@@ -245,10 +242,10 @@ class Enclosure(_Rows):
         mapping of column name to Intervals (rows, sources)
         """
         number = 1 + max((int(rows.max()) for rows in sources.values()), default=-1)
-        spread = _Spread(self, made, number)
+        spread = _Spread(self, program.sheet, number)
         with np.errstate(all="ignore"):
             program.function(spread)
-            for node in made.nodes:
+            for node in nodes:
                 spread.add(node, sources)
         return spread.found
 
@@ -259,9 +256,9 @@ class _Spread(_Rows):
     What a plan has besides slopes is of no use here, and a root that it would seek again is not known.
     """
 
-    def __init__(self, cells: Enclosure, made: Derivatives, sources: int) -> None:
-        super().__init__(made.sheet, cells.layouts, dict(cells.value), dict(cells.sure))
-        self.made, self.sources = made, sources
+    def __init__(self, cells: Enclosure, sheet: Sheet, sources: int) -> None:
+        super().__init__(sheet, cells.layouts, dict(cells.value), dict(cells.sure))
+        self.sources = sources
         self.parts: dict[str, Intervals] = {}
         self.found: dict[str, Intervals] = {}
 
@@ -281,7 +278,7 @@ class _Spread(_Rows):
 
     def add(self, node: Local, sources: Mapping[str, NDArray[np.intp]]) -> None:
         """A node: by given cells, and by what it names times its slopes."""
-        size = 1 if node.axis is None else self.layouts[node.axis.name].size
+        size = 1 if node.axis is None else self.layouts[node.axis].size
         own = np.zeros((size, self.sources))
         if node.name in sources:
             own[np.arange(size), sources[node.name]] = 1.0
@@ -294,7 +291,7 @@ class _Spread(_Rows):
 
     def _along(self, node: Local, slope: Slope) -> Intervals:
         """What comes by way of one that a node names (rows, sources)."""
-        by, rows = self.made.plan.node_of(slope.by), self._named(slope)
+        by, rows = slope.by, self._named(slope)
         theirs = self.found[by] if rows is None else self.found[by][rows]
         values = self.parts[slope.value]
         product: Intervals = values[:, None] * theirs
@@ -307,10 +304,9 @@ class _Spread(_Rows):
         return product
 
     def _named(self, slope: Slope) -> NDArray[np.intp] | None:
-        leaf = self.made.plan.leaves[slope.by]
-        return (
-            None if leaf.axis is None or leaf.index is None else self.layouts[leaf.axis.name].rows[leaf.index]
-        )
+        if slope.axis is None or slope.index is None:
+            return None
+        return self.layouts[slope.axis].named[slope.index]
 
 
 def _shares(terms: Intervals) -> Intervals:

@@ -66,9 +66,10 @@ def kept(what: str, parts: Iterable[str | bytes], make: Callable[[], Any] | None
         return None if found is None else json.loads(found)
     with timed(what):
         content = json.dumps(make()).encode()
-    _made_by.cache_clear()
-    if _made_by() == made_by:  # else somebody changed the sources while they ran
+    if json.loads(made_by)[0] == sources():
         _write(folder, name, content)
+    else:
+        _made_by.cache_clear()  # somebody changed the sources while they ran
     return json.loads(content)
 
 

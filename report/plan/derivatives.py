@@ -17,7 +17,7 @@ again. What they amount to along all ways through the plan is a matter of number
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Any
@@ -56,7 +56,7 @@ from ..sheet import Sheet
 from .lowering import RESERVED, lowered
 from .nodes import Given, Leaf, Map, Node, Part, Plan, Root, RowSum, Total, free_name
 
-__all__ = ["Derivatives", "Local", "Slope", "derivatives"]
+__all__ = ["Derivatives", "Local", "Slope", "derivatives", "with_unknowns"]
 
 _NO_FUNCTIONS = (Derivative, Subs, DiracDelta, Heaviside)
 
@@ -67,13 +67,18 @@ class Slope:
 
     Parameters
     ----------
-    by : Symbol
-        Cells or a total.
+    by : str
+        A column or a total.
+    axis, index : str or None
+        For cells of a column with rows, the axis whose rows name them, and the index by which they do; no
+        index if they stand on the same rows.
     value : str
         The part that holds it, on the rows of the node; for a total, on those that it runs over.
     """
 
-    by: Symbol
+    by: str
+    axis: str | None
+    index: str | None
     value: str
 
 
@@ -85,9 +90,9 @@ class Local:
     ----------
     name : str
         Of the column; for a total, of its symbol.
-    axis : Axis or None
+    axis : str or None
         None for a scalar and for every total.
-    over : Axis or None
+    over : str or None
         The axis that a total runs over.
     of : str
         The column in whose rule it stands.
@@ -99,8 +104,8 @@ class Local:
     """
 
     name: str
-    axis: Axis | None
-    over: Axis | None
+    axis: str | None
+    over: str | None
     of: str
     rounding: str
     slopes: tuple[Slope, ...]
@@ -113,15 +118,15 @@ class Derivatives:
 
     Parameters
     ----------
-    sheet : Sheet
-        The sheet, and the unknowns of roots that their cells do not tell.
+    again : mapping of str to str
+        Columns with roots whose cells do not tell the unknown, with the name of what stands for it.
     plan : Plan
         Its parts hold roundings and slopes; where one has no value, nothing is known.
     nodes : tuple of Local
         Each after those that it names.
     """
 
-    sheet: Sheet
+    again: Mapping[str, str]
     plan: Plan
     nodes: tuple[Local, ...]
 
@@ -136,8 +141,19 @@ def derivatives(sheet: Sheet) -> Derivatives:
     plan = lowered(sheet)
     making = _Making(plan)
     locals_ = tuple(local for node in plan.nodes for local in making.node(node))
-    extended = Sheet((*sheet.columns, *making.columns))
-    return Derivatives(extended, Plan(tuple(making.nodes), making.leaves), locals_)
+    return Derivatives(making.again, Plan(tuple(making.nodes), making.leaves), locals_)
+
+
+def with_unknowns(sheet: Sheet, again: Mapping[str, str]) -> Sheet:
+    """The sheet, and the unknowns that are sought again (:attr:`Derivatives.again`)."""
+    return Sheet((*sheet.columns, *(_unknown(sheet[root], name) for root, name in again.items())))
+
+
+def _unknown(column: Column, name: str) -> Column:
+    """The unknown of a root as a root of its own."""
+    assert isinstance(column.rule, RootRule)
+    rule = replace(column.rule, value=column.rule.unknown)
+    return replace(column, name=name, rule=rule, positive=False, requires=(), limits=())
 
 
 class _Making:
@@ -148,7 +164,7 @@ class _Making:
         self.taken = {*RESERVED, *(symbol.name for symbol in plan.leaves)}
         self.own, self.axes = plan.own, plan.axes
         self.nodes: list[Node] = []
-        self.columns: list[Column] = []
+        self.again: dict[str, str] = {}
         self.sums: dict[tuple[str, Axis, Expr], Symbol] = {}
 
     def node(self, node: Node) -> Iterator[Local]:
@@ -183,11 +199,20 @@ class _Making:
         over, axis = (None, column.axis) if total is None else (total.over, None)
         held = self.part(f"{name}_rounding", column, axis, own)
         found = tuple(
-            Slope(by, self.part(f"{name}_slope_{n}", column, over or axis, slope))
+            self.slope(by, self.part(f"{name}_slope_{n}", column, over or axis, slope))
             for n, (by, slope) in enumerate(slopes.items())
             if slope != 0
         )
-        return Local(name, axis, over, column.name, held, found, total is not None and total.median)
+        median = total is not None and total.median
+        rows, summed = (None if each is None else each.name for each in (axis, over))
+        return Local(name, rows, summed, column.name, held, found, median)
+
+    def slope(self, by: Symbol, value: str) -> Slope:
+        """The part that holds the derivative by what a symbol stands for."""
+        leaf = self.leaves[by]
+        if leaf.kind == "total":
+            return Slope(by.name, None, None, value)
+        return Slope(leaf.name, leaf.axis and leaf.axis.name, leaf.index and leaf.index.name, value)
 
     def slopes(self, expression: Expr) -> dict[Symbol, Expr]:
         """The derivatives of an expression by what it names."""
@@ -297,12 +322,10 @@ class _RootMaking:
     def again(self) -> Symbol:
         """The unknown as a root of its own."""
         making, column = self.making, self.column
-        assert isinstance(column.rule, RootRule)
-        rule = replace(column.rule, value=self.unknown)
         symbol = making.symbol(f"{column.name}_unknown", None)
-        again = replace(column, name=symbol.name, rule=rule, positive=False, requires=(), limits=())
+        again = _unknown(column, symbol.name)
         making.leaves[symbol] = Leaf("cells", again.name, column.axis)
-        making.columns.append(again)
+        making.again[column.name] = again.name
         making.nodes.append(replace(self.root, column=again, value=self.unknown, requires=()))
         return symbol
 

@@ -303,8 +303,3 @@ class Plan:
     def totals(self) -> dict[str, Total]:
         """Its sums and medians, by the names of what stands for them."""
         return {node.symbol.name: node for node in self.nodes if isinstance(node, Total)}
-
-    def node_of(self, symbol: Symbol) -> str:
-        """The name of the column or total that a symbol stands for."""
-        leaf = self.leaves[symbol]
-        return leaf.name if leaf.kind == "cells" else str(symbol.name)

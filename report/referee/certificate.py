@@ -68,7 +68,7 @@ class _Enclosed:
             known[key] = Made.of(problem.sheet)
         made = known[key]
         sources = {name: np.array(rows) for name, rows in problem.rows.items()}
-        return self.over_box.derivatives(made.derivatives, made.program, sources)
+        return self.over_box.derivatives(made.nodes, made.program, sources)
 
 
 def _enclosure(problem: Problem, low: Array, high: Array) -> Enclosure:

@@ -50,7 +50,7 @@ def force(law: Expr, x: Array, **constants: float) -> Array:
     """The force of a branch of a law of the derivations at each approach, printed by the NumPy engine."""
     made = kernel([evaluated(law)])
     known = {"x": x, **SCHEMATIC, **constants}
-    (found,) = made.run(*(known[str(argument)] for argument in made.arguments))
+    (found,) = made.run(*(known[name] for name in made.arguments))
     return np.asarray(found, dtype=np.float64)
 
 
