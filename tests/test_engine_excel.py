@@ -1,7 +1,9 @@
 """The Excel engine: what each construct is printed as, and where and how a sheet's formulas stand."""
 
 import re
+from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -44,7 +46,8 @@ from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.excel import IfError, IsNumber, NotPrintable, Printer
 from loopsheet.report.engines.excel_formulas import guard
 from loopsheet.report.engines.excel_roots import Unrolled, unroll
-from loopsheet.report.engines.excel_values import auxiliary_values
+from loopsheet.report.engines.excel_values import auxiliary_texts, auxiliary_values
+from loopsheet.report.machine.kept import SETTING
 from loopsheet.report.plan import Root as RootNode
 from loopsheet.report.plan import RowSum, lowered_column
 from loopsheet.report.quantity import Bounds
@@ -390,6 +393,40 @@ def test_more_rows_than_a_worksheet_should_hold(monkeypatch: pytest.MonkeyPatch)
         made(a)
 
 
+def test_formulas_are_kept_by_all_that_they_hang_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Made from nothing and taken up again, whatever else is kept, a grid is the same."""
+    mean = column("mean", None, Sum(a[k], (k, 1, n_items)) / n_items)
+    counted = column("counted", POINTS, Symbol("s", integer=True, positive=True) * a[i] * w.symbol)
+    columns = (a, w, per, mean, counted, cubic(1))
+    others: tuple[Any, ...] = (
+        {},
+        {"units": {"a": "um", "mean": "mm"}},
+        {"bounds": {"a": Bounds(low=0)}},
+        {"bounds": {"a": Bounds(low=0, low_open=True)}},
+        {"per": 3},
+        {"a": [4.0, 1.0]},
+    )
+
+    two = engine.evaluate(Sheet((w, per)), {}, {"w": 2.0, "per": 2})
+
+    def every() -> list[Grid]:
+        grids = [made(*columns, **other) for other in others]
+        values = engine.evaluate(Sheet((a,)), {"items": (3, 1)}, {"a": [3.0, 5.0]})
+        say = replace(a, meaning="a word", unit="m")
+        said = engine.evaluate(Sheet((say,)), {"items": (3, 1)}, {"a": [3.0, 5.0]})
+        first = [excel_grid.grid(Sheet((w, per)), two, {}, own) for own in ((), ("per",))]
+        grids += [excel_grid.grid(each.sheet, each, {}) for each in (values, said)]
+        return [*grids, *first]
+
+    expected = every()
+    assert len({repr(grid.blocks) for grid in expected}) == len(expected)
+    monkeypatch.setenv(SETTING, str(tmp_path / "kept"))
+    assert every() == expected
+    with monkeypatch.context() as patch:
+        patch.setattr(excel_grid, "lowered", lambda *_: pytest.fail("it was lowered again"))
+        assert every() == expected
+
+
 # --- roots -----------------------------------------------------------------------------------------------
 
 
@@ -454,7 +491,7 @@ def test_the_steps_show_what_the_solver_found() -> None:
     column = cubic(8)
     sheet = Sheet((a, column))
     values = engine.evaluate(sheet, {"items": (1, 2, 3, 4)}, {"a": [2.5, 1.0, 30.0, np.nan]})
-    shown = auxiliary_values(values, unrolled(column))
+    shown = auxiliary_values(values, auxiliary_texts(sheet, unrolled(column)))
     assert shown["root.check"] == ("ready", "ready", "ready", "#INPUT!")
     assert shown["root.roots"] == (1.0, 3.0, 0.0, "")
     assert shown["root.u_8"][1:] == ("", "", "")

@@ -74,7 +74,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
         set(),
     ),
     "report.inputs.unit_text": (rooms("messages"), {"pint"}),
-    "report.plan": (DECLARED | rooms("content", "machine.kept", "plan"), ALGEBRA),
+    "report.plan": (DECLARED | rooms("content", "machine.kept", "plan"), ALGEBRA | {"msgspec"}),
     "report.engines": (DECLARED | rooms("engines", "inputs.unit_text", "plan"), NUMERIC),
     "report.engines.elementary": (set(), {"numpy"}),
     "report.engines.intervals": (rooms("engines.elementary"), {"numpy"}),

@@ -153,6 +153,9 @@ class Block:
         One a cell, beginning with ``=``; none if the cells hold values.
     array : bool
         Whether they must be entered as array formulas.
+    shows : tuple of str
+        Where its values come from: the ``labels`` of an axis, a ``column``, which may be ``drawn``,
+        ``carried`` to an axis by an index, or ``typed`` as it is now, or a ``cell`` on the way to a root.
     values : tuple of float, str or None
         What the cells show, in the cells' unit: a number, an error's code, or None for an error of Excel's.
     unit : str
@@ -178,6 +181,7 @@ class Block:
     place: Place
     formulas: tuple[str, ...] = ()
     array: bool = False
+    shows: tuple[str, ...] = ()
     values: tuple[float | str | None, ...] = ()
     unit: str = "1"
     source: str = ""

@@ -9,23 +9,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from decimal import Decimal
 from fractions import Fraction
 from itertools import chain, count
+from typing import Any
 
 from ..cells.grid import CHECKED, FIRST_ROW, SCALARS, STEPS, Block, Grid, Place, as_issued, checked
 from ..cells.layout import Layout
-from ..cells.values import CODES, Values
+from ..cells.values import Values
 from ..charts import Drawn
 from ..inputs.unit_text import UnitError, parse_unit
 from ..plan import Root, lowered
+from ..plan.kept import as_data, of_data, of_sheet
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, Sheet
 from .certified import certified
 from .excel import ordered
 from .excel_formulas import Formulas, Places, carried, guard
 from .excel_roots import Unrolled, unroll
-from .excel_values import auxiliary_values
+from .excel_values import auxiliary_texts, filled
 from .numpy import extend
 
 __all__ = ["MOST_ROWS", "TooManyRows", "check_rows", "grid"]
@@ -79,7 +80,20 @@ def grid(
     """
     check_rows(values.layouts)
     every = values if drawn is None else extend(values, drawn.columns, drawn.given)
-    return _Assembly(sheet, values.sheet, every.sheet, every, units, first, drawn).grid()
+    whole, layouts = every.sheet, every.layouts
+    counts = {axis.repeats: every.scalar(axis.repeats) for axis in whole.axes if axis.repeats}
+
+    def make() -> dict[str, Any]:
+        return _Assembly(sheet, values.sheet, whole, layouts, counts, units, first).told()
+
+    own = [layouts[axis.name].labels.tolist() for axis in whole.axes if not axis.parents]
+    words = [(column.meaning, column.unit, column.display, column.source) for column in whole.columns]
+    names = [list(each.by_name) for each in (sheet, values.sheet)]
+    hangs_on = repr((names, own, sorted(counts.items()), words, sorted(units.items()), list(first)))
+    told = of_sheet(whole, "formulas of the workbook", [hangs_on], make)
+    axes = dict(zip(_worksheets(whole.axes).values(), whole.axes, strict=True))
+    blocks = filled(of_data(told["blocks"], tuple[Block, ...]), told["roots"], every)
+    return Grid(tuple(blocks), axes, drawn, of_data(told["notes"], dict[str, Place]))
 
 
 def check_rows(layouts: Mapping[str, Layout]) -> None:
@@ -117,17 +131,15 @@ class _Assembly:
         sheet: Sheet,
         judged: Sheet,
         whole: Sheet,
-        values: Values,
+        layouts: Mapping[str, Layout],
+        counts: Mapping[str, float],
         units: Mapping[str, str],
         first: Sequence[str],
-        drawn: Drawn | None,
     ) -> None:
-        self.sheet, self.judged, self.whole, self.values, self.units = sheet, judged, whole, values, units
-        self.first, self.drawn = first, drawn
+        self.sheet, self.judged, self.whole, self.layouts, self.counts = sheet, judged, whole, layouts, counts
+        self.units, self.first = units, first
         self.names = _worksheets(whole.axes)
-        self.rooms = {
-            axis.name: _Room(self.names[axis.name], values.layouts[axis.name].size) for axis in whole.axes
-        }
+        self.rooms = {axis.name: _Room(self.names[axis.name], layouts[axis.name].size) for axis in whole.axes}
         self.places: dict[str, Place] = {}
         self.notes: dict[str, Place] = {}
         self.indices: dict[str, tuple[Place, ...]] = {}
@@ -148,11 +160,12 @@ class _Assembly:
         self.asked = [column for column in sheet.columns if column.name in asked]
         self.carried = {k: v for c in whole.columns for k, v in carried(whole, c).items()}
 
-    def grid(self) -> Grid:
+    def told(self) -> dict[str, Any]:
+        """All of it but the values, as data."""
         self.put_all()
         named = {name: self.places[checked(name)] for name in self.whole.bounds}
         places = Places({**self.places, **named}, {name: self.places[name] for name in named}, self.indices)
-        formulas = Formulas(self.whole, self.plan, self.values.layouts, places)
+        formulas = Formulas(self.whole, self.plan, self.layouts, places)
         blocks = [*self.index_blocks(), *self.column_blocks(formulas), *self.step_blocks(formulas)]
         order = [SCALARS, *self.names.values(), STEPS]
         blocks.sort(
@@ -163,14 +176,17 @@ class _Assembly:
                 b.place.column,
             )
         )
-        axes = {self.names[axis.name]: axis for axis in self.whole.axes}
-        return Grid(tuple(blocks), axes, self.drawn, self.notes)
+        return {
+            "blocks": as_data(blocks),
+            "roots": [auxiliary_texts(self.whole, unrolled) for unrolled in self.unrolled.values()],
+            "notes": as_data(self.notes),
+        }
 
     # --- places
 
     def put_all(self) -> None:
         for axis in self.whole.axes:
-            parts = self.values.layouts[axis.name].labels.shape[1]
+            parts = self.layouts[axis.name].labels.shape[1]
             self.indices[axis.name] = tuple(self.rooms[axis.name].next() for _ in range(parts))
         self.put_scalars()
         given = [c for c in self.whole.columns if c.axis is not None and isinstance(c.rule, Given)]
@@ -261,42 +277,39 @@ class _Assembly:
 
     def index_blocks(self) -> Iterator[Block]:
         for axis in self.whole.axes:
-            layout = self.values.layouts[axis.name]
             for part, (place, names) in enumerate(zip(self.indices[axis.name], axis.parts, strict=True)):
                 title, meaning = names
-                yield Block(
-                    title, "index", title, meaning, place, values=tuple(map(float, layout.labels[:, part]))
-                )
+                yield Block(title, "index", title, meaning, place, shows=("labels", axis.name, str(part)))
 
     def column_blocks(self, formulas: Formulas) -> Iterator[Block]:
         for column in self.whole.columns:
-            place, shown = self.places[column.name], self.shown(column)
+            place = self.places[column.name]
             block = Block(
                 column.name,
                 "given",
                 column.name,
                 column.meaning,
                 place,
-                values=shown,
                 unit=self.unit(column)[0],
                 source=column.source,
+                shows=("column", column.name),
             )
             if isinstance(column.rule, Given):
                 yield from self.given_blocks(column, block, formulas)
             elif column.name not in self.judged:
-                shown = tuple(None if isinstance(value, str) else value for value in shown)
-                yield _computed(replace(block, kind="drawn", values=shown), formulas.drawn(column))
+                yield _computed(
+                    replace(block, kind="drawn", shows=("drawn", column.name)), formulas.drawn(column)
+                )
             else:
                 written = formulas.column(column, self.unrolled.get(column.name))
                 kind = "computed" if column.name in self.sheet else "margin"
                 yield _computed(replace(block, kind=kind, kept=formulas.kept(column)), written)
         for name, (leaf, axis) in sorted(self.carried.items()):
             column = self.whole[leaf.name]
-            named, values = self.values.layouts[axis.name].rows[leaf.index], self.shown(column)
             block = Block(
                 name, "carried", leaf.written, f"{column.name} of each row, for its sums",
-                self.places[name], values=tuple(values[int(row)] for row in named),
-                unit=self.unit(column)[0], of=column.name,
+                self.places[name], unit=self.unit(column)[0], of=column.name,
+                shows=("carried", column.name, axis.name, str(leaf.index)),
             )  # fmt: skip
             yield _computed(block, formulas.carried(leaf))
 
@@ -304,7 +317,7 @@ class _Assembly:
         """What is typed, and what of it is allowed; how many rows there are is what the worksheets have."""
         bounds = self.whole.bounds[column.name].over(block.place.scale)
         if any(axis.repeats == column.name for axis in self.whole.axes):
-            there = self.values.scalar(column.name)
+            there = self.counts[column.name]
             bounds = Bounds(there, there)
         test = guard(bounds)
         yield replace(block, bounds=bounds, guard=test)
@@ -315,60 +328,45 @@ class _Assembly:
         )  # fmt: skip
         yield _computed(own, formulas.checked(column, test))
 
-    def shown(self, column: Column) -> tuple[float | str | None, ...]:
-        """A column's values in the unit of its cells; the code where there is none."""
-        scale = self.places[column.name].scale
-        # Adding zero leaves no minus on a zero.
-        numbers = self.values.value[column.name] * float(scale.denominator) / float(scale.numerator) + 0.0
-        codes = {int(status): code for status, code in CODES.items()}
-        pairs = zip(numbers.tolist(), self.values.status[column.name].tolist(), strict=True)
-        return tuple(number if not status else codes[status] for number, status in pairs)
-
     def step_blocks(self, formulas: Formulas) -> Iterator[Block]:
         for unrolled in self.unrolled.values():
-            found = auxiliary_values(self.values, unrolled)
             name = unrolled.check.name
             block = Block(
                 name, "step", "precedents", "whether all precedents have values, or the first error",
-                self.places[name], values=found[name], of=unrolled.column.name,
-                source=unrolled.column.source,
+                self.places[name], of=unrolled.column.name, source=unrolled.column.source,
+                shows=("cell", name),
             )  # fmt: skip
             yield _computed(block, formulas.check(unrolled))
             if unrolled.issued is not None:
-                yield from self.counting_blocks(unrolled, found, formulas)
+                yield from self.counting_blocks(unrolled, formulas)
             for cell in unrolled.cells:
                 block = Block(
                     cell.name, "step", cell.title, cell.meaning, self.places[cell.name],
-                    values=found[cell.name], of=unrolled.column.name, step=cell.step,
+                    of=unrolled.column.name, step=cell.step, shows=("cell", cell.name),
                 )  # fmt: skip
                 yield _computed(block, formulas.auxiliary(unrolled, cell))
         guarded = [unrolled.column for unrolled in self.unrolled.values() if unrolled.issued is not None]
         for column in self.asked:
-            shown = self.shown(column)
             yield Block(
                 as_issued(column.name), "step", f"{column.name} as issued", f"{column.name} as issued, "
                 "for which the roots were counted", self.places[as_issued(column.name)],
-                tuple(map(_literal, shown)), values=shown, of=guarded[0].name, source=column.source,
+                of=guarded[0].name, source=column.source, shows=("typed column", column.name),
             )  # fmt: skip
 
-    def counting_blocks(
-        self, unrolled: Unrolled, found: Mapping[str, tuple[float | str, ...]], formulas: Formulas
-    ) -> Iterator[Block]:
+    def counting_blocks(self, unrolled: Unrolled, formulas: Formulas) -> Iterator[Block]:
         """Whether the inputs are as issued, and how many roots there are then."""
         issued, counted = _counting(unrolled)
         column = unrolled.column
         given = [c.name for c in self.sheet.ancestors(column) if isinstance(c.rule, Given)]
         block = Block(
             issued, "step", "as issued", "1 if all inputs are those as issued, for which the roots were "
-            "counted; if not, build the report again", self.places[issued], values=found[issued],
-            of=column.name, source=column.source,
+            "counted; if not, build the report again", self.places[issued], of=column.name,
+            source=column.source, shows=("cell", issued),
         )  # fmt: skip
         yield _computed(block, formulas.issued(issued, column, given))
         says = "how many roots there are for the inputs as issued, by interval arithmetic; -1 if not certain"
-        yield replace(
-            block, name=counted, title="counted", meaning=says, place=self.places[counted],
-            formulas=tuple(map(_literal, found[counted])), values=found[counted],
-        )  # fmt: skip
+        place, shows = self.places[counted], ("typed cell", counted)
+        yield replace(block, name=counted, title="counted", meaning=says, place=place, shows=shows)
 
 
 def _computed(block: Block, formulas: tuple[str, ...]) -> Block:
@@ -381,11 +379,6 @@ def _computed(block: Block, formulas: tuple[str, ...]) -> Block:
 def _counting(unrolled: Unrolled) -> tuple[str, ...]:
     """The cells of a root whose number is known for the inputs as issued only."""
     return tuple(cell.name for cell in (unrolled.issued, unrolled.counted) if cell is not None)
-
-
-def _literal(value: float | str | None) -> str:
-    """A formula that is a number, with no exponent, or a text."""
-    return f"={Decimal(repr(value)):f}" if isinstance(value, float) else f'="{value}"'
 
 
 def _worksheets(axes: Iterable[Axis]) -> dict[str, str]:

@@ -1,46 +1,106 @@
-"""What the cells on the way to a root show before a spreadsheet has recalculated them, by NumPy."""
+"""What the cells of a workbook show before a spreadsheet has recalculated them."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cells.grid import Block
 from ..cells.layout import precedents
 from ..cells.values import CODES, Status, Values, inherited, rows_kept
+from ..sheet import Sheet
 from .excel_roots import READY, Unrolled
 from .numpy import Program, parts, program_texts
 from .numpy_code import Array
 
-__all__ = ["auxiliary_values"]
+__all__ = ["auxiliary_texts", "auxiliary_values", "filled"]
 
 
-def auxiliary_values(values: Values, unrolled: Unrolled) -> dict[str, tuple[float | str, ...]]:
+def auxiliary_texts(sheet: Sheet, unrolled: Unrolled) -> dict[str, Any]:
+    """What computes the cells of an unrolled root of a sheet, printed, as data."""
+    issued, counted = unrolled.issued, unrolled.counted
+    return {
+        "column": unrolled.column.name,
+        "check": unrolled.check.name,
+        "number": unrolled.number.name,
+        "issued": issued and issued.name,
+        "counted": counted and counted.name,
+        "cells": [(cell.name, cell.part.symbol.name, cell.alone) for cell in unrolled.cells],
+        "program": program_texts(sheet, unrolled.plan),
+    }
+
+
+def filled(blocks: Iterable[Block], roots: Iterable[Mapping[str, Any]], values: Values) -> Iterator[Block]:
+    """The blocks of a grid with what they show.
+
+    Parameters
+    ----------
+    blocks : iterable of Block
+    roots : iterable of mapping
+        From :func:`auxiliary_texts`.
+    values : Values
+        All columns, computed, without a batch.
+    """
+    found = {name: cells for root in roots for name, cells in auxiliary_values(values, root).items()}
+    for block in blocks:
+        what, name, *more = block.shows
+        if what == "labels":
+            labels = values.layouts[name].labels[:, int(more[0])]
+            shown: tuple[float | str | None, ...] = tuple(map(float, labels))
+        else:
+            shown = found[name] if what.endswith("cell") else _cells(values, name, block.place.scale)
+        if what == "drawn":
+            shown = tuple(None if isinstance(value, str) else value for value in shown)
+        elif what == "carried":
+            axis, index = more
+            shown = tuple(shown[row] for row in values.layouts[axis].named[index].tolist())
+        formulas = tuple(map(_literal, shown)) if what.startswith("typed") else block.formulas
+        yield replace(block, values=shown, formulas=formulas)
+
+
+def _cells(values: Values, name: str, scale: Fraction) -> tuple[float | str | None, ...]:
+    """A column's values in the unit of its cells; the code where there is none."""
+    # Adding zero leaves no minus on a zero.
+    numbers = values.value[name] * float(scale.denominator) / float(scale.numerator) + 0.0
+    codes = {int(status): code for status, code in CODES.items()}
+    pairs = zip(numbers.tolist(), values.status[name].tolist(), strict=True)
+    return tuple(number if not status else codes[status] for number, status in pairs)
+
+
+def _literal(value: float | str | None) -> str:
+    """A formula that is a number, with no exponent, or a text."""
+    return f"={Decimal(repr(value)):f}" if isinstance(value, float) else f'="{value}"'
+
+
+def auxiliary_values(values: Values, root: Mapping[str, Any]) -> dict[str, tuple[float | str, ...]]:
     """The values of every cell of an unrolled root, by name; an empty text where there is none.
 
     Parameters
     ----------
     values : Values
-        All columns, computed, without a batch.
-    unrolled : Unrolled
+    root : mapping
+        From :func:`auxiliary_texts`.
     """
-    column, sheet = unrolled.column, values.sheet
+    column, sheet = values.sheet[root["column"]], values.sheet
     named, rows = precedents(sheet, values.layouts, column), len(values.value[column.name])
     codes = inherited(named, rows_kept(named, values.layouts, values.status), values.status, rows)
-    asked = (unrolled.issued, np.ones(rows)), (unrolled.counted, _counted(values, column.name))
-    told = {cell.name: known for cell, known in asked if cell is not None}
-    found = parts(
-        Program.of_texts(sheet, program_texts(sheet, unrolled.plan), lambda: unrolled.plan),
-        replace(values, value={**values.value, **told}),
-    )
-    cells = {cell.name: found[cell.part.symbol.name] for cell in unrolled.cells}
+    asked = (root["issued"], np.ones(rows)), (root["counted"], _counted(values, column.name))
+    told = {name: known for name, known in asked if name is not None}
+    program = Program.of_texts(sheet, root["program"])
+    found = parts(program, replace(values, value={**values.value, **told}))
+    cells = {name: found[symbol] for name, symbol, _ in root["cells"]}
     ready = codes == Status.OK
-    alone = ready & (cells[unrolled.number.name] == 1)
+    alone = ready & (cells[root["number"]] == 1)
     shown: dict[str, tuple[float | str, ...]] = {name: tuple(own.tolist()) for name, own in told.items()}
-    shown |= {c.name: _shown(cells[c.name], alone if c.alone else ready) for c in unrolled.cells}
+    shown |= {name: _shown(cells[name], alone if single else ready) for name, _, single in root["cells"]}
     check = (READY if code == Status.OK else CODES[Status(int(code))] for code in codes)
-    return shown | {unrolled.check.name: tuple(check)}
+    return shown | {root["check"]: tuple(check)}
 
 
 def _shown(numbers: Array, wanted: NDArray[np.bool_]) -> tuple[float | str, ...]:

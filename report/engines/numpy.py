@@ -65,8 +65,8 @@ class Program:
     Parameters
     ----------
     sheet : Sheet
-    lower : callable
-        Returns the plan that the functions were printed from.
+    lower : callable or None
+        Returns the plan that the functions were printed from: asked for if a column has cells in error.
     function : callable
         Called with a run.
     roots : mapping of column name to RootProgram
@@ -77,7 +77,7 @@ class Program:
     """
 
     sheet: Sheet
-    lower: Callable[[], Plan]
+    lower: Callable[[], Plan] | None
     function: Function
     roots: Mapping[str, RootProgram]
     source: str
@@ -107,11 +107,15 @@ class Program:
             return lowered(sheet, known)
 
         texts = of_sheet(sheet, "NumPy program", sorted(known), lambda: program_texts(sheet, lower()))
-        return cls.of_texts(sheet, texts, lower, functions)
+        return cls.of_texts(sheet, texts, functions, lower)
 
     @classmethod
     def of_texts(
-        cls, sheet: Sheet, texts: Mapping[str, Any], lower: Callable[[], Plan], functions: Any = SAME
+        cls,
+        sheet: Sheet,
+        texts: Mapping[str, Any],
+        functions: Any = SAME,
+        lower: Callable[[], Plan] | None = None,
     ) -> Program:
         """The program of printed functions.
 
@@ -120,10 +124,10 @@ class Program:
         sheet : Sheet
         texts : mapping
             From :func:`program_texts`.
-        lower : callable
-            Returns the plan they were printed from: asked for if a cell is in error.
         functions : module
             As for :meth:`of`.
+        lower : callable or None
+            Returns the plan they were printed from.
         """
         roots = {name: RootProgram.of(root, functions) for name, root in texts["roots"].items()}
         parts = (f"# {name}\n{root.source}" for name, root in roots.items())
@@ -133,6 +137,7 @@ class Program:
     @cached_property
     def plan(self) -> Plan:
         """What the functions were printed from."""
+        assert self.lower is not None
         return self.lower()
 
     def run(

@@ -8,7 +8,7 @@ cancels here too. This bound over |c|, at least 1, is the condition of the cell.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from ..cells.layout import Layout, precedents
 from ..cells.values import Status, Values, rows_kept
 from ..engines.numpy import Program, parts, program_texts
 from ..plan.derivatives import Local, Slope, derivatives, with_unknowns
-from ..plan.kept import of_sheet
+from ..plan.kept import as_data, of_data, of_sheet
 from ..result.agreement import LIMIT
 from ..sheet import Sheet
 
@@ -75,15 +75,11 @@ class Made:
         def make() -> dict[str, Any]:
             found = derivatives(sheet)
             texts = program_texts(with_unknowns(sheet, found.again), found.plan)
-            return {"nodes": [asdict(node) for node in found.nodes], "again": found.again, "program": texts}
+            return {"nodes": as_data(found.nodes), "again": found.again, "program": texts}
 
         told = of_sheet(sheet, "derivatives", (), make)
-        nodes = (
-            Local(**{**node, "slopes": tuple(Slope(**slope) for slope in node["slopes"])})
-            for node in told["nodes"]
-        )
-        whole = with_unknowns(sheet, told["again"])
-        return cls(tuple(nodes), Program.of_texts(whole, told["program"], lambda: derivatives(sheet).plan))
+        nodes = of_data(told["nodes"], tuple[Local, ...])
+        return cls(nodes, Program.of_texts(with_unknowns(sheet, told["again"]), told["program"]))
 
 
 EXPANDED = 1 << 24

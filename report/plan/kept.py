@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, TypeVar
+
+from msgspec import convert, to_builtins
 
 from ..content import Untold
 from ..machine.kept import kept
 from ..sheet import Sheet
 
-__all__ = ["of_sheet"]
+__all__ = ["as_data", "of_data", "of_sheet"]
+
+T = TypeVar("T")
 
 
 def of_sheet(sheet: Sheet, what: str, parts: Iterable[str], make: Callable[[], Any]) -> Any:
@@ -30,3 +34,18 @@ def of_sheet(sheet: Sheet, what: str, parts: Iterable[str], make: Callable[[], A
     except Untold:
         return make()
     return kept(what, [str(len(columns)), *columns, *parts], make)
+
+
+def as_data(made: Any) -> Any:
+    """Dataclasses as data that JSON can hold."""
+    return to_builtins(made, enc_hook=str)
+
+
+def of_data(data: Any, kind: type[T]) -> T:
+    """The dataclasses of such data.
+
+    >>> from fractions import Fraction
+    >>> of_data(as_data((Fraction(1, 3), "cells")), tuple[Fraction, str])
+    (Fraction(1, 3), 'cells')
+    """
+    return convert(data, kind, dec_hook=lambda kind, text: kind(text))
