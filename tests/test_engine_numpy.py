@@ -1,5 +1,7 @@
 """The NumPy engine: what it prints, scopes of sums, batches, and what it refuses."""
 
+import gc
+import sys
 import tracemalloc
 from collections.abc import Mapping
 from typing import Any
@@ -407,3 +409,60 @@ def test_a_large_batch_needs_little_more_memory_than_its_values() -> None:
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert most < 2 * sum(each.nbytes for each in (*found.value.values(), *found.status.values()))
+
+
+@pytest.mark.parametrize("shape", [(), (60,), (7, 3)])
+def test_results_go_where_they_are_wanted(monkeypatch: pytest.MonkeyPatch, shape: tuple[int, ...]) -> None:
+    """Into parts of arrays that hold more, block by block; the same bits, of these columns alone."""
+    data = {**PAPER, **PARAMETERS, **noisy(shape, seed=13)}
+    whole = run(data)
+    wanted = ("alpha_log", "m_red", "alpha", "v")
+    larger = {name: np.full((2, *whole.value[name].shape), 7.0) for name in wanted}
+    out = {name: array[1] for name, array in larger.items()}
+    for widest in (engine.WIDEST, 1000):
+        monkeypatch.setattr(engine, "WIDEST", widest)
+        found = engine.evaluate(SHEET, TESTS, data, PROGRAM, out)
+        assert set(found.value) == set(found.status) == set(wanted)
+        for name in wanted:
+            assert found.value[name] is out[name]
+            np.testing.assert_array_equal(out[name], whole.value[name])
+            np.testing.assert_array_equal(found.status[name], whole.status[name])
+            assert (larger[name][0] == 7).all()
+            out[name][...] = 0
+
+
+def test_batch_after_batch_takes_no_more_memory_than_a_block(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(engine, "WIDEST", 1 << 13)
+    names, most, held = ("v", "e", "x_p", "beta", "alpha", "alpha_mean"), [], []
+    few = Sheet(tuple(SHEET[name] for name in names))
+    program, data = Program.of(few, functions=np), noisy((40_000,), seed=12)
+    given, out = {name: data[name] for name in names[:3]}, {"alpha_mean": np.empty((40_000, 1))}
+    tracemalloc.start()
+    for _ in range(4):
+        tracemalloc.reset_peak()
+        engine.evaluate(few, {"tests": range(1, 6)}, {**given, "beta": 1.5}, program, out)
+        most.append(tracemalloc.get_traced_memory()[1])
+        gc.collect()
+        held.append(sys.getallocatedblocks())
+    tracemalloc.stop()
+    assert max(most) < 40_000 * 10 * 8  # what alpha alone would take
+    assert max(held[1:]) - held[0] < 100
+
+
+@pytest.mark.parametrize(
+    ("name", "array", "said"),
+    [
+        ("alpha", np.empty((10, 3)), r"out\['alpha'\] has the shape \(10, 3\), not \(4, 10\)"),
+        ("m_red", np.empty((4, 1)), r"out\['m_red'\] has the shape \(4, 1\), not \(1,\)"),
+        ("alpha", np.empty((4, 10), np.float32), r"out\['alpha'\] holds float32, not float64"),
+        ("alpha", [0.0], r"out\['alpha'\] holds no array, not float64"),
+        ("alhpa", np.empty((4, 10)), r"out\['alhpa'\] is no column of the sheet"),
+        ("alpha", np.broadcast_to(0.0, (4, 10)), r"out\['alpha'\] is read-only"),
+        ("v", READ := np.tile(PAPER["v"], (4, 1)), r"out\['v'\] shares memory with the data of v, "),
+    ],
+)  # fmt: skip
+def test_what_results_cannot_go_to_is_refused(name: str, array: Any, said: str) -> None:
+    before = READ.copy()
+    with pytest.raises(ValueError, match=f"^{said}"):
+        engine.evaluate(SHEET, TESTS, {**PAPER, **PARAMETERS, "v": READ}, PROGRAM, {name: array})
+    np.testing.assert_array_equal(READ, before)

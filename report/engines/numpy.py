@@ -141,7 +141,11 @@ class Program:
         return self.lower()
 
     def run(
-        self, labels: Mapping[str, Sequence[int]], counts: Mapping[str, int], data: Mapping[str, Array]
+        self,
+        labels: Mapping[str, Sequence[int]],
+        counts: Mapping[str, int],
+        data: Mapping[str, Array],
+        out: Mapping[str, Array] | None = None,
     ) -> Values:
         """Compute every column.
 
@@ -153,24 +157,33 @@ class Program:
             The scalars that say how often an axis repeats another.
         data : mapping of column name to float array (..., rows)
             The given columns in SI; NaN is a missing datum. Leading dimensions broadcast.
+        out : mapping of column name to float array (..., rows), optional
+            As for :func:`evaluate`.
         """
         laid = self.laid(labels, counts)
         batch = np.broadcast_shapes(*(own.shape[:-1] for own in data.values()))
         widest = max(map(laid.size, self.sheet.columns))
-        blocks = [block for block, _ in _blocks((*batch, widest), WIDEST)] if batch else []
-        if len(blocks) < 2:
+        blocks: list[Any] = [block for block, _ in _blocks((*batch, widest), WIDEST)] if batch else [...]
+        if len(blocks) < 2 and out is None:
             return _Run(self, laid, data).values()
-        split = {name for name, own in data.items() if own.ndim > len(batch) and len(own) > 1}
-        found = [
-            _Run(
-                self, laid, {name: own[block] if name in split else own for name, own in data.items()}
-            ).values()
-            for block in blocks
-        ]
-        for column in self.sheet.columns:
-            if not split.isdisjoint(laid.names[column.name]):
-                split.add(column.name)
-        return _joined(found, split, [min(block.stop, batch[0]) - block.start for block in blocks])
+        shapes = laid.shapes(data)
+        whole: dict[str, Any] = {"value": _writable(out or {}, shapes, data)}
+        # What rests on nothing that is split into blocks is the same in all of them.
+        split = {name for name, shape in shapes.items() if len(shape) > len(batch) and shape[0] > 1}
+        first = None
+        for block in blocks:
+            own = {name: datum[block] if name in split else datum for name, datum in data.items()}
+            found = _Run(self, laid, own).values()
+            first = first or found
+            for kind in ("value", "status", "broken"):
+                arrays = whole.setdefault(kind, {})
+                for name, part in getattr(found, kind).items():
+                    if out is None or name in out:
+                        if name not in arrays:
+                            arrays[name] = np.empty(shapes[name], part.dtype)
+                        arrays[name][block if name in split else ...] = part
+        assert first is not None
+        return replace(first, **whole)
 
     def laid(self, labels: Mapping[str, Sequence[int]], counts: Mapping[str, int]) -> Laid:
         """The sheet over rows; that of the last ones is kept."""
@@ -218,6 +231,15 @@ class Laid:
         }
         """The columns that sum over no rows at all."""
         self.every = {name: Kept(np.ones(own.size, dtype=bool)) for name, own in layouts.items()}
+
+    def shapes(self, data: Mapping[str, Array]) -> dict[str, tuple[int, ...]]:
+        """The shape of every column: a batch has what rests on one."""
+        found: dict[str, tuple[int, ...]] = {name: own.shape for name, own in data.items()}
+        for column in self.sheet.columns:
+            if column.name not in found:
+                leading = (found[name][:-1] for name in self.names[column.name])
+                found[column.name] = (*np.broadcast_shapes(*leading), self.size(column))
+        return found
 
     def size(self, column: Column) -> int:
         """How many rows a column has."""
@@ -444,27 +466,33 @@ def _blocks(shape: tuple[int, ...], most: int) -> Iterator[tuple[slice, tuple[in
         yield slice(start, stop), (stop - start, *shape[1:])
 
 
-def _joined(found: list[Values], split: Collection[str], lengths: Sequence[int]) -> Values:
-    """The blocks of a batch as one; a column that rests on nothing that was split is the same in all."""
-
-    def whole(kind: str) -> dict[str, Any]:
-        every: list[dict[str, Any]] = [getattr(block, kind) for block in found]
-        joined = {}
-        for name in list(every[0]):
-            parts = [block.pop(name) for block in every]  # what is joined needs no memory any more
-            if name in split:
-                rest = np.broadcast_shapes(*(part.shape[1:] for part in parts))
-                sizes = zip(parts, lengths, strict=True)
-                joined[name] = np.concatenate([np.broadcast_to(part, (size, *rest)) for part, size in sizes])
-            else:
-                joined[name] = parts[0]
-        return joined
-
-    return replace(found[0], value=whole("value"), status=whole("status"), broken=whole("broken"))
+def _writable(
+    out: Mapping[str, Array], shapes: Mapping[str, tuple[int, ...]], data: Mapping[str, Array]
+) -> dict[str, Array]:
+    """Arrays to which the values of columns of some shapes can go."""
+    for name, own in out.items():
+        wrong = ""
+        if name not in shapes:
+            wrong = "is no column of the sheet"
+        elif not isinstance(own, np.ndarray) or own.dtype != np.float64:
+            wrong = f"holds {getattr(own, 'dtype', 'no array')}, not float64"
+        elif own.shape != shapes[name]:
+            wrong = f"has the shape {own.shape}, not {shapes[name]}"
+        elif not own.flags.writeable:
+            wrong = "is read-only"
+        elif read := [given for given, datum in data.items() if np.may_share_memory(own, datum)]:
+            wrong = f"shares memory with the data of {read[0]}, which would be written over"
+        if wrong:
+            raise ValueError(f"out[{name!r}] {wrong}")
+    return dict(out)
 
 
 def evaluate(
-    sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[str, Any], program: Program | None = None
+    sheet: Sheet,
+    labels: Mapping[str, Sequence[int]],
+    data: Mapping[str, Any],
+    program: Program | None = None,
+    out: Mapping[str, Array] | None = None,
 ) -> Values:
     """Compute a sheet from given columns.
 
@@ -477,14 +505,19 @@ def evaluate(
         The given columns in SI; a scalar has one row, so that a batch of it has the shape (..., 1).
     program : Program, optional
         The sheet's program, if it was generated before.
+    out : mapping of column name to float array (..., rows), optional
+        Where the values of some columns go, float64, each of the shape that they have: with a batch if the
+        column rests on one. A part of a larger array will do. Of columns that are not named nothing is kept:
+        a batch then takes no memory but for the statuses of these, and for a block of all.
 
     Raises
     ------
     ValueError
-        A column has not as many rows as its axis, or a batch has several numbers of rows.
+        A column has not as many rows as its axis, a batch has several numbers of rows, or an array of `out`
+        cannot hold the column.
     """
     arrays = _arrays(data)
-    return (program or Program.of(sheet)).run(labels, _counts(sheet, arrays), arrays)
+    return (program or Program.of(sheet)).run(labels, _counts(sheet, arrays), arrays, out)
 
 
 def extend(values: Values, columns: Sequence[Column], data: Mapping[str, Any]) -> Values:
