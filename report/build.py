@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from .archive.crate import added
 from .inputs.folders import INPUTS, told
-from .machine.background import Background
+from .machine.background import Background, Later
 from .machine.provenance import processor, sources
 from .machine.staging import put, staged
 from .machine.timing import timed
@@ -184,14 +184,15 @@ def _made(
         # What takes long and needs little of the rest has a process of its own, from when the folder is known
         # to be in order.
         proving = None if study.are_proved() else running.enter_context(Background(_proofs, study.recipe))
+        refereeing = None
+        if study.inputs.published:
+            refereeing = running.enter_context(Background(_refereed, study.recipe, Later()))
         formats = _possible(study.prepared, formats, tell)
         if long := cost.told(study.prepared.sheet, study.prepared.layouts, formats):
             tell(long)
         study.prepared.check_cells()
-        refereeing = None
-        if study.inputs.published:
-            plain = study.computed.values.plain
-            refereeing = running.enter_context(Background(_refereed, study.recipe, plain))
+        if refereeing is not None:
+            refereeing.tell(study.computed.values.plain)
         engines = study.engines if every_engine else study.numpy
         source = study.program if "html" in formats else ""
         if proving is not None:
@@ -225,13 +226,14 @@ def _proofs(recipe: Recipe) -> dict[str, Any]:
     return Study.of(recipe).proof_data
 
 
-def _refereed(recipe: Recipe, plain: tuple[Any, ...]) -> tuple[Referee, tuple[Comparison, ...]]:
-    """In a process of its own: what the referee finds of values that are computed."""
+def _refereed(recipe: Recipe, plain: Later[tuple[Any, ...]]) -> tuple[Referee, tuple[Comparison, ...]]:
+    """In a process of its own: what the referee finds of values that are computed meanwhile."""
     from .cells.values import Values
+    from .referee import judging  # noqa: F401 - takes long, and needs no values
 
     made = Study.of(recipe).prepared
     made = replace(made, inputs=made.check_cells())
-    return refereed_values(made, Values(made.sheet, made.layouts, *plain))
+    return refereed_values(made, Values(made.sheet, made.layouts, *plain.wait()))
 
 
 def _of_a_crate(out: Path, folder: Path) -> dict[Path, str]:

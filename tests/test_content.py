@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from sympy import Expr, Float, Function, Symbol, log, sqrt
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.report.cells.layout import lay_out
+from loopsheet.report.cells.values import Status
 from loopsheet.report.column import Axis, Column, Formula, Given, PairAxis, Root
 from loopsheet.report.content import Untold, content
 from loopsheet.report.engines import numpy as engine
@@ -37,7 +39,7 @@ def root(**more: object) -> Column:
 
 
 GIVEN = Column("x", None, Given("parameter", Bounds(low=0)))
-SHEET = Sheet((GIVEN, formula(sqrt(x)), root()))
+SHEET = Sheet((GIVEN, formula(sqrt(x)), replace(formula(log(x)), name="z"), root()))
 
 
 def test_columns_that_are_computed_otherwise_say_something_else() -> None:
@@ -91,14 +93,16 @@ def test_what_is_kept_computes_the_same_and_nothing_is_lowered(
 ) -> None:
     monkeypatch.setenv(SETTING, str(tmp_path / "kept"))
     layouts, data = lay_out(SHEET, {}, {}), {"x": np.linspace(0.1, 3.0, 7).reshape(-1, 1)}
-    value = {"x": np.array([2.0]), "y": np.array([2.0**0.5]), "r": np.array([1.0])}
+    value = {"x": np.array([2.0]), "y": np.array([2.0**0.5]), "z": np.log([2.0]), "r": np.array([1.0])}
 
-    def made() -> tuple[str, object, object]:
+    def made() -> tuple[str, Any, object]:
         values = engine.evaluate(SHEET, {}, data)
         found = bounds.bounds(SHEET, layouts, value)
-        return Program.of(SHEET).source, values.value["r"].tolist(), {n: b.tolist() for n, b in found.items()}
+        told = [values.value["r"].tolist(), values.status["z"].tolist()]
+        return Program.of(SHEET).source, told, {n: b.tolist() for n, b in found.items()}
 
     first = made()
+    assert {code for row in first[1][1] for code in row} == {Status.OK, Status.DOMAIN}
     again = [Made.of(SHEET).nodes]
 
     def fail(*_: object) -> None:

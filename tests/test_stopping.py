@@ -27,7 +27,7 @@ from loopsheet.report import stages
 from loopsheet.report.cli import main
 from loopsheet.report.files.manifest import read_manifest
 from loopsheet.report.machine import staging
-from loopsheet.report.machine.background import Background
+from loopsheet.report.machine.background import Background, Later
 from loopsheet.report.machine.scratch import PREFIX, scratch
 from loopsheet.report.machine.staging import put, staged
 from loopsheet.report.machine.stopping import Stopped, stoppable, unstoppable
@@ -390,6 +390,17 @@ def test_where_no_process_may_be_begun_the_work_is_done_when_it_is_asked_for(
     monkeypatch.undo()
     with Background(divmod, 7, 0) as wrong, pytest.raises(ZeroDivisionError):
         wrong.result()
+
+
+@pytest.mark.parametrize("program", [sys.executable, "/nowhere/python"])
+def test_an_argument_may_be_told_while_a_call_runs(program: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "executable", program)
+    many = list(range(100_000))
+    with Background(Later.wait, Later()) as aside:
+        aside.tell(many)
+        assert aside.result() == many
+    with Background(Later.wait, Later()):
+        pass  # nobody tells it, and nobody waits
 
 
 # --- how signals are heeded ---

@@ -88,6 +88,8 @@ def _given(axis: Axis, labels: Sequence[int]) -> Layout:
 
 @cache
 def _chosen(axis: PairAxis) -> Callable[..., NDArray[np.bool_]]:
+    if axis.chosen == (axis.first < axis.second):
+        return np.less  # nothing is printed for what nearly all choose
     chosen: Callable[..., NDArray[np.bool_]] = lambdify((axis.first, axis.second), axis.chosen, "numpy")
     return chosen
 

@@ -8,7 +8,7 @@ made by :mod:`~loopsheet.report.engines.numpy_code` from the sheet's own express
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..cells.layout import Layout, lay_out, precedents
 from ..cells.values import Status, Values, how_many, inherited, rows_kept
-from ..plan import Leaf, Map, Plan, Root, lowered
+from ..plan import Map, Plan, Root, lowered
 from ..plan.domain import SMALLEST
 from ..plan.kept import of_sheet
 from ..sheet import Column, Sheet
@@ -65,8 +65,8 @@ class Program:
     Parameters
     ----------
     sheet : Sheet
-    lower : callable or None
-        Returns the plan that the functions were printed from: asked for if a column has cells in error.
+    known : collection of str
+        Columns that are computed already.
     function : callable
         Called with a run.
     roots : mapping of column name to RootProgram
@@ -77,7 +77,7 @@ class Program:
     """
 
     sheet: Sheet
-    lower: Callable[[], Plan] | None
+    known: Collection[str]
     function: Function
     roots: Mapping[str, RootProgram]
     source: str
@@ -103,11 +103,11 @@ class Program:
             A formula has a part that NumPy cannot compute.
         """
 
-        def lower() -> Plan:
-            return lowered(sheet, known)
+        def make() -> dict[str, Any]:
+            return program_texts(sheet, lowered(sheet, known))
 
-        texts = of_sheet(sheet, "NumPy program", sorted(known), lambda: program_texts(sheet, lower()))
-        return cls.of_texts(sheet, texts, functions, lower)
+        texts = of_sheet(sheet, "NumPy program", sorted(known), make)
+        return cls.of_texts(sheet, texts, functions, known)
 
     @classmethod
     def of_texts(
@@ -115,7 +115,7 @@ class Program:
         sheet: Sheet,
         texts: Mapping[str, Any],
         functions: Any = SAME,
-        lower: Callable[[], Plan] | None = None,
+        known: Collection[str] = (),
     ) -> Program:
         """The program of printed functions.
 
@@ -124,21 +124,13 @@ class Program:
         sheet : Sheet
         texts : mapping
             From :func:`program_texts`.
-        functions : module
+        functions, known
             As for :meth:`of`.
-        lower : callable or None
-            Returns the plan they were printed from.
         """
         roots = {name: RootProgram.of(root, functions) for name, root in texts["roots"].items()}
         parts = (f"# {name}\n{root.source}" for name, root in roots.items())
         function = compiled(texts["sheet"], functions)
-        return cls(sheet, lower, function, roots, "\n\n".join([texts["sheet"], *parts]), functions)
-
-    @cached_property
-    def plan(self) -> Plan:
-        """What the functions were printed from."""
-        assert self.lower is not None
-        return self.lower()
+        return cls(sheet, known, function, roots, "\n\n".join([texts["sheet"], *parts]), functions)
 
     def run(
         self,
@@ -200,21 +192,52 @@ class Program:
             return self
         return replace(self, roots={name: replace(root, counted=False) for name, root in self.roots.items()})
 
-    @cached_property
-    def maps(self) -> dict[str, Map]:
-        """The formulas by name."""
-        return {node.column.name: node for node in self.plan.nodes if isinstance(node, Map)}
+    def conditions(self, name: str) -> tuple[_Condition, _Condition]:
+        """Where a formula is positive although no double may hold it, and where it has a value at all."""
+        if name not in self._conditions:
 
-    def asked(self, condition: Any) -> Kernel | None:
-        """The function of a condition on a value; None where it is certain."""
-        if condition not in self._asked:
-            certain = condition in (True, False)
-            self._asked[condition] = None if certain else kernel([condition], self.functions)
-        return self._asked[condition]
+            def make() -> list[Any]:
+                plan = lowered(self.sheet, self.known)
+                (node,) = (n for n in plan.nodes if isinstance(n, Map) and n.column.name == name)
+                return [_condition_texts(each, plan) for each in (node.positive, node.defined)]
+
+            texts = of_sheet(self.sheet, "conditions of a value", [name, *sorted(self.known)], make)
+            positive, defined = (_Condition.of(each, self.functions) for each in texts)
+            self._conditions[name] = positive, defined
+        return self._conditions[name]
 
     @cached_property
-    def _asked(self) -> dict[Any, Kernel | None]:
+    def _conditions(self) -> dict[str, tuple[_Condition, _Condition]]:
         return {}
+
+
+def _condition_texts(condition: Any, plan: Plan) -> Any:
+    """A condition on the cells that a column names, printed, as data: what it reads of each leaf, and how."""
+    if condition in (True, False):
+        return bool(condition)
+    asked = kernel([condition])
+    leaves = [plan.named[name] for name in asked.arguments]
+    reads = [
+        (leaf.kind, leaf.name, leaf.axis and leaf.axis.name, leaf.index and leaf.index.name)
+        for leaf in leaves
+    ]
+    return {"kernel": asked.plain, "reads": reads}
+
+
+@dataclass(frozen=True)
+class _Condition:
+    """A condition that holds always, never, or where a function says so of what it reads."""
+
+    certain: bool
+    kernel: Kernel | None = None
+    reads: Sequence[tuple[str, str, str, str]] = ()
+
+    @classmethod
+    def of(cls, texts: Any, functions: Any) -> _Condition:
+        """That of what :func:`_condition_texts` prints."""
+        if isinstance(texts, bool):
+            return cls(texts)
+        return cls(False, Kernel.of_plain(texts["kernel"], functions), texts["reads"])
 
 
 class Laid:
@@ -389,38 +412,31 @@ class _Run:
             beyond = (beyond & (value != -np.inf)) | ((value > 0) & (value < SMALLEST))
         if held.all():
             return np.zeros(value.shape, dtype=np.uint8)
-        node = self.program.maps[column.name]
-        if node.positive != False:  # noqa: E712 - sympy's false
-            beyond = beyond | ((value == 0) & self._holds(node.positive, column))
-        beyond = beyond & self._holds(node.defined, column)
+        positive, defined = self.program.conditions(column.name)
+        beyond = beyond | ((value == 0) & self._holds(positive, column))
+        beyond = beyond & self._holds(defined, column)
         found: Codes = chosen([held, beyond], [Status.OK, Status.OVERFLOW], Status.DOMAIN).astype(np.uint8)
         return found
 
-    def _holds(self, condition: Any, column: Column) -> Any:
+    def _holds(self, condition: _Condition, column: Column) -> Any:
         """Whether a condition on the cells that a column names holds."""
-        asked = self.program.asked(condition)
+        asked = condition.kernel
         if asked is None:
-            return bool(condition)
-        named = self.program.plan.named
-        arguments = [self._fetched(named[name]) for name in asked.arguments]
+            return condition.certain
+        arguments = [self._fetched(*read) for read in condition.reads]
         found = asked.run(*arguments, *(self.kept(column.name, axis) for axis in asked.totals))[0]
         return np.broadcast_to(found, np.broadcast_shapes(np.shape(found), (self.laid.size(column),))).astype(
             bool
         )
 
-    def _fetched(self, leaf: Leaf) -> Array:
-        if leaf.kind == "cells":
-            if leaf.index is None:
-                return self.value[leaf.name]
-            assert leaf.axis is not None
-            return self.rows(leaf.name, leaf.axis.name, leaf.index.name)
-        assert leaf.axis is not None
-        if leaf.kind == "ordinal":
-            assert leaf.index is not None
-            return self.ordinal(leaf.axis.name, leaf.index.name)
-        if leaf.kind == "size":
-            return self.size(leaf.axis.name)
-        return self.kept(leaf.name, leaf.axis.name).number
+    def _fetched(self, kind: str, name: str, axis: str, index: str | None) -> Array:
+        """What a leaf of the plan stands for."""
+        if kind == "cells":
+            return self.value[name] if index is None else self.rows(name, axis, index)
+        if kind == "ordinal":
+            assert index is not None
+            return self.ordinal(axis, index)
+        return self.size(axis) if kind == "size" else self.kept(name, axis).number
 
     # --- roots
 

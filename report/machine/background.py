@@ -13,11 +13,24 @@ from typing import Any, Generic, TypeVar
 
 from .stopping import unstoppable, worker
 
-__all__ = ["Background", "serve"]
+__all__ = ["Background", "Later", "serve"]
 
 T = TypeVar("T")
 _PATIENCE = 5.0
 """Seconds in which a process that is told to end takes back what it has begun."""
+
+
+class Later(Generic[T]):
+    """An argument that is not known yet when a call begins: told to it while it runs."""
+
+    def __init__(self) -> None:
+        self.told: list[T] = []
+
+    def wait(self) -> T:
+        """What was told: where the call runs, once it is."""
+        if not self.told:
+            self.told.append(pickle.load(sys.stdin.buffer))
+        return self.told[0]
 
 
 class Background(Generic[T]):
@@ -28,7 +41,7 @@ class Background(Generic[T]):
     function : callable
         Of a module; what it returns must be plain data.
     *arguments : anything
-        Plain data, too.
+        Plain data, too; the last may be a :class:`Later`, which has to be told.
     """
 
     def __init__(self, function: Callable[..., T], *arguments: Any) -> None:
@@ -45,13 +58,23 @@ class Background(Generic[T]):
         if self._process is not None and self._process.stdin is not None:
             with suppress(BrokenPipeError):  # it has ended, and that is told when somebody asks
                 self._process.stdin.write(pickle.dumps(self._call))
-                self._process.stdin.close()
+                self._process.stdin.flush()
+                if not any(isinstance(argument, Later) for argument in arguments):
+                    self._process.stdin.close()
 
     def __enter__(self) -> Background[T]:
         return self
 
     def __exit__(self, *_: object) -> None:
         self.cancel()
+
+    def tell(self, value: Any) -> None:
+        """What the last argument is."""
+        self._call[1][-1].told.append(value)
+        if self._process is not None and self._process.stdin is not None:
+            with suppress(BrokenPipeError):
+                self._process.stdin.write(pickle.dumps(value))
+                self._process.stdin.close()
 
     def result(self) -> T:
         """Wait for the result; what the function raised is raised here."""
