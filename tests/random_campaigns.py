@@ -336,13 +336,14 @@ def judge_of(campaign: Campaign) -> Judge:
 def printed_once() -> Iterator[None]:
     """The programs of a sheet are the same for all campaigns, and take longer to print than to run."""
 
-    def once(make: Callable[[Any], Any]) -> Callable[[Any], Any]:
-        known: dict[int, tuple[Any, Any]] = {}
+    def once(make: Callable[..., Any]) -> Callable[..., Any]:
+        known: dict[Any, tuple[Any, Any]] = {}
 
-        def made(sheet: Any) -> Any:
-            if id(sheet) not in known:
-                known[id(sheet)] = sheet, make(sheet)
-            return known[id(sheet)][1]
+        def made(sheet: Any, *more: Any) -> Any:
+            key = id(sheet), *more
+            if key not in known:
+                known[key] = sheet, make(sheet, *more)
+            return known[key][1]
 
         return made
 

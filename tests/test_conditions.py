@@ -15,6 +15,8 @@ from loopsheet.report.engines import exact
 from loopsheet.report.engines.numpy import evaluate
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.judge import bounds as numbers
+from loopsheet.report.judge.chain import Chain, Made
+from loopsheet.report.judge.sensitivity import Numbers, sensitivities
 from loopsheet.report.plan import derivatives
 from loopsheet.report.prepared import Prepared
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
@@ -150,6 +152,33 @@ def test_a_median_rests_on_the_rows_in_the_middle() -> None:
     assert bounded(two, x=[2.0, np.nan, 5.0])["d"] == pytest.approx([3.5**2 + 7 * (3.5 + (2 + 5) / 2)])
 
 
+def test_a_batch_of_sensitivities_has_no_number_where_a_cell_has_no_value() -> None:
+    """By hand: a sum leaves out what has no value, and a median rests on its middle alone."""
+    y = formula("y", sqrt(x[k] - A), ROWS)
+    middle = formula("c", Median(Column("y", ROWS, Given(), positive=False)[k], (k, 1, n)))
+    total = formula("t", B * Sum(Column("y", ROWS, Given(), positive=False)[k], (k, 1, n)))
+    sheet, given = (
+        Sheet((a, b, x, y, middle, total)),
+        np.array([[2.0, 5.0, 10.0, 17.0], [0.5, 5.0, 10.0, 2.0]]),
+    )
+    values = evaluate(sheet, {"rows": [1, 2, 3, 4]}, {"a": 1.0, "b": 3.0, "x": given})
+    chain = Chain(Made.of(sheet), values.layouts, {"x": np.arange(4), "b": np.array([4])})
+    found = sensitivities(chain, values, [("y", 0), ("c", 0), ("t", 0)])
+    slope = 0.5 / np.sqrt(np.maximum(given - 1, 0.25))
+    none = np.full(5, np.nan)
+    assert found[0] == pytest.approx(
+        np.array(
+            [
+                [slope[0, 0], 0, 0, 0, 0],
+                [0, slope[0, 1] / 2, slope[0, 2] / 2, 0, 0],
+                [*3 * slope[0], 1 + 2 + 3 + 4],
+            ]
+        )
+    )
+    rest = np.array([[0, slope[1, 1], 0, 0, 0], [0, *3 * slope[1, 1:], 2 + 3 + 1]])
+    assert found[1] == pytest.approx(np.vstack([none, rest]), nan_ok=True)
+
+
 def test_names_that_are_taken_stay_free() -> None:
     taken = formula("c_rounding", A + 1)
     made = derivatives.derivatives(Sheet((a, b, x, taken, formula("c", A * IndexedBase(x.symbol)[k], ROWS))))
@@ -181,29 +210,39 @@ def prepared() -> Prepared:
     return Study(PAPER).prepared
 
 
-def spread_of(prepared: Prepared, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """The derivatives behind the bounds of the first two tests."""
-    data = {c: v[:2] if isinstance(v, list) else v for c, v in prepared.data.items()}
+GIVEN = ("v", "e", "x_p")
+
+
+def of_two_tests(prepared: Prepared, name: str, drawn: int = 0) -> Any:
+    """The derivatives of a column by what was measured in the first two tests; or of a batch of them."""
+    data = {c: np.array(v[:2]) if isinstance(v, list) else v for c, v in prepared.data.items()}
+    if drawn:
+        share = 1 + 1e-3 * np.random.default_rng(3).random((drawn, 2))
+        data |= {given: data[given] * share for given in GIVEN}
     values = evaluate(prepared.sheet, {"tests": [1, 2]}, data)
-    made: list[Any] = []
-    whole = numbers._Spread.bounds
-    monkeypatch.setattr(numbers._Spread, "bounds", lambda self: made.append(self) or whole(self))
-    numbers.bounds(prepared.sheet, values.layouts, values.value)
-    return made[0]
+    sources = {given: np.arange(2) + 2 * n for n, given in enumerate(GIVEN)}
+    found = Numbers(Chain(Made.of(prepared.sheet), values.layouts, sources), values).go().of(name)
+    return found, values
 
 
-@pytest.mark.parametrize("name", ["alpha", "x_m1", "C", "alpha_log", "C_lin", "alpha_lin"])
-def test_the_paper_against_differences(
-    prepared: Prepared, monkeypatch: pytest.MonkeyPatch, name: str
-) -> None:
-    spread, (known, size) = spread_of(prepared, monkeypatch), slopes_of(prepared, name, 0)
+@pytest.mark.parametrize("name", ["alpha", "x_m1", "C", "alpha_log", "C_lin", "alpha_lin", "alpha_median"])
+def test_the_paper_against_differences(prepared: Prepared, name: str) -> None:
+    (own, values), (known, size) = of_two_tests(prepared, name), slopes_of(prepared, name, 0)
     for (given, test), slope in known.items():
-        source = spread.start[given] + test
-        if name in spread.scalar:
-            own = spread.whole[spread.scalar[name], source]
-        else:
-            own = spread.direct[name][[0], :].toarray()[0, source]
-        assert own * spread.found.value[given][test] == pytest.approx(slope, rel=1e-7, abs=1e-9 * size)
+        found = own[0, 2 * GIVEN.index(given) + test] * values.value[given][test]
+        assert found == pytest.approx(slope, rel=1e-7, abs=1e-9 * size)
+
+
+@pytest.mark.parametrize("name", ["alpha", "alpha_mean", "alpha_median", "C_log"])
+def test_a_batch_has_the_derivatives_of_each(prepared: Prepared, name: str) -> None:
+    found, values = of_two_tests(prepared, name, drawn=3)
+    assert found.shape == (3, values.value[name].shape[-1], 6)
+    sheet, made, sources = prepared.sheet, Made.of(prepared.sheet), {"v": np.arange(2)}
+    for n in range(3):
+        data = {c.name: values.value[c.name] for c in sheet.columns if isinstance(c.rule, Given)}
+        alone = evaluate(sheet, {"tests": [1, 2]}, {c: v[n] if v.ndim > 1 else v for c, v in data.items()})
+        each = Numbers(Chain(made, alone.layouts, sources), alone).go().of(name)
+        assert each == pytest.approx(found[n, :, :2], rel=1e-12)
 
 
 def test_a_term_that_is_dropped_is_noticed(prepared: Prepared, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -216,7 +255,7 @@ def test_a_term_that_is_dropped_is_noticed(prepared: Prepared, monkeypatch: pyte
 
     monkeypatch.setattr(derivatives, "diff", dropped)
     with pytest.raises(AssertionError):
-        test_the_paper_against_differences(prepared, monkeypatch, "alpha")
+        test_the_paper_against_differences(prepared, "alpha")
 
 
 def test_bounds_of_the_paper(prepared: Prepared) -> None:

@@ -17,7 +17,7 @@ from loopsheet.report.engines.intervals import Intervals
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.engines.numpy_enclosed import EnclosedRows
 from loopsheet.report.inputs.folders import PAPER
-from loopsheet.report.judge.bounds import Made
+from loopsheet.report.judge.chain import Made
 from loopsheet.report.judge.enclosure import Enclosure
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.referee.campaign import Campaign
@@ -68,27 +68,40 @@ def test_bounds_are_narrow(campaign: Campaign) -> None:
 
 
 def test_derivatives_hold_those_of_every_sample(campaign: Campaign) -> None:
+    """The search and the certificate have the same derivatives: one at a point, one over all of the box."""
     problem = table(campaign, "Table 2")
     slopes = Certificate(problem)._slopes
     for point in samples(problem, 40):
-        found = problem.slopes(point, problem.box)
-        slack = 1e-4 * np.abs(found) + 1e-6 * np.abs(found).max()
+        found = problem.slopes(problem.at(point), problem.box)
+        slack = 1e-12 * np.abs(found)
         assert (found >= slopes.low - slack).all()
         assert (found <= slopes.high + slack).all()
 
 
 def test_derivatives_of_some_values_are_those_of_all(campaign: Campaign) -> None:
     problem = table(campaign, "Table 2", "Table 3", "text")
-    box, every = problem.box, range(len(problem.published))
-    all_of_them = problem.slopes(box.start, box)
+    box, every, here = problem.box, range(len(problem.published)), problem.at(problem.box.start)
+    all_of_them = problem.slopes(here, box)
     for n in every:
         alone, among = problem.only([n]), problem.ignoring(set(every) - {n})
-        assert (alone.slopes(box.start, box)[0] == all_of_them[n]).all()
-        assert (among.around(box.start, box)[1][n] == all_of_them[n]).all()
-        assert 0 < np.count_nonzero(alone._moving) < len(problem.unknowns)
-    mean = next(n for n in every if problem.published[n].cell == "alpha_mean")
-    printed = {"alpha": np.full(10, 1.3)}
-    assert problem.computed(from_printed(campaign, ["alpha_mean"], printed), [mean])._moving.all()
+        assert (alone.slopes(alone.at(box.start), box)[0] == all_of_them[n]).all()
+        assert (among.slopes(here, box)[n] == all_of_them[n]).all()
+        assert 0 < np.count_nonzero(all_of_them[n]) < len(problem.unknowns)
+
+
+@pytest.mark.parametrize("tied", [(), ("alpha_log", "C_log")])
+def test_derivatives_of_a_search_against_differences(campaign: Campaign, tied: tuple[str, ...]) -> None:
+    """Also of what is free, and of what is computed in another way, which has only these."""
+    problem = table(campaign, "Table 2", "Table 3", "text", tied=tied)
+    point, here = problem.box.start, problem.at(problem.box.start)
+    found = problem.slopes(here, problem.box)
+    size = point / here.cells[:, None]
+    assert found * size == pytest.approx(problem._differences(point, problem.box) * size, rel=1e-5, abs=1e-8)
+    mean = next(n for n, value in enumerate(problem.published) if value.cell == "alpha_mean")
+    other = problem.computed(from_printed(campaign, ["alpha_mean"], {"alpha": np.full(10, 1.3)}), [mean])
+    among = other.slopes(other.at(point), problem.box)
+    assert (among[mean] == 0).all()  # of what is printed nothing moves it
+    assert (np.delete(among, mean, axis=0) == np.delete(found, mean, axis=0)).all()
 
 
 def test_no_sample_beats_the_certified_mismatch(campaign: Campaign) -> None:
@@ -170,7 +183,7 @@ def test_a_median_is_enclosed_with_its_derivatives() -> None:
         high = low + rng.choice([0.01, 1.0, 3.0], size)
         layouts = engine.evaluate(sheet, labels, {"x": low}, program).layouts
         enclosure = Enclosure(sheet, program, layouts, {"x": Intervals(low, high)})
-        slopes = enclosure.derivatives(made.nodes, made.program, {"x": np.arange(size)})["m"]
+        slopes = enclosure.derivatives(made, {"x": np.arange(size)})["m"]
         found = enclosure.value["m"]
         inside = low + rng.random((100, size)) * (high - low)
         value = engine.evaluate(sheet, labels, {"x": inside}, program).value["m"][:, 0]

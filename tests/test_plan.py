@@ -80,7 +80,9 @@ def test_every_node_finds_what_it_names() -> None:
         named = [] if not isinstance(node, (Map, Total)) else (
             node.terms if isinstance(node, Total) else node.value
         ).free_symbols  # fmt: skip
-        assert {plan.node_of(s) for s in named if plan.leaves[s].kind in ("cells", "total")} <= known
+        leaves = {s: plan.leaves[s] for s in named}
+        assert {leaf.name for leaf in leaves.values() if leaf.kind == "cells"} <= known
+        assert {s.name for s, leaf in leaves.items() if leaf.kind == "total"} <= known
         known.add(str(node.symbol) if isinstance(node, Total) else node.column.name)
 
 
@@ -127,7 +129,7 @@ def test_of_a_root_they_follow_from_its_equation() -> None:
     made = derivatives(SHEET)
     (node,) = (each for each in made.nodes if each.name == "rate")
     values = evaluate(SHEET, {"rows": [1, 2, 3]}, {"a": [0.5, 1.0, 1.5]})
-    own = {s.by.name: s.value for s in node.slopes}
+    own = {s.by: s.value for s in node.slopes}
     assert set(own) == {"rate_sum_0", "rate_sum_1"}
     parts = {part.symbol.name: part.value for part in made.plan.nodes if isinstance(part, Part)}
     here = 1 / values.scalar("rate")

@@ -78,6 +78,10 @@ class Intervals(NDArrayOperatorsMixin):
     def __getitem__(self, key: Any) -> Intervals:
         return Intervals(self.low[key], self.high[key])
 
+    def __setitem__(self, key: Any, value: Any) -> None:
+        value = Intervals.of(value)
+        self.low[key], self.high[key] = value.low, value.high
+
     def take(self, rows: NDArray[np.intp]) -> Intervals:
         """Rows of the last dimension."""
         return Intervals(self.low.take(rows, axis=-1), self.high.take(rows, axis=-1))
@@ -99,10 +103,17 @@ class Intervals(NDArrayOperatorsMixin):
     def total(self, axis: int = -1, keepdims: bool = True) -> Intervals:
         """The sum along a dimension."""
         size = max(1, self.low.shape[axis] if self.low.ndim else 1)
+        return self._summed(size, lambda end: end.sum(axis=axis, keepdims=keepdims))
+
+    def totals(self, starts: NDArray[np.intp]) -> Intervals:
+        """Sums of neighbours along the last dimension, each from a start to the next one."""
+        sizes = np.diff(starts, append=self.low.shape[-1])
+        return self._summed(sizes, lambda end: np.add.reduceat(end, starts, axis=-1))
+
+    def _summed(self, terms: Any, summed: Callable[[Array], Array]) -> Intervals:
         # n - 1 roundings, each of at most half an ulp of a partial sum, whatever the order of adding.
-        slack = size * 2.0**-52
-        low, high = (end.sum(axis=axis, keepdims=keepdims) for end in (self.low, self.high))
-        sizes = [np.abs(end).sum(axis=axis, keepdims=keepdims) for end in (self.low, self.high)]
+        slack = terms * 2.0**-52
+        low, high, *sizes = map(summed, (self.low, self.high, np.abs(self.low), np.abs(self.high)))
         return _outwards(low - slack * sizes[0], high + slack * sizes[1])
 
     def middle(self) -> tuple[Intervals, Intervals]:
@@ -119,6 +130,8 @@ class Intervals(NDArrayOperatorsMixin):
     # --- NumPy's functions ----------------------------------------------------------------------------
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
+        if ufunc is np.add and method == "reduceat":
+            return inputs[0].totals(inputs[1])
         run = _UFUNCS.get(ufunc.__name__)
         if run is None or method != "__call__" or options:
             return NotImplemented

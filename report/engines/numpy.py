@@ -27,7 +27,7 @@ from .numpy_root import RootProgram, root_texts
 from .numpy_rows import Kept, chosen
 from .numpy_sheet import sheet_function
 
-__all__ = ["Kernel", "Program", "evaluate", "extend", "kernel", "parts", "program_texts"]
+__all__ = ["Kernel", "Laid", "Program", "evaluate", "extend", "kernel", "parts", "program_texts"]
 
 Codes = NDArray[np.uint8]
 Masks = Mapping[str, NDArray[np.bool_]]
@@ -334,8 +334,10 @@ class _Run:
     def part(self, name: str, axis: str | None, value: Any) -> Array:
         """Numbers that are no column; NaN where there are none."""
         size = 1 if axis is None else self.laid.layouts[axis].size
-        every = np.broadcast_to(value, np.broadcast_shapes(np.shape(value), (size,)))
-        self.parts[name] = np.where(np.isfinite(every), every, np.nan)
+        if np.shape(value)[-1:] != (size,):
+            value = np.broadcast_to(value, np.broadcast_shapes(np.shape(value), (size,)))
+        known = np.isfinite(value)
+        self.parts[name] = value if known.all() else np.where(known, value, np.nan)
         return self.parts[name]
 
     # --- columns
@@ -562,7 +564,7 @@ def extend(values: Values, columns: Sequence[Column], data: Mapping[str, Any]) -
     return _Run(Program.of(sheet, values.value), Laid(sheet, layouts), arrays, values).values()
 
 
-def parts(program: Program, values: Values) -> dict[str, Array]:
+def parts(program: Program, values: Values, laid: Laid | None = None) -> dict[str, Array]:
     """Compute the parts of a plan from finished values.
 
     Parameters
@@ -571,12 +573,14 @@ def parts(program: Program, values: Values) -> dict[str, Array]:
         Of the plan.
     values : Values
         All columns that the plan names.
+    laid : Laid, optional
+        The program's sheet over the rows, if that is known.
 
     Returns
     -------
     mapping of name to float array (..., rows)
     """
-    run = _Run(program, Laid(program.sheet, dict(values.layouts)), {}, values)
+    run = _Run(program, laid or Laid(program.sheet, dict(values.layouts)), {}, values)
     with np.errstate(all="ignore"):
         program.function(run)
     return run.parts

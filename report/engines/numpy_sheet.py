@@ -60,6 +60,8 @@ def _shared(expressions: Iterable[Any]) -> set[Any]:
         part = waiting.pop()
         if part in seen:
             found.add(part)
+            if part.is_Pow and part.exp.is_negative and part.base.args:
+                found.add(part.base)  # a quotient prints what it divides by, and never its reciprocal
         elif part.args and isinstance(part, (Expr, Boolean)):
             seen.add(part)
             waiting += part.args

@@ -26,6 +26,8 @@ from ..engines.numpy_root import RootProgram
 from ..engines.numpy_rows import KeptIntervals
 from ..plan.derivatives import Local, Slope
 from ..sheet import Column, Reference, Sheet, name_of
+from .chain import Chain, Made
+from .sensitivity import Along
 
 __all__ = ["Enclosure"]
 
@@ -175,7 +177,7 @@ class Enclosure(_Rows):
 
         def at(point: NDArray[np.float64]) -> Intervals:
             (value,) = run_at(Intervals(point, point), *rest, *totals)
-            return Intervals.of(value).broadcast(shape)
+            return Intervals.of(value).broadcast(np.broadcast_shapes(point.shape, shape))
 
         # Signs at the outermost ends: a root for any values inside lies between them.
         before = at_low.sign if program.told[0] else at(low.low).sign
@@ -188,7 +190,7 @@ class Enclosure(_Rows):
             one &= self._counted(program, cells, low, high, (at_low.sign, at_high.sign)) == 1
         if not one.any():
             return whole(shape), one
-        left, right = self._bracket(at, low.low.copy(), high.high.copy(), after)
+        left, right = self._bracket(at, low.low.copy(), high.high.copy(), after, one)
         (value,) = run_value(Intervals(left, right), *rest, *totals)
         found = Intervals.of(value).broadcast(shape)
         return found.where(one), one
@@ -210,30 +212,28 @@ class Enclosure(_Rows):
         number = [-1 if row in found.undecided else len(own) for row, own in enumerate(found.brackets)]
         return np.array(number).reshape(low.shape)
 
-    def _bracket(self, at: Any, low: Any, high: Any, after: Any) -> tuple[Any, Any]:
+    def _bracket(self, at: Any, low: Any, high: Any, after: Any, asked: Mask) -> tuple[Any, Any]:
         """The largest point that is certainly before the root, and the smallest certainly behind it."""
-        centre, slope = _centre(lambda point: _middle(at(point)) * after, low, high)
+        centre, slope = _centre(lambda point: _middle(at(point)) * after, low, high, asked)
         here = at(centre)
         # As far from the centre as its enclosure is wide, the sign may be certain.
         near = np.maximum(np.abs(here.low), np.abs(here.high)) / np.abs(slope)
         ends = np.stack([low, high])
         share = np.nan_to_num(near / np.abs(ends - centre) / 2, nan=0.0, posinf=1.0)
         left, right = _certain(
-            at, centre, ends, np.stack([-after, after]), np.clip(share, 2.0**-52, 2.0**-10)
+            at, centre, ends, np.stack([-after, after]), np.clip(share, 2.0**-52, 2.0**-10), asked
         )
         return left, right
 
     # --- derivatives ----------------------------------------------------------------------------------
 
-    def derivatives(
-        self, nodes: Sequence[Local], program: Program, sources: Mapping[str, NDArray[np.intp]]
-    ) -> dict[str, Intervals]:
+    def derivatives(self, made: Made, sources: Mapping[str, NDArray[np.intp]]) -> dict[str, Intervals]:
         """Total derivatives of every column by given cells.
 
         Parameters
         ----------
-        nodes, program
-            As those of :class:`~loopsheet.report.judge.bounds.Made`.
+        made : Made
+            Of the sheet.
         sources : mapping of column name to integer array (rows,)
             For given columns, the number of each row among all that derivatives are taken by.
 
@@ -241,26 +241,22 @@ class Enclosure(_Rows):
         -------
         mapping of column name to Intervals (rows, sources)
         """
-        number = 1 + max((int(rows.max()) for rows in sources.values()), default=-1)
-        spread = _Spread(self, program.sheet, number)
-        with np.errstate(all="ignore"):
-            program.function(spread)
-            for node in nodes:
-                spread.add(node, sources)
-        return spread.found
+        chain = Chain(made, self.layouts, sources)
+        spread = _Along(chain, self).go()
+        return {name: spread.of(name) for name in self.value}
 
 
-class _Spread(_Rows):
-    """The total derivatives of every node so far; what the function of their plan calls.
+class _Slopes(_Rows):
+    """What the function of a plan of derivatives calls.
 
-    What a plan has besides slopes is of no use here, and a root that it would seek again is not known.
+    What it has besides slopes is of no use here, and a root that it would seek again is not known.
     """
 
-    def __init__(self, cells: Enclosure, sheet: Sheet, sources: int) -> None:
-        super().__init__(sheet, cells.layouts, dict(cells.value), dict(cells.sure))
-        self.sources = sources
+    def __init__(self, cells: Enclosure, made: Made) -> None:
+        super().__init__(made.program.sheet, cells.layouts, dict(cells.value), dict(cells.sure))
         self.parts: dict[str, Intervals] = {}
-        self.found: dict[str, Intervals] = {}
+        with np.errstate(all="ignore"):
+            made.program.function(self)
 
     def part(self, name: str, axis: str | None, value: Any) -> Intervals:
         """Numbers that are no column."""
@@ -276,41 +272,34 @@ class _Spread(_Rows):
         self.sure[name] = np.zeros(self.number(column), dtype=bool)
         return self.value[name]
 
-    def add(self, node: Local, sources: Mapping[str, NDArray[np.intp]]) -> None:
-        """A node: by given cells, and by what it names times its slopes."""
-        size = 1 if node.axis is None else self.layouts[node.axis].size
-        own = np.zeros((size, self.sources))
-        if node.name in sources:
-            own[np.arange(size), sources[node.name]] = 1.0
-        total = Intervals(own, own)
-        for slope in node.slopes:
-            total = total + self._along(node, slope)
-        if node.over is None and not self.sure[node.name].all():
-            total = total.where(self.sure[node.name][:, None] | ((total.low == 0) & (total.high == 0)))
-        self.found[node.name] = total
 
-    def _along(self, node: Local, slope: Slope) -> Intervals:
-        """What comes by way of one that a node names (rows, sources)."""
-        by, rows = slope.by, self._named(slope)
-        theirs = self.found[by] if rows is None else self.found[by][rows]
-        values = self.parts[slope.value]
-        product: Intervals = values[:, None] * theirs
-        if node.median:
-            terms, sure = self.value[by], self.sure[by]
-            share = _shares(terms.where(sure) if rows is None else terms.where(sure).take(rows))
-            product = share * product
-        if node.over is not None:
-            product = product.broadcast((*values.shape, self.sources)).total(axis=0)
-        return product
+class _Along(Along):
+    """The derivatives while the given cells move within their intervals."""
 
-    def _named(self, slope: Slope) -> NDArray[np.intp] | None:
-        if slope.axis is None or slope.index is None:
-            return None
-        return self.layouts[slope.axis].named[slope.index]
+    def __init__(self, chain: Chain, cells: Enclosure) -> None:
+        super().__init__(chain, lambda shape: Intervals(np.zeros(shape), np.zeros(shape)))
+        self.cells = _Slopes(cells, chain.made)
+
+    def slope(self, node: Local, slope: Slope) -> Intervals:
+        found, by = self.cells.parts[slope.value], slope.by
+        if not node.median:
+            return found
+        rows = self.chain.named(node, slope)
+        shares = _shares(self.cells.value[by].where(self.cells.sure[by]).take(rows))
+        return shares * found  # type: ignore[no-any-return]
+
+    def ended(self, node: Local) -> None:
+        """What may have no value may have any derivative by what it rests on."""
+        if node.over is not None or self.cells.sure[node.name].all():
+            return
+        cells = self.chain.patterns[node.name]
+        own = self.entries[cells.entries]
+        nothing = (own.low == 0) & (own.high == 0)
+        self.entries[cells.entries] = own.where(self.cells.sure[node.name][cells.rows] | nothing)
 
 
 def _shares(terms: Intervals) -> Intervals:
-    """How much of the change of each row a median makes (rows, 1): any part of one that may be in the middle.
+    """How much of the change of each row a median makes: any part of one that may be in the middle.
 
     Parameters
     ----------
@@ -321,14 +310,14 @@ def _shares(terms: Intervals) -> Intervals:
         may_be = (terms.low <= middle.high) & (terms.high >= middle.low)
         certain = may_be & (np.count_nonzero(may_be) == 1)
         total = total + Intervals(np.where(certain, 0.5, 0.0), np.where(may_be, 0.5, 0.0))
-    return total[:, None]
+    return total
 
 
 def _middle(found: Intervals) -> Any:
     return (found.low + found.high) / 2
 
 
-def _centre(value: Any, low: Any, high: Any) -> tuple[Any, Any]:
+def _centre(value: Any, low: Any, high: Any, asked: Mask) -> tuple[Any, Any]:
     """Where an increasing function is about zero, and about its slope there; it proves nothing.
 
     Regula falsi, in which an end that stays counts for half (Illinois); where that leads nowhere, the middle.
@@ -348,27 +337,27 @@ def _centre(value: Any, low: Any, high: Any) -> tuple[Any, Any]:
         before, middle = point, left + (right - left) / 2
         point = right - at_right * (right - left) / (at_right - at_left)
         point = np.where((point > left) & (point < right), point, middle)
-        if (np.abs(point - before) <= SETTLED * np.abs(point)).all():
+        if (~asked | (np.abs(point - before) <= SETTLED * np.abs(point))).all():
             break
     ahead = point + APART * (np.where(high - point > point - low, high, low) - point)
     return point, (value(ahead) - value(point)) / (ahead - point)
 
 
-def _certain(at: Any, centre: Any, ends: Any, sign: Any, share: Any) -> Any:
+def _certain(at: Any, centre: Any, ends: Any, sign: Any, share: Any, asked: Mask) -> Any:
     """The nearest points between the centre and each end where the equation certainly has a sign."""
     # The distance is doubled until the sign is certain, then halved back.
     near, far = np.zeros_like(share), np.ones_like(share)
     found = np.zeros(share.shape, dtype=bool)
 
     def certain(share: Any) -> Any:
-        return np.stack([at(point).sign for point in centre + share * (ends - centre)]) == sign
+        return at(centre + share * (ends - centre)).sign == sign
 
     for _ in range(53):
         held = certain(share)
         far = np.where(held & ~found, share, far)
         near = np.where(held | found, near, share)
         found |= held
-        if (found | (share >= 1)).all():
+        if (~asked | found | (share >= 1)).all():
             break
         share = np.minimum(2 * share, 1.0)
     for _ in range(6):

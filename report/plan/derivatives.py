@@ -17,9 +17,9 @@ again. What they amount to along all ways through the plan is a matter of number
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import reduce
+from functools import partial, reduce
 from typing import Any
 
 from sympy import (
@@ -97,7 +97,7 @@ class Local:
     of : str
         The column in whose rule it stands.
     rounding : str
-        The part that holds its rounding in SI, in units of eps.
+        The part that holds its rounding in SI, in units of eps; empty if it was not asked for.
     slopes : tuple of Slope
     median : bool
         Whether it is a median: of its slopes only those of the rows in the middle count.
@@ -131,15 +131,17 @@ class Derivatives:
     nodes: tuple[Local, ...]
 
 
-def derivatives(sheet: Sheet) -> Derivatives:
+def derivatives(sheet: Sheet, roundings: bool = True) -> Derivatives:
     """Make the plan of a sheet's derivatives.
 
     Parameters
     ----------
     sheet : Sheet
+    roundings : bool
+        Whether what rounding does is asked for too.
     """
     plan = lowered(sheet)
-    making = _Making(plan)
+    making = _Making(plan, roundings)
     locals_ = tuple(local for node in plan.nodes for local in making.node(node))
     return Derivatives(making.again, Plan(tuple(making.nodes), making.leaves), locals_)
 
@@ -159,8 +161,8 @@ def _unknown(column: Column, name: str) -> Column:
 class _Making:
     """The derivatives so far: the nodes of their plan, and what its symbols stand for."""
 
-    def __init__(self, plan: Plan) -> None:
-        self.leaves = dict(plan.leaves)
+    def __init__(self, plan: Plan, roundings: bool) -> None:
+        self.leaves, self.roundings = dict(plan.leaves), roundings
         self.taken = {*RESERVED, *(symbol.name for symbol in plan.leaves)}
         self.own, self.axes = plan.own, plan.axes
         self.nodes: list[Node] = []
@@ -172,10 +174,10 @@ class _Making:
         if isinstance(node, Root):
             yield from _RootMaking(self, node).locals()
         elif isinstance(node, Given):
-            yield self.local(node.column, _size(self.own[node.column.name]), {})
+            yield self.local(node.column, lambda: _size(self.own[node.column.name]), {})
         elif isinstance(node, Map):
             value = _chosen(node.value)
-            yield self.local(node.column, rounding(value), self.slopes(value))
+            yield self.local(node.column, lambda: rounding(value), self.slopes(value))
         elif isinstance(node, Total):
             self.nodes.append(node)
             yield self.total(node)
@@ -184,20 +186,28 @@ class _Making:
         """A sum or a median; it is a node of the derivatives too."""
         terms = _chosen(node.terms)
         # A median's terms are cells; the mean of the two in the middle is rounded.
-        own = (
-            _size(node.symbol)
-            if node.median
-            else self.summed(node.column, _size(terms) + rounding(terms), node.over)
+        return self.local(
+            node.column,
+            lambda: (
+                _size(node.symbol)
+                if node.median
+                else self.summed(node.column, _size(terms) + rounding(terms), node.over)
+            ),
+            self.slopes(terms),
+            node,
         )
-        return self.local(node.column, own, self.slopes(terms), node)
 
     def local(
-        self, column: Column, own: Expr, slopes: dict[Symbol, Expr], total: Total | None = None
+        self,
+        column: Column,
+        own: Callable[[], Expr],
+        slopes: dict[Symbol, Expr],
+        total: Total | None = None,
     ) -> Local:
-        """A node, and the parts of its numbers."""
+        """A node, and the parts of its numbers; its own rounding only if it is asked for."""
         name = column.name if total is None else total.symbol.name
         over, axis = (None, column.axis) if total is None else (total.over, None)
-        held = self.part(f"{name}_rounding", column, axis, own)
+        held = self.part(f"{name}_rounding", column, axis, own()) if self.roundings else ""
         found = tuple(
             self.slope(by, self.part(f"{name}_slope_{n}", column, over or axis, slope))
             for n, (by, slope) in enumerate(slopes.items())
@@ -268,19 +278,22 @@ class _RootMaking:
             node = Total(self.column, symbol, over, at, at)
             making.nodes.append(node)
             slopes = {by: diff(terms, by).xreplace({self.unknown: here}) for by in self.names_in(terms)}
-            own = making.summed(
-                self.column, (_size(terms) + rounding(terms)).xreplace({self.unknown: here}), over
-            )
-            yield making.local(self.column, own, slopes, node)
+            yield making.local(self.column, partial(self.of_sum, terms, over, here), slopes, node)
         by_value, by_form = (self.by_unknown(each, here) for each in (value, form))
         ratio = by_value / by_form
-        own = rounding(value) + _size(by_value) * _size(self.unknown) + _size(ratio) * rounding(form)
         slopes = {by: diff(value, by) - ratio * diff(form, by) for by in self.names_in(value, form)}
         yield making.local(
             self.column,
-            own.xreplace({self.unknown: here}),
+            lambda: (
+                rounding(value) + _size(by_value) * _size(self.unknown) + _size(ratio) * rounding(form)
+            ).xreplace({self.unknown: here}),
             {by: slope.xreplace({self.unknown: here}) for by, slope in slopes.items()},
         )
+
+    def of_sum(self, terms: Expr, over: Axis, here: Expr) -> Expr:
+        """The rounding of a sum of the equation."""
+        own = (_size(terms) + rounding(terms)).xreplace({self.unknown: here})
+        return self.making.summed(self.column, own, over)
 
     def names_in(self, *expressions: Expr) -> list[Symbol]:
         """What expressions name besides the unknown, which may be called as its column is."""

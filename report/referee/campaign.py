@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..cells.values import Values
 from ..engines.numpy import Program
 from ..inputs.inputs import Inputs
+from ..judge.chain import Made
 from ..quantity import Bounds, Printed
 from ..result.verdict import Witness
 from ..sheet import Given, Sheet
@@ -71,7 +72,7 @@ class Programs:
 
     sheets: dict[tuple[str, ...], Sheet] = field(default_factory=dict)
     programs: dict[tuple[tuple[str, ...], frozenset[str]], Program] = field(default_factory=dict)
-    derivatives: dict[int, Any] = field(default_factory=dict)
+    derivatives: dict[int, Made] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -105,13 +106,24 @@ class Campaign:
         return {axis.name: self.inputs.tests for axis in self.sheet.axes if not axis.parents}
 
     def program(self, wanted: Collection[str], cut: tuple[str, ...] = ()) -> Program:
-        """The program of some columns and what they rest on, where some others are given."""
+        """The program of some columns and what they rest on, where some others are given.
+
+        It may compute more columns, of the same given ones: what is printed is not printed again.
+        """
         whole = self._with_free(cut)
         needed = frozenset(wanted) | {a.name for name in wanted for a in whole.ancestors(whole[name])}
-        if (cut, needed) not in self.made.programs:
-            sheet = Sheet(tuple(column for column in whole.columns if column.name in needed))
-            self.made.programs[cut, needed] = Program.of(sheet)
-        return self.made.programs[cut, needed]
+        key = tuple(name for name in cut if name in needed), needed
+        programs, given = self.made.programs, {c.name for c in whole.columns if isinstance(c.rule, Given)}
+        if key not in programs:
+            more = (
+                k for k in programs if k[0] == key[0] and needed < k[1] and given.isdisjoint(k[1] - needed)
+            )
+            same = next(more, None)
+            if same is None:
+                programs[key] = Program.of(Sheet(tuple(c for c in whole.columns if c.name in needed)))
+            else:
+                programs[key] = programs[same]
+        return programs[key]
 
     def _with_free(self, cut: tuple[str, ...]) -> Sheet:
         """The sheet with some columns given that it would compute."""

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..engines.intervals import Intervals
-from ..judge.bounds import Made
 from ..judge.enclosure import Enclosure
 from ..sheet import SheetError
 from .campaign import Array
@@ -63,12 +62,7 @@ class _Enclosed:
         problem = self.problem
         if problem.size * len(problem.unknowns) > MOST:
             raise _TooLarge
-        known, key = problem.campaign.made.derivatives, id(problem.program)  # the campaign keeps its programs
-        if key not in known:
-            known[key] = Made.of(problem.sheet)
-        made = known[key]
-        sources = {name: np.array(rows) for name, rows in problem.rows.items()}
-        return self.over_box.derivatives(made.nodes, made.program, sources)
+        return self.over_box.derivatives(problem.made, problem.sources)
 
 
 def _enclosure(problem: Problem, low: Array, high: Array) -> Enclosure:

@@ -67,7 +67,6 @@ def best(
     box: Box | None = None,
     until: float = 0.0,
     unless: float = np.inf,
-    slopes: Array | None = None,
 ) -> Best:
     """Search a box for the point with the least worst mismatch.
 
@@ -80,15 +79,13 @@ def best(
         Stop as soon as the worst mismatch is not more.
     unless : float
         Stop as soon as the derivatives promise no less than this.
-    slopes : float array (published, unknowns), optional
-        Derivatives near the start, if they are known.
 
     Returns
     -------
     Best
         With its roots counted where the mismatch is at most 1, and something would be claimed.
     """
-    found = _sought(problem.guessing, box or problem.box, until, unless, slopes)
+    found = _sought(problem.guessing, box or problem.box, until, unless)
     return counted(problem, found, box) if found.mismatch <= 1 else found
 
 
@@ -110,36 +107,32 @@ def counted(problem: Problem, found: Best, box: Box | None = None) -> Best:
     return _sought(problem, box or problem.box)
 
 
-def _sought(
-    problem: Problem, box: Box, until: float = 0.0, unless: float = np.inf, slopes: Array | None = None
-) -> Best:
+def _sought(problem: Problem, box: Box, until: float = 0.0, unless: float = np.inf) -> Best:
     """The best point for a problem as it is, whether it counts roots or not."""
-    point = np.clip(box.start, box.low, box.high)
-    cells, slopes = problem.around(point, box)
-    worst, trust, weights = _worst(problem, cells), 1.0, np.zeros(len(cells))
-    counted = _Counted.of(box, point)
+    here = problem.at(np.clip(box.start, box.low, box.high))
+    worst, trust, weights = _worst(problem, here.cells), 1.0, np.zeros(len(here.cells))
+    counted = _Counted.of(box, here.point)
     low, high, moving = counted.to(box.low), counted.to(box.high), np.flatnonzero(counted.scale)
-    slow, promised = 0, worst
+    slopes, slow, promised = None, 0, worst
     for _ in range(STEPS):
         if not worst > until or not np.isfinite(worst) or not moving.size:
             break
-        here = counted.to(point)
-        scaled = (slopes * counted.slope(point))[:, moving] / problem.half[:, None]
-        scaled[list(problem.ignored)] = 0.0
-        if not np.isfinite(scaled).all():
+        if slopes is None:
+            slopes = (problem.slopes(here, box) * counted.slope(here.point))[:, moving]
+            slopes = slopes / problem.half[:, None]
+        if not np.isfinite(slopes).all():
             break
-        least, most = np.maximum(low - here, -trust)[moving], np.minimum(high - here, trust)[moving]
-        step, promised, weights = _linear(scaled, problem.mismatch(cells), least, most)
+        own = counted.to(here.point)
+        least, most = np.maximum(low - own, -trust)[moving], np.minimum(high - own, trust)[moving]
+        step, promised, weights = _linear(slopes, problem.mismatch(here.cells), least, most)
         if promised > unless:
             break
-        there = here.copy()
-        there[moving] += step
-        there = np.clip(counted.back(there), box.low, box.high)
-        its, around = problem.around(there, box)
-        new = _worst(problem, its)
+        own[moving] += step
+        there = problem.at(np.clip(counted.back(own), box.low, box.high))
+        new = _worst(problem, there.cells)
         gain, hoped = worst - new, worst - promised
         if gain > 0:
-            point, cells, slopes, worst = there, its, around, new
+            here, slopes, worst = there, None, new
         if gain > 0.75 * hoped:
             trust = min(2 * trust, 1e6)
         elif gain < 0.25 * hoped:
@@ -149,7 +142,7 @@ def _sought(
         slow += worst - until > 30 * gain
         if until and slow > PATIENCE:
             break  # it would take too long to get there
-    return Best(point, cells, worst, weights, promised)
+    return Best(here.point, here.cells, worst, weights, promised)
 
 
 @dataclass(frozen=True)
@@ -249,14 +242,23 @@ def _worst(problem: Problem, cells: Array) -> float:
 
 def _linear(slopes: Array, off: Array, low: Array, high: Array) -> tuple[Array, float, Array]:
     """The step within bounds that makes the worst |off + slopes step| least, that, and its multipliers."""
-    number, moving = slopes.shape
-    ones = np.ones((number, 1))
-    rows = np.block([[slopes, -ones], [-slopes, -ones]])
+    moving = slopes.shape[1]
+    # A bound counts only if it may be reached where no value is less wrong than the worst must stay.
+    rows, ends = np.concatenate([slopes, -slopes]), np.concatenate([off, -off])
+    most = ends + np.maximum(rows * low, rows * high).sum(axis=1)
+    which = np.flatnonzero(most >= -np.minimum(most, 0.0).min(initial=0.0))
     cost = np.zeros(moving + 1)
     cost[-1] = 1
-    bounds = np.column_stack([np.append(low, 0), np.append(high, np.inf)])
-    found = linprog(cost, A_ub=rows, b_ub=np.concatenate([-off, off]), bounds=bounds, method="highs")
+    found = linprog(
+        cost,
+        A_ub=np.column_stack([rows[which], -np.ones(which.size)]),
+        b_ub=-ends[which],
+        bounds=np.column_stack([np.append(low, 0), np.append(high, np.inf)]),
+        method="highs",
+    )
     if found.x is None:
-        return np.zeros(moving), float(np.abs(off).max()), np.zeros(number)
-    above, below = -found.ineqlin.marginals[:number], -found.ineqlin.marginals[number:]
+        return np.zeros(moving), float(np.abs(off).max()), np.zeros(len(off))
+    weights = np.zeros(len(rows))
+    weights[which] = -found.ineqlin.marginals
+    above, below = np.split(weights, 2)
     return found.x[:-1], float(found.x[-1]), above - below

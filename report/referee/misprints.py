@@ -229,7 +229,8 @@ def _promising(problem: Problem, n: int, pieces: list[Box], alive: list[int]) ->
     problem = problem.guessing
     points = problem.restarted(np.stack([pieces[place].start for place in alive]))
     off = np.abs(problem.mismatch(problem.evaluate(points)))
-    slopes = np.abs(np.nan_to_num(problem.slopes(problem.box.start, problem.box)))
+    every = replace(problem, ignored=frozenset())
+    slopes = np.abs(np.nan_to_num(every.slopes(every.at(problem.box.start), problem.box)))
     slopes[:, n] = 0
     reach = slopes @ (problem.box.width / 2) / problem.half
     left = np.nan_to_num(off - reach, nan=np.inf, posinf=np.inf).max(axis=1)

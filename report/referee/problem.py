@@ -10,22 +10,24 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..cells.layout import how_large, precedents
-from ..cells.values import Status
+from ..cells.values import Status, Values
 from ..engines.numpy import Program, evaluate
 from ..inputs.published import PublishedValue
+from ..judge.chain import Chain, Made
+from ..judge.sensitivity import sensitivities
 from ..quantity import Printed
 from ..result.verdict import Witness
 from ..sheet import Given, Sheet
 from .campaign import Array, Campaign, Unknown
 from .ways import Way
 
-__all__ = ["Box", "Problem"]
+__all__ = ["Box", "Here", "Problem"]
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,14 @@ class Box:
         for array, values in ((found.low, low), (found.high, high), (found.start, start)):
             array[list(which)] = values
         return found
+
+
+class Here(NamedTuple):
+    """A point (unknowns,), the published cells there in SI, NaN for no value, and all that is computed."""
+
+    point: Array
+    cells: Array
+    values: Values
 
 
 @dataclass(frozen=True)
@@ -115,6 +125,14 @@ class Problem:
         """What is the same for all problems of a campaign that compute the same of the same unknowns."""
         return id(self.sheet), *self.rows  # the campaign keeps its sheets
 
+    @property
+    def made(self) -> Made:
+        """The derivatives of its sheet."""
+        known, key = self.campaign.made.derivatives, id(self.sheet)  # the campaign keeps its sheets
+        if key not in known:
+            known[key] = Made.of(self.sheet)
+        return known[key]
+
     @cached_property
     def guessing(self) -> Problem:
         """The same for a search: its roots are not counted, so that nothing may be told that it evaluates."""
@@ -171,6 +189,11 @@ class Problem:
             found.setdefault(unknown.column, []).append(n)
         return found
 
+    @cached_property
+    def sources(self) -> dict[str, NDArray[np.intp]]:
+        """The same for derivatives."""
+        return {name: np.array(places) for name, places in self.rows.items()}
+
     def data(self, points: Any) -> dict[str, Any]:
         """The given columns of the sheet, with the unknowns taken from the last dimension of points."""
         found = {
@@ -206,6 +229,10 @@ class Problem:
 
     def evaluate(self, points: Array) -> Array:
         """The published cells (points, published) in SI at points (points, unknowns); NaN for no value."""
+        return self._computed(points)[0]
+
+    def _computed(self, points: Array) -> tuple[Array, Values]:
+        """The published cells at points, and all that the sheet computes there."""
         data, found = self.data(points), np.empty((len(points), len(self.published)))
         plain = evaluate(self.sheet, self.campaign.labels, data, self.program)
         for way in dict.fromkeys(self.ways):
@@ -213,7 +240,7 @@ class Problem:
             for name, (which, rows) in self._asked[way].items():
                 alive = values.status[name][..., rows] == Status.OK
                 found[:, which] = np.where(alive, values.value[name][..., rows], np.nan)
-        return found
+        return found, plain
 
     def mismatch(self, cells: Array) -> Array:
         """How far cells are from what was published, in half units of the last digit."""
@@ -223,35 +250,44 @@ class Problem:
             found[..., list(self.ignored)] = 0.0
         return found
 
-    def around(self, point: Array, box: Box) -> tuple[Array, Array]:
-        """The published cells at a point, and the derivatives (published, unknowns) of those not ignored.
+    def at(self, point: Array) -> Here:
+        """The published cells at a point."""
+        cells, values = self._computed(point[None])
+        return Here(point, cells[0], values)
 
-        These are central differences within the box's scale, in one batch with the point.
-        """
+    def _differences(self, point: Array, box: Box) -> Array:
         size = np.abs(point)
         steps = np.maximum(1e-4 * np.minimum(box.width, 0.1 * size), 1e-8 * size)
-        steps = np.where(box.width > 0, np.where(size > 0, steps, 1e-4 * box.width), 0.0)
-        moving = np.flatnonzero(self._moving & (steps > 0))
-        points = np.repeat(point[None], 1 + 2 * len(moving), axis=0)
-        ahead, behind = points[1::2], points[2::2]
-        ahead[np.arange(len(moving)), moving] += steps[moving]
-        behind[np.arange(len(moving)), moving] -= steps[moving]
-        cells = self.evaluate(points)
+        steps = np.where(size > 0, steps, 1e-4 * box.width)
+        moving = np.flatnonzero(steps > 0)
+        ahead, behind = (point + way * np.diag(steps)[moving] for way in (1, -1))
+        cells = self.evaluate(np.concatenate([ahead, behind])).reshape(2, moving.size, -1)
         found = np.zeros((len(self.published), len(point)))
-        found[:, moving] = ((cells[1::2] - cells[2::2]) / (2 * steps[moving])[:, None]).T
-        return cells[0], found
+        found[:, moving] = ((cells[0] - cells[1]) / (2 * steps[moving])[:, None]).T
+        return found
 
-    def slopes(self, point: Array, box: Box) -> Array:
-        """The derivatives of all published cells alone."""
-        return replace(self, ignored=frozenset()).around(point, box)[1]
+    def slopes(self, here: Here, box: Box) -> Array:
+        """The derivatives (published, unknowns) of cells that have to come out, by what may move in a box.
 
-    @cached_property
-    def _moving(self) -> NDArray[np.bool_]:
-        """The unknowns that those rest on which must come out; of other ways than the sheet's all may."""
-        asked = [n for n in range(len(self.published)) if n not in self.ignored]
-        if any(self.ways[n] is not None for n in asked):
-            return np.ones(len(self.unknowns), dtype=bool)
-        return np.asarray(self.touched[asked].any(axis=0))
+        What follows the sheet has those of its rules. Of what is computed in another way none are made: it is
+        asked for too few times, and has central differences within the box's scale.
+        """
+        found = np.zeros((len(self.published), len(self.unknowns)))
+        following = [n for n, way in enumerate(self.ways) if way is None and n not in self.ignored]
+        found[following] = sensitivities(self._chain, here.values, [self.places[n] for n in following])[0]
+        asked = [n for n, way in enumerate(self.ways) if way is not None and n not in self.ignored]
+        if asked:
+            found[asked] = self._differences(here.point, box)[asked]
+        found[:, box.width <= 0] = 0.0
+        return found
+
+    @property
+    def _chain(self) -> Chain:
+        """What the cells of the sheet rest on."""
+        known, key = self.campaign.shared, ("chain", *self.asked_of)
+        if key not in known:
+            known[key] = Chain(self.made, self.campaign.values.layouts, self.sources)
+        return known[key]  # type: ignore[no-any-return]
 
     def witness(self, point: Array) -> tuple[Witness, ...]:
         """A point in words."""

@@ -57,8 +57,8 @@ class _Alone:
 
     def __init__(self, problem: Problem) -> None:
         self.problem, self.certificate = problem, Certificate(problem)
-        self.slopes = problem.slopes(problem.box.start, problem.box)
-        self.here = problem.evaluate(problem.box.start[None])[0]
+        here = problem.at(problem.box.start)
+        self.slopes, self.here = problem.slopes(here, problem.box), here.cells
 
     def verdicts(self) -> list[Verdict]:
         """In the order of the problem's values."""

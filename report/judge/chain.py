@@ -1,0 +1,216 @@
+"""The chain rule over the rows of a sheet: which cell rests on which, and along which ways.
+
+That is the same whatever the values, and is found once. Along it go numbers, whole batches of them, or
+intervals (:mod:`~loopsheet.report.judge.sensitivity`).
+
+A row rests on few cells, but by way of a scalar, a mean say, on almost all. So a derivative is kept in two
+parts: the entries of a row by ways that pass no computed scalar, and its entries by these; what scalars rest
+on is kept once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cells.layout import Layout
+from ..engines.numpy import Laid, Program, program_texts
+from ..plan.derivatives import Local, Slope, derivatives, with_unknowns
+from ..plan.kept import as_data, of_data, of_sheet
+from ..sheet import Sheet
+
+__all__ = ["Chain", "Made", "Pattern", "Step"]
+
+Numbered = NDArray[np.intp]
+_NONE = np.zeros(0, dtype=np.intp)
+
+
+@dataclass(frozen=True)
+class Made:
+    """The derivatives of a sheet: its nodes, each after those that it names, and what computes them."""
+
+    nodes: tuple[Local, ...]
+    program: Program
+
+    @classmethod
+    def of(cls, sheet: Sheet, roundings: bool = False) -> Made:
+        """Make them, what rounding does only if it is asked for; or take them as they were made before."""
+
+        def make() -> dict[str, Any]:
+            found = derivatives(sheet, roundings)
+            texts = program_texts(with_unknowns(sheet, found.again), found.plan)
+            return {"nodes": as_data(found.nodes), "again": found.again, "program": texts}
+
+        told = of_sheet(sheet, "derivatives and roundings" if roundings else "derivatives", (), make)
+        nodes = of_data(told["nodes"], tuple[Local, ...])
+        return cls(nodes, Program.of_texts(with_unknowns(sheet, told["again"]), told["program"]))
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """Entries of a node or of some cells, those of a row beside one another.
+
+    Parameters
+    ----------
+    rows, by, entries : integer arrays (entries,)
+        The row of each, the number of what it is a derivative by (behind all sources, of a scalar), and its
+        place among the entries of all nodes.
+    """
+
+    rows: Numbered
+    by: Numbered
+    entries: Numbered
+
+    def only(self, rows: Numbered) -> Pattern:
+        """That of some rows, one after another, numbered anew; a row may come twice."""
+        first, last = (np.searchsorted(self.rows, rows, side) for side in ("left", "right"))
+        counts = last - first
+        which = np.arange(counts.sum()) + np.repeat(first - np.cumsum(counts) + counts, counts)
+        return Pattern(np.repeat(np.arange(rows.size), counts), self.by[which], self.entries[which])
+
+
+@dataclass(frozen=True)
+class Step:
+    """Nodes that rest on none of one another.
+
+    Parameters
+    ----------
+    nodes : tuple of Local
+    slopes : tuple of (Local, Slope, slice)
+        The slopes of all of them, one after another.
+    of, along : integer arrays (terms,)
+        The slope of each term of their entries, and the entry that it is multiplied with.
+    starts : integer array (entries,)
+        The first term of each entry.
+    entries : slice
+        The places of these.
+    """
+
+    nodes: tuple[Local, ...]
+    slopes: tuple[tuple[Local, Slope, slice], ...]
+    of: Numbered
+    along: Numbered
+    starts: Numbered
+    entries: slice
+
+    @property
+    def width(self) -> int:
+        """How many rows all slopes have."""
+        return self.slopes[-1][2].stop if self.slopes else 0
+
+
+class Chain:
+    """Which cells rest on which, over the rows of a sheet.
+
+    Parameters
+    ----------
+    made : Made
+        The sheet's derivatives.
+    layouts : mapping of axis name to Layout
+    sources : mapping of node name to integer array (rows,)
+        For what derivatives are taken by, the number of each row among all of it.
+    """
+
+    def __init__(self, made: Made, layouts: Mapping[str, Layout], sources: Mapping[str, Numbered]) -> None:
+        self.made, self.layouts, self.sources = made, layouts, sources
+        self.number = 1 + max((int(own.max(initial=-1)) for own in sources.values()), default=-1)
+        nodes = made.nodes
+        self.sizes = {node.name: self.size(node) for node in nodes}
+        computed = [node.name for node in nodes if node.axis is None and node.slopes]
+        self.scalars = {name: self.number + n for n, name in enumerate(computed)}
+        self.length = 1
+        """How many entries there are. The first is 1."""
+        self.patterns: dict[str, Pattern] = {}
+        for node in nodes:
+            by = sources.get(node.name, np.zeros(0, dtype=np.intp))
+            self._add(node.name, np.arange(by.size), by)
+        self.ones = self.length  # what a source is by itself
+        depth: dict[str, int] = {}
+        for node in nodes:
+            depth[node.name] = max((1 + depth[slope.by] for slope in node.slopes), default=0)
+        deep = sorted(nodes, key=lambda node: depth[node.name])
+        self.steps = [self._step(tuple(own)) for _, own in groupby(deep, key=lambda node: depth[node.name])]
+
+    def size(self, node: Local) -> int:
+        """How many rows a node has."""
+        return 1 if node.axis is None else self.layouts[node.axis].size
+
+    def terms(self, node: Local) -> int:
+        """How many rows its slopes have."""
+        return self.size(node) if node.over is None else self.layouts[node.over].size
+
+    def named(self, node: Local, slope: Slope) -> Numbered:
+        """The row of what a slope is by, for each row of the slope."""
+        number = self.terms(node)
+        if slope.axis is None:
+            return np.zeros(number, dtype=np.intp)
+        return np.arange(number) if slope.index is None else self.layouts[slope.axis].named[slope.index]
+
+    def cells(self, places: Sequence[tuple[str, int]]) -> Pattern:
+        """The entries of some cells, by column and row; each cell is a row."""
+        key = tuple(places)
+        if key not in self._cells:
+            every = [self.patterns[name].only(np.array([row])) for name, row in places]
+            number = np.repeat(np.arange(len(places)), [own.rows.size for own in every])
+            by, entries = (
+                np.concatenate([_NONE, *(getattr(own, part) for own in every)]) for part in ("by", "entries")
+            )
+            self._cells[key] = Pattern(number, by, entries)
+        return self._cells[key]
+
+    @cached_property
+    def _cells(self) -> dict[tuple[tuple[str, int], ...], Pattern]:
+        return {}
+
+    @cached_property
+    def laid(self) -> Laid:
+        """The sheet of the derivatives over the rows."""
+        return Laid(self.made.program.sheet, dict(self.layouts))
+
+    def _step(self, nodes: tuple[Local, ...]) -> Step:
+        """The nodes' entries, and how they come about."""
+        first, width, terms = self.length, 0, 0
+        slopes, of, along, starts = [], [_NONE], [_NONE], [_NONE]
+        for node in nodes:
+            every = []
+            for slope in node.slopes:
+                theirs = self._theirs(node, slope)
+                rows = np.zeros_like(theirs.rows) if node.over else theirs.rows
+                every.append((rows, theirs.by, width + theirs.rows, theirs.entries))
+                slopes.append((node, slope, slice(width, width + self.terms(node))))
+                width += self.terms(node)
+            if every:
+                rows, by, mine, others = map(np.concatenate, zip(*every, strict=True))
+                order = np.lexsort((by, rows))
+                rows, by = rows[order], by[order]
+                begins = np.flatnonzero(np.diff(rows, prepend=-1) | np.diff(by, prepend=-1))
+                starts.append(terms + begins)
+                of.append(mine[order])
+                along.append(others[order])
+                terms += order.size
+                self._add(node.name, rows[begins], by[begins])
+        terms_of, theirs_at, begin = (np.concatenate(each) for each in (of, along, starts))
+        return Step(nodes, tuple(slopes), terms_of, theirs_at, begin, slice(first, self.length))
+
+    def _add(self, name: str, rows: Numbered, by: Numbered) -> None:
+        """Entries of a node."""
+        own, entries = self.patterns.get(name), np.arange(self.length, self.length + rows.size)
+        self.length += rows.size
+        if own is not None:
+            rows, by = np.concatenate([own.rows, rows]), np.concatenate([own.by, by])
+            entries = np.concatenate([own.entries, entries])
+        order = np.argsort(rows, kind="stable")
+        self.patterns[name] = Pattern(rows[order], by[order], entries[order])
+
+    def _theirs(self, node: Local, slope: Slope) -> Pattern:
+        """The entries of what a slope is by, for each row of the slope."""
+        if slope.by not in self.scalars:
+            return self.patterns[slope.by].only(self.named(node, slope))
+        rows = np.arange(self.terms(node))
+        return Pattern(rows, np.full_like(rows, self.scalars[slope.by]), np.zeros_like(rows))

@@ -1,0 +1,175 @@
+"""Sensitivities: the derivatives of chosen cells by chosen ones, along all ways between them.
+
+They come from the slopes of a plan's derivatives (:mod:`~loopsheet.report.plan.derivatives`), for a root by
+the implicit function theorem, and from the chain rule over the rows (:mod:`~loopsheet.report.judge.chain`).
+What cancels between two ways cancels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cells.values import Status, Values, rows_kept
+from ..engines.numpy import parts
+from ..plan.derivatives import Local, Slope
+from .chain import Chain, Numbered, Pattern
+
+__all__ = ["Along", "Numbers", "sensitivities"]
+
+Array = NDArray[np.float64]
+
+
+def sensitivities(chain: Chain, values: Values, cells: Sequence[tuple[str, int]]) -> Array:
+    """The derivatives of some cells by the sources of a chain.
+
+    Parameters
+    ----------
+    chain : Chain
+    values : Values
+        All columns of the sheet; they may have batch axes.
+    cells : sequence of (str, int)
+        Columns and rows.
+
+    Returns
+    -------
+    float array (..., cells, sources)
+        In SI; NaN for a cell without a value, and where nothing is known.
+    """
+    found: Array = Numbers(chain, values).go().derivatives(chain.cells(cells), len(cells))
+    for n, (name, row) in enumerate(cells):
+        odd = values.status[name][..., row] != Status.OK
+        if odd.any():
+            found[..., n, :] = np.where(odd[..., None], np.nan, found[..., n, :])
+    return found
+
+
+class Along:
+    """The derivatives along a chain.
+
+    Parameters
+    ----------
+    chain : Chain
+    nothing : callable
+        Makes zeros of a shape, of the kind that goes along.
+    batch : tuple of int
+        The leading dimensions.
+
+    Attributes
+    ----------
+    entries : array (..., entries)
+    whole : array (..., scalars, sources)
+        The derivatives of computed scalars by all sources.
+    """
+
+    def __init__(
+        self, chain: Chain, nothing: Callable[..., Any] = np.zeros, batch: tuple[int, ...] = ()
+    ) -> None:
+        self.chain, self.nothing, self.batch = chain, nothing, batch
+        self.entries = nothing((*batch, chain.length))
+        self.entries[..., : chain.ones] = 1.0
+        self.whole = nothing((*batch, len(chain.scalars), chain.number))
+
+    def go(self) -> Self:
+        """Take all steps."""
+        with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
+            for step in self.chain.steps:
+                slopes = self.nothing((*self.batch, step.width))
+                for node, slope, where in step.slopes:
+                    slopes[..., where] = self.slope(node, slope)
+                if step.starts.size:
+                    terms = slopes[..., step.of] * self.entries[..., step.along]
+                    self.entries[..., step.entries] = np.add.reduceat(terms, step.starts, axis=-1)
+                for node in step.nodes:
+                    self.ended(node)
+                    if node.name in self.chain.scalars:
+                        own = self.derivatives(self.chain.patterns[node.name], 1)
+                        self.whole[..., self.chain.scalars[node.name] - self.chain.number, :] = own[..., 0, :]
+        return self
+
+    def slope(self, node: Local, slope: Slope) -> Any:
+        """The values of a slope (..., rows); nothing where a sum leaves a row out."""
+        raise NotImplementedError
+
+    def ended(self, node: Local) -> None:
+        """The entries of a node are there."""
+
+    def derivatives(self, cells: Pattern, number: int) -> Any:
+        """The derivatives of some cells by all sources (..., cells, sources).
+
+        Parameters
+        ----------
+        cells : Pattern
+            From :meth:`Chain.cells`.
+        number : int
+            How many they are.
+        """
+        found, sources = self.nothing((*self.batch, number, self.chain.number)), self.chain.number
+        direct = cells.by < sources
+        found[..., cells.rows[direct], cells.by[direct]] = self.entries[..., cells.entries[direct]]
+        for scalar in np.unique(cells.by[~direct]).tolist():
+            own = cells.by == scalar
+            rows, slopes = cells.rows[own], self.entries[..., cells.entries[own]]
+            theirs = self.whole[..., scalar - sources, :]
+            found[..., rows, :] = found[..., rows, :] + slopes[..., None] * theirs[..., None, :]
+        return found
+
+    def of(self, name: str) -> Any:
+        """The derivatives of all cells of a column (..., rows, sources)."""
+        return self.derivatives(self.chain.patterns[name], self.chain.sizes[name])
+
+
+class Numbers(Along):
+    """The derivatives at finished values; NaN where they are not known.
+
+    Parameters
+    ----------
+    chain : Chain
+    values : Values
+        All columns; a batch is one of derivatives.
+    """
+
+    def __init__(self, chain: Chain, values: Values) -> None:
+        batch = np.broadcast_shapes(*(own.shape[:-1] for own in values.value.values()))
+        super().__init__(chain, np.zeros, batch)
+        self.values, self.parts = values, parts(chain.made.program, values, chain.laid)
+        self.odd = {name for name, codes in values.status.items() if codes.any()}
+        self.kept = {
+            column.name: rows_kept(chain.laid.named[column.name], chain.layouts, values.status)
+            for column in values.sheet.columns
+            if self.odd and values.sheet.summed_axes(column)
+        }
+
+    def slope(self, node: Local, slope: Slope) -> Array:
+        """Those of a median count for the rows in its middle."""
+        found = self.parts[slope.value]
+        if node.over is None:
+            return found
+        if node.median:
+            share = self.share(node, slope.by, self.chain.named(node, slope))
+            return np.where(share > 0, share * found, 0.0)
+        return np.where(self.summed(node), found, 0.0) if node.of in self.kept else found
+
+    def ended(self, node: Local) -> None:
+        """What has no value moves nothing: a sum leaves it out."""
+        if node.name in self.odd:
+            cells = self.chain.patterns[node.name]
+            dead = self.values.status[node.name][..., cells.rows] != Status.OK
+            self.entries[..., cells.entries] = np.where(dead, 0.0, self.entries[..., cells.entries])
+
+    def share(self, node: Local, name: str, rows: Numbered) -> Array:
+        """How much of the change of each row a median makes: half of either of the two in the middle."""
+        value = np.where(self.summed(node), self.values.value[name][..., rows], np.inf)
+        number = np.isfinite(value).sum(axis=-1, keepdims=True)
+        place = np.argsort(np.argsort(value, axis=-1, kind="stable"), axis=-1)
+        found: Array = ((place == (number - 1) // 2) / 2 + (place == number // 2) / 2) * (place < number)
+        return found
+
+    def summed(self, node: Local) -> NDArray[np.bool_]:
+        """The rows that a sum runs over."""
+        assert node.over is not None
+        everything = np.ones(self.chain.layouts[node.over].size, dtype=bool)
+        return self.kept.get(node.of, {}).get(node.over, everything)
