@@ -16,10 +16,10 @@ from sympy import And, Expr, Indexed, Integer, Piecewise, Symbol, expand
 from .cells import Cells
 from .dimensions import Dimensions, dimension_of_unit, power, product
 from .equation import Equation, Erratum, Kind, Ledger
-from .evaluation import UNDEFINED, Program, is_real
+from .evaluation import UNDEFINED, Tape, is_real
 from .sampling import AGREES, DIGITS
 from .space import Space, said, short
-from .text import Writer
+from .text import Wording
 from .vocabulary import Quantity, Vocabulary
 
 __all__ = [
@@ -63,7 +63,7 @@ def _values(
     plain = [cells.plain(expression) for expression in expressions]
     space = Space(plain, cells.names, vocabulary)
     with mpmath.workdps(DIGITS):
-        program = Program(space.symbols)
+        program = Tape(space.symbols)
         group = program.add(plain)
         for point in space.points(seed, _TRIES):
             program.start(point)
@@ -82,7 +82,7 @@ def check_overlap(equation: Equation) -> Check:
     """
 
     def check(ledger: Ledger) -> Erratum | None:
-        text = Writer(ledger.vocabulary).text
+        text = Wording(ledger.vocabulary).text
         law = next(side for side in equation.members if isinstance(side, Piecewise))
         (first, when_first), (second, when_second) = law.args[:2]
         for point, (a, b, both) in _values(
@@ -109,7 +109,7 @@ def check_range(equation: Equation, scale: int, symbol: Symbol, known: tuple[str
     """
 
     def check(ledger: Ledger) -> Erratum | None:
-        text = Writer(ledger.vocabulary).text
+        text = Wording(ledger.vocabulary).text
         low_side, high_side = equation.members[0].args
         low, high = scale * low_side.lhs, scale * high_side.rhs
         name, known_low, known_high = known
@@ -137,7 +137,7 @@ def check_count(group: tuple[Equation, ...], unknowns: tuple[Expr, ...], claimed
     (k,) = set().union(*(count.free_symbols for count in claimed))
 
     def check(ledger: Ledger) -> Erratum | None:
-        text = Writer(ledger.vocabulary).text
+        text = Wording(ledger.vocabulary).text
         equations = len(group) * k
         present = [u for u in unknowns if any(side.has(u) for equation in group for side in equation.sides)]
         counted = sum(k if u.has(k) else 1 for u in present)
@@ -162,7 +162,7 @@ def check_spurious(equation: Equation, solve_for: Expr, approach: Equation, cond
     """
 
     def check(ledger: Ledger) -> Erratum | None:
-        text = Writer(ledger.vocabulary).text
+        text = Wording(ledger.vocabulary).text
         if any(expand(stated.gts - stated.lts - condition) == 0 for stated in equation.conditions):
             return None
         residual = equation.sides[0] - equation.sides[1]
@@ -193,7 +193,7 @@ def check_determined(number: str, unknowns: tuple[Expr, ...]) -> Check:
     """
 
     def check(ledger: Ledger) -> Erratum | None:
-        text = Writer(ledger.vocabulary).text
+        text = Wording(ledger.vocabulary).text
         lines = [equation for equation in ledger.equations() if equation.number == number]
         left = [(line.printed or line.members)[0] for line in lines]
         missing = [u for u in unknowns if u not in left]
@@ -225,7 +225,7 @@ def check_citation(citation: Citation) -> Check:
     """
 
     def check(ledger: Ledger) -> Erratum | None:
-        text = Writer(ledger.vocabulary).text
+        text = Wording(ledger.vocabulary).text
         lines = [equation for equation in ledger.equations() if equation.number == citation.number]
         if any(side.has(citation.quantity) for line in lines for side in line.sides):
             return None
@@ -254,7 +254,7 @@ def check_whose(law: Equation, symbol: Symbol, where: str, said: str) -> Check:
     phases = ("compression", "restitution")
 
     def check(ledger: Ledger) -> Erratum | None:
-        text = Writer(ledger.vocabulary).text
+        text = Wording(ledger.vocabulary).text
         branches = next(side for side in law.members if isinstance(side, Piecewise)).args
         laws = dict(zip(phases, (body for body, _ in branches), strict=False))
         holders = [phase for phase, body in laws.items() if body.has(symbol)]
@@ -278,7 +278,7 @@ def check_units(law: Equation, printed: Mapping[Symbol, str | None]) -> Check:
     """
 
     def check(ledger: Ledger) -> Erratum | None:
-        text = Writer(ledger.vocabulary).text
+        text = Wording(ledger.vocabulary).text
         branches = next(side for side in law.members if isinstance(side, Piecewise)).args
         of_force, of_approach = (
             _quantity(s, ledger.vocabulary) for s in (law.members[0], *law.members[0].args)
@@ -330,7 +330,7 @@ def check_missing(where: str, formulas: tuple[Equation, ...], printed: tuple[Sym
     """
 
     def check(ledger: Ledger) -> Erratum | None:
-        text = Writer(ledger.vocabulary).text
+        text = Wording(ledger.vocabulary).text
         known = set(printed)
         needs: dict[Symbol, list[str]] = {}
         for formula in formulas:

@@ -41,7 +41,7 @@ from sympy.logic.boolalg import BooleanAtom
 
 from .reductions import REDUCTIONS, Median
 
-__all__ = ["UNDEFINED", "NotEvaluable", "Program", "is_real"]
+__all__ = ["UNDEFINED", "NotEvaluable", "Tape", "is_real"]
 
 UNDEFINED = (ZeroDivisionError, ValueError, OverflowError, TypeError, IndexError)
 """What running a program raises where an expression has no value."""
@@ -143,7 +143,7 @@ def _choose(*parts: Any) -> Any:
     raise ValueError("no branch applies")
 
 
-class Program:
+class Tape:
     """Operations that compute expressions from given symbols, in groups that run one after the other.
 
     Parameters

@@ -17,7 +17,7 @@ from sympy.logic.boolalg import Boolean
 
 from .cells import running
 from .equation import Equation
-from .evaluation import NotEvaluable, Program
+from .evaluation import NotEvaluable, Tape
 from .reductions import Median
 from .sums import in_terms
 
@@ -141,7 +141,7 @@ def _chosen(sizes: set[Any], statements: Sequence[Statement], least: int) -> dic
 
 
 def _is_evaluable(parts: Iterable[Any]) -> bool:
-    program = Program(sorted({symbol for part in parts for symbol in part.free_symbols}, key=str))
+    program = Tape(sorted({symbol for part in parts for symbol in part.free_symbols}, key=str))
     try:
         program.add(parts)
     except NotEvaluable:

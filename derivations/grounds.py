@@ -17,7 +17,7 @@ from sympy import Expr, Indexed, Integral, Symbol
 from sympy.core.function import AppliedUndef
 
 from .equation import Derivation, Equation, Kind, Ledger, Step
-from .evaluation import UNDEFINED, NotEvaluable, Program
+from .evaluation import UNDEFINED, NotEvaluable, Tape
 from .reductions import REDUCTIONS
 from .sums import in_terms
 
@@ -69,7 +69,7 @@ def _differences(equation: Equation) -> dict[tuple[int, int], tuple[Any, ...]]:
     symbols = sorted({symbol for side in sides for symbol in side.free_symbols}, key=str)
     found: dict[tuple[int, int], tuple[Any, ...]] = {}
     with mpmath.workdps(_DIGITS):
-        program = Program(symbols)
+        program = Tape(symbols)
         for i, j in combinations(range(len(sides)), 2):
             values = []
             try:

@@ -33,7 +33,7 @@ __all__ = [
     "IDENTITY",
     "POINTS",
     "Proof",
-    "Status",
+    "ProofStatus",
     "StepProof",
     "check_step",
     "prove",
@@ -44,7 +44,7 @@ IDENTITY = "nothing, it is an identity"
 """What is said of a claim that needs no premise."""
 
 
-class Status(Enum):
+class ProofStatus(Enum):
     """What is known of an equation."""
 
     DEFINITION = "definition"
@@ -59,7 +59,7 @@ class Status(Enum):
     @property
     def passes(self) -> bool:
         """Whether a report may rest on it."""
-        return self not in (Status.REFUTED, Status.UNDECIDED, Status.REFUSED)
+        return self not in (ProofStatus.REFUTED, ProofStatus.UNDECIDED, ProofStatus.REFUSED)
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class StepProof:
     """What was found of one step."""
 
     step: Step
-    status: Status
+    status: ProofStatus
     points: int
     worst: float
     """Largest relative residual over the points."""
@@ -80,9 +80,9 @@ class StepProof:
     @property
     def sentence(self) -> str:
         """The finding, in words."""
-        if self.status is Status.REFUTED:
+        if self.status is ProofStatus.REFUTED:
             return f"at {said(self.counterexample)} the sides are {self.sides[0]} and {self.sides[1]}"
-        if self.status is Status.UNDECIDED:
+        if self.status is ProofStatus.UNDECIDED:
             return self.why
         return f"residual 0; {self.points} points at {DIGITS} digits agree within {self.worst:.0e}"
 
@@ -92,7 +92,7 @@ class Proof:
     """What is known of one equation of the ledger."""
 
     equation: Equation
-    status: Status
+    status: ProofStatus
     steps: tuple[StepProof, ...] = ()
     remark: str = ""
     """How the print differs from what was proved, or why an equation is refused."""
@@ -122,18 +122,18 @@ def check_step(step: Step, vocabulary: Vocabulary = NO_WORDS) -> StepProof:
         system = prepare(step, vocabulary)
         outcome = examine(system, step.claim.label)
         if outcome.counterexample is not None:
-            found = StepProof(step, Status.REFUTED, outcome.points, outcome.worst, False)
+            found = StepProof(step, ProofStatus.REFUTED, outcome.points, outcome.worst, False)
             return replace(found, counterexample=outcome.counterexample, sides=outcome.sides)
         if outcome.points < POINTS:
             raise Refused(f"only {outcome.points} points of its domain were evaluated")
         if not system.residual_is_zero():
             raise Refused("the numbers agree, but the residual was not reduced to zero")
     except (Refused, NotEvaluable) as problem:
-        return StepProof(step, Status.UNDECIDED, 0, 0.0, False, why=str(problem))
-    return StepProof(step, Status.PROVED, outcome.points, outcome.worst, True)
+        return StepProof(step, ProofStatus.UNDECIDED, 0, 0.0, False, why=str(problem))
+    return StepProof(step, ProofStatus.PROVED, outcome.points, outcome.worst, True)
 
 
-def _check_print(step: Step, vocabulary: Vocabulary) -> tuple[Status, str]:
+def _check_print(step: Step, vocabulary: Vocabulary) -> tuple[ProofStatus, str]:
     """Compare the print of a claim with its meaning, which was proved; the remark says how it differs."""
     claim = step.claim
     assert claim.printed is not None
@@ -141,17 +141,17 @@ def _check_print(step: Step, vocabulary: Vocabulary) -> tuple[Status, str]:
         claim.number, claim.printed, claim.because, part=claim.part, conditions=claim.conditions
     )
     if claim.defines is not None and not any(side.has(claim.defines) for side in as_printed.sides):
-        return Status.CORRECTED, (
+        return ProofStatus.CORRECTED, (
             f"as printed, {claim.label} does not contain {text(claim.defines, vocabulary)}, which it should "
             f"determine: it repeats {text(as_printed.sides[0], vocabulary)}"
         )
     found = check_step(replace(step, claim=as_printed), vocabulary)
     match found.status:
-        case Status.PROVED:
-            return Status.PROVED, ""
-        case Status.REFUTED:
-            return Status.CORRECTED, f"as printed, {claim.label} fails: {found.sentence}"
-    return Status.UNDECIDED, f"as printed, {claim.label} is undecided: {found.sentence}"
+        case ProofStatus.PROVED:
+            return ProofStatus.PROVED, ""
+        case ProofStatus.REFUTED:
+            return ProofStatus.CORRECTED, f"as printed, {claim.label} fails: {found.sentence}"
+    return ProofStatus.UNDECIDED, f"as printed, {claim.label} is undecided: {found.sentence}"
 
 
 Grounds = Mapping[Equation, tuple[Equation, ...]]
@@ -198,16 +198,16 @@ def _prove_entry(entry: Equation | Derivation, known: Grounds, ledger: Ledger) -
     words = ledger.vocabulary
     if isinstance(entry, Equation):
         if entry.kind is Kind.CLAIM:
-            return Proof(entry, Status.UNDECIDED, remark="a claim without a derivation"), known
+            return Proof(entry, ProofStatus.UNDECIDED, remark="a claim without a derivation"), known
         if problem := _misstated(entry, words):
-            return Proof(entry, Status.REFUSED, remark=problem), known
-        return Proof(entry, Status(entry.kind.value)), {**known, entry: (entry,)}
+            return Proof(entry, ProofStatus.REFUSED, remark=problem), known
+        return Proof(entry, ProofStatus(entry.kind.value)), {**known, entry: (entry,)}
     steps: list[StepProof] = []
     reached = dict(known)
     for step in entry.steps:
         found = check_step(step, words)
         if found.status.passes and (why := _loose(step, reached)):
-            found = replace(found, status=Status.UNDECIDED, why=why)
+            found = replace(found, status=ProofStatus.UNDECIDED, why=why)
         steps.append(found)
         if found.status.passes:
             reached[step.claim] = _grounds(step, reached)
@@ -228,21 +228,21 @@ def _misstated(equation: Equation, vocabulary: Vocabulary) -> str:
     return mixed(equation, vocabulary)
 
 
-def _verdict(entry: Derivation, steps: list[StepProof], ledger: Ledger) -> tuple[Status, str]:
+def _verdict(entry: Derivation, steps: list[StepProof], ledger: Ledger) -> tuple[ProofStatus, str]:
     """What the steps, what they rest on and the print make of a claim, with a remark."""
     verdicts = {found.status for found in steps}
-    if Status.REFUTED in verdicts:
-        return Status.REFUTED, ""
+    if ProofStatus.REFUTED in verdicts:
+        return ProofStatus.REFUTED, ""
     if path := circle(entry, ledger):
-        return Status.REFUSED, f"{entry.claim.label} rests on itself: {path}"
+        return ProofStatus.REFUSED, f"{entry.claim.label} rests on itself: {path}"
     for equation in (each for step in entry.steps for each in (*step.premises, step.claim)):
         if problem := _misstated(equation, ledger.vocabulary):
-            return Status.REFUSED, f"{equation.label}: {problem}" if equation != entry.claim else problem
-    if Status.UNDECIDED in verdicts:
-        return Status.UNDECIDED, ""
+            return ProofStatus.REFUSED, f"{equation.label}: {problem}" if equation != entry.claim else problem
+    if ProofStatus.UNDECIDED in verdicts:
+        return ProofStatus.UNDECIDED, ""
     if entry.claim.printed is not None:
         return _check_print(entry.steps[-1], ledger.vocabulary)
-    return Status.PROVED, ""
+    return ProofStatus.PROVED, ""
 
 
 def prove(
@@ -302,7 +302,7 @@ def _refuse_conflicts(ledger: Ledger, proofs: list[Proof], known: Grounds) -> li
     found = conflict(ledger, standing, claims)
     if found is None:
         return proofs
-    culprit, status = found.culprit.origin, Status.REFUSED if found.certain else Status.UNDECIDED
+    culprit, status = found.culprit.origin, ProofStatus.REFUSED if found.certain else ProofStatus.UNDECIDED
     return [
         replace(proof, status=status, remark=found.sentence, rests_on=())
         if culprit in (proof.equation, *known.get(proof.equation, ()))

@@ -10,9 +10,9 @@ from typing import Any
 import mpmath
 from sympy import Abs, Add, Expr, Indexed, Integral, Mul, Pow, Sum, Symbol
 
-from .evaluation import UNDEFINED, Program, is_real
+from .evaluation import UNDEFINED, Tape, is_real
 from .reductions import Median
-from .space import Rows, Space, said, short
+from .space import SampledRows, Space, said, short
 from .system import Refused, System
 
 __all__ = ["AGREES", "DIGITS", "POINTS", "Outcome", "examine", "magnitude"]
@@ -45,7 +45,7 @@ class _Trial:
         self.unknowns = [unknown for unknown, _ in system.chain]
         self.space = Space(system.expressions, system.names, system.vocabulary, self.unknowns)
         self.labels = [label for label, _, _ in system.premises]
-        self.program = program = Program(self.space.symbols)
+        self.program = program = Tape(self.space.symbols)
         self.rows = [self._row(unknown) for unknown in self.unknowns]
         self.found = [program.define(unknown, solved.value) for unknown, solved in system.chain]
         self.powers = program.add(power for _, solved in system.chain for power in solved.powers)
@@ -237,7 +237,7 @@ def _solved_for(trial: _Trial, point: list[Any], place: int) -> list[Any] | None
                 return None
             scale = t - g * (t - s) / (g - f)
         old = point[place]
-        new = old.with_row(1, old[1] * scale) if isinstance(old, Rows) else old * scale
+        new = old.with_row(1, old[1] * scale) if isinstance(old, SampledRows) else old * scale
         moved = [*point[:place], new, *point[place + 1 :]]
         try:
             if not scale > 0 or not trial.lies_in_domain(moved):

@@ -15,7 +15,7 @@ from sympy import Expr
 
 from .arranged import Arranged, Sides, symbols_of
 from .equation import Equation
-from .evaluation import UNDEFINED, Program, is_real
+from .evaluation import UNDEFINED, Tape, is_real
 from .few_rows import Statement
 from .sampling import AGREES, DIGITS, magnitude
 from .vocabulary import Vocabulary
@@ -139,7 +139,7 @@ class _Trial:
 
     def __init__(self, arranged: Arranged, equations: Sequence[Sides], more: Iterable[Expr] = ()) -> None:
         self.space, self.equations = arranged.space, equations
-        self.program = program = Program(arranged.space.symbols)
+        self.program = program = Tape(arranged.space.symbols)
         places = {symbol: n for n, symbol in enumerate(arranged.space.symbols)}
 
         def rests(symbols: Iterable[Expr]) -> list[int]:

@@ -14,7 +14,7 @@ from .reductions import REDUCTIONS
 from .text import text
 from .vocabulary import Vocabulary
 
-__all__ = ["Rows", "Space", "said", "short"]
+__all__ = ["SampledRows", "Space", "said", "short"]
 
 _FEW, _MANY = 5, 1000
 """Sizes of sums are drawn up to the first number, and about the rows that are named, up to the second."""
@@ -29,7 +29,7 @@ def _drawn(rng: random.Random, span: _Span) -> Any:
     return mpmath.floor(value) if whole else value
 
 
-class Rows:
+class SampledRows:
     """The rows of a column at a point, each drawn when it is asked for."""
 
     def __init__(self, seed: str, span: _Span) -> None:
@@ -41,9 +41,9 @@ class Rows:
             self.known[row] = _drawn(random.Random(f"{self.seed} {row}"), self.span)
         return self.known[row]
 
-    def with_row(self, row: int, value: Any) -> Rows:
+    def with_row(self, row: int, value: Any) -> SampledRows:
         """The same rows but one."""
-        other = Rows(self.seed, self.span)
+        other = SampledRows(self.seed, self.span)
         other.known = {**self.known, row: value}
         return other
 
@@ -99,7 +99,7 @@ class Space:
         for number in range(count):
             yield [
                 *(mpmath.mpf(rng.choice(self.counts)) for _ in self.sizes),
-                *(Rows(f"{seed} {number} {place}", span) for place, span in enumerate(columns)),
+                *(SampledRows(f"{seed} {number} {place}", span) for place, span in enumerate(columns)),
                 *(_drawn(rng, span) for span in scalars),
             ]
 
@@ -122,7 +122,7 @@ class Space:
         found: dict[str, str] = {}
         for symbol, value in [*zip(self.symbols, point, strict=True), *(more or {}).items()]:
             name = self.name(symbol)
-            if not isinstance(value, Rows):
+            if not isinstance(value, SampledRows):
                 found[name] = short(value)
             elif len(value.known) == max(value.known, default=0):
                 found[name] = f"({', '.join(short(value[row + 1]) for row in range(len(value.known)))})"

@@ -15,7 +15,7 @@ from .cells import Cells, running
 from .equation import Equation, Step
 from .facts import Facts
 from .sums import in_terms
-from .text import Writer
+from .text import Wording
 from .vocabulary import Vocabulary
 
 __all__ = ["Refused", "System", "prepare"]
@@ -103,7 +103,7 @@ def prepare(step: Step, vocabulary: Vocabulary) -> System:
     Refused
         Where the step is not of the form that can be decided, or a premise could not be solved.
     """
-    told = Writer(vocabulary).text
+    told = Wording(vocabulary).text
     _check_form(step, told)
     functions = _functions(step, told)
     pairs = [

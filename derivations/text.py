@@ -33,7 +33,7 @@ from .equation import Equation
 from .reductions import Median
 from .vocabulary import Vocabulary
 
-__all__ = ["Writer", "text", "text_of_equation"]
+__all__ = ["Wording", "text", "text_of_equation"]
 
 _SUM, _PRODUCT, _SIGN, _POWER, _ATOM = range(5)
 """How tightly an expression holds together; a looser one gets parentheses inside a tighter one."""
@@ -60,15 +60,15 @@ def text(expression: Any, vocabulary: Vocabulary) -> str:
     >>> text(LEDGER["(12c)"].members[1], LEDGER.vocabulary)
     "m_red*v'_2^2/2*(alpha + 1)/x_m2^(alpha + 1)"
     """
-    return Writer(vocabulary).text(expression)
+    return Wording(vocabulary).text(expression)
 
 
 def text_of_equation(equation: Equation, vocabulary: Vocabulary) -> str:
     """Write all members of an equation, ``C*x_m^alpha = C'``."""
-    return " = ".join(map(Writer(vocabulary).text, equation.members))
+    return " = ".join(map(Wording(vocabulary).text, equation.members))
 
 
-class Writer:
+class Wording:
     """Writes in the words of one vocabulary.
 
     Parameters

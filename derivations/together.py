@@ -19,7 +19,7 @@ from .grounds import is_assumed
 from .reductions import REDUCTIONS
 from .search import are_impossible, seek
 
-__all__ = ["Conflict", "conflict"]
+__all__ = ["Contradiction", "conflict"]
 
 
 _NEARLY_ZERO = Rational(1, 10**6)
@@ -27,7 +27,7 @@ _NEARLY_ZERO = Rational(1, 10**6)
 
 
 @dataclass(frozen=True)
-class Conflict:
+class Contradiction:
     """Statements that were not seen to hold together, as few as there were found.
 
     Parameters
@@ -62,7 +62,9 @@ class Conflict:
 
 
 @lru_cache(maxsize=16)
-def conflict(ledger: Ledger, standing: frozenset[Equation], claims: frozenset[Equation]) -> Conflict | None:
+def conflict(
+    ledger: Ledger, standing: frozenset[Equation], claims: frozenset[Equation]
+) -> Contradiction | None:
     """What of a ledger does not agree with the rest; None where a point was found at which all of it holds.
 
     Parameters
@@ -84,7 +86,7 @@ def conflict(ledger: Ledger, standing: frozenset[Equation], claims: frozenset[Eq
                 return None
         elif some is not everything or not alone:
             *others, culprit = (statement.source for statement in sought.within)
-            return Conflict(culprit, tuple(others), are_impossible(sought.within, words))
+            return Contradiction(culprit, tuple(others), are_impossible(sought.within, words))
     return None
 
 

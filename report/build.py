@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from .prepared import Prepared
     from .result.result import Comparison, Report
     from .result.verdict import Referee
-    from .views.made import Made
+    from .views.issued import Issued
     from .workbook import FigureSpec
 
 __all__ = ["Built", "build", "built", "parse_formats"]
@@ -177,7 +177,7 @@ def _made(
 ) -> Report:
     """Compute a report and write its files into a folder."""
     from . import cost
-    from .views.made import Made
+    from .views.issued import Issued
 
     tell(_begun(study.inputs.title, study, out))
     with ExitStack() as running:
@@ -217,7 +217,7 @@ def _made(
             with timed("figures"):
                 pictures |= _pictures(study, finished, formats, finished.workbook.figures)
     with timed("writing"):
-        _write(Made(finished, pictures, source, content), stage, formats, study.step)
+        _write(Issued(finished, pictures, source, content), stage, formats, study.step)
     return finished
 
 
@@ -263,7 +263,7 @@ def _pictures(
     return {f"{figure.name}.{form}": content for figure in wanted for form, content in files(figure).items()}
 
 
-def _write(made: Made, stage: Path, formats: Collection[str], step: Step) -> None:
+def _write(made: Issued, stage: Path, formats: Collection[str], step: Step) -> None:
     from .views.json import manifest
 
     for name, content in made.pictures.items():

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from ..derivations.equation import Derivation, Erratum, Ledger
-from ..derivations.proof import Proof, Status, StepProof, prove
+from ..derivations.proof import Proof, ProofStatus, StepProof, prove
 
 __all__ = ["as_data", "of_data", "proved"]
 
@@ -50,11 +50,11 @@ def of_data(data: Mapping[str, Any], ledger: Ledger) -> Algebra:
         equation, own = (entry.claim, entry.steps) if isinstance(entry, Derivation) else (entry, ())
         steps = tuple(
             StepProof(
-                **{**rest, "step": step, "status": Status(rest["status"]), "sides": tuple(rest["sides"])}
+                **{**rest, "step": step, "status": ProofStatus(rest["status"]), "sides": tuple(rest["sides"])}
             )
             for step, rest in zip(own, map(dict, found["steps"]), strict=True)
         )
-        rests_on, status = tuple(found["rests_on"]), Status(found["status"])
+        rests_on, status = tuple(found["rests_on"]), ProofStatus(found["status"])
         proofs.append(Proof(equation, status, steps, found["remark"], rests_on))
     return tuple(proofs), tuple(Erratum(**each) for each in data["errata"])
 

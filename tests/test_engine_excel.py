@@ -40,16 +40,15 @@ from sympy.core.parameters import evaluate
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.report import stages
-from loopsheet.report.cells.grid import Block, Grid, Place, checked, factors, letters, quoted
+from loopsheet.report.cells.grid import CellBlock, Grid, Place, checked, factors, letters, quoted
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.engines.excel import IfError, IsNumber, NotPrintable, Printer
+from loopsheet.report.engines.excel import ExcelPrinter, IfError, IsNumber, NotPrintable
 from loopsheet.report.engines.excel_formulas import guard
 from loopsheet.report.engines.excel_roots import Unrolled, unroll
 from loopsheet.report.engines.excel_values import auxiliary_texts, auxiliary_values
 from loopsheet.report.machine.kept import SETTING
-from loopsheet.report.plan import Root as RootNode
-from loopsheet.report.plan import RowSum, lowered_column
+from loopsheet.report.plan import RootNode, RowSum, lowered_column
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
@@ -59,7 +58,7 @@ P = Symbol("P", positive=True)
 
 
 def printed(expression: Any, rows: bool = False) -> str:
-    return Printer(str, rows=rows).doprint(expression)
+    return ExcelPrinter(str, rows=rows).doprint(expression)
 
 
 # --- the printer -----------------------------------------------------------------------------------------
@@ -146,8 +145,8 @@ def test_nothing_swallows_a_range_inside_of_a_sum(expression: Any, formula: str)
 
 
 def test_what_tends_to_zero_is_added_without_rounding() -> None:
-    assert Printer(str).added(x - y) == "SUM(x,0-y)"
-    assert Printer(str).added(x * y) == "x*y"
+    assert ExcelPrinter(str).added(x - y) == "SUM(x,0-y)"
+    assert ExcelPrinter(str).added(x * y) == "x*y"
 
 
 def test_the_authors_order_is_computed_alike() -> None:
@@ -537,7 +536,7 @@ def paper(report: Report) -> Grid:
     return excel_grid.grid(report.sheet, report.values, units, report.workbook.headline, drawn)
 
 
-def every(grid: Grid) -> list[tuple[Block, str]]:
+def every(grid: Grid) -> list[tuple[CellBlock, str]]:
     return [(block, formula) for block in grid.blocks for formula in block.formulas]
 
 

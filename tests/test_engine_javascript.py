@@ -16,7 +16,7 @@ from loopsheet.derivations.equation import Equation
 from loopsheet.derivations.reductions import Median
 from loopsheet.report.cells.values import Status
 from loopsheet.report.engines import javascript
-from loopsheet.report.engines.javascript import RUNTIME, Printer
+from loopsheet.report.engines.javascript import RUNTIME, JavaScriptPrinter
 from loopsheet.report.engines.numpy import Program, evaluate
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Sheet
@@ -81,11 +81,11 @@ def node(
     ],
 )
 def test_printer(expression: Any, printed: str) -> None:
-    assert Printer().doprint(expression) == printed
+    assert JavaScriptPrinter().doprint(expression) == printed
 
 
 def test_piecewise_is_a_choice() -> None:
-    assert "?" in Printer().doprint(Piecewise((x, x > y), (y, True)))
+    assert "?" in JavaScriptPrinter().doprint(Piecewise((x, x > y), (y, True)))
 
 
 def test_no_name_of_a_model_in_the_runtime() -> None:

@@ -36,7 +36,7 @@ from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program, kernel
-from loopsheet.report.engines.numpy_code import Printer
+from loopsheet.report.engines.numpy_code import ArrayPrinter
 from loopsheet.report.engines.numpy_rows import Kept
 from loopsheet.report.plan import RowSum
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Sheet, SheetError
@@ -75,7 +75,7 @@ x, y, z = (Symbol(name, positive=True) for name in "xyz")
     ],
 )
 def test_an_expression_is_printed_as(expression: Expr, code: str) -> None:
-    assert Printer().doprint(expression) == code
+    assert ArrayPrinter().doprint(expression) == code
 
 
 def test_a_kernel_is_called_with_its_symbols_in_the_order_of_their_names() -> None:

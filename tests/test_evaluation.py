@@ -5,7 +5,7 @@ import pytest
 import sympy
 from sympy import Expr, Rational, Sum, Symbol
 
-from loopsheet.derivations.evaluation import UNDEFINED, NotEvaluable, Program, is_real
+from loopsheet.derivations.evaluation import UNDEFINED, NotEvaluable, Tape, is_real
 
 x, y = Symbol("x", positive=True), Symbol("y", positive=True)
 AT = {x: Rational(37, 100), y: Rational(81, 100)}
@@ -28,7 +28,7 @@ EXPRESSIONS = [
 
 def value(expression: Expr) -> mpmath.mpf:
     with mpmath.workdps(50):
-        program = Program([x, y])
+        program = Tape([x, y])
         group = program.add([expression])
         program.start([mpmath.mpf(n.p) / n.q for n in AT.values()])
         return program.values(group)[0]
@@ -50,7 +50,7 @@ ROWS = [None, 2, 3, 5, 7]
 
 
 def of_rows(expression: Expr, size: int = 4) -> mpmath.mpf:
-    program = Program([n, X.label])
+    program = Tape([n, X.label])
     group = program.add([expression])
     program.start([mpmath.mpf(size), ROWS])
     return program.values(group)[0]
@@ -87,7 +87,7 @@ def test_a_row_that_is_not_there_has_no_value(expression: Expr) -> None:
 def test_an_integral_beside_a_branch_point_is_resolved(beside: str, power: str) -> None:
     """Its error was a hundred thousand times what a proof allows, and true claims were refuted."""
     with mpmath.workdps(50):
-        program = Program([x, y])
+        program = Tape([x, y])
         group = program.add(
             [sympy.Integral((q + x) ** y, (q, 0, 1)), ((1 + x) ** (y + 1) - x ** (y + 1)) / (y + 1)]
         )

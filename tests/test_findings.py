@@ -6,7 +6,7 @@ import pytest
 from small_report import end_gauge
 
 from loopsheet.derivations.equation import Step
-from loopsheet.derivations.proof import Proof, Status, StepProof
+from loopsheet.derivations.proof import Proof, ProofStatus, StepProof
 from loopsheet.report.engines import ENGINES
 from loopsheet.report.result import verdict_words as words
 from loopsheet.report.result.agreement import Agreement
@@ -62,12 +62,12 @@ def test_engines(small: Report) -> None:
 def test_proofs(small: Report) -> None:
     (claim,) = small.ledger.equations()
     step = Step(claim, (), (), "put in")
-    wrong = StepProof(step, Status.REFUTED, 20, 1.0, False, {"l": "1"}, ("1", "2"))
-    right = StepProof(step, Status.PROVED, 20, 0.0, True)
+    wrong = StepProof(step, ProofStatus.REFUTED, 20, 1.0, False, {"l": "1"}, ("1", "2"))
+    right = StepProof(step, ProofStatus.PROVED, 20, 0.0, True)
     proofs = (
-        Proof(claim, Status.DEFINITION),
-        Proof(claim, Status.REFUTED, (right, wrong), "misprinted"),
-        Proof(claim, Status.UNDECIDED, (right,), "too hard"),
+        Proof(claim, ProofStatus.DEFINITION),
+        Proof(claim, ProofStatus.REFUTED, (right, wrong), "misprinted"),
+        Proof(claim, ProofStatus.UNDECIDED, (right,), "too hard"),
     )
     passed, refuted, undecided = of_kind(replace(small, proofs=proofs), "proof")
     assert (passed.name, passed.passed, passed.message) == ("(H.1)", True, "(H.1) is definition")

@@ -335,6 +335,16 @@ def test_init_has_only_names(package: str) -> None:
 
 
 # ------------------------------------------------------------------------------- size and doctests
+def test_the_name_of_a_class_means_one_thing() -> None:
+    """What stands in a file is called there as it is called in the house."""
+    found: dict[str, list[str]] = {}
+    for module, path in MODULES.items():
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                found.setdefault(node.name, []).extend([] if module.startswith("report.files.") else [module])
+    assert {name: places for name, places in found.items() if len(places) > 1} == {}
+
+
 TESTS = sorted((ROOT / "tests").rglob("*.py"))
 
 

@@ -21,7 +21,7 @@ from sympy import (
 
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step
-from loopsheet.derivations.proof import Proof, Status, prove, prove_equation
+from loopsheet.derivations.proof import Proof, ProofStatus, prove, prove_equation
 from loopsheet.derivations.vocabulary import Quantity, Vocabulary
 
 m = Symbol("m", integer=True, positive=True)
@@ -33,7 +33,7 @@ BY_CASES = Equation("(1)", (a, Piecewise((b, b > c), (2 * c, b <= c))), "", Kind
 THIRD_HOLDS = Derivation.of(THIRD, (SECOND,), (a,), "")
 
 
-def statuses(*entries: Equation | Derivation) -> list[Status]:
+def statuses(*entries: Equation | Derivation) -> list[ProofStatus]:
     return [found.status for found in prove(Ledger(entries))]
 
 
@@ -42,7 +42,11 @@ def by_label(*entries: Equation | Derivation) -> dict[str, Proof]:
 
 
 def test_each_entry_may_rest_on_those_before_it() -> None:
-    assert statuses(FIRST, SECOND_HOLDS, THIRD_HOLDS) == [Status.DEFINITION, Status.PROVED, Status.PROVED]
+    assert statuses(FIRST, SECOND_HOLDS, THIRD_HOLDS) == [
+        ProofStatus.DEFINITION,
+        ProofStatus.PROVED,
+        ProofStatus.PROVED,
+    ]
 
 
 @pytest.mark.parametrize(
@@ -56,7 +60,7 @@ def test_each_entry_may_rest_on_those_before_it() -> None:
 )
 def test_nothing_rests_on_what_comes_later(entries: tuple[Equation | Derivation, ...]) -> None:
     first = prove(Ledger(entries))[0]
-    assert first.status is Status.UNDECIDED
+    assert first.status is ProofStatus.UNDECIDED
     if first.steps:
         assert first.steps[-1].why.startswith("rests on (")
         assert first.steps[-1].why.endswith("not proved before")
@@ -66,13 +70,13 @@ def test_what_rests_on_a_refuted_claim_is_undecided() -> None:
     wrong = Equation("(2)", (b * (a - c), 2 * b**2), "")
     rests = Derivation.of(Equation("(3)", (a, 2 * b + c), ""), (wrong,), (a,), "")
     assert statuses(FIRST, Derivation.of(wrong, (FIRST,), (a,), ""), rests)[1:] == [
-        Status.REFUTED,
-        Status.UNDECIDED,
+        ProofStatus.REFUTED,
+        ProofStatus.UNDECIDED,
     ]
 
 
 def test_a_claim_without_a_derivation_is_undecided() -> None:
-    assert prove_equation(SECOND).status is Status.UNDECIDED
+    assert prove_equation(SECOND).status is ProofStatus.UNDECIDED
 
 
 @pytest.mark.parametrize(
@@ -91,7 +95,7 @@ def test_an_instance_is_made_again_before_it_is_trusted(forged: Equation) -> Non
     found = prove(
         Ledger((FIRST, SECOND_HOLDS, Derivation.of(replace(forged, number="(4)"), (forged,), (a,), "")))
     )
-    assert found[-1].status is Status.UNDECIDED
+    assert found[-1].status is ProofStatus.UNDECIDED
 
 
 BOUNDED = replace(FIRST, conditions=(b > c,))
@@ -110,7 +114,7 @@ BOUNDED = replace(FIRST, conditions=(b > c,))
 def test_so_is_an_instance_of_what_is_stated(stated: Equation, forged: Equation, side: Expr) -> None:
     claim = Equation("(2)", (a**2, side**2), "")
     found = by_label(stated, Derivation.of(claim, (forged,), (a,), ""))["(2)"]
-    assert found.status is Status.UNDECIDED
+    assert found.status is ProofStatus.UNDECIDED
     assert found.steps[0].why == "rests on what is called (1) and is no instance of it"
 
 
@@ -128,7 +132,7 @@ def test_a_true_instance_is_trusted() -> None:
             SECOND_HOLDS,
             Derivation.of(Equation("(4)", (a, 2 * b * c + 2 * c), ""), (instance,), (a,), ""),
         )[-1]
-        is Status.PROVED
+        is ProofStatus.PROVED
     )
 
 
@@ -137,27 +141,27 @@ def test_an_instance_keeps_the_conditions_of_its_origin() -> None:
     first = replace(FIRST, conditions=())
     rests = Derivation.of(THIRD, (replace(bounded, conditions=(), parent=bounded),), (a,), "")
     found = prove(Ledger((first, Derivation.of(bounded, (first,), (a,), ""), rests)))
-    assert [one.status for one in found[1:]] == [Status.PROVED, Status.UNDECIDED]
+    assert [one.status for one in found[1:]] == [ProofStatus.PROVED, ProofStatus.UNDECIDED]
 
 
 @pytest.mark.parametrize(
     ("printed", "status", "remark"),
     [
-        ((b * (a - c), b**2), Status.PROVED, ""),
-        ((b * (a - c), 2 * b**2), Status.CORRECTED, "as printed, (2) fails: at b = "),
+        ((b * (a - c), b**2), ProofStatus.PROVED, ""),
+        ((b * (a - c), 2 * b**2), ProofStatus.CORRECTED, "as printed, (2) fails: at b = "),
         (
             (c, c),
-            Status.CORRECTED,
+            ProofStatus.CORRECTED,
             "as printed, (2) does not contain a, which it should determine: it repeats c",
         ),
         (
             (b * (Min(a, 30) - c), b**2),
-            Status.UNDECIDED,
+            ProofStatus.UNDECIDED,
             "as printed, (2) is undecided: the numbers agree, but",
         ),
     ],
 )
-def test_the_print_is_checked_too(printed: tuple[Expr, ...], status: Status, remark: str) -> None:
+def test_the_print_is_checked_too(printed: tuple[Expr, ...], status: ProofStatus, remark: str) -> None:
     meant = replace(SECOND, printed=printed, defines=a)
     found = prove(Ledger((FIRST, Derivation.of(meant, (FIRST,), (a,), ""))))[1]
     assert found.status is status
@@ -202,18 +206,18 @@ SAID = Equation("(2)", (a, b + c), "")
 )
 def test_a_premise_that_says_what_the_claim_says_proves_nothing(premise: Equation) -> None:
     found = prove_equation(Derivation.of(SAID, (premise,), (a,), ""))
-    assert found.status is Status.REFUSED
+    assert found.status is ProofStatus.REFUSED
     assert found.remark == f"(2) rests on itself: (2) -> {premise.label} = (2)"
     assert found.rests_on == ()
-    assert [step.status for step in found.steps] in ([Status.PROVED], [Status.UNDECIDED])
+    assert [step.status for step in found.steps] in ([ProofStatus.PROVED], [ProofStatus.UNDECIDED])
 
 
 @pytest.mark.parametrize("kind", [Kind.DEFINITION, Kind.ASSUMPTION])
 def test_so_does_a_premise_with_a_number(kind: Kind) -> None:
     stated = Equation("(1)", (b + c - a, Integer(0)), "", kind)
     found = by_label(stated, Derivation.of(SAID, (stated,), (a,), ""))
-    assert found["(1)"].status is Status(kind.value)
-    assert found["(2)"].status is Status.REFUSED
+    assert found["(1)"].status is ProofStatus(kind.value)
+    assert found["(2)"].status is ProofStatus.REFUSED
     assert found["(2)"].remark == "(2) rests on itself: (2) -> (1) = (2)"
 
 
@@ -229,14 +233,14 @@ def test_so_does_a_premise_with_a_number(kind: Kind) -> None:
 )
 def test_to_work_something_out_is_a_proof(premise: Equation) -> None:
     found = prove_equation(Derivation.of(SAID, (premise,), (a,), ""))
-    assert found.status is Status.PROVED
+    assert found.status is ProofStatus.PROVED
     assert found.rests_on == ("assumed",)
 
 
 def test_a_claim_that_was_proved_may_be_said_again() -> None:
     again = Equation("(3)", (2 * b**2, 2 * a * b - 2 * b * c), "")
     found = by_label(FIRST, SECOND_HOLDS, Derivation.of(again, (SECOND,), (a,), ""))
-    assert found["(3)"].status is Status.PROVED
+    assert found["(3)"].status is ProofStatus.PROVED
     assert found["(3)"].rests_on == ("(1)",)
 
 
@@ -244,7 +248,7 @@ def test_an_assumption_for_every_row_yields_one() -> None:
     every = Equation("(1)", (X[q], b * c), "", Kind.ASSUMPTION)
     first = Equation("(2)", (X[1], c * b), "")
     entries = every, Derivation.of(first, (every.at({q: Integer(1)}),), (X[1],), "")
-    assert by_label(*entries)["(2)"].status is Status.PROVED
+    assert by_label(*entries)["(2)"].status is ProofStatus.PROVED
 
 
 def test_a_circle_is_refused_and_drawn() -> None:
@@ -252,7 +256,7 @@ def test_a_circle_is_refused_and_drawn() -> None:
     squared = Equation("(3)", (a**2, (b + c) ** 2), "")
     back = Derivation.of(SAID, (squared,), (a,), "")
     found = by_label(back, Derivation.of(squared, (SAID,), (a,), ""))
-    assert [proof.status for proof in found.values()] == [Status.REFUSED] * 2
+    assert [proof.status for proof in found.values()] == [ProofStatus.REFUSED] * 2
     assert found["(2)"].remark == "(2) rests on itself: (2) -> (3) -> (2)"
     assert found["(3)"].remark == "(3) rests on itself: (3) -> (2) -> (3)"
 
@@ -262,7 +266,7 @@ def test_a_circle_is_seen_through_what_its_premise_is_called() -> None:
     squared = Equation("(3)", (a**2, (b + c) ** 2), "")
     hidden = assumed(2 * a - 2 * b, 2 * c, title="the budget")
     found = by_label(Derivation.of(squared, (hidden,), (a,), ""), Derivation.of(SAID, (squared,), (a,), ""))
-    assert [proof.status for proof in found.values()] == [Status.REFUSED] * 2
+    assert [proof.status for proof in found.values()] == [ProofStatus.REFUSED] * 2
     assert found["(3)"].remark == "(3) rests on itself: (3) -> the budget = (2) -> (3)"
     assert found["(2)"].remark == "(2) rests on itself: (2) -> (3) -> the budget = (2)"
 
@@ -271,7 +275,7 @@ def test_a_circle_within_a_chain_of_steps_is_seen() -> None:
     between = Equation("", (a**2, (b + c) ** 2), "", title="between")
     chain = Derivation((Step(between, (assumed(a, b + c),), (a,), ""), Step(SAID, (between,), (a,), "")))
     found = prove_equation(chain)
-    assert found.status is Status.REFUSED
+    assert found.status is ProofStatus.REFUSED
     assert found.remark == "(2) rests on itself: (2) -> between -> assumed = (2)"
 
 
@@ -283,7 +287,7 @@ def test_what_rests_on_a_circle_is_no_part_of_it() -> None:
         Derivation.of(squared, (SAID,), (a,), ""),
         Derivation.of(after, (squared,), (a,), ""),
     )
-    assert found["(4)"].status is Status.UNDECIDED
+    assert found["(4)"].status is ProofStatus.UNDECIDED
     assert found["(4)"].steps[0].why == "rests on (3), not proved before"
 
 
@@ -291,7 +295,7 @@ def test_an_unknown_function_is_like_no_other() -> None:
     f, g = Function("f")(y), Function("g")(y)
     work = assumed(a, Integral(f, (y, 0, b)))
     same, other = (Equation("(1)", (2 * Integral(h, (y, 0, b)), 2 * a), "") for h in (f, g))
-    assert prove_equation(Derivation.of(same, (work,), (a,), "")).status is Status.REFUSED
+    assert prove_equation(Derivation.of(same, (work,), (a,), "")).status is ProofStatus.REFUSED
     assert "rests on itself" not in prove_equation(Derivation.of(other, (work,), (a,), "")).remark
 
 
@@ -322,14 +326,14 @@ def test_what_mixes_dimensions_is_refused(
 ) -> None:
     mixing = Equation("(1)", members, "", Kind.DEFINITION, conditions=conditions)
     (found,) = prove(Ledger((mixing,), (), WORDS))
-    assert (found.status, found.remark) == (Status.REFUSED, problem)
+    assert (found.status, found.remark) == (ProofStatus.REFUSED, problem)
     (unsaid,) = prove(Ledger((mixing,)))
-    assert unsaid.status is Status.DEFINITION
+    assert unsaid.status is ProofStatus.DEFINITION
     premise = replace(mixing, number="", title="mixing")
     claim = Equation("(2)", (a**2 + c, a**2 + c), "")
     (found,) = prove(Ledger((Derivation.of(claim, (premise,), (a,), ""),), (), WORDS))
-    assert found.status in (Status.REFUSED, Status.REFUTED)
-    if found.status is Status.REFUSED:
+    assert found.status in (ProofStatus.REFUSED, ProofStatus.REFUTED)
+    if found.status is ProofStatus.REFUSED:
         assert found.remark.startswith("mixing: ")
 
 
@@ -353,7 +357,7 @@ def test_a_mass_is_no_coefficient() -> None:
     """The paper's reduced mass was proved to be its coefficient, from a definition that says so."""
     wrong = Equation("(20)", (model.m_red, model.C), "", Kind.DEFINITION)
     found = prove(replace(model.LEDGER, entries=(*model.LEDGER.entries, wrong)))
-    assert found[-1].status is Status.REFUSED
+    assert found[-1].status is ProofStatus.REFUSED
     assert found[-1].remark == "m_red is in kg, C is in kg m^(1 - alpha) s^-2"
     assert all(proof.status.passes for proof in found[:-1])
 
@@ -404,7 +408,7 @@ def test_assumptions_that_cannot_hold_together_are_refused(
 ) -> None:
     found = prove(Ledger(entries))
     assert [proof.remark for proof in found] == remarks
-    meant = {"": Status.DEFINITION, "no": Status.UNDECIDED, "(": Status.REFUSED}
+    meant = {"": ProofStatus.DEFINITION, "no": ProofStatus.UNDECIDED, "(": ProofStatus.REFUSED}
     assert [proof.status for proof in found] == [
         meant[remark[:2] if remark[:1] == "n" else remark[:1]] for remark in remarks
     ]
@@ -433,7 +437,7 @@ def test_assumptions_that_cannot_hold_together_are_refused(
     ],
 )
 def test_assumptions_that_can_hold_together_are_left_alone(entries: tuple[Equation, ...]) -> None:
-    assert [proof.status for proof in prove(Ledger(entries))] == [Status.DEFINITION] * len(entries)
+    assert [proof.status for proof in prove(Ledger(entries))] == [ProofStatus.DEFINITION] * len(entries)
 
 
 MEAN = said("(1)", a, Sum(X[q], (q, 1, n)) / n)
@@ -475,7 +479,7 @@ def test_a_definition_may_not_contradict_what_was_proved() -> None:
     wrong = said("(4)", a, 2 * b + c)
     found = prove(Ledger((FIRST, SECOND_HOLDS, wrong, said("(5)", y, a))))
     assert [proof.status for proof in found] == [
-        Status.DEFINITION, Status.PROVED, Status.REFUSED, Status.DEFINITION,
+        ProofStatus.DEFINITION, ProofStatus.PROVED, ProofStatus.REFUSED, ProofStatus.DEFINITION,
     ]  # fmt: skip
     assert found[2].remark == "(4) cannot hold together with (1)"
 
@@ -484,8 +488,8 @@ def test_a_premise_may_not_contradict_what_stands() -> None:
     twice = assumed(a, 3 * b + c, title="twice")
     after = Equation("(3)", (a**2, (3 * b + c) ** 2), "")
     found = by_label(FIRST, SECOND_HOLDS, Derivation.of(after, (twice,), (a,), ""))
-    assert found["(2)"].status is Status.PROVED
-    assert found["(3)"].status is Status.REFUSED
+    assert found["(2)"].status is ProofStatus.PROVED
+    assert found["(3)"].status is ProofStatus.REFUSED
     assert found["(3)"].remark == "twice cannot hold together with (1)"
 
 
@@ -497,7 +501,7 @@ def test_one_equation_is_proved_as_with_all_others() -> None:
         some = replace(ledger, entries=entries)
         whole = {proof.equation.label: proof for proof in prove(some)}
         assert all(prove(some, only=[label]) == (proof,) for label, proof in whole.items())
-    assert whole["(5)"].status is Status.REFUSED
+    assert whole["(5)"].status is ProofStatus.REFUSED
     prove(ledger, lambda equation: told.append(equation.label), only=["(2)"])
     assert told == ["(1)", "(2)", "(4)", "(5)"]
     alone = [prove(model.LEDGER, only=[label]) for label in ("(11)", "(12e)")]
@@ -517,7 +521,7 @@ def test_a_limit_is_approached_and_not_reached() -> None:
         Derivation.of(Equation("(3)", (c * (1 + y), c), ""), (limit(y, Integer(0)),), (y,), ""),
     )
     found = by_label(ratio, *claims)
-    assert {proof.status for proof in found.values()} == {Status.DEFINITION, Status.PROVED}
+    assert {proof.status for proof in found.values()} == {ProofStatus.DEFINITION, ProofStatus.PROVED}
     assert found["(3)"].rests_on == ("none",)
     reached = replace(limit(y, Integer(0)), kind=Kind.ASSUMPTION)
     found = by_label(ratio, claims[0], Derivation.of(claims[1].claim, (reached,), (y,), ""))
@@ -532,7 +536,7 @@ def test_a_limit_is_a_quantity_that_goes_to_zero(members: tuple[Expr, ...]) -> N
     claim = Equation("(2)", (c * members[0], c * members[1]), "")
     unknown = max(members[0].free_symbols, key=str)
     found = by_label(said("(1)", a, b), Derivation.of(claim, (limit(*members),), (unknown,), ""))
-    assert found["(2)"].status is Status.REFUSED
+    assert found["(2)"].status is ProofStatus.REFUSED
     assert found["(2)"].remark == "none: a limit says of a quantity that it is zero"
 
 
@@ -560,7 +564,7 @@ def test_claims_for_different_domains_need_not_hold_at_one_point() -> None:
 def test_the_ledger_of_the_paper_refuses_what_contradicts_it(wrong: tuple[Expr, ...], others: str) -> None:
     added = Equation("(20)", wrong, "", Kind.DEFINITION)
     found = prove(replace(model.LEDGER, entries=(*model.LEDGER.entries, added)))
-    assert found[-1].status is Status.REFUSED
+    assert found[-1].status is ProofStatus.REFUSED
     assert found[-1].remark == f"(20) cannot hold together with {others}"
     assert all(proof.status.passes for proof in found[:-1])
 

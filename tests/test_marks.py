@@ -85,7 +85,7 @@ def test_only_comparisons_can_be_limits() -> None:
         margins(limited(Eq(a[k], b.symbol)))
     with pytest.raises(SheetError, match=r"^a_margin: no column is called 'q'"):
         with_margins(limited(a[k] < Symbol("q")))
-    with pytest.raises(units.UnitError, match=r"^a given: cannot compare m and 1 in a\[k\] < 3$"):
+    with pytest.raises(units.DimensionMismatch, match=r"^a given: cannot compare m and 1 in a\[k\] < 3$"):
         units.check(limited(a[k] < 3))
 
 

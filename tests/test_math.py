@@ -27,14 +27,14 @@ from sympy.core.parameters import evaluate
 from loopsheet.derivations import soft_impact
 from loopsheet.derivations.reductions import Median
 from loopsheet.derivations.symbols import VOCABULARY, F_of, k, q
-from loopsheet.report.document.math import Printer, latex_names, name_latex, with_index
+from loopsheet.report.document.math import MathPrinter, latex_names, name_latex, with_index
 from loopsheet.report.document.notation import fragments
 from loopsheet.report.views.mathml import mathml, mathml_block
 from loopsheet.report.views.typeset import TEXT_WIDTH, block, width
 
 a, b, c, x, y = symbols("a b c x y", positive=True)
 NAMES = latex_names(VOCABULARY)
-PRINTER = Printer(NAMES)
+PRINTER = MathPrinter(NAMES)
 V, XM, CP, E = (VOCABULARY[name] for name in ("v", "x_m", "Cprime", "e"))
 n = Symbol("n_points")
 
@@ -107,18 +107,18 @@ def test_printed(expression: Expr, latex: str) -> None:
 
 
 def test_what_sympy_has_ordered_begins_with_a_positive_term_and_is_one_fraction() -> None:
-    assert Printer().doprint(a - x) == "a - x"
-    assert Printer().doprint(pi * a / (b * c)) == r"\frac{\pi a}{b c}"
+    assert MathPrinter().doprint(a - x) == "a - x"
+    assert MathPrinter().doprint(pi * a / (b * c)) == r"\frac{\pi a}{b c}"
 
 
 def test_half_an_equation_is_worse_than_none() -> None:
     with pytest.raises(TypeError, match="no LaTeX for Unknown"):
-        Printer().doprint(type("Unknown", (Expr,), {})(x))
-    assert "J" in Printer().doprint(besselj(1, x))  # sympy's own printer knows it
+        MathPrinter().doprint(type("Unknown", (Expr,), {})(x))
+    assert "J" in MathPrinter().doprint(besselj(1, x))  # sympy's own printer knows it
 
 
 def test_a_workbook_names_its_own_columns() -> None:
-    assert Printer({"alpha_mean": r"\bar{\alpha}%s"}).doprint(Symbol("alpha_mean")) == r"\bar{\alpha}"
+    assert MathPrinter({"alpha_mean": r"\bar{\alpha}%s"}).doprint(Symbol("alpha_mean")) == r"\bar{\alpha}"
 
 
 @pytest.mark.parametrize(
@@ -178,11 +178,11 @@ def _sum_of(terms: int) -> Expr:
 
 
 def test_a_short_equation_stays_on_one_line() -> None:
-    assert block(Printer(), (y, _sum_of(3))).rows == ("y = x + x + x",)
+    assert block(MathPrinter(), (y, _sum_of(3))).rows == ("y = x + x + x",)
 
 
 def test_a_long_sum_is_broken_between_its_terms_and_loses_none() -> None:
-    made = block(Printer(), (y, _sum_of(40)))
+    made = block(MathPrinter(), (y, _sum_of(40)))
     assert made.left == "y"
     assert len(made.rows) > 1
     assert all(width(row) <= TEXT_WIDTH for row in made.rows)
@@ -191,12 +191,12 @@ def test_a_long_sum_is_broken_between_its_terms_and_loses_none() -> None:
 
 
 def test_a_chain_too_long_for_a_line_has_one_equality_a_line() -> None:
-    made = block(Printer(), (y, _sum_of(12), _sum_of(12)))
+    made = block(MathPrinter(), (y, _sum_of(12), _sum_of(12)))
     assert [row[0] for row in made.rows] == ["=", "="]
 
 
 def test_two_long_sides_part_at_the_sign() -> None:
-    made = block(Printer(), (_sum_of(15), _sum_of(15)))
+    made = block(MathPrinter(), (_sum_of(15), _sum_of(15)))
     assert made.left == ""
     assert [row[:3] for row in made.rows] == ["x +", "= x"]
 

@@ -14,8 +14,8 @@ from loopsheet.report.document.said import SAID, Said
 from loopsheet.report.document.tree import (
     Code,
     Count,
+    Display,
     Figure,
-    Formula,
     Items,
     Link,
     Math,
@@ -75,7 +75,7 @@ def test_a_role_is_shown_where_it_is_alone_and_else_referred_to(reads: Reads) ->
         "{eq}`(11)`, {table}`alpha`, {fig}`loops`, {cell}`alpha_mean`, {sym}`x_m`, {count}`tests`\n"
     )
     equation, table, figure, text = chapter.blocks
-    assert isinstance(equation, Formula)
+    assert isinstance(equation, Display)
     assert isinstance(table, Table)
     assert isinstance(figure, Figure)
     assert isinstance(text, Paragraph)

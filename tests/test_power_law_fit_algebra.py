@@ -9,8 +9,8 @@ import pytest
 
 from loopsheet.derivations import power_law_fit as fit
 from loopsheet.derivations.equation import Derivation, Equation, evaluated
-from loopsheet.derivations.evaluation import Program
-from loopsheet.derivations.proof import Status, check_step
+from loopsheet.derivations.evaluation import Tape
+from loopsheet.derivations.proof import ProofStatus, check_step
 from loopsheet.derivations.symbols import VOCABULARY
 
 x, F = (VOCABULARY[name].symbol for name in ("x", "F"))
@@ -37,7 +37,7 @@ def compute(equation: Equation, **values: object) -> mpmath.mpf:
     given = [*values]
     known = (name for name in given if name in VOCABULARY)
     symbols = {"n_points": fit.size, **{name: VOCABULARY[name].symbol for name in known}}
-    program = Program([symbols[name] for name in given])
+    program = Tape([symbols[name] for name in given])
     group = program.add([expression])
     program.start(
         [[0, *map(mpmath.mpf, v)] if isinstance(v, list) else mpmath.mpf(v) for v in values.values()]
@@ -100,7 +100,7 @@ def test_without_scatter_both_fits_give_the_law_back() -> None:
 @pytest.mark.parametrize("derivation", [*fit.LOG_FIT, *fit.LIN_FIT], ids=lambda d: d.claim.label)
 def test_each_follows_from_the_normal_equations(derivation: Derivation) -> None:
     for step in derivation.steps:
-        assert check_step(step).status is Status.PROVED
+        assert check_step(step).status is ProofStatus.PROVED
 
 
 def test_sums_of_squares_are_what_is_differentiated() -> None:

@@ -34,7 +34,7 @@ from sympy import (
 
 from loopsheet.derivations import proof, sampling, system
 from loopsheet.derivations.equation import Equation, Step
-from loopsheet.derivations.proof import POINTS, Status, check_step
+from loopsheet.derivations.proof import POINTS, ProofStatus, check_step
 from loopsheet.derivations.reductions import Median
 from loopsheet.derivations.vocabulary import NO_WORDS
 
@@ -43,14 +43,14 @@ from loopsheet.derivations.vocabulary import NO_WORDS
 
 def test_a_true_claim_is_proved() -> None:
     found = decide(claim(a**2, b * (b + 2 * c) + c**2), (given(a, b + c), a))
-    assert (found.status, found.points, found.symbolic) == (Status.PROVED, POINTS, True)
+    assert (found.status, found.points, found.symbolic) == (ProofStatus.PROVED, POINTS, True)
     assert found.worst < 1e-40
     assert found.sentence.startswith("residual 0; 20 points at 50 digits agree within")
 
 
 def test_a_false_claim_is_refuted_with_its_point_and_both_sides() -> None:
     found = decide(claim(a**2, b**2 + c**2), (given(a, b + c), a))
-    assert found.status is Status.REFUTED
+    assert found.status is ProofStatus.REFUTED
     assert list(found.counterexample) == ["b", "c", "a"]
     at = {name: float(value) for name, value in found.counterexample.items()}
     assert at["a"] == pytest.approx(at["b"] + at["c"], rel=1e-5)
@@ -63,8 +63,8 @@ def test_a_false_claim_is_refuted_with_its_point_and_both_sides() -> None:
 
 
 def test_every_link_of_a_chain_of_equalities_counts() -> None:
-    assert decide(claim(a, (a**2 + a * b) / (a + b), a * b / b)).status is Status.PROVED
-    assert decide(claim(a, 2 * a, a)).status is Status.REFUTED
+    assert decide(claim(a, (a**2 + a * b) / (a + b), a * b / b)).status is ProofStatus.PROVED
+    assert decide(claim(a, 2 * a, a)).status is ProofStatus.REFUTED
 
 
 @pytest.mark.parametrize(
@@ -77,26 +77,26 @@ def test_every_link_of_a_chain_of_equalities_counts() -> None:
     ],
 )
 def test_premises_are_solved(premises: tuple[tuple[Equation, Expr], ...], claimed: Equation) -> None:
-    assert decide(claimed, *premises).status is Status.PROVED
+    assert decide(claimed, *premises).status is ProofStatus.PROVED
 
 
 def test_integrals_and_sums_are_claims_like_others() -> None:
     assert (
-        decide(claim(Integral(a**y, (a, 0, b)), b ** (y + 1) / (y + 1))).status is not Status.PROVED
+        decide(claim(Integral(a**y, (a, 0, b)), b ** (y + 1) / (y + 1))).status is not ProofStatus.PROVED
     )  # y > -1?
-    assert decide(claim(Integral(a**c, (a, 0, b)), b ** (c + 1) / (c + 1))).status is Status.PROVED
-    assert decide(claim(Integral(a**c, (a, 0, b)), b ** (c + 1) / (c + 2))).status is Status.REFUTED
-    assert decide(claim(Sum(X[q] + b, (q, 1, n)), Sum(X[q], (q, 1, n)) + n * b)).status is Status.PROVED
-    assert decide(claim(Sum(X[q] * b, (q, 1, n)), n * b)).status is Status.REFUTED
+    assert decide(claim(Integral(a**c, (a, 0, b)), b ** (c + 1) / (c + 1))).status is ProofStatus.PROVED
+    assert decide(claim(Integral(a**c, (a, 0, b)), b ** (c + 1) / (c + 2))).status is ProofStatus.REFUTED
+    assert decide(claim(Sum(X[q] + b, (q, 1, n)), Sum(X[q], (q, 1, n)) + n * b)).status is ProofStatus.PROVED
+    assert decide(claim(Sum(X[q] * b, (q, 1, n)), n * b)).status is ProofStatus.REFUTED
 
 
 def test_a_median_is_evaluated_and_nothing_is_made_up_about_it() -> None:
     middle = Median(X[q], (q, 1, n))
-    assert decide(claim(middle + b, b + middle)).status is Status.PROVED
-    assert decide(claim(middle, Sum(X[q], (q, 1, n)) / n)).status is Status.REFUTED
-    assert decide(claim(Median(X[q] + b, (q, 1, n)), middle)).status is Status.REFUTED
+    assert decide(claim(middle + b, b + middle)).status is ProofStatus.PROVED
+    assert decide(claim(middle, Sum(X[q], (q, 1, n)) / n)).status is ProofStatus.REFUTED
+    assert decide(claim(Median(X[q] + b, (q, 1, n)), middle)).status is ProofStatus.REFUTED
     # True, and seen at every point; but no algebra of ours knows of order.
-    assert decide(claim(Median(X[q] + b, (q, 1, n)), middle + b)).status is Status.UNDECIDED
+    assert decide(claim(Median(X[q] + b, (q, 1, n)), middle + b)).status is ProofStatus.UNDECIDED
 
 
 @pytest.mark.parametrize(
@@ -110,12 +110,12 @@ def test_a_median_is_evaluated_and_nothing_is_made_up_about_it() -> None:
     ],
 )
 def test_functions_of_every_field_have_values(left: Expr, right: Expr, wrong: Expr) -> None:
-    assert decide(claim(left, right)).status is Status.PROVED
-    assert decide(claim(left, wrong)).status is Status.REFUTED
+    assert decide(claim(left, right)).status is ProofStatus.PROVED
+    assert decide(claim(left, wrong)).status is ProofStatus.REFUTED
 
 
 def test_a_sum_is_tried_with_several_numbers_of_terms() -> None:
-    assert decide(claim(Sum(Integer(1), (q, 1, n)) * X[1], 5 * X[1])).status is Status.REFUTED
+    assert decide(claim(Sum(Integer(1), (q, 1, n)) * X[1], 5 * X[1])).status is ProofStatus.REFUTED
 
 
 def test_a_counterexample_names_the_terms_of_a_sum() -> None:
@@ -129,7 +129,7 @@ def test_a_counterexample_names_the_terms_of_a_sum() -> None:
 def test_numbers_overrule_a_symbolic_half_that_says_yes_to_all(monkeypatch: pytest.MonkeyPatch) -> None:
     check_step.cache_clear()
     monkeypatch.setattr(system.System, "residual_is_zero", lambda self: True)
-    assert decide(claim(a, b)).status is Status.REFUTED
+    assert decide(claim(a, b)).status is ProofStatus.REFUTED
     check_step.cache_clear()
 
 
@@ -140,7 +140,7 @@ def test_a_symbolic_half_that_cannot_tell_proves_nothing(
     check_step.cache_clear()
     monkeypatch.setattr(system, "vanishes", lambda residual: answer)
     found = decide(claim(a + b, b + a))
-    assert found.status is Status.UNDECIDED
+    assert found.status is ProofStatus.UNDECIDED
     assert found.why == "the numbers agree, but the residual was not reduced to zero"
     check_step.cache_clear()
 
@@ -151,9 +151,9 @@ def test_a_numerical_half_that_is_switched_off_proves_nothing(
 ) -> None:
     check_step.cache_clear()
     monkeypatch.setattr(proof, "examine", lambda prepared, seed: sampling.Outcome(points, 0.0))
-    assert decide(claim(a + b, b + a)).status is Status.UNDECIDED
+    assert decide(claim(a + b, b + a)).status is ProofStatus.UNDECIDED
     monkeypatch.setattr(proof, "examine", lambda prepared, seed: sampling.Outcome(POINTS, 0.0))
-    assert decide(claim(a, b)).status is Status.UNDECIDED
+    assert decide(claim(a, b)).status is ProofStatus.UNDECIDED
     check_step.cache_clear()
 
 
@@ -185,7 +185,7 @@ def test_points_suffice_to_see_what_fails_in_a_fifth_of_the_domain(seed: int) ->
     ],
 )
 def test_refuted(wrong: Equation) -> None:
-    assert decide(wrong).status is Status.REFUTED
+    assert decide(wrong).status is ProofStatus.REFUTED
 
 
 @pytest.mark.parametrize(
@@ -198,16 +198,16 @@ def test_refuted(wrong: Equation) -> None:
     ],
 )
 def test_what_the_points_cannot_see_is_left_to_the_algebra(out_of_sight: Equation) -> None:
-    assert decide(out_of_sight).status is Status.UNDECIDED
+    assert decide(out_of_sight).status is ProofStatus.UNDECIDED
 
 
 def test_a_claim_that_has_a_value_only_here_and_there_is_not_proved(monkeypatch: pytest.MonkeyPatch) -> None:
     check_step.cache_clear()
     monkeypatch.setattr(system.System, "residual_is_zero", lambda self: True)
     found = decide(claim(Piecewise((a, a > 1)), a))
-    assert found.status is Status.UNDECIDED
+    assert found.status is ProofStatus.UNDECIDED
     assert found.why.startswith("it has no value at a = ")
-    assert decide(claim(Piecewise((a, a > 1)), 2 * a)).status is Status.REFUTED
+    assert decide(claim(Piecewise((a, a > 1)), 2 * a)).status is ProofStatus.REFUTED
     check_step.cache_clear()
 
 
@@ -232,7 +232,7 @@ def test_a_claim_that_has_a_value_only_here_and_there_is_not_proved(monkeypatch:
 )
 def test_undecided_with_a_sentence(claimed: Equation, why: str) -> None:
     found = decide(claimed)
-    assert found.status is Status.UNDECIDED
+    assert found.status is ProofStatus.UNDECIDED
     assert any(part in found.why for part in why.split("|")), found.why
 
 
@@ -258,9 +258,9 @@ def test_undecided_with_a_sentence(claimed: Equation, why: str) -> None:
 )
 def test_premises_that_decide_nothing(premises: list[tuple[Equation, Expr]], why: str | None) -> None:
     found = decide(claim(a, 7 * b), *premises)
-    assert found.status is not Status.PROVED
+    assert found.status is not ProofStatus.PROVED
     if why is not None:
-        assert found.status is Status.UNDECIDED
+        assert found.status is ProofStatus.UNDECIDED
         assert why in found.why
 
 
@@ -268,14 +268,14 @@ def test_a_premise_that_leaves_its_unknown_open_is_seen() -> None:
     # sin^2 + (its own complement) - 1 is zero, though not to the eye: a may be anything, not 0/0.
     zero = sin(b) ** 2 + sin(b + c) * sin(b - c) - (2 * sin(b) ** 2 - sin(c) ** 2)
     found = decide(claim(a, (c - c) / b + a), (given(a * zero, c * zero), a))
-    assert found.status is Status.UNDECIDED
+    assert found.status is ProofStatus.UNDECIDED
     assert "does not determine" in found.why or "no point" in found.why
 
 
 def test_a_root_whose_right_side_changes_sign_is_used_only_where_it_exists() -> None:
     found = decide(claim(a**2, b - c), (given(a**2, b - c), a))
-    assert found.status is Status.PROVED
-    assert decide(claim(a**2, c - b), (given(a**2, b - c), a)).status is Status.REFUTED
+    assert found.status is ProofStatus.PROVED
+    assert decide(claim(a**2, c - b), (given(a**2, b - c), a)).status is ProofStatus.REFUTED
 
 
 @pytest.mark.parametrize(
@@ -289,34 +289,34 @@ def test_a_root_whose_right_side_changes_sign_is_used_only_where_it_exists() -> 
 )
 def test_a_step_says_what_each_premise_is_for(step: Step, why: str) -> None:
     found = check_step(step)
-    assert found.status is Status.UNDECIDED
+    assert found.status is ProofStatus.UNDECIDED
     assert why in found.why
 
 
 def test_too_few_points_are_said_to_be_too_few() -> None:
     half = Rational(1, 2)
     found = decide(claim(a + b, b + a, conditions=(a < half + Rational(1, 100),)))
-    assert found.status is Status.UNDECIDED
+    assert found.status is ProofStatus.UNDECIDED
     assert found.why.startswith("only ")
     assert found.why.endswith(" points of its domain were found")
 
 
 def test_conditions_of_the_claim_bound_its_domain() -> None:
-    assert decide(claim(Max(a, b), a)).status is Status.REFUTED
+    assert decide(claim(Max(a, b), a)).status is ProofStatus.REFUTED
     bounded = claim(Max(a, b) * 2, 2 * a + b, conditions=(a > b,))
     found = decide(bounded)
-    assert found.status is Status.REFUTED
+    assert found.status is ProofStatus.REFUTED
     assert float(found.counterexample["a"]) > float(found.counterexample["b"])
 
 
 def test_conditions_of_a_premise_must_be_said_by_the_claim() -> None:
     premise = given(c, a - b, a > b + 1)
     assert decide(claim(c + b, a), (premise, c)).why.endswith("which (1) does not say")
-    assert decide(claim(c + b, a, conditions=premise.conditions), (premise, c)).status is Status.PROVED
-    assert decide(claim(y + b, a), (given(y, a - b, y > 0), y)).status is Status.UNDECIDED
-    assert decide(claim(y, a + b), (given(y, a + b, y > 0), y)).status is Status.PROVED
+    assert decide(claim(c + b, a, conditions=premise.conditions), (premise, c)).status is ProofStatus.PROVED
+    assert decide(claim(y + b, a), (given(y, a - b, y > 0), y)).status is ProofStatus.UNDECIDED
+    assert decide(claim(y, a + b), (given(y, a + b, y > 0), y)).status is ProofStatus.PROVED
     assert (
-        decide(claim(c, a + b), (given(c, a + b, c > 0), c)).status is Status.PROVED
+        decide(claim(c, a + b), (given(c, a + b, c > 0), c)).status is ProofStatus.PROVED
     )  # c > 0 says nothing new
 
 
@@ -325,20 +325,20 @@ def test_conditions_of_a_premise_must_be_said_by_the_claim() -> None:
 
 def test_a_row_of_a_column_is_not_its_sum() -> None:
     found = decide(claim(Sum(X[q], (q, 1, n)), n * X[q]))
-    assert found.status is Status.UNDECIDED
+    assert found.status is ProofStatus.UNDECIDED
     assert found.why == "q runs in one expression and is fixed in another"
 
 
 def test_a_premise_for_one_abscissa_is_not_put_under_an_integral() -> None:
     found = decide(claim(Integral(b, (a, 0, 1)), Rational(1, 2)), (given(b, a), b))
-    assert found.status is Status.UNDECIDED
+    assert found.status is ProofStatus.UNDECIDED
     assert found.why == "a runs in one expression and is fixed in another"
 
 
 def test_a_law_for_every_abscissa_is() -> None:
     f = Function("f")(a)
-    assert decide(claim(Integral(f, (a, 0, c)), c**2 / 2), (given(f, a), f)).status is Status.PROVED
-    assert decide(claim(Integral(f, (a, 0, c)), c**2), (given(f, a), f)).status is Status.REFUTED
+    assert decide(claim(Integral(f, (a, 0, c)), c**2 / 2), (given(f, a), f)).status is ProofStatus.PROVED
+    assert decide(claim(Integral(f, (a, 0, c)), c**2), (given(f, a), f)).status is ProofStatus.REFUTED
     assert "closed form" in decide(claim(Integral(f, (a, 0, c)), c), (given(f, f**2), f)).why
 
 
@@ -347,19 +347,22 @@ def test_a_positive_variable_does_not_run_below_zero() -> None:
         decide(claim(Integral(sqrt(a**2), (a, -c, c)), Integer(0))).why
         == "a is positive, but its limits are not"
     )
-    assert decide(claim(Integral(y**2 + y, (y, -c, c)), 2 * c**3 / 3)).status is Status.PROVED
-    assert decide(claim(Integral(y**2, (y, -c, c)), Integer(0))).status is Status.REFUTED
+    assert decide(claim(Integral(y**2 + y, (y, -c, c)), 2 * c**3 / 3)).status is ProofStatus.PROVED
+    assert decide(claim(Integral(y**2, (y, -c, c)), Integer(0))).status is ProofStatus.REFUTED
     assert (
-        decide(claim(Integral(Abs(y), (y, -c, c)), c**2)).status is not Status.PROVED
+        decide(claim(Integral(Abs(y), (y, -c, c)), c**2)).status is not ProofStatus.PROVED
     )  # a kink: not resolved
 
 
 def test_a_cell_and_a_symbol_of_the_same_name_are_two() -> None:
     x_1 = Symbol("X_1", positive=True)
     assert isinstance(X[1], Indexed)
-    assert decide(claim(X[1], x_1)).status is Status.REFUTED
+    assert decide(claim(X[1], x_1)).status is ProofStatus.REFUTED
     column = Symbol("X", positive=True)
-    assert decide(claim(Sum(X[q] * column, (q, 1, n)), column * Sum(X[q], (q, 1, n)))).status is Status.PROVED
+    assert (
+        decide(claim(Sum(X[q] * column, (q, 1, n)), column * Sum(X[q], (q, 1, n)))).status
+        is ProofStatus.PROVED
+    )
 
 
 # --- a claim that is a multiple of its premise -------------------------------------------------------------
@@ -367,9 +370,9 @@ def test_a_cell_and_a_symbol_of_the_same_name_are_two() -> None:
 
 def test_a_multiple_of_a_premise() -> None:
     premise = (given(a**2 + b, c), None)
-    assert decide(claim(b * a**2 + b**2, b * c), premise, factor=b).status is Status.PROVED
+    assert decide(claim(b * a**2 + b**2, b * c), premise, factor=b).status is ProofStatus.PROVED
     wrong = decide(claim(b * a**2 + b, b * c), premise, factor=b)
-    assert wrong.status is Status.REFUTED
+    assert wrong.status is ProofStatus.REFUTED
     at = {name: mpmath.mpf(value) for name, value in wrong.counterexample.items()}
     assert at["a"] ** 2 + at["b"] == pytest.approx(at["c"], rel=1e-4)
     assert wrong.sides[0] != wrong.sides[1]
@@ -377,7 +380,7 @@ def test_a_multiple_of_a_premise() -> None:
 
 def test_a_wrong_factor_refutes_nothing() -> None:
     found = decide(claim(b * a, b * c), (given(a, c), None), factor=b + 1)
-    assert found.status is Status.UNDECIDED
+    assert found.status is ProofStatus.UNDECIDED
     assert found.why == "the premise times the factor is not the claim"
 
 
@@ -385,7 +388,7 @@ def test_a_wrong_factor_refutes_nothing() -> None:
 def test_a_factor_that_may_vanish_or_burst_proves_nothing(factor: Expr) -> None:
     # 1 = 0 is a - b = 0 divided by a - b.
     found = decide(claim(Integer(1), Integer(0)), (given(a, b), None), factor=factor)
-    assert found.status is Status.UNDECIDED
+    assert found.status is ProofStatus.UNDECIDED
     assert "was not seen to be of one sign" in found.why
 
 

@@ -4,7 +4,7 @@ import pytest
 from proving import X, a, b, claim, decide, given, n, q
 from sympy import Eq, Expr, IndexedBase, Piecewise, Sum, Symbol
 
-from loopsheet.derivations.proof import Status
+from loopsheet.derivations.proof import ProofStatus
 
 Y = IndexedBase(Symbol("Y", real=True))
 Z = IndexedBase(Symbol("Z", positive=True))
@@ -43,7 +43,7 @@ def test_a_cell_is_one_of_the_data_that_are_summed(
     left: Expr, right: Expr, conditions: tuple[Expr, ...]
 ) -> None:
     assert decide(claim(left, right, conditions=conditions)).sentence.startswith("residual 0; 20 points")
-    assert decide(claim(left + a / 10**20, right, conditions=conditions)).status is Status.REFUTED
+    assert decide(claim(left + a / 10**20, right, conditions=conditions)).status is ProofStatus.REFUTED
 
 
 @pytest.mark.parametrize(
@@ -61,7 +61,7 @@ def test_a_cell_is_one_of_the_data_that_are_summed(
 )
 def test_what_is_wrong_of_the_data_is_refuted(left: Expr, right: Expr, at: dict[str, str]) -> None:
     found = decide(claim(left, right))
-    assert found.status is Status.REFUTED
+    assert found.status is ProofStatus.REFUTED
     assert at.items() <= found.counterexample.items()
 
 
@@ -76,9 +76,9 @@ def test_the_rows_of_a_counterexample_yield_its_sides() -> None:
 
 def test_a_row_that_is_eliminated_is_eliminated_from_the_sum() -> None:
     first = (given(X[1], b), X[1])
-    assert decide(claim(b + total(X[q], 2), total(X[q])), first).status is Status.PROVED
+    assert decide(claim(b + total(X[q], 2), total(X[q])), first).status is ProofStatus.PROVED
     wrong = decide(claim(2 * b + total(X[q], 2), total(X[q])), first)
-    assert wrong.status is Status.REFUTED
+    assert wrong.status is ProofStatus.REFUTED
     assert wrong.counterexample["X"].startswith(f"({wrong.counterexample['b']}")
     found = decide(claim(X[1], b), (given(X[1], b - total(X[q])), X[1]))
     assert found.why.endswith("holds X_1 also as one of all its rows")
@@ -87,7 +87,10 @@ def test_a_row_that_is_eliminated_is_eliminated_from_the_sum() -> None:
 def test_a_premise_speaks_only_of_rows_that_there_are() -> None:
     found = decide(claim(total(X[q]), n * b), (given(X[k], b), X[k]))
     assert found.why == "X[k] = b holds only where n >= k, which (1) does not say"
-    assert decide(claim(X[k] + total(X[q]), b + total(X[q])), (given(X[k], b), X[k])).status is Status.PROVED
+    assert (
+        decide(claim(X[k] + total(X[q]), b + total(X[q])), (given(X[k], b), X[k])).status
+        is ProofStatus.PROVED
+    )
 
 
 @pytest.mark.parametrize(
@@ -102,5 +105,5 @@ def test_a_premise_speaks_only_of_rows_that_there_are() -> None:
 )
 def test_rows_that_do_not_exist_prove_nothing(left: Expr, right: Expr) -> None:
     found = decide(claim(left, right))
-    assert found.status is Status.UNDECIDED
+    assert found.status is ProofStatus.UNDECIDED
     assert "has several indices, and one of them runs" in found.why or "has no value at" in found.why

@@ -4,7 +4,7 @@ import pytest
 from proving import a, b, c, claim, decide, given, n, w, y
 from sympy import Abs, Eq, Expr, Max, Ne, Or, Rational, log, sqrt
 
-from loopsheet.derivations.proof import Status
+from loopsheet.derivations.proof import ProofStatus
 
 
 @pytest.mark.parametrize(
@@ -30,43 +30,43 @@ from loopsheet.derivations.proof import Status
     ],
 )
 def test_conditions_are_used_by_the_algebra(left: Expr, right: Expr, conditions: tuple[Expr, ...]) -> None:
-    assert decide(claim(left, right, conditions=conditions)).status is Status.PROVED
-    assert decide(claim(left, -right, conditions=conditions)).status is Status.REFUTED
-    assert decide(claim(left, right)).status is not Status.PROVED
+    assert decide(claim(left, right, conditions=conditions)).status is ProofStatus.PROVED
+    assert decide(claim(left, -right, conditions=conditions)).status is ProofStatus.REFUTED
+    assert decide(claim(left, right)).status is not ProofStatus.PROVED
 
 
 @pytest.mark.parametrize(
     ("left", "right", "conditions", "status"),
     [
-        (sqrt((a - b) ** 2), a - b, (a > c,), Status.REFUTED),
-        (sqrt((a - b) ** 2), a - b, (Ne(a, b),), Status.REFUTED),
-        (sqrt((a - b) ** 2), a - b, (Eq(a, b),), Status.UNDECIDED),
-        (sqrt((a - b) ** 2), a - b, (a > b, b > a), Status.UNDECIDED),
-        (sqrt((n - 2) ** 2), n - 2, (n > Rational(1, 2),), Status.REFUTED),
-        (sqrt((a * b - c) ** 2), c - a * b, (a * b > c,), Status.REFUTED),
-        (sqrt((1 - a**2) ** 2), 1 - a**2, (a < 2,), Status.REFUTED),
+        (sqrt((a - b) ** 2), a - b, (a > c,), ProofStatus.REFUTED),
+        (sqrt((a - b) ** 2), a - b, (Ne(a, b),), ProofStatus.REFUTED),
+        (sqrt((a - b) ** 2), a - b, (Eq(a, b),), ProofStatus.UNDECIDED),
+        (sqrt((a - b) ** 2), a - b, (a > b, b > a), ProofStatus.UNDECIDED),
+        (sqrt((n - 2) ** 2), n - 2, (n > Rational(1, 2),), ProofStatus.REFUTED),
+        (sqrt((a * b - c) ** 2), c - a * b, (a * b > c,), ProofStatus.REFUTED),
+        (sqrt((1 - a**2) ** 2), 1 - a**2, (a < 2,), ProofStatus.REFUTED),
     ],
 )
 def test_no_more_is_known_than_the_conditions_say(
-    left: Expr, right: Expr, conditions: tuple[Expr, ...], status: Status
+    left: Expr, right: Expr, conditions: tuple[Expr, ...], status: ProofStatus
 ) -> None:
     assert decide(claim(left, right, conditions=conditions)).status is status
 
 
 def test_conditions_help_to_solve_a_premise() -> None:
     law = (given((a - b) ** c, y**2), a)
-    assert decide(claim((a - b) ** (2 * c), y**4, conditions=(a > b,)), law).status is Status.PROVED
+    assert decide(claim((a - b) ** (2 * c), y**4, conditions=(a > b,)), law).status is ProofStatus.PROVED
     assert "one solution for a" in decide(claim((a - b) ** (2 * c), y**4), law).why
 
 
 def test_conditions_of_a_premise_follow_from_those_of_the_claim() -> None:
     premise = given(c, a - b, a > b)
-    assert decide(claim(c + b, a, conditions=(a > b + 1,)), (premise, c)).status is Status.PROVED
+    assert decide(claim(c + b, a, conditions=(a > b + 1,)), (premise, c)).status is ProofStatus.PROVED
     found = decide(claim(c + b, a, conditions=(a > b - 1,)), (given(c, a - b, a > b + 1), c))
     assert found.why == "c = a - b holds only where a > 1 + b, which (1) does not say"
     whole = given(y, a - n, n > 1)
-    assert decide(claim(y + n, a, conditions=(n > 2,)), (whole, y)).status is Status.PROVED
-    assert decide(claim(y + n, a, conditions=(n > 0,)), (whole, y)).status is Status.UNDECIDED
+    assert decide(claim(y + n, a, conditions=(n > 2,)), (whole, y)).status is ProofStatus.PROVED
+    assert decide(claim(y + n, a, conditions=(n > 0,)), (whole, y)).status is ProofStatus.UNDECIDED
 
 
 @pytest.mark.parametrize(
@@ -92,12 +92,14 @@ def test_a_condition_of_a_premise_is_implied_or_must_be_said(
     needed: Expr, said: tuple[Expr, ...], implied: bool
 ) -> None:
     found = decide(claim(y + b, a, conditions=said), (given(y, a - b, needed), y))
-    assert found.status is (Status.PROVED if implied else Status.UNDECIDED)
+    assert found.status is (ProofStatus.PROVED if implied else ProofStatus.UNDECIDED)
     if not implied:
         assert found.why.endswith("which (1) does not say")
 
 
 def test_a_factor_is_of_one_sign_where_the_conditions_hold() -> None:
     premise = (given(c * (a - b), b * (a - b)), None)
-    assert decide(claim(c, b, conditions=(a > b,)), premise, factor=1 / (a - b)).status is Status.PROVED
-    assert decide(claim(c, b, conditions=(a >= b,)), premise, factor=1 / (a - b)).status is Status.UNDECIDED
+    assert decide(claim(c, b, conditions=(a > b,)), premise, factor=1 / (a - b)).status is ProofStatus.PROVED
+    assert (
+        decide(claim(c, b, conditions=(a >= b,)), premise, factor=1 / (a - b)).status is ProofStatus.UNDECIDED
+    )

@@ -16,8 +16,8 @@ from sympy import Add, Basic, Expr, Indexed, Integral, Mul, Pow, Sum, Symbol
 from loopsheet.derivations import alpha_root
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.equation import Derivation, Equation, Step, evaluated
-from loopsheet.derivations.evaluation import Program
-from loopsheet.derivations.proof import Proof, Status, check_step, prove, prove_equation
+from loopsheet.derivations.evaluation import Tape
+from loopsheet.derivations.proof import Proof, ProofStatus, check_step, prove, prove_equation
 from loopsheet.derivations.soft_impact import LEDGER, XM, XP, E, V, alpha, beta
 
 
@@ -32,18 +32,19 @@ def proofs() -> dict[str, Proof]:
 def test_what_stands(proofs: dict[str, Proof]) -> None:
     by_status = {
         status: " ".join(label for label, proof in proofs.items() if proof.status is status)
-        for status in Status
+        for status in ProofStatus
     }
     assert by_status == {
-        Status.DEFINITION: "(1) (8) (L7) (L8) (L10) (L11) (L12) (L25) (L22) (L23) (L13) (L14) (L15) (L16)",
-        Status.ASSUMPTION: "(2) (3) (4) (5)",
-        Status.PROVED: "(6) (7) (9) (10a) (10b) (10c) (11) (12a) (12b) (12c) (12d) (L1) (L2) (L3) (L4) (L5) "
-        "(L24) (L6) (L9) (L17) (L18) (L19) (L20) (L21) (L26) (L27) (L28)",
-        Status.CORRECTED: "(12e)",
-        Status.LIMIT: "",
-        Status.REFUTED: "",
-        Status.REFUSED: "",
-        Status.UNDECIDED: "",
+        ProofStatus.DEFINITION: "(1) (8) (L7) (L8) (L10) (L11) (L12) (L25) (L22) (L23) (L13) (L14) (L15) "
+        "(L16)",
+        ProofStatus.ASSUMPTION: "(2) (3) (4) (5)",
+        ProofStatus.PROVED: "(6) (7) (9) (10a) (10b) (10c) (11) (12a) (12b) (12c) (12d) (L1) (L2) (L3) (L4) "
+        "(L5) (L24) (L6) (L9) (L17) (L18) (L19) (L20) (L21) (L26) (L27) (L28)",
+        ProofStatus.CORRECTED: "(12e)",
+        ProofStatus.LIMIT: "",
+        ProofStatus.REFUTED: "",
+        ProofStatus.REFUSED: "",
+        ProofStatus.UNDECIDED: "",
     }
 
 
@@ -64,11 +65,11 @@ def test_what_is_printed_in_12_is_corrected(proofs: dict[str, Proof]) -> None:
 @pytest.mark.parametrize(
     ("printed", "status", "remark"),
     [
-        (model.eq12e.members, Status.PROVED, ""),
-        ((model.CP[2], model.C * XM[1] ** alpha), Status.CORRECTED, "as printed, (12e) fails: at C = "),
+        (model.eq12e.members, ProofStatus.PROVED, ""),
+        ((model.CP[2], model.C * XM[1] ** alpha), ProofStatus.CORRECTED, "as printed, (12e) fails: at C = "),
     ],
 )
-def test_12e_with_another_print(printed: tuple[Expr, ...], status: Status, remark: str) -> None:
+def test_12e_with_another_print(printed: tuple[Expr, ...], status: ProofStatus, remark: str) -> None:
     derivation = LEDGER.derivation(model.eq12e)
     assert derivation is not None
     (step,) = derivation.steps
@@ -85,7 +86,7 @@ def test_every_premise_stands_before_its_use() -> None:
         if isinstance(entry, Derivation) and any(
             premise.origin.number for premise in entry.steps[0].premises
         ):
-            assert prove_equation(entry, {}, LEDGER).status is Status.UNDECIDED, entry.claim.label
+            assert prove_equation(entry, {}, LEDGER).status is ProofStatus.UNDECIDED, entry.claim.label
 
 
 # --- wrong variants -------------------------------------------------------------------------------------
@@ -171,11 +172,11 @@ EQUIVALENT = {
 @pytest.mark.parametrize("derivation", CLAIMS, ids=lambda d: d.claim.label)
 def test_every_wrong_variant_is_refuted(derivation: Derivation) -> None:
     step = derivation.steps[-1]
-    assert check_step(step).status is Status.PROVED
+    assert check_step(step).status is ProofStatus.PROVED
     refuted, alike = [], []
     for slip, mutant in mutants(step.claim):
         found = check_step(replace(step, claim=mutant))
-        if found.status is Status.REFUTED:
+        if found.status is ProofStatus.REFUTED:
             assert found.counterexample
             assert all(found.sides)
             refuted.append(slip)
@@ -250,7 +251,7 @@ def test_the_steps_in_between_refuse_wrong_variants_too() -> None:
     for step in inner.values():
         for slip, mutant in mutants(step.claim):
             found = check_step(replace(step, claim=mutant))
-            assert found.status is Status.REFUTED, (slip, mutant.members, found.sentence)
+            assert found.status is ProofStatus.REFUTED, (slip, mutant.members, found.sentence)
 
 
 def test_wrong_premises_are_not_mended() -> None:
@@ -261,7 +262,7 @@ def test_wrong_premises_are_not_mended() -> None:
         (model.C,),
         "",
     )
-    assert check_step(wrong).status is Status.REFUTED
+    assert check_step(wrong).status is ProofStatus.REFUTED
 
 
 # --- the roots of (11) ----------------------------------------------------------------------------------
@@ -273,7 +274,7 @@ Pair = tuple[float | str, ...]
 def at(expression: Expr, pair: Pair, symbol: Symbol) -> Callable[[Any], Any]:
     """The expression for a pair of tests, as a function of one symbol."""
     cells = {cell: Symbol(str(cell)) for cell in (V[1], V[2], E[1], E[2], XP[1], XP[2])}
-    program = Program([*cells.values(), beta, symbol])
+    program = Tape([*cells.values(), beta, symbol])
     group = program.add([evaluated(expression).xreplace(cells)])
     given = [mpmath.mpf(value) for value in pair]
 

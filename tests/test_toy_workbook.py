@@ -13,8 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from loopsheet.derivations.proof import Status as Verdict
-from loopsheet.derivations.proof import prove
+from loopsheet.derivations.proof import ProofStatus, prove
 from loopsheet.report import build
 from loopsheet.report.cells import units
 from loopsheet.report.cli import main
@@ -148,7 +147,7 @@ def data(ecc: float = 0.0934) -> dict[str, object]:
 
 def test_its_claim_is_proved(workbook: Workbook) -> None:
     verdicts = {proof.equation.label: proof.status for proof in prove(workbook.ledger())}
-    assert verdicts["(L1)"] is Verdict.PROVED
+    assert verdicts["(L1)"] is ProofStatus.PROVED
     assert all(verdict.passes for verdict in verdicts.values())
 
 
@@ -192,7 +191,7 @@ def test_it_is_computed_from_its_folder(report: Report) -> None:
     assert values.cell("r", (4,)).value == pytest.approx(2.279e11 * 1.0934, rel=1e-9)
     assert values.counted == {"r_mean": {"sightings": 3}}
     assert [comparison.verdict for comparison in report.comparisons] == ["same"]
-    assert report.proof("(L1)").status is Verdict.PROVED
+    assert report.proof("(L1)").status is ProofStatus.PROVED
 
 
 def test_it_is_written_as_a_page_a_paper_and_data(folder: Path, tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.equation import Equation
 from loopsheet.derivations.reductions import Median
 from loopsheet.report.cells import units
-from loopsheet.report.cells.units import UnitError, dimension_of_unit
+from loopsheet.report.cells.units import DimensionMismatch, dimension_of_unit
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
@@ -83,13 +83,15 @@ WRITTEN = "write names, multiplied by * and divided by / without parentheses, as
     ],
 )
 def test_what_is_no_unit_is_refused(text: str, message: str) -> None:
-    with pytest.raises(UnitError, match="^" + re.escape(message) + "$"):
+    with pytest.raises(DimensionMismatch, match="^" + re.escape(message) + "$"):
         dimension_of_unit(text)
 
 
 def test_an_exponent_must_be_a_column() -> None:
     odd = Column("odd", None, Given(), "N/m^gamma")
-    with pytest.raises(UnitError, match=r"^odd: its unit 'N/m\^gamma' names 'gamma', which is no column$"):
+    with pytest.raises(
+        DimensionMismatch, match=r"^odd: its unit 'N/m\^gamma' names 'gamma', which is no column$"
+    ):
         units.check(Sheet((odd,)))
 
 
@@ -180,7 +182,7 @@ WRONG: dict[str, tuple[Expr, str, str]] = {
 @pytest.mark.parametrize("case", WRONG)
 def test_each_failure_names_column_equation_expression_and_both_dimensions(case: str) -> None:
     expression, unit, message = WRONG[case]
-    with pytest.raises(UnitError) as error:
+    with pytest.raises(DimensionMismatch) as error:
         check(expression, unit)
     found = str(error.value)
     # sympy may turn a comparison round.
@@ -188,14 +190,14 @@ def test_each_failure_names_column_equation_expression_and_both_dimensions(case:
 
 
 def test_a_condition_is_checked_too() -> None:
-    with pytest.raises(UnitError, match=r"^f \(7\): cannot compare m and s in length > time$"):
+    with pytest.raises(DimensionMismatch, match=r"^f \(7\): cannot compare m and s in length > time$"):
         check(L, "m", requires=((L > T, "never"),))
 
 
 def test_a_cell_of_another_row_has_that_rows_exponent() -> None:
     total = Sum(soft[k] * reach[k] ** rate[k], (k, 1, n))
     check(total, "N")
-    with pytest.raises(UnitError, match=r"gives kg m\^\(2 - rate\[k\]\) s\^-2"):
+    with pytest.raises(DimensionMismatch, match=r"gives kg m\^\(2 - rate\[k\]\) s\^-2"):
         check(Sum(soft[k] * reach[k], (k, 1, n)), "N")
 
 
@@ -231,7 +233,7 @@ def test_a_sound_root_passes() -> None:
 def test_each_part_of_a_root_is_checked(
     form: Expr, unit: str, changed: dict[str, Expr], message: str
 ) -> None:
-    with pytest.raises(UnitError, match=r"^r \(9\): ") as error:
+    with pytest.raises(DimensionMismatch, match=r"^r \(9\): ") as error:
         check_root(form, unit, **changed)
     assert message in str(error.value) or message.replace("s and m", "m and s") in str(error.value)
 
@@ -274,7 +276,7 @@ VARIANTS: dict[str, tuple[str, Expr]] = {
 @pytest.mark.parametrize("case", VARIANTS)
 def test_wrong_variants_of_the_papers_formulas_are_caught(case: str) -> None:
     name, expression = VARIANTS[case]
-    with pytest.raises(UnitError, match=rf"^{name} \(7\): "):
+    with pytest.raises(DimensionMismatch, match=rf"^{name} \(7\): "):
         units.check(with_formula(name, expression))
 
 

@@ -17,7 +17,7 @@ from matplotlib.text import Text
 from loopsheet.report import stages
 from loopsheet.report.document.material import Material
 from loopsheet.report.document.numbers import decimals
-from loopsheet.report.document.refereed import FIGURE, Value, figure
+from loopsheet.report.document.refereed import FIGURE, RefereedPair, figure
 from loopsheet.report.document.said import Said
 from loopsheet.report.result.result import Report
 from loopsheet.report.result.verdict import (
@@ -43,7 +43,7 @@ SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="360pt" height="180pt"><pat
 XHTML = "{http://www.w3.org/1999/xhtml}"
 
 
-def out_of(report: Report) -> list[Value]:
+def out_of(report: Report) -> list[RefereedPair]:
     """The published values that are out of reach by themselves."""
     return [value for value in Material(report).refereed if value.verdict == UNREACHABLE]
 

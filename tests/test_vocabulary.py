@@ -10,7 +10,7 @@ from sympy import Function, IndexedBase, Symbol
 
 from loopsheet.derivations.dimensions import Dimensions, dimension_of_unit
 from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger
-from loopsheet.derivations.proof import Status, prove
+from loopsheet.derivations.proof import ProofStatus, prove
 from loopsheet.derivations.text import text
 from loopsheet.derivations.vocabulary import NO_WORDS, Quantity, Vocabulary
 from loopsheet.report import build
@@ -112,15 +112,15 @@ x, d, p_1 = (Symbol(name, positive=True) for name in ("x", "d", "p_1"))
 def test_ranges_come_with_the_ledger_that_is_proved() -> None:
     """The paper samples x far below d; here they are anybody's symbols."""
 
-    def status(big: Symbol, small: Symbol, words: Vocabulary = NO_WORDS) -> Status:
+    def status(big: Symbol, small: Symbol, words: Vocabulary = NO_WORDS) -> ProofStatus:
         given = Equation("", (big, small + 1), "", Kind.DEFINITION, "given")
         claim = Equation("(1)", (big**2 - small, small**2 + small + 1), "", conditions=(small > big / 3,))
         return prove(Ledger((Derivation.of(claim, (given,), (big,), ""),), (), words))[0].status
 
-    assert status(d, x) is status(x, d) is status(p_1, x) is Status.PROVED
+    assert status(d, x) is status(x, d) is status(p_1, x) is ProofStatus.PROVED
     far = Vocabulary(Quantity("x", "approach", "m", "x%s", (1e-6, 1e-4)))
-    assert status(d, x, far) is Status.UNDECIDED
-    assert status(x, d, far) is Status.PROVED
+    assert status(d, x, far) is ProofStatus.UNDECIDED
+    assert status(x, d, far) is ProofStatus.PROVED
 
 
 def test_words_are_found_for_every_form_of_a_symbol() -> None:

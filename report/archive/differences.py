@@ -11,7 +11,7 @@ from ..files.form import Index
 from ..files.values import Column, Result
 from ..result.agreement import LIMIT
 
-__all__ = ["Change", "Differences", "Move", "compare"]
+__all__ = ["Differences", "Move", "OtherChange", "compare"]
 
 EPS = sys.float_info.epsilon
 
@@ -50,7 +50,7 @@ class Move:
 
 
 @dataclass(frozen=True)
-class Change:
+class OtherChange:
     """Something else that is another one: an equation, a proof, a verdict; empty where there was none."""
 
     name: str
@@ -72,12 +72,12 @@ class Differences:
         How many differ by what rounding may do.
     moved : tuple of Move
         The others: what the user gives first, then scalars, then the rest in the order of the sheet.
-    method : tuple of Change
+    method : tuple of OtherChange
         Columns that follow another equation, or have another unit or index set, and equations whose proof
         came out otherwise.
     added, removed : tuple of str
         Columns and rows that only one of them has.
-    published : tuple of Change
+    published : tuple of OtherChange
         Published values with another verdict.
     """
 
@@ -86,10 +86,10 @@ class Differences:
     same: int
     noise: int
     moved: tuple[Move, ...]
-    method: tuple[Change, ...]
+    method: tuple[OtherChange, ...]
     added: tuple[str, ...]
     removed: tuple[str, ...]
-    published: tuple[Change, ...]
+    published: tuple[OtherChange, ...]
 
     @property
     def any(self) -> bool:
@@ -155,14 +155,14 @@ def _within(was: tuple[float | None, str], now: tuple[float | None, str], allowe
     return abs(now[0] - was[0]) <= max(LIMIT * EPS * max(abs(was[0]), abs(now[0])), allowed)
 
 
-def _rules(before: Result, after: Result) -> list[Change]:
+def _rules(before: Result, after: Result) -> list[OtherChange]:
     found = []
     for name, old in before.cells.items():
         new = after.cells.get(name)
         if new is not None and _method(old) != _method(new):
-            found.append(Change(name, _method(old), _method(new)))
+            found.append(OtherChange(name, _method(old), _method(new)))
     if before.workbook != after.workbook:
-        found.insert(0, Change("workbook", before.workbook, after.workbook))
+        found.insert(0, OtherChange("workbook", before.workbook, after.workbook))
     return found
 
 
@@ -179,9 +179,9 @@ def _verdicts(result: Result) -> dict[str, str]:
     }
 
 
-def _changes(before: Mapping[str, str], after: Mapping[str, str]) -> list[Change]:
+def _changes(before: Mapping[str, str], after: Mapping[str, str]) -> list[OtherChange]:
     names = dict.fromkeys([*before, *after])
-    pairs = [Change(name, before.get(name, ""), after.get(name, "")) for name in names]
+    pairs = [OtherChange(name, before.get(name, ""), after.get(name, "")) for name in names]
     return [change for change in pairs if change.before != change.after]
 
 

@@ -19,7 +19,7 @@ __all__ = [
     "FIRST_ROW",
     "SCALARS",
     "STEPS",
-    "Block",
+    "CellBlock",
     "Grid",
     "Place",
     "as_issued",
@@ -135,7 +135,7 @@ def quoted(worksheet: str) -> str:
 
 
 @dataclass(frozen=True)
-class Block:
+class CellBlock:
     """The cells of one quantity.
 
     Parameters
@@ -198,7 +198,7 @@ class Grid:
 
     Parameters
     ----------
-    blocks : tuple of Block
+    blocks : tuple of CellBlock
         Worksheet by worksheet, from left to right or from top to bottom.
     axes : mapping of worksheet name to Axis
         Those that hold the rows of an axis.
@@ -207,20 +207,20 @@ class Grid:
         Free cells beside the given columns of an axis, for what is wrong with them.
     """
 
-    blocks: tuple[Block, ...]
+    blocks: tuple[CellBlock, ...]
     axes: Mapping[str, Axis]
     drawn: Drawn | None = None
     notes: Mapping[str, Place] = field(default_factory=dict)
 
     @cached_property
-    def by_name(self) -> Mapping[str, Block]:
+    def by_name(self) -> Mapping[str, CellBlock]:
         """Every block but those of rows' numbers by its name."""
         return {block.name: block for block in self.blocks if block.kind != "index"}
 
-    def __getitem__(self, name: str) -> Block:
+    def __getitem__(self, name: str) -> CellBlock:
         return self.by_name[name]
 
-    def on(self, worksheet: str, *kinds: str) -> tuple[Block, ...]:
+    def on(self, worksheet: str, *kinds: str) -> tuple[CellBlock, ...]:
         """The blocks of a worksheet, all or some kinds of them."""
         return tuple(
             b for b in self.blocks if b.place.worksheet == worksheet and (not kinds or b.kind in kinds)

@@ -21,7 +21,7 @@ from ..quantity import Bounds
 from ..sheet import Column, Formula, Limit, Sheet, SheetError
 from .values import Status, Values
 
-__all__ = ["Count", "Margin", "Marks", "margins", "with_margins"]
+__all__ = ["Margin", "MarkCount", "Marks", "margins", "with_margins"]
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Margin:
 
 
 @dataclass(frozen=True)
-class Count:
+class MarkCount:
     """How many rows lie outside of a limit, of those for which that is known."""
 
     margin: Margin
@@ -141,16 +141,16 @@ class Marks:
         found: NDArray[np.bool_] = self.values.value[margin.column.name] < 0
         return found
 
-    def count(self, margin: Margin) -> Count:
+    def count(self, margin: Margin) -> MarkCount:
         """How many do."""
         known = self.values.status[margin.column.name] == Status.OK
-        return Count(margin, int(self.outside(margin).sum()), int(known.sum()))
+        return MarkCount(margin, int(self.outside(margin).sum()), int(known.sum()))
 
     def limiting(self, name: str) -> tuple[Margin, ...]:
         """The margins of a column's limits."""
         return tuple(self._by_name.get(name, ()))
 
-    def limited(self, name: str) -> Count:
+    def limited(self, name: str) -> MarkCount:
         """How many cells of a column lie outside of the first statement that limits it."""
         return next(self.count(margin) for margin in self._by_name[name] if margin.limit.source)
 
@@ -163,7 +163,7 @@ class Marks:
                 marks[row].append(margin.limit.mark)
         return ["; ".join(own) for own in marks]
 
-    def behind(self, column: Column) -> Iterator[Count]:
+    def behind(self, column: Column) -> Iterator[MarkCount]:
         """For a scalar, how many of the rows that it rests on lie outside, limit by limit."""
         if column.axis is None:
             names = {ancestor.name for ancestor in self.values.sheet.ancestors(column)}

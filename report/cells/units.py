@@ -17,10 +17,10 @@ from ...derivations.vocabulary import NO_WORDS
 from ..quantity import Bounds
 from ..sheet import Column, Formula, Given, Root, Sheet, SheetError, name_of
 
-__all__ = ["Dimension", "UnitError", "check", "dimension_of_unit"]
+__all__ = ["Dimension", "DimensionMismatch", "check", "dimension_of_unit"]
 
 
-class UnitError(SheetError):
+class DimensionMismatch(SheetError):
     """A formula adds, compares or raises what cannot be."""
 
 
@@ -36,7 +36,7 @@ def dimension_of_unit(text: str, exponents: Mapping[str, Expr] | None = None) ->
 
     Raises
     ------
-    UnitError
+    DimensionMismatch
         Names the unit or the exponent that is not known.
 
     Examples
@@ -47,7 +47,7 @@ def dimension_of_unit(text: str, exponents: Mapping[str, Expr] | None = None) ->
     try:
         return dimensions.dimension_of_unit(text, exponents)
     except DimensionError as problem:
-        raise UnitError(str(problem)) from None
+        raise DimensionMismatch(str(problem)) from None
 
 
 class _Checker(Dimensions):
@@ -57,9 +57,9 @@ class _Checker(Dimensions):
         super().__init__(NO_WORDS)  # the columns say what their cells are
         self.sheet, self.column = sheet, column
 
-    def fail(self, expression: Basic, problem: str) -> UnitError:
+    def fail(self, expression: Basic, problem: str) -> DimensionMismatch:
         """The complaint names the column and its equation."""
-        return UnitError(f"{self.column.name} {self.column.source}: {problem} in {sstr(expression)}")
+        return DimensionMismatch(f"{self.column.name} {self.column.source}: {problem} in {sstr(expression)}")
 
     def of_cell(self, cell: Expr) -> Dimension:
         """The dimension of a cell of the sheet."""
@@ -85,7 +85,7 @@ def exponents(sheet: Sheet, column: Column, index: Expr | None) -> dict[str, Exp
     found: dict[str, Expr] = {}
     for name in re.findall(r"\^([A-Za-z_]\w*)", column.unit):
         if name not in sheet:
-            raise UnitError(f"its unit {column.unit!r} names {name!r}, which is no column")
+            raise DimensionMismatch(f"its unit {column.unit!r} names {name!r}, which is no column")
         other = sheet[name]
         row = index if index is not None else (None if column.axis is None else column.axis.index)
         found[name] = other.symbol if other.axis is None else other[row]
@@ -97,15 +97,15 @@ def check(sheet: Sheet) -> None:
 
     Raises
     ------
-    UnitError
+    DimensionMismatch
         Names the column, its equation, the expression and both dimensions.
     """
     for column in sheet.columns:
         checker = _Checker(sheet, column)
         try:
             own = dimension_of_unit(column.unit, exponents(sheet, column, None))
-        except UnitError as problem:
-            raise UnitError(f"{column.name}: {problem}") from None
+        except DimensionMismatch as problem:
+            raise DimensionMismatch(f"{column.name}: {problem}") from None
         rule = column.rule
         if isinstance(rule, Formula):
             _expect(checker, rule.expression, own)

@@ -11,20 +11,19 @@ from functools import cached_property
 from itertools import chain, islice
 
 from ...derivations.equation import Equation
-from ...derivations.proof import Proof
-from ...derivations.proof import Status as Known
-from ..cells.marks import Count
+from ...derivations.proof import Proof, ProofStatus
+from ..cells.marks import MarkCount
 from ..cells.values import Cell
 from ..messages.diagnostics import Check
 from ..result.result import Report
 from ..sheet import Axis, Column, Given, Root
 from ..workbook import FigureSpec, TableSpec
-from .math import Printer, latex_names, name_latex
-from .numbers import Figure, decimals, read, shown, table_format
-from .parts import MARK, MOST, Group, Head, Item, Pair, Remark, slug
-from .refereed import Value, figures
+from .math import MathPrinter, latex_names, name_latex
+from .numbers import Numeral, decimals, read, shown, table_format
+from .parts import MARK, MOST, Head, Item, Pair, Remark, SourceGroup, slug
+from .refereed import RefereedPair, figures
 from .rich import Sentences
-from .tree import Status
+from .tree import Badge
 
 __all__ = ["Material"]
 
@@ -35,7 +34,7 @@ class Material:
     def __init__(self, report: Report) -> None:
         self.report = report
         self.names = latex_names(report.ledger.vocabulary, report.sheet.columns)
-        self.printer = Printer(self.names)
+        self.printer = MathPrinter(self.names)
         self.sentences = Sentences(report.ledger.vocabulary, self.names, self.identifiers)
 
     # --- names and numbers
@@ -67,7 +66,7 @@ class Material:
         head, cells = self.head(column), list(self.report.values.cells(name))
         printed = self.report.inputs.printed(name) if head.given else ()
         form = self.report.shown[name]
-        figures: list[Figure | None]
+        figures: list[Numeral | None]
         if not printed:
             figures = shown((cell.value for cell in cells), form.scale, form.digits)
             texts: tuple[str | None, ...] = (None,) * len(cells)
@@ -102,7 +101,7 @@ class Material:
 
     # --- marks
 
-    def marked(self, name: str) -> tuple[Count, ...]:
+    def marked(self, name: str) -> tuple[MarkCount, ...]:
         """For a scalar, how many of the rows that it rests on lie outside of what is expected."""
         counts = self.report.marks.behind(self.report.sheet[name])
         return tuple(count for count in counts if count.number)
@@ -180,17 +179,21 @@ class Material:
         """What was found of it; None where the algebra was not checked."""
         return next((proof for proof in self.report.proofs if proof.equation == equation), None)
 
-    def status(self, equation: Equation) -> Status:
+    def status(self, equation: Equation) -> Badge:
         """What is known of it."""
         proof = self.proof(equation)
-        if proof is None or proof.status in (Known.DEFINITION, Known.ASSUMPTION, Known.LIMIT):
-            return Status(proof.status.value if proof else "not checked", "stated")
-        return Status(proof.status.value, "holds" if proof.status.passes else "fails")
+        if proof is None or proof.status in (
+            ProofStatus.DEFINITION,
+            ProofStatus.ASSUMPTION,
+            ProofStatus.LIMIT,
+        ):
+            return Badge(proof.status.value if proof else "not checked", "stated")
+        return Badge(proof.status.value, "holds" if proof.status.passes else "fails")
 
     # --- published values
 
     @cached_property
-    def groups(self) -> tuple[Group, ...]:
+    def groups(self) -> tuple[SourceGroup, ...]:
         """The published values by their source, in the order of the file."""
         found: dict[str, list[Pair]] = {}
         for comparison in self.report.comparisons:
@@ -202,13 +205,17 @@ class Material:
             )
             found.setdefault(comparison.published.source, []).append(pair)
         titles = self.report.workbook.published_as if self.report.inputs.about_source else {}
-        return tuple(Group(source, titles.get(source, ""), tuple(pairs)) for source, pairs in found.items())
+        return tuple(
+            SourceGroup(source, titles.get(source, ""), tuple(pairs)) for source, pairs in found.items()
+        )
 
     @cached_property
-    def refereed(self) -> tuple[Value, ...]:
+    def refereed(self) -> tuple[RefereedPair, ...]:
         """Those that the referee was asked about."""
         pairs = (pair for group in self.groups for pair in group.pairs)
-        return tuple(Value(pair, pair.comparison.refereed) for pair in pairs if pair.comparison.refereed)
+        return tuple(
+            RefereedPair(pair, pair.comparison.refereed) for pair in pairs if pair.comparison.refereed
+        )
 
     # --- errors
 

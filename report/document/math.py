@@ -21,7 +21,7 @@ from ...derivations.reductions import Median
 from ...derivations.vocabulary import Vocabulary
 from ..sheet import Column, name_of
 
-__all__ = ["Printer", "latex_names", "name_latex", "with_index"]
+__all__ = ["MathPrinter", "latex_names", "name_latex", "with_index"]
 
 _RELATIONS = {"<=": r"\le", ">=": r"\ge", "<": "<", ">": ">", "==": "=", "!=": r"\ne"}
 _MIRROR = {">=": "<=", ">": "<"}
@@ -99,7 +99,7 @@ def with_index(template: str, index: str = "") -> str:
 # --- expressions -----------------------------------------------------------------------------------------
 
 
-class Printer(LatexPrinter):  # type: ignore[misc] # sympy has no types
+class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
     """LaTeX in the order in which the author wrote it.
 
     Parameters

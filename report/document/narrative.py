@@ -22,7 +22,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .said import Answer, Said, Unknown
+from .said import Answer, Said, UnknownName
 from .tree import Block, Blocks, Code, Inlines, Items, Link, Note, Paragraph, Section, Strong
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ class _Reader:
             raise NarrativeError(f"{place}: no role is called {{{role}}}; there are {', '.join(roles)}")
         try:
             return ((alone and roles[role].alone) or roles[role].inline)(argument)
-        except Unknown as error:
+        except UnknownName as error:
             raise NarrativeError(f"{place}: {error}") from error
 
     # --- blocks

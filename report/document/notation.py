@@ -11,10 +11,10 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
-__all__ = ["FUNCTIONS", "NONE", "Part", "fragments", "plain", "read"]
+__all__ = ["FUNCTIONS", "NONE", "Notation", "fragments", "plain", "read"]
 
 
-class Part(NamedTuple):
+class Notation(NamedTuple):
     r"""A piece of notation.
 
     Parameters
@@ -29,10 +29,10 @@ class Part(NamedTuple):
 
     kind: str
     text: str = ""
-    parts: tuple[Part, ...] = ()
+    parts: tuple[Notation, ...] = ()
 
 
-NONE = Part("row")
+NONE = Notation("row")
 FUNCTIONS = frozenset({"ln", "exp", "max", "min"})
 """Words that stand apart from the factor before them."""
 _TOKEN = re.compile(
@@ -59,7 +59,7 @@ _LIMITS = frozenset("∑∏")
 
 
 @lru_cache(maxsize=4096)
-def read(latex: str) -> Part:
+def read(latex: str) -> Notation:
     """The tree of a formula.
 
     >>> read("x_{m}").parts[0].kind, plain(read(r"x_{m}'"))
@@ -68,7 +68,7 @@ def read(latex: str) -> Part:
     return _Reader(latex).row()
 
 
-def plain(part: Part) -> str:
+def plain(part: Notation) -> str:
     """Its letters, one after the other."""
     return part.text + "".join(map(plain, part.parts))
 
@@ -86,7 +86,7 @@ def fragments(latex: str) -> list[tuple[str, str]]:
     return pieces
 
 
-def _letters(part: Part, height: str) -> Iterator[tuple[str, str]]:
+def _letters(part: Notation, height: str) -> Iterator[tuple[str, str]]:
     if part.kind in {"scripts", "limits"}:
         base, below, above = part.parts
         primes = not set(plain(above)) - set("′″‴")
@@ -109,9 +109,9 @@ class _Reader:
         self.tokens = list(_TOKEN.finditer(latex))[::-1]
         self.ended = ""
 
-    def row(self, *ends: str) -> Part:
+    def row(self, *ends: str) -> Notation:
         """Everything up to one of these tokens, which is taken."""
-        parts: list[Part] = []
+        parts: list[Notation] = []
         while self.tokens:
             token = self.tokens.pop()
             text = token.group()
@@ -124,19 +124,19 @@ class _Reader:
                     self.tokens.pop()
                     primes += "′"
                 primes = {"′′": "″", "′′′": "‴"}.get(primes, primes)
-                parts.append(_scripted(parts, 2, Part("letter", primes)))
+                parts.append(_scripted(parts, 2, Notation("letter", primes)))
             elif text in {"_", "^"}:
                 parts.append(_scripted(parts, 1 + (text == "^"), self.argument()))
             else:
                 parts.append(self.part(token))
-        return Part("row", "", tuple(parts))
+        return Notation("row", "", tuple(parts))
 
-    def argument(self) -> Part:
+    def argument(self) -> Notation:
         """What a command or a script takes: a group, or what comes next."""
         made = self.part(self.tokens.pop()) if self.tokens else NONE
         return made.parts[0] if made.kind == "row" and len(made.parts) == 1 else made
 
-    def part(self, token: re.Match[str]) -> Part:
+    def part(self, token: re.Match[str]) -> Notation:
         """What begins with a token."""
         command, other = token["command"], token["other"]
         if token["style"]:
@@ -144,70 +144,70 @@ class _Reader:
             bold = token["style"] == "mathbf" and re.fullmatch("[A-Za-z]", word)
             kind = {"text": "text", "mathit": "letter"}.get(token["style"], "upright")
             letter = unicodedata.lookup(_BOLD[word.islower()] + word.upper()) if bold else word
-            return Part("letter" if bold else kind, letter)
+            return Notation("letter" if bold else kind, letter)
         if token["number"]:
-            return Part("number", token["number"])
+            return Notation("number", token["number"])
         if token["begin"]:
             return self.cases()
         if command is None:
             if other == "{":
                 return self.row("}")
-            return Part("letter" if other.isalpha() else "sign", other.replace("-", "−"))
+            return Notation("letter" if other.isalpha() else "sign", other.replace("-", "−"))
         if command == "left":
             opening = self.tokens.pop().group() if self.tokens else "."
             inside = self.row(r"\right")
             closing = self.tokens.pop().group() if self.tokens else "."
-            return Part("fence", opening[-1] + closing[-1], inside.parts)
+            return Notation("fence", opening[-1] + closing[-1], inside.parts)
         if command in {"frac", "sqrt", "underset"}:
             first = self.argument()
             if command == "sqrt":
-                return Part("root", "", (first,))
+                return Notation("root", "", (first,))
             second = self.argument()
             both = (first, second) if command == "frac" else (second, first)
-            return Part("fraction" if command == "frac" else "under", "", both)
+            return Notation("fraction" if command == "frac" else "under", "", both)
         if command in _ACCENTS:
-            return Part("accent", _ACCENTS[command], (self.argument(),))
+            return Notation("accent", _ACCENTS[command], (self.argument(),))
         if command in _SPACES:
-            return Part("space", _SPACES[command])
+            return Notation("space", _SPACES[command])
         if command in _SIGNS:
-            return Part("letter" if command == "prime" else "sign", _SIGNS[command])
+            return Notation("letter" if command == "prime" else "sign", _SIGNS[command])
         return _named(command)
 
-    def cases(self) -> Part:
+    def cases(self) -> Notation:
         """The lines of a distinction of cases."""
-        lines: list[Part] = []
-        cells: list[Part] = []
+        lines: list[Notation] = []
+        cells: list[Notation] = []
         while self.tokens:
             cells.append(self.row("&", r"\\", r"\end{cases}"))
             end = self.ended
             if end != "&":
-                lines.append(Part("line", "", tuple(cells)))
+                lines.append(Notation("line", "", tuple(cells)))
                 cells = []
             if end == r"\end{cases}":
                 break
-        return Part("cases", "", tuple(lines))
+        return Notation("cases", "", tuple(lines))
 
 
 _BOLD = ("MATHEMATICAL BOLD CAPITAL ", "MATHEMATICAL BOLD SMALL ")
 
 
-def _scripted(parts: list[Part], place: int, script: Part) -> Part:
+def _scripted(parts: list[Notation], place: int, script: Notation) -> Notation:
     """The last part with one script more."""
     base = parts.pop() if parts else NONE
     if base.kind in {"scripts", "limits"} and base.parts[place] == NONE:
         return base._replace(parts=tuple(script if n == place else part for n, part in enumerate(base.parts)))
     both = (NONE, script) if place == 2 else (script, NONE)
-    return Part("limits" if base.text in _LIMITS else "scripts", "", (base, *both))
+    return Notation("limits" if base.text in _LIMITS else "scripts", "", (base, *both))
 
 
-def _named(command: str) -> Part:
+def _named(command: str) -> Notation:
     """A Greek letter, or an upright word."""
     if command in _LETTERS:
-        return Part("letter", _LETTERS[command])
+        return Notation("letter", _LETTERS[command])
     size = "CAPITAL" if command[0].isupper() else "SMALL"
     try:
-        return Part(
+        return Notation(
             "letter", unicodedata.lookup(f"GREEK {size} LETTER {command.removeprefix('var').upper()}")
         )
     except KeyError:
-        return Part("upright", command)
+        return Notation("upright", command)

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
 
-__all__ = ["RAISED", "Figure", "decimals", "is_pure", "read", "rounded", "shown", "table_format"]
+__all__ = ["RAISED", "Numeral", "decimals", "is_pure", "read", "rounded", "shown", "table_format"]
 
 _BEYOND = 2
 """An integer part with more digits than these beyond the known ones is written with a power of ten."""
@@ -25,7 +25,7 @@ RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 @dataclass(frozen=True)
-class Figure:
+class Numeral:
     """A number as it is shown.
 
     Parameters
@@ -73,12 +73,12 @@ class Figure:
         return rf"\num{{{self.plain}}}"
 
 
-def read(text: str) -> Figure | None:
+def read(text: str) -> Numeral | None:
     """Read a printed number as it stands, for its alignment; None if it is not plain digits."""
     match = re.fullmatch(r"([+-]?)(\d+)(?:\.(\d+))?(?:[eE]([+-]?\d+))?", text, re.ASCII)
     if match is None or match[1] == "+":
         return None
-    return Figure(match[1] == "-", match[2], match[3] or "", None if match[4] is None else int(match[4]))
+    return Numeral(match[1] == "-", match[2], match[3] or "", None if match[4] is None else int(match[4]))
 
 
 def _rounded(value: float, digits: int) -> tuple[Decimal, int]:
@@ -91,7 +91,7 @@ def _rounded(value: float, digits: int) -> tuple[Decimal, int]:
     return short, short.adjusted()
 
 
-def rounded(value: float, digits: int, scientific: bool | None = None) -> Figure:
+def rounded(value: float, digits: int, scientific: bool | None = None) -> Numeral:
     r"""Show a number with significant digits.
 
     Parameters
@@ -124,21 +124,21 @@ def rounded(value: float, digits: int, scientific: bool | None = None) -> Figure
         return _figure(f"{exact:.{places}f}", None)
 
 
-def decimals(value: float, places: int) -> Figure:
+def decimals(value: float, places: int) -> Numeral:
     """Show a number with a given number of decimals: as another one is printed."""
     with localcontext(Context(prec=400, rounding=ROUND_HALF_EVEN)):
         return _figure(f"{Decimal(value):.{max(0, places)}f}", None)
 
 
-def _figure(text: str, exponent: int | None) -> Figure:
+def _figure(text: str, exponent: int | None) -> Numeral:
     negative = text.startswith("-")
     whole, _, fraction = text.lstrip("-").partition(".")
     if not int(whole + fraction):
         negative = False
-    return Figure(negative, whole, fraction, exponent)
+    return Numeral(negative, whole, fraction, exponent)
 
 
-def shown(values: Iterable[float | None], scale: float, digits: int) -> list[Figure | None]:
+def shown(values: Iterable[float | None], scale: float, digits: int) -> list[Numeral | None]:
     """Show a column in one notation: a power of ten for all its numbers or for none.
 
     Parameters
@@ -157,7 +157,7 @@ def shown(values: Iterable[float | None], scale: float, digits: int) -> list[Fig
     return [None if value is None else rounded(value, digits, scientific) for value in scaled]
 
 
-def table_format(figures: Iterable[Figure | None]) -> str:
+def table_format(figures: Iterable[Numeral | None]) -> str:
     """The ``table-format`` of siunitx that holds all numbers of a column.
 
     >>> table_format([read("2.334"), read("-51.0")])

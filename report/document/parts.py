@@ -9,10 +9,19 @@ from ..cells.address import index_text
 from ..cells.values import Cell, Status
 from ..quantity import Printed
 from ..result.result import Comparison
-from .numbers import Figure, is_pure
+from .numbers import Numeral, is_pure
 
 __all__ = [
-    "MARK", "MOST", "Group", "Head", "Item", "Pair", "Remark", "cell_id", "described", "slug",
+    "MARK",
+    "MOST",
+    "Head",
+    "Item",
+    "Pair",
+    "Remark",
+    "SourceGroup",
+    "cell_id",
+    "described",
+    "slug",
     "why_address",
 ]  # fmt: skip
 
@@ -84,7 +93,7 @@ class Item:
     cell : Cell
     head : Head
         Of its column.
-    figure : Figure or None
+    figure : Numeral or None
         Its number; None if it has none, or if it was printed in another notation.
     printed : str or None
         A given number as the user printed it.
@@ -92,7 +101,7 @@ class Item:
 
     cell: Cell
     head: Head
-    figure: Figure | None
+    figure: Numeral | None
     printed: str | None = None
     mark: str = ""
     """What it lies outside of, if it does."""
@@ -154,9 +163,9 @@ class Pair:
 
     comparison: Comparison
     head: Head
-    published: Figure | None
-    again: Figure | None
-    distance: Figure | None
+    published: Numeral | None
+    again: Numeral | None
+    distance: Numeral | None
     axis: str = ""
 
     @property
@@ -182,7 +191,7 @@ class Pair:
 
 
 @dataclass(frozen=True)
-class Group:
+class SourceGroup:
     """The published values of one place of the source."""
 
     source: str

@@ -9,10 +9,10 @@ from ..result import verdict_words as words
 from ..result.result import Report
 from ..result.verdict import EXACT, REACHABLE, UNREACHABLE, WITHIN, Verdict
 from ..workbook import FigureSpec
-from .numbers import Figure, decimals, read
+from .numbers import Numeral, decimals, read
 from .parts import Head, Pair
 
-__all__ = ["FIGURE", "GOOD", "Value", "figure", "figures", "shown_mismatch"]
+__all__ = ["FIGURE", "GOOD", "RefereedPair", "figure", "figures", "shown_mismatch"]
 
 GOOD = (EXACT, REACHABLE, WITHIN)
 """Verdicts that ask for no explanation."""
@@ -54,7 +54,7 @@ def figures(report: Report) -> tuple[FigureSpec, ...]:
 
 
 @dataclass(frozen=True)
-class Value:
+class RefereedPair:
     """A published value as the referee sees it.
 
     Parameters
@@ -83,21 +83,21 @@ class Value:
         return self.pair.comparison.published.source, self.pair.head, self.pair.printed.unit
 
     @property
-    def here(self) -> Figure | None:
+    def here(self) -> Numeral | None:
         """The recomputed value, in the decimals of what surrounds it: rounded alike, it lies between."""
         return self._shown(self.pair.comparison.cell.value)
 
     @property
-    def low(self) -> Figure | None:
+    def low(self) -> Numeral | None:
         """The least value that printed inputs were seen to yield; None where one of them is not printed."""
         return self._shown(self.found.low)
 
     @property
-    def high(self) -> Figure | None:
+    def high(self) -> Numeral | None:
         """The largest."""
         return self._shown(self.found.high)
 
-    def _shown(self, value: float | None) -> Figure | None:
+    def _shown(self, value: float | None) -> Numeral | None:
         """A value in the printed unit, with one decimal more than was printed."""
         if value is None or not math.isfinite(value):
             return None
@@ -105,6 +105,6 @@ class Value:
         return decimals(value / float(printed.scale), max(0, printed.decimals + 1))
 
 
-def shown_mismatch(mismatch: float | None) -> Figure | None:
+def shown_mismatch(mismatch: float | None) -> Numeral | None:
     """A mismatch as it is shown."""
     return None if mismatch is None or not math.isfinite(mismatch) else read(words.mismatch(mismatch))

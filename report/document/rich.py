@@ -12,7 +12,7 @@ from functools import cached_property
 
 from sympy import Symbol
 
-from ...derivations.text import Writer
+from ...derivations.text import Wording
 from ...derivations.vocabulary import Vocabulary
 from .math import name_latex
 from .numbers import read
@@ -114,7 +114,7 @@ class Sentences:
     @cached_property
     def _written(self) -> dict[str, tuple[str, str]]:
         """Names as sentences of the derivations write them, ``x_m2``: the quantity and its index."""
-        text, quantities = Writer(self.vocabulary).text, self.vocabulary.items()
+        text, quantities = Wording(self.vocabulary).text, self.vocabulary.items()
         # x_p is the imprint depth before it is the x of some p.
         found: dict[str, tuple[str, str]] = {}
         for name, quantity in quantities:

@@ -16,7 +16,7 @@ from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
 from ..workbook import FigureSpec
 from .material import Material
 from .numbers import is_pure
-from .parts import Group
+from .parts import SourceGroup
 from .refereed import GOOD
 from .tables import Tables
 from .tree import (
@@ -24,9 +24,10 @@ from .tree import (
     Claim,
     Code,
     Count,
+    Display,
     Figure,
-    Formula,
     Headline,
+    HeadlineItem,
     Inlines,
     Items,
     Link,
@@ -35,7 +36,6 @@ from .tree import (
     Number,
     Paragraph,
     Refer,
-    Result,
     Strong,
     Table,
     Unit,
@@ -43,12 +43,12 @@ from .tree import (
     joined,
 )  # fmt: skip
 
-__all__ = ["SAID", "Role", "Said", "Unknown"]
+__all__ = ["SAID", "Role", "Said", "UnknownName"]
 
 Answer = Inlines | Blocks | bool
 
 
-class Unknown(LookupError):
+class UnknownName(LookupError):
     """A narrative names something that is not there."""
 
 
@@ -118,7 +118,7 @@ class Said:
         return ()
 
     def _numbered(self, label: str) -> Blocks:
-        return (Formula(self.report.ledger[self._label(label)], numbered=True),)
+        return (Display(self.report.ledger[self._label(label)], numbered=True),)
 
     def _table(self, name: str) -> tuple[Table, ...]:
         return (self.tables.data[name],) if name in self.tables.data else ()
@@ -144,14 +144,14 @@ class Said:
         names = [name for name in self.report.workbook.headline if name in self.report.sheet]
         return (Headline(tuple(map(self._result, names))),) if names else ()
 
-    def _result(self, name: str) -> Result:
+    def _result(self, name: str) -> HeadlineItem:
         material, item = self.material, self.material.item(name)
         counted = self.report.values.counted.get(name, {}).items()
         left_out = ((axis, rows, material.count(axis)) for axis, rows in counted)
         rows = tuple(f"over {rows} of {size} {axis}" for axis, rows, size in left_out if rows != size)
         marks = (count for count in self.report.marks.behind(self.report.sheet[name]) if count.number)
         meaning = self.rich(item.head.meaning)
-        return Result(Math(item.head.latex), meaning, item, rows, tuple(count.said for count in marks))
+        return HeadlineItem(Math(item.head.latex), meaning, item, rows, tuple(count.said for count in marks))
 
     def oddities(self) -> Blocks:
         """What there is to tell of the data themselves."""
@@ -186,7 +186,7 @@ class Said:
         odd_ones = Strong((f"{odd} of these findings {'was' if odd == 1 else 'were'} not expected.",))
         return (f"{said}. ", link, *((" ", odd_ones) if odd else ()))
 
-    def group(self, group: Group) -> Inlines:
+    def group(self, group: SourceGroup) -> Inlines:
         """How much of one place of the source comes out."""
         title = (", ", *self.rich(group.title)) if group.title else ()
         off: Inlines = ()
@@ -280,11 +280,11 @@ class Said:
         for number, step in enumerate(derivation.steps):
             blocks: Blocks = (Paragraph(self.rich(step.says)),)
             if step.claim.label != derivation.claim.label:
-                blocks += (Formula(step.claim),)
+                blocks += (Display(step.claim),)
             for premise in step.premises:  # those without a number, the first time
                 if premise.label not in self.material.identifiers and premise.origin not in shown:
                     title, why = self.rich(premise.title), self.rich(premise.because)
-                    blocks += (Paragraph(("Premise: ", *title, " – ", *why, ":")), Formula(premise))
+                    blocks += (Paragraph(("Premise: ", *title, " – ", *why, ":")), Display(premise))
             shown.add(step.claim.origin)
             evidence = ("Evidence: ", *self.rich(proof.steps[number].sentence), ".") if proof else ()
             yield *blocks, Paragraph((*self._rests_on(step), *evidence), aside=True)
@@ -354,7 +354,7 @@ SAID: dict[str, Callable[[Said], Answer]] = {
 def _known(what: str, name: str, known: Collection[str]) -> str:
     if name not in known:
         there = suggest(name, known) or f"there are {', '.join(known)}"
-        raise Unknown(f"no {what} is called '{name}'; {there}")
+        raise UnknownName(f"no {what} is called '{name}'; {there}")
     return name
 
 

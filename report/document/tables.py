@@ -16,11 +16,10 @@ from ..sheet import Axis
 from ..workbook import TableSpec
 from .material import Material
 from .numbers import is_pure, read, table_format
-from .parts import MOST, Group, Head, Pair, described, slug, why_address
-from .refereed import GOOD, Value, shown_mismatch
+from .parts import MOST, Head, Pair, SourceGroup, described, slug, why_address
+from .refereed import GOOD, RefereedPair, shown_mismatch
 from .tree import (
     Code,
-    Column,
     Hint,
     Inlines,
     Math,
@@ -32,6 +31,7 @@ from .tree import (
     Silent,
     Strong,
     Table,
+    TableColumn,
     Unit,
     joined,
 )
@@ -47,7 +47,7 @@ class _Made(NamedTuple):
     head: str
     cell: Callable[[Any], Any]
     kind: str = "left"
-    """As of :class:`Column`; of a column ``aligned`` the numbers stand below one another."""
+    """As of :class:`TableColumn`; of a column ``aligned`` the numbers stand below one another."""
     share: float = 0
     tip: str = ""
 
@@ -76,14 +76,14 @@ def _run(said: Any) -> Any:
     return (said,) if isinstance(said, (str, Node)) else said
 
 
-def _column(made: _Made, cells: Iterable[Any]) -> Column:
+def _column(made: _Made, cells: Iterable[Any]) -> TableColumn:
     head, kind = (made.head,), made.kind
     if kind != "aligned":
-        return Column(head, kind, share=made.share, tip=made.tip)
+        return TableColumn(head, kind, share=made.share, tip=made.tip)
     numbers = [one for cell in cells for one in cell if isinstance(one, Number)]
     form = table_format(one.figure for one in numbers)
     signed = any(one.signed for one in numbers) and form[0] != "-"
-    return Column(head, "number", f"-{form}" if signed else form, tip=made.tip)
+    return TableColumn(head, "number", f"-{form}" if signed else form, tip=made.tip)
 
 
 class Tables:
@@ -139,7 +139,7 @@ class Tables:
         return Table(
             spec.name,
             self.rich(spec.title),
-            (Column((axis.row,)), *map(_headed, heads)),
+            (TableColumn((axis.row,)), *map(_headed, heads)),
             (Rows(tuple(shown)),),
             spec.number,
             legend=(*legend, ".", *((" ", *self.rich(spec.note)) if spec.note else ())),
@@ -158,7 +158,7 @@ class Tables:
 
     # --- what is published
 
-    def published(self, group: Group) -> Table:
+    def published(self, group: SourceGroup) -> Table:
         """The published values of one place of the source, beside those that are recomputed."""
         made = (
             _Made("cell", lambda pair: _symbol(pair.head)),
@@ -308,9 +308,9 @@ class Tables:
         return _table("missing-cells", caption, made, rows, row, look="list", cut=self.material.cut_remarks)
 
 
-def _headed(head: Head) -> Column:
+def _headed(head: Head) -> TableColumn:
     """A column of the sheet."""
-    return Column((_symbol(head),), "number", head.format, unit=(_unit(head.unit),))
+    return TableColumn((_symbol(head),), "number", head.format, unit=(_unit(head.unit),))
 
 
 def _left_out(test: LeftOut, heads: Iterable[Head]) -> Row:
@@ -323,7 +323,7 @@ def _left_out(test: LeftOut, heads: Iterable[Head]) -> Row:
     return Row(((_dashed(label),), *cells), "excluded")
 
 
-def _refused(found: TableVerdict | Value) -> dict[str, str]:
+def _refused(found: TableVerdict | RefereedPair) -> dict[str, str]:
     return {"state": "" if found.verdict in GOOD else "unexpected"}
 
 

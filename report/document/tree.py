@@ -16,9 +16,38 @@ from . import numbers
 from .parts import Item, cell_id
 
 __all__ = [
-    "Block", "Blocks", "Claim", "Code", "Column", "Count", "Entry", "Figure", "Formula", "Headline", "Hint",
-    "Inline", "Inlines", "Items", "Link", "Math", "Node", "Note", "Number", "Paragraph", "Refer", "Result",
-    "Row", "Rows", "Section", "Silent", "Status", "Strong", "Table", "Unit", "Value", "joined",
+    "Badge",
+    "Block",
+    "Blocks",
+    "Claim",
+    "Code",
+    "Count",
+    "Display",
+    "Entry",
+    "Figure",
+    "Headline",
+    "HeadlineItem",
+    "Hint",
+    "Inline",
+    "Inlines",
+    "Items",
+    "Link",
+    "Math",
+    "Node",
+    "Note",
+    "Number",
+    "Paragraph",
+    "Refer",
+    "Row",
+    "Rows",
+    "Section",
+    "Silent",
+    "Strong",
+    "Table",
+    "TableColumn",
+    "Unit",
+    "Value",
+    "joined",
 ]  # fmt: skip
 
 
@@ -58,7 +87,7 @@ class Math(Node):
 class Number(Node):
     """A number that is no cell; `text` is what its author printed, `signed` a difference, with its plus."""
 
-    figure: numbers.Figure | None
+    figure: numbers.Numeral | None
     text: str = ""
     signed: bool = False
 
@@ -115,14 +144,14 @@ class Hint(Node):
 
 
 @dataclass(frozen=True)
-class Status(Node):
+class Badge(Node):
     """What is known of an equation; the kind is ``stated``, ``holds`` or ``fails``."""
 
     word: str
     kind: str
 
 
-Inline = str | Strong | Code | Math | Number | Unit | Value | Count | Refer | Link | Hint | Status
+Inline = str | Strong | Code | Math | Number | Unit | Value | Count | Refer | Link | Hint | Badge
 Inlines = tuple[Inline, ...]
 
 
@@ -167,7 +196,7 @@ Entry = Inlines | Item | Silent
 
 
 @dataclass(frozen=True)
-class Column:
+class TableColumn:
     """A column of a table."""
 
     head: Inlines
@@ -211,7 +240,7 @@ class Table(Block):
 
     name: str
     caption: Inlines
-    columns: tuple[Column, ...]
+    columns: tuple[TableColumn, ...]
     groups: tuple[Rows, ...]
     number: str = ""
     look: str = ""
@@ -294,7 +323,7 @@ class Items(Block):
 
 
 @dataclass(frozen=True)
-class Result:
+class HeadlineItem:
     """A cell that is a result: how many rows it rests on where that is not all, and how many carry marks."""
 
     symbol: Math
@@ -308,7 +337,7 @@ class Result:
 class Headline(Block):
     """The results."""
 
-    results: tuple[Result, ...]
+    results: tuple[HeadlineItem, ...]
 
 
 @dataclass(frozen=True)
@@ -320,7 +349,7 @@ class Figure(Block):
 
 
 @dataclass(frozen=True)
-class Formula(Block):
+class Display(Block):
     """A displayed equation, with its number or without."""
 
     equation: Equation
@@ -333,7 +362,7 @@ class Claim(Block):
 
     equation: Equation
     title: Inlines
-    status: Status
+    status: Badge
     because: Inlines
     grounds: Inlines
     summary: str

@@ -16,8 +16,8 @@ import numpy as np
 from sympy import Add, Expr, Mul, Piecewise, Symbol, ceiling, degree, diff, exp, false, floor, sift, sign
 from sympy.logic.boolalg import Boolean
 
-from ..column import Root as RootRule
-from ..plan import Leaf, Plan, Root, RowSum, lowered_column
+from ..column import Root
+from ..plan import Leaf, Plan, RootNode, RowSum, lowered_column
 from ..plan.domain import defined, typed_symbols
 from ..sheet import Column, Sheet, SheetError
 from .intervals import Intervals
@@ -37,15 +37,15 @@ def certified(sheet: Sheet, column: Column) -> bool:
     ----------
     sheet : Sheet
     column : Column
-        Its rule is a :class:`~loopsheet.report.sheet.Root`.
+        Its rule is a :class:`~loopsheet.report.sheet.RootNode`.
     """
     rule = column.rule
-    assert isinstance(rule, RootRule)
+    assert isinstance(rule, Root)
     if rule.turning and rule.turning_by:
         return True
     plan = lowered_column(sheet, column)
     node = plan.nodes[-1]
-    assert isinstance(node, Root)
+    assert isinstance(node, RootNode)
     types = typed_symbols(sheet, plan.leaves)
     form, low, high, *turning = (
         each.xreplace(types) for each in (node.form, node.low, node.high, *node.turning)
@@ -157,7 +157,7 @@ def held(condition: Boolean) -> Expr:
     return Piecewise((1, condition), (0, True))
 
 
-def typed_form(sheet: Sheet, plan: Plan, node: Root) -> tuple[Expr, Symbol]:
+def typed_form(sheet: Sheet, plan: Plan, node: RootNode) -> tuple[Expr, Symbol]:
     """The form of a root, and its unknown, in symbols of which only is assumed what they may be."""
     plain = Symbol(node.unknown.name, real=True)
     form: Expr = node.form.xreplace({**typed_symbols(sheet, plan.leaves), node.unknown: plain})
@@ -189,7 +189,7 @@ class Enclosing(Kernel):
         return replace(super().of_plain(plain, functions), reach=reach)
 
 
-def enclosing(sheet: Sheet, plan: Plan, node: Root) -> Enclosing:
+def enclosing(sheet: Sheet, plan: Plan, node: RootNode) -> Enclosing:
     """A function of what a root names and of its unknown: the form, its slope, whether that tells its course.
 
     Parameters
@@ -197,7 +197,7 @@ def enclosing(sheet: Sheet, plan: Plan, node: Root) -> Enclosing:
     sheet : Sheet
     plan : Plan
         Of the sheet.
-    node : Root
+    node : RootNode
         Of the plan.
     """
     form, plain = typed_form(sheet, plan, node)

@@ -23,8 +23,7 @@ from sympy import Basic, Expr, Indexed, Symbol, lambdify
 from ...derivations.reductions import REDUCTIONS, Median
 from ..cells.layout import Layout, lay_out, precedents, rows_of
 from ..cells.values import Status, Values, how_many, inherited, rows_kept
-from ..plan import Leaf, lowered_column
-from ..plan import Root as RootNode
+from ..plan import Leaf, RootNode, lowered_column
 from ..plan.domain import LARGEST, SMALLEST, typed
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, Root, Sheet, name_of

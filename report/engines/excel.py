@@ -15,11 +15,11 @@ from typing import Any
 
 from sympy import Add, Basic, Expr, Function, Integer, Mul, Pow, Rational, Symbol
 from sympy.logic.boolalg import BooleanFunction
-from sympy.printing.printer import Printer as SympyPrinter
+from sympy.printing.printer import Printer
 
 from ..plan import Leaf, Plan, RowMedian, RowSum
 
-__all__ = ["FUNCTIONS", "IfError", "IsNumber", "NotPrintable", "Printer", "ordered"]
+__all__ = ["FUNCTIONS", "ExcelPrinter", "IfError", "IsNumber", "NotPrintable", "ordered"]
 
 FUNCTIONS = {
     "Abs": "ABS",
@@ -95,7 +95,7 @@ def ordered(plan: Plan) -> Plan:
     return Plan(tuple(nodes), {behind(symbol): leaf for symbol, leaf in plan.leaves.items()})
 
 
-class Printer(SympyPrinter):
+class ExcelPrinter(Printer):
     """Prints an expression as a formula without its equals sign.
 
     Parameters

@@ -16,10 +16,10 @@ from sympy import And, Expr, Float, Rational, Rel, Symbol
 from ..cells.grid import Place, as_issued, checked, factors
 from ..cells.layout import Layout
 from ..cells.values import CODES, Status
-from ..plan import Leaf, Map, Plan, Root
+from ..plan import Leaf, Map, Plan, RootNode
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, Reference, Sheet, name_of, within
-from .excel import IfError, Printer
+from .excel import ExcelPrinter, IfError
 from .excel_roots import READY, Auxiliary, Unrolled
 
 __all__ = ["Formulas", "Places", "carried", "carried_name", "guard"]
@@ -146,7 +146,7 @@ def guard(bounds: Bounds) -> str:
     """
     allowed = within(Symbol("{0}", real=True), bounds)
     allowed = allowed.xreplace({number: Float(float(number)) for number in allowed.atoms(Rational)})
-    tests = [str(Printer(str).doprint(test)) for test in And.make_args(allowed) if isinstance(test, Rel)]
+    tests = [str(ExcelPrinter(str).doprint(test)) for test in And.make_args(allowed) if isinstance(test, Rel)]
     return f"IF(ISNUMBER({{0}}),{_all(['NOT(ISLOGICAL({0}))', *sorted(tests)])},FALSE())"
 
 
@@ -232,7 +232,7 @@ class _Writing:
 
     def total(self, terms: Expr, axis: str, median: bool) -> str:
         """A sum or a median over the rows that have values."""
-        text = Printer(partial(self.symbol, rows=True), self.total, rows=True).doprint(terms)
+        text = ExcelPrinter(partial(self.symbol, rows=True), self.total, rows=True).doprint(terms)
         # Of a text, no reader takes account.
         return (
             f'MEDIAN(IF({self.mask(axis)},{text},""))' if median else f"SUM(IF({self.mask(axis)},{text},0))"
@@ -274,8 +274,8 @@ class _Writing:
     # --- whole formulas
 
     @cached_property
-    def printer(self) -> Printer:
-        return Printer(self.symbol, self.total)
+    def printer(self) -> ExcelPrinter:
+        return ExcelPrinter(self.symbol, self.total)
 
     def number(self, expression: Expr) -> str:
         """A value in the cells' unit."""
@@ -283,7 +283,7 @@ class _Writing:
             return f"{self.printer.factor(expression)}{from_si}"
         return str(self.printer.doprint(expression))
 
-    def where_it_holds(self, node: Map | Root, text: str, otherwise: str) -> str:
+    def where_it_holds(self, node: Map | RootNode, text: str, otherwise: str) -> str:
         """A value where the column's conditions hold, and where it is none, what stands for that."""
         conditions = [str(self.printer.doprint(condition)) for condition in node.requires]
         return f"IFERROR({f'IF({_all(conditions)},{text},{otherwise})' if conditions else text},{otherwise})"

@@ -13,12 +13,12 @@ from fractions import Fraction
 from itertools import chain, count
 from typing import Any
 
-from ..cells.grid import CHECKED, FIRST_ROW, SCALARS, STEPS, Block, Grid, Place, as_issued, checked
+from ..cells.grid import CHECKED, FIRST_ROW, SCALARS, STEPS, CellBlock, Grid, Place, as_issued, checked
 from ..cells.layout import Layout
 from ..cells.values import Values
 from ..charts import Drawn
 from ..inputs.unit_text import UnitError, parse_unit
-from ..plan import Root, lowered
+from ..plan import RootNode, lowered
 from ..plan.kept import as_data, of_data, of_sheet
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, Sheet
@@ -92,7 +92,7 @@ def grid(
     hangs_on = repr((names, own, sorted(counts.items()), words, sorted(units.items()), list(first)))
     told = of_sheet(whole, "formulas of the workbook", [hangs_on], make)
     axes = dict(zip(_worksheets(whole.axes).values(), whole.axes, strict=True))
-    blocks = filled(of_data(told["blocks"], tuple[Block, ...]), told["roots"], every)
+    blocks = filled(of_data(told["blocks"], tuple[CellBlock, ...]), told["roots"], every)
     return Grid(tuple(blocks), axes, drawn, of_data(told["notes"], dict[str, Place]))
 
 
@@ -144,7 +144,7 @@ class _Assembly:
         self.notes: dict[str, Place] = {}
         self.indices: dict[str, tuple[Place, ...]] = {}
         self.plan = ordered(lowered(whole))
-        roots = {node.column.name: node for node in self.plan.nodes if isinstance(node, Root)}
+        roots = {node.column.name: node for node in self.plan.nodes if isinstance(node, RootNode)}
         self.unrolled = {
             c.name: unroll(self.plan, roots[c.name], certified(sheet, c))
             for c in sheet.columns
@@ -275,16 +275,16 @@ class _Assembly:
 
     # --- blocks
 
-    def index_blocks(self) -> Iterator[Block]:
+    def index_blocks(self) -> Iterator[CellBlock]:
         for axis in self.whole.axes:
             for part, (place, names) in enumerate(zip(self.indices[axis.name], axis.parts, strict=True)):
                 title, meaning = names
-                yield Block(title, "index", title, meaning, place, shows=("labels", axis.name, str(part)))
+                yield CellBlock(title, "index", title, meaning, place, shows=("labels", axis.name, str(part)))
 
-    def column_blocks(self, formulas: Formulas) -> Iterator[Block]:
+    def column_blocks(self, formulas: Formulas) -> Iterator[CellBlock]:
         for column in self.whole.columns:
             place = self.places[column.name]
-            block = Block(
+            block = CellBlock(
                 column.name,
                 "given",
                 column.name,
@@ -306,14 +306,14 @@ class _Assembly:
                 yield _computed(replace(block, kind=kind, kept=formulas.kept(column)), written)
         for name, (leaf, axis) in sorted(self.carried.items()):
             column = self.whole[leaf.name]
-            block = Block(
+            block = CellBlock(
                 name, "carried", leaf.written, f"{column.name} of each row, for its sums",
                 self.places[name], unit=self.unit(column)[0], of=column.name,
                 shows=("carried", column.name, axis.name, str(leaf.index)),
             )  # fmt: skip
             yield _computed(block, formulas.carried(leaf))
 
-    def given_blocks(self, column: Column, block: Block, formulas: Formulas) -> Iterator[Block]:
+    def given_blocks(self, column: Column, block: CellBlock, formulas: Formulas) -> Iterator[CellBlock]:
         """What is typed, and what of it is allowed; how many rows there are is what the worksheets have."""
         bounds = self.whole.bounds[column.name].over(block.place.scale)
         if any(axis.repeats == column.name for axis in self.whole.axes):
@@ -328,10 +328,10 @@ class _Assembly:
         )  # fmt: skip
         yield _computed(own, formulas.checked(column, test))
 
-    def step_blocks(self, formulas: Formulas) -> Iterator[Block]:
+    def step_blocks(self, formulas: Formulas) -> Iterator[CellBlock]:
         for unrolled in self.unrolled.values():
             name = unrolled.check.name
-            block = Block(
+            block = CellBlock(
                 name, "step", "precedents", "whether all precedents have values, or the first error",
                 self.places[name], of=unrolled.column.name, source=unrolled.column.source,
                 shows=("cell", name),
@@ -340,25 +340,25 @@ class _Assembly:
             if unrolled.issued is not None:
                 yield from self.counting_blocks(unrolled, formulas)
             for cell in unrolled.cells:
-                block = Block(
+                block = CellBlock(
                     cell.name, "step", cell.title, cell.meaning, self.places[cell.name],
                     of=unrolled.column.name, step=cell.step, shows=("cell", cell.name),
                 )  # fmt: skip
                 yield _computed(block, formulas.auxiliary(unrolled, cell))
         guarded = [unrolled.column for unrolled in self.unrolled.values() if unrolled.issued is not None]
         for column in self.asked:
-            yield Block(
+            yield CellBlock(
                 as_issued(column.name), "step", f"{column.name} as issued", f"{column.name} as issued, "
                 "for which the roots were counted", self.places[as_issued(column.name)],
                 of=guarded[0].name, source=column.source, shows=("typed column", column.name),
             )  # fmt: skip
 
-    def counting_blocks(self, unrolled: Unrolled, formulas: Formulas) -> Iterator[Block]:
+    def counting_blocks(self, unrolled: Unrolled, formulas: Formulas) -> Iterator[CellBlock]:
         """Whether the inputs are as issued, and how many roots there are then."""
         issued, counted = _counting(unrolled)
         column = unrolled.column
         given = [c.name for c in self.sheet.ancestors(column) if isinstance(c.rule, Given)]
-        block = Block(
+        block = CellBlock(
             issued, "step", "as issued", "1 if all inputs are those as issued, for which the roots were "
             "counted; if not, build the report again", self.places[issued], of=column.name,
             source=column.source, shows=("cell", issued),
@@ -369,7 +369,7 @@ class _Assembly:
         yield replace(block, name=counted, title="counted", meaning=says, place=place, shows=shows)
 
 
-def _computed(block: Block, formulas: tuple[str, ...]) -> Block:
+def _computed(block: CellBlock, formulas: tuple[str, ...]) -> CellBlock:
     """The block with its formulas; those that work on ranges are array formulas."""
     return replace(
         block, formulas=formulas, array=any(taken in formulas[0] for taken in ("SUM(IF(", "MEDIAN(IF("))

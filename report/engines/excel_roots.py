@@ -13,7 +13,7 @@ from itertools import pairwise
 from sympy import Abs, And, Eq, Expr, Integer, Piecewise, Symbol, diff, sign
 from sympy.logic.boolalg import Boolean
 
-from ..plan import Leaf, Node, Part, Plan, Root, RowSum, Total, free_name
+from ..plan import Leaf, Node, Part, Plan, RootNode, RowSum, Total, free_name
 from ..sheet import Column
 from .excel import IfError, IsNumber
 from .roots import derivatives, householder
@@ -67,7 +67,7 @@ class Unrolled:
 
     Parameters
     ----------
-    node : Root
+    node : RootNode
     plan : Plan
         What its cells are made of.
     check : Leaf
@@ -87,7 +87,7 @@ class Unrolled:
         The column's value, where there is one root.
     """
 
-    node: Root
+    node: RootNode
     plan: Plan
     check: Leaf
     cells: tuple[Auxiliary, ...]
@@ -104,13 +104,13 @@ class Unrolled:
         return self.node.column
 
 
-def unroll(plan: Plan, node: Root, certified: bool = True) -> Unrolled:
+def unroll(plan: Plan, node: RootNode, certified: bool = True) -> Unrolled:
     """Lay the solver of a root out as cells.
 
     Parameters
     ----------
     plan : Plan
-    node : Root
+    node : RootNode
         Of the plan.
     certified : bool
         Whether the number of its roots follows from signs for all inputs. No formula could count them
@@ -122,7 +122,7 @@ def unroll(plan: Plan, node: Root, certified: bool = True) -> Unrolled:
 class _Unrolling:
     """One root being laid out: the cells so far."""
 
-    def __init__(self, plan: Plan, node: Root, certified: bool) -> None:
+    def __init__(self, plan: Plan, node: RootNode, certified: bool) -> None:
         self.node, self.column, self.certified = node, node.column, certified
         self.rule = node if certified else replace(node, turning=())
         self.unknown, self.form = node.unknown, node.form

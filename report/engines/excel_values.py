@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cells.grid import Block
+from ..cells.grid import CellBlock
 from ..cells.layout import precedents
 from ..cells.values import CODES, Status, Values, inherited, rows_kept
 from ..sheet import Sheet
@@ -36,12 +36,14 @@ def auxiliary_texts(sheet: Sheet, unrolled: Unrolled) -> dict[str, Any]:
     }
 
 
-def filled(blocks: Iterable[Block], roots: Iterable[Mapping[str, Any]], values: Values) -> Iterator[Block]:
+def filled(
+    blocks: Iterable[CellBlock], roots: Iterable[Mapping[str, Any]], values: Values
+) -> Iterator[CellBlock]:
     """The blocks of a grid with what they show.
 
     Parameters
     ----------
-    blocks : iterable of Block
+    blocks : iterable of CellBlock
     roots : iterable of mapping
         From :func:`auxiliary_texts`.
     values : Values

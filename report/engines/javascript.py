@@ -15,10 +15,8 @@ from typing import Any
 from sympy import Expr, Symbol, cse, numbered_symbols
 from sympy.printing.jscode import JavascriptCodePrinter
 
-from ..plan import Given as GivenNode
-from ..plan import Leaf, Map, Plan, RowSum, Total, lowered
+from ..plan import GivenNode, Leaf, Map, Plan, RootNode, RowSum, Total, lowered
 from ..plan import Node as PlanNode
-from ..plan import Root as RootNode
 from ..sheet import Axis, Column, PairAxis, RepeatAxis, Sheet, name_of
 from .certified import certified, slope, typed_form
 from .javascript_intervals import enclose, needed
@@ -32,7 +30,7 @@ _NULL = Symbol("null", real=True)
 """JavaScript's null."""
 
 
-class Printer(JavascriptCodePrinter):
+class JavaScriptPrinter(JavascriptCodePrinter):
     """sympy's JavaScript, with small powers multiplied out as NumPy does."""
 
     def _print_Pow(self, expr: Any) -> str:
@@ -71,7 +69,7 @@ class _Scope:
 
     def __init__(self, plan: Plan, unknown: Symbol | None) -> None:
         self.plan, self.unknown = plan, unknown
-        self.printer = Printer()
+        self.printer = JavaScriptPrinter()
         self.names: dict[str, str] = {}
         self.head: list[str] = []
         self.totals: dict[Expr, Symbol] = {}
@@ -269,7 +267,7 @@ def _axis(axis: Axis) -> str:
     entry = {"name": axis.name, "kind": "given", "index": str(axis.index)}
     if isinstance(axis, PairAxis):
         entry |= {"kind": "pairs", "of": axis.of.name, "first": str(axis.first), "second": str(axis.second)}
-        chosen = Printer().doprint(axis.chosen)
+        chosen = JavaScriptPrinter().doprint(axis.chosen)
         return f'{json.dumps(entry)[:-1]}, "chosen": ({axis.first}, {axis.second}) => {chosen}}}'
     if isinstance(axis, RepeatAxis):
         entry |= {"kind": "repeat", "of": axis.of.name, "step": str(axis.step), "count": axis.count}
@@ -289,7 +287,7 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
     nodes = {name: list(own) for name, own in groupby(plan.nodes, lambda node: node.column.name)}
     for column in sheet.order:
         node = nodes[column.name][-1]
-        kind = type(node).__name__.lower()
+        kind = _KINDS[type(node)]
         entry: dict[str, Any] = {
             "name": column.name,
             "axis": None if column.axis is None else column.axis.name,
@@ -304,7 +302,9 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
         parts = [f"{name}: {json.dumps(value)}" for name, value in entry.items() if value]
         if isinstance(node, GivenNode) and node.allowed is not None:
             x = Symbol("x", real=True)
-            parts.append(f"allows: (x) => {Printer().doprint(node.allowed.xreplace({node.datum: x}))}")
+            parts.append(
+                f"allows: (x) => {JavaScriptPrinter().doprint(node.allowed.xreplace({node.datum: x}))}"
+            )
         kernels = _kernels(sheet, plan, nodes[column.name])
         if kernels:
             parts.append(f"kernels: {kernels}")
@@ -317,6 +317,7 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
     return f"(() => {{\n{used}\nreturn {text};\n}})()" if used else text
 
 
+_KINDS = {GivenNode: "given", Map: "map", RootNode: "root"}
 _WHOLE = (
     ".map(({ refs = [], ...column }) => ({ axis: null, sums: [], ...column, "
     "refs: refs.map(([name, index = null, over = null]) => [name, index, over]) }))"

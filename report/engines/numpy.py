@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..cells.layout import Layout, lay_out, precedents
 from ..cells.values import Status, Values, how_many, inherited, rows_kept
-from ..plan import Map, Plan, Root, lowered
+from ..plan import Map, Plan, RootNode, lowered
 from ..plan.domain import SMALLEST
 from ..plan.kept import of_sheet
 from ..sheet import Column, Sheet
@@ -52,7 +52,7 @@ def program_texts(sheet: Sheet, plan: Plan) -> dict[str, Any]:
     SheetError
         A formula has a part that NumPy cannot compute.
     """
-    nodes = {node.column.name: node for node in plan.nodes if isinstance(node, Root)}
+    nodes = {node.column.name: node for node in plan.nodes if isinstance(node, RootNode)}
     roots = {name: root_texts(sheet, plan, node) for name, node in nodes.items()}
     asked = {name: texts["arguments"] for name, texts in roots.items()}
     return {"sheet": sheet_function(plan, asked), "roots": roots}

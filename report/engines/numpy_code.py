@@ -19,7 +19,16 @@ from ..sheet import SheetError
 from . import elementary
 
 __all__ = [
-    "SAME", "Array", "Function", "Kernel", "Printer", "compiled", "kernel", "printed", "text_of", "write",
+    "SAME",
+    "Array",
+    "ArrayPrinter",
+    "Function",
+    "Kernel",
+    "compiled",
+    "kernel",
+    "printed",
+    "text_of",
+    "write",
 ]  # fmt: skip
 
 Array = NDArray[np.float64]
@@ -43,7 +52,7 @@ def _choose(condition: Any, yes: Callable[[], Any], no: Callable[[], Any]) -> An
     return np.where(condition, yes(), no())
 
 
-class Printer(NumPyPrinter):
+class ArrayPrinter(NumPyPrinter):
     """NumPy's printer, with what broadcasting over columns needs; what it cannot print, it refuses."""
 
     def __init__(self) -> None:
@@ -100,7 +109,7 @@ class Printer(NumPyPrinter):
         return f"{axis}_kept.median({self._print(terms)})"
 
 
-def printed(printer: Printer, expression: Any) -> str:
+def printed(printer: ArrayPrinter, expression: Any) -> str:
     """The text of an expression.
 
     Raises
@@ -195,7 +204,7 @@ def write(
     common, bodies = cse(
         [each.xreplace(opposite) for each in every], symbols=symbols, order="none", list=True
     )
-    printer = Printer()
+    printer = ArrayPrinter()
     names = [*(a.name for a in arguments), *(f"{axis}_kept" for axis in totals)]
     waiting, bodies = [*common, *zip(parts, bodies, strict=False)], bodies[len(parts) :]
     lines, unknown = [], {name for name, _ in waiting}

@@ -17,23 +17,23 @@ from numpy.typing import NDArray
 from sympy import Expr, Integer, Symbol, diff
 
 from ..cells.values import Status
-from ..plan import Plan, Root, RowSum, taken_over
+from ..plan import Plan, RootNode, RowSum, taken_over
 from ..sheet import Sheet
 from .certified import Enclosing, certified, enclosing
 from .intervals import Intervals
 from .numpy_code import SAME, Array, Function, Kernel, compiled, kernel, write
 from .numpy_enclosed import EnclosedRows
 from .numpy_rows import Kept, chosen
-from .numpy_steps import Rows, Stretch
+from .numpy_steps import RootRows, Stretch
 from .roots import hoist, magnitude, step
 
-__all__ = ["RootProgram", "Solved", "root_texts", "terms_of"]
+__all__ = ["FoundRoots", "RootProgram", "root_texts", "terms_of"]
 
 Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class Solved:
+class FoundRoots:
     """The unknown of every row and how many there are.
 
     Parameters
@@ -55,7 +55,7 @@ class Solved:
     bisected: int
 
 
-def terms_of(node: Root) -> frozenset[str]:
+def terms_of(node: RootNode) -> frozenset[str]:
     """The names of what stands in the sums of a root's equation: its rows are their terms."""
     return frozenset(symbol.name for total in node.form.atoms(RowSum) for symbol in total.free_symbols)
 
@@ -64,7 +64,7 @@ _BODIES = ("at", "newton", "step", "check", "value")
 """The functions of a root's unknown."""
 
 
-def root_texts(sheet: Sheet, plan: Plan, node: Root) -> dict[str, Any]:
+def root_texts(sheet: Sheet, plan: Plan, node: RootNode) -> dict[str, Any]:
     """The functions of one root, printed: data of which :class:`RootProgram` is made.
 
     Parameters
@@ -72,7 +72,7 @@ def root_texts(sheet: Sheet, plan: Plan, node: Root) -> dict[str, Any]:
     sheet : Sheet
     plan : Plan
         Of the sheet.
-    node : Root
+    node : RootNode
         Of the plan.
     """
     enclosed = None if certified(sheet, node.column) else enclosing(sheet, plan, node)
@@ -186,7 +186,7 @@ class RootProgram:
 
     def solve(
         self, arguments: Mapping[str, Array], totals: Mapping[str, Kept], shape: tuple[int, ...]
-    ) -> Solved:
+    ) -> FoundRoots:
         """Find the root of every row.
 
         Parameters
@@ -201,7 +201,7 @@ class RootProgram:
         out = self.fixed.run(*(arguments[name] for name in self.fixed.arguments))
         fixed = [np.atleast_1d(np.asarray(each, dtype=np.float64)) for each in out]
         ends, constants = fixed[: 5 + self.turning], fixed[5 + self.turning :]
-        rows = Rows(self, constants, [totals[axis] for axis in self.totals], shape)
+        rows = RootRows(self, constants, [totals[axis] for axis in self.totals], shape)
         counted_by = self.enclosing if self.counted else None
         stretches, odd = self._stretches(ends, rows)
         doubts: Mapping[int, tuple[float, float]] = {}
@@ -212,7 +212,7 @@ class RootProgram:
             stretches, doubts = self._isolated(ends, cells, odd)
         if len(stretches) == 1 and not doubts and stretches[0].crosses.all():
             found, bisected = rows.narrow(stretches[0], ends[_START], stretches[0].crosses)
-            return Solved(rows.call(self.value, found), np.zeros(shape, dtype=np.uint8), {}, bisected)
+            return FoundRoots(rows.call(self.value, found), np.zeros(shape, dtype=np.uint8), {}, bisected)
         doubtful = np.zeros(odd.size, dtype=bool)
         doubtful[list(doubts)] = True
         # One sign change a stretch at most: the stretches that cross are the roots.
@@ -235,9 +235,9 @@ class RootProgram:
         if len(shape) == 1:
             several |= self._several(stretches, rows, ends[_START], status == Status.TWOROOTS)
             several |= {row: doubts[row] for row in np.flatnonzero(status == Status.UNDECIDED).tolist()}
-        return Solved(value, status.astype(np.uint8), several, bisected)
+        return FoundRoots(value, status.astype(np.uint8), several, bisected)
 
-    def _stretches(self, ends: Sequence[Array], rows: Rows) -> tuple[list[Stretch], Mask]:
+    def _stretches(self, ends: Sequence[Array], rows: RootRows) -> tuple[list[Stretch], Mask]:
         """The stretches between turning points, and where the equation has no sign at one of their ends."""
         low, high, _, at_low, at_high, *turning = ends
         if not all(self.told):
@@ -280,7 +280,7 @@ class RootProgram:
         return stretches, {int(asked[row]): part for row, part in found.undecided.items()}
 
     def _several(
-        self, stretches: Sequence[Stretch], rows: Rows, start: Array, ambiguous: Mask
+        self, stretches: Sequence[Stretch], rows: RootRows, start: Array, ambiguous: Mask
     ) -> dict[int, tuple[float, ...]]:
         """All roots of the ambiguous rows, so that a message can name them."""
         found: dict[int, list[float]] = {row: [] for row in np.flatnonzero(ambiguous).tolist()}

@@ -13,8 +13,8 @@ from typing import Any
 from sympy import Expr, Symbol
 from sympy.logic.boolalg import Boolean
 
-from ..plan import Given, Leaf, Map, Node, Part, Plan, Root, Total, free_name
-from .numpy_code import Printer, printed, text_of
+from ..plan import GivenNode, Leaf, Map, Node, Part, Plan, RootNode, Total, free_name
+from .numpy_code import ArrayPrinter, printed, text_of
 
 __all__ = ["sheet_function"]
 
@@ -41,7 +41,7 @@ def sheet_function(plan: Plan, roots: Mapping[str, Iterable[str]]) -> str:
 
 def _expressions(node: Node, own: Mapping[str, Symbol]) -> tuple[Any, ...]:
     """What a node computes row by row; a root brings functions of its own."""
-    if isinstance(node, Given):
+    if isinstance(node, GivenNode):
         datum = Symbol(own[node.column.name].name, real=True)
         return () if node.allowed is None else (node.allowed.xreplace({node.datum: datum}),)
     if isinstance(node, Total):
@@ -70,7 +70,7 @@ def _shared(expressions: Iterable[Any]) -> set[Any]:
     return found
 
 
-class _Sharing(Printer):
+class _Sharing(ArrayPrinter):
     """Prints a part that stands in several expressions once, on a line before them.
 
     The order of a product's factors is its own whatever they share: a column has the same bits in any
@@ -130,13 +130,13 @@ class _Writing:
             self.define(node.symbol, f'run.part("{node.symbol}", {axis}, {self.text(values[0])})')
             return
         symbol = self.plan.own[name]
-        if isinstance(node, Given):
+        if isinstance(node, GivenNode):
             self.define(symbol, f'run.data["{name}"]')
             self.define(symbol, f'run.given("{name}", {", ".join([str(symbol), *map(self.text, values)])})')
         elif isinstance(node, Map):
             self.define(symbol, f'run.formula("{name}", {", ".join(map(self.text, values))})')
         else:
-            assert isinstance(node, Root)
+            assert isinstance(node, RootNode)
             named = {symbol.name: symbol for symbol in self.plan.leaves}
             self.need(named[argument] for argument in self.roots[name])
             asked = f", requires=({', '.join(map(self.text, values))},)" if values else ""

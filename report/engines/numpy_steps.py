@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .numpy_code import Array, Function
 from .numpy_rows import Kept
 
-__all__ = ["Rows", "Stretch"]
+__all__ = ["RootRows", "Stretch"]
 
 Mask = NDArray[np.bool_]
 
@@ -24,7 +24,7 @@ UNWATCHED = 2
 """How many of Newton's steps follow one of fourth order before it is asked where they led to."""
 
 
-class Equation(Protocol):
+class PrintedRoot(Protocol):
     """What is printed of a root (:class:`~loopsheet.report.engines.numpy_root.RootProgram`)."""
 
     @property
@@ -70,10 +70,10 @@ class Stretch:
 
 
 @dataclass(frozen=True)
-class Rows:
+class RootRows:
     """The functions of a root with the constants of some rows."""
 
-    program: Equation
+    program: PrintedRoot
     constants: Sequence[Array]
     totals: Sequence[Kept]
     shape: tuple[int, ...]
@@ -83,7 +83,7 @@ class Rows:
         found = function(at, *self.constants, *self.totals)[0]
         return np.broadcast_to(found, np.broadcast_shapes(found.shape, self.shape))
 
-    def only(self, which: NDArray[np.intp]) -> Rows:
+    def only(self, which: NDArray[np.intp]) -> RootRows:
         """Fewer rows, by their positions in the flattened shape."""
         if self.totals:
             return self  # the constants of a sum belong to its terms, and there is one row
@@ -91,7 +91,7 @@ class Rows:
             c.reshape(()) if c.size == 1 else np.broadcast_to(c, self.shape).reshape(-1)[which]
             for c in self.constants
         ]
-        return Rows(self.program, fewer, self.totals, which.shape)
+        return RootRows(self.program, fewer, self.totals, which.shape)
 
     def narrow(self, stretch: Stretch, start: Array, wanted: Mask) -> tuple[Array, int]:
         """The unknown in its bracket, and how many of the wanted rows had to be bisected."""
@@ -102,7 +102,7 @@ class Rows:
         if not rest.any():
             return here, 0
         bracket = stretch.left, stretch.right, np.sign(stretch.after)
-        return self._again(rest, here, Rows._carefully, *bracket, start)
+        return self._again(rest, here, RootRows._carefully, *bracket, start)
 
     def _again(
         self, some: Mask, here: Array, find: Callable[..., tuple[Array, int]], *given: Array
@@ -163,7 +163,7 @@ class Rows:
             if done.all():
                 break
         rest = ~self._settled(here)
-        return self._again(rest, here, Rows._bisect, left, right, rising) if rest.any() else (here, 0)
+        return self._again(rest, here, RootRows._bisect, left, right, rising) if rest.any() else (here, 0)
 
     def _bisect(self, left: Array, right: Array, rising: Array) -> tuple[Array, int]:
         """Halve brackets until no double lies between their ends; NaN where the equation has no sign."""

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..messages.errors import Findings, Location
     from .sources import Source
 
-__all__ = ["Field", "Row", "Table", "match_columns", "read_table"]
+__all__ = ["CsvRow", "CsvTable", "Field", "match_columns", "read_table"]
 
 _BLANK = " \t\u00a0"
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "vertical bars"}
@@ -39,7 +39,7 @@ class Field(NamedTuple):
     end: int = 0
 
 
-class Row(NamedTuple):
+class CsvRow(NamedTuple):
     """The fields of a line; `sound` is false if the line itself had a finding."""
 
     fields: list[Field]
@@ -47,12 +47,12 @@ class Row(NamedTuple):
     sound: bool = True
 
 
-class Table(NamedTuple):
+class CsvTable(NamedTuple):
     """A table as text: a first line of names, and rows that are as wide as it."""
 
     source: Source
     header: list[Field]
-    rows: list[Row]
+    rows: list[CsvRow]
     total: int
     """How many rows there are, with those that had findings and are left out of `rows`."""
 
@@ -67,7 +67,7 @@ class Table(NamedTuple):
         return self.source.at(self.source.line_end(self.header[-1].offset + self.header[-1].length))
 
 
-def read_table(source: Source, known: Sequence[str], findings: Findings) -> Table | None:
+def read_table(source: Source, known: Sequence[str], findings: Findings) -> CsvTable | None:
     """Split a file into fields; None if it is no table at all.
 
     Parameters
@@ -110,10 +110,10 @@ def read_table(source: Source, known: Sequence[str], findings: Findings) -> Tabl
     wide = [row for row in full if row.sound and len(row.fields) != len(header)]
     _report_widths(source, wide, len(header), findings)
     good = [row for row in full if row.sound and len(row.fields) == len(header)]
-    return Table(source, header, good, len(full))
+    return CsvTable(source, header, good, len(full))
 
 
-def _report_widths(source: Source, wide: list[Row], wanted: int, findings: Findings) -> None:
+def _report_widths(source: Source, wide: list[CsvRow], wanted: int, findings: Findings) -> None:
     """Report rows of another width: one finding for all that decimal commas explain, one for each other."""
     commas = [row for row in wide if _looks_comma(row, wanted)]
     for row in commas[:1]:
@@ -130,12 +130,12 @@ def _report_widths(source: Source, wide: list[Row], wanted: int, findings: Findi
         findings.add("LS306", at, found=len(row.fields), wanted=wanted, suggestion=more)
 
 
-def _looks_comma(row: Row, wanted: int) -> bool:
+def _looks_comma(row: CsvRow, wanted: int) -> bool:
     digits = [field.text.lstrip("+-").isdigit() for field in row.fields]
     return wanted < len(row.fields) <= 2 * wanted and all(digits)
 
 
-def _is_blank(row: Row) -> bool:
+def _is_blank(row: CsvRow) -> bool:
     return row.sound and not any(field.text for field in row.fields)
 
 
@@ -147,7 +147,7 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def _rows(source: Source, findings: Findings) -> list[Row]:
+def _rows(source: Source, findings: Findings) -> list[CsvRow]:
     rows = []
     position = 0
     text = source.text
@@ -156,7 +156,7 @@ def _rows(source: Source, findings: Findings) -> list[Row]:
         if '"' in text[position:end]:
             row, end = _quoted(source, position, findings)
         else:
-            row, offset = Row([], position), position
+            row, offset = CsvRow([], position), position
             for part in text[position:end].split(","):
                 row.fields.append(_field(part, offset))
                 offset += len(part) + 1
@@ -171,7 +171,7 @@ def _field(part: str, offset: int) -> Field:
     return Field(stripped, offset + shift, max(len(stripped), 1), True, offset, offset + len(part))
 
 
-def _quoted(source: Source, position: int, findings: Findings) -> tuple[Row, int]:
+def _quoted(source: Source, position: int, findings: Findings) -> tuple[CsvRow, int]:
     """Read a line that has quotes; return it and where it ends, which may be lines later."""
     text, start = source.text, position
     fields: list[Field] = []
@@ -186,7 +186,7 @@ def _quoted(source: Source, position: int, findings: Findings) -> tuple[Row, int
                 closing = _QUOTE.search(text, closing.end())
             if closing is None:
                 findings.add("LS313", source.at(begin))
-                return Row(fields, start, False), len(text)
+                return CsvRow(fields, start, False), len(text)
             content = text[begin + 1 : closing.start()]
             stop = _stop(text, closing.end())
             field = _field(content.replace('""', '"'), begin + 1)._replace(begin=position, end=stop)
@@ -202,7 +202,7 @@ def _quoted(source: Source, position: int, findings: Findings) -> tuple[Row, int
             findings.add("LS314", source.at(begin, stop - begin), text=text[begin:stop].strip(_BLANK))
             sound = False
         if text[stop : stop + 1] != ",":
-            return Row(fields, start, sound), stop
+            return CsvRow(fields, start, sound), stop
         position = stop + 1
 
 
@@ -212,7 +212,7 @@ def _stop(text: str, position: int) -> int:
 
 
 def match_columns(
-    table: Table,
+    table: CsvTable,
     names: Sequence[str],
     required: Mapping[str, str],
     optional: Sequence[str],
@@ -222,7 +222,7 @@ def match_columns(
 
     Parameters
     ----------
-    table : Table
+    table : CsvTable
         The table.
     names : sequence of str
         The name in each field of its first line; empty where a finding was already made.

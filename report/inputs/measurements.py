@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from .csvtable import Field, Table, match_columns, read_table
+from .csvtable import CsvTable, Field, match_columns, read_table
 from .number_text import NumberError, read_printed, read_value
-from .unit_text import Unit, UnitError, examples, parse_unit
+from .unit_text import ParsedUnit, UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
     from ..messages.errors import Findings, Location
@@ -158,12 +158,12 @@ def read_measurements(
     return Measurements(taken, values, units, left_out)
 
 
-def _last(table: Table) -> Location:
+def _last(table: CsvTable) -> Location:
     row = table.rows[-1] if table.rows else None
     return table.at(row.fields[0]) if row else table.end_of_header()
 
 
-def _head(table: Table, field: Field, columns: Mapping[str, Measured], findings: Findings) -> _Head | None:
+def _head(table: CsvTable, field: Field, columns: Mapping[str, Measured], findings: Findings) -> _Head | None:
     """Read a field of the first line; a column that should name its unit and does not is a finding."""
     match = _HEAD.fullmatch(field.text)
     meant = None if match and match["name"] in columns else _meant(field.text, columns)
@@ -203,8 +203,8 @@ def _meant(text: str, columns: Mapping[str, Measured]) -> tuple[Measured, str] |
 
 
 def _unit(
-    table: Table, heads: Sequence[_Head | None], place: int | None, column: Measured, findings: Findings
-) -> tuple[_Head | None, Unit | None]:
+    table: CsvTable, heads: Sequence[_Head | None], place: int | None, column: Measured, findings: Findings
+) -> tuple[_Head | None, ParsedUnit | None]:
     """Return what the first line says of a column, and its unit if that is one of the right dimension."""
     head = None if place is None else heads[place]
     if place is None or head is None or head.unit is None:
@@ -225,7 +225,7 @@ def _unit(
     return head, unit
 
 
-def _tests(table: Table, place: int, findings: Findings) -> tuple[int, ...]:
+def _tests(table: CsvTable, place: int, findings: Findings) -> tuple[int, ...]:
     lines: dict[int, int | None] = {}
     for row in table.rows:
         field = row.fields[place]
@@ -242,7 +242,7 @@ def _tests(table: Table, place: int, findings: Findings) -> tuple[int, ...]:
 
 
 def _uncertainty(
-    table: Table, field: Field, name: str, unit: Unit | None, findings: Findings
+    table: CsvTable, field: Field, name: str, unit: ParsedUnit | None, findings: Findings
 ) -> Fraction | None:
     """Read the standard uncertainty that the user gave for a measured number."""
     try:

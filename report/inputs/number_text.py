@@ -12,7 +12,7 @@ from .unit_text import parse_unit
 if TYPE_CHECKING:
     from ..messages.errors import Findings, Location
     from ..quantity import Bounds
-    from .unit_text import Unit
+    from .unit_text import ParsedUnit
 
 __all__ = ["Declared", "NumberError", "read_number", "read_printed", "read_value"]
 
@@ -108,7 +108,7 @@ def _why_not(text: str) -> NumberError:
     return NumberError("LS401", text=text, suggestion=suggestion)
 
 
-def read_printed(text: str, unit: Unit, *, mode: str = "rounded", where: str = "") -> Printed:
+def read_printed(text: str, unit: ParsedUnit, *, mode: str = "rounded", where: str = "") -> Printed:
     """Read a number as it was printed in a unit.
 
     Raises
@@ -126,7 +126,7 @@ def read_printed(text: str, unit: Unit, *, mode: str = "rounded", where: str = "
 
 def read_value(
     text: str,
-    unit: Unit | None,
+    unit: ParsedUnit | None,
     declared: Declared,
     at: Location,
     findings: Findings,
@@ -140,7 +140,7 @@ def read_value(
     ----------
     text : str
         The number.
-    unit : Unit or None
+    unit : ParsedUnit or None
         Its unit; None if that is not known, and then the range is not looked at.
     declared : Declared
         What it is: a measured column or a parameter.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..messages.errors import Findings, Location
 from .number_text import read_printed, read_value
-from .unit_text import Unit, UnitError, examples, parse_unit
+from .unit_text import ParsedUnit, UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -106,7 +106,7 @@ class _Reader:
         where = self.toml.trace(*self.path)
         return read_value(digits, size, self.parameter, place, self.findings, where=where)
 
-    def unit(self, text: str, start: int, digits: str) -> Unit | None:
+    def unit(self, text: str, start: int, digits: str) -> ParsedUnit | None:
         """Read the unit; None, with a finding, if it is not one of the right dimension."""
         try:
             size = parse_unit(text or "1")

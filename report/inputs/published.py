@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 from ..cells.address import index_text
 from ..messages.errors import Findings, Location, listing, suggest
-from .csvtable import Field, Table, match_columns, read_table
+from .csvtable import CsvTable, Field, match_columns, read_table
 from .number_text import NumberError, read_number, read_printed
-from .unit_text import Unit, UnitError, examples, parse_unit
+from .unit_text import ParsedUnit, UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
     from ..quantity import Printed
@@ -143,7 +143,7 @@ def read_published(source: Source, findings: Findings) -> tuple[PublishedValue, 
     return tuple(values)
 
 
-def _value(table: Table, fields: Mapping[str, Field], findings: Findings) -> PublishedValue:
+def _value(table: CsvTable, fields: Mapping[str, Field], findings: Findings) -> PublishedValue:
     unread = set()
     allowed = {"source": "where it is printed, such as Table 2", "cell": "the name of a cell, such as alpha"}
     for name, sentence in {**allowed, "unit": "a unit, 1 for a pure number"}.items():
@@ -181,7 +181,7 @@ def _value(table: Table, fields: Mapping[str, Field], findings: Findings) -> Pub
     )
 
 
-def _pin(table: Table, field: Field, findings: Findings) -> Pin | None:
+def _pin(table: CsvTable, field: Field, findings: Findings) -> Pin | None:
     printed, _, again = (part.strip() for part in field.text.partition(_ARROW.strip()))
     try:
         read_number(printed)
@@ -193,14 +193,14 @@ def _pin(table: Table, field: Field, findings: Findings) -> Pin | None:
     return Pin(printed, again)
 
 
-def _printed(table: Table, fields: Mapping[str, Field], unread: set[str], findings: Findings) -> Printed:
+def _printed(table: CsvTable, fields: Mapping[str, Field], unread: set[str], findings: Findings) -> Printed:
     number, written = fields["value"], fields["unit"]
     unit = parse_unit("1")
     try:
         unit = parse_unit(written.text)
     except UnitError as error:
         if _OPEN.search(written.text):  # the sheet knows whose it is
-            return _number(table, number, Unit(written.text, Fraction(1), ()), findings)
+            return _number(table, number, ParsedUnit(written.text, Fraction(1), ()), findings)
         at = table.at(written, error.start, len(error.text))
         known = "a unit, 1 for a pure number"
         findings.add(error.code, at, text=error.text, suggestion=error.suggestion, known=known)
@@ -208,7 +208,7 @@ def _printed(table: Table, fields: Mapping[str, Field], unread: set[str], findin
     return _number(table, number, unit, findings)
 
 
-def _number(table: Table, number: Field, unit: Unit, findings: Findings) -> Printed:
+def _number(table: CsvTable, number: Field, unit: ParsedUnit, findings: Findings) -> Printed:
     try:
         return read_printed(number.text, unit, where=table.source.trace(number.offset))
     except NumberError as error:

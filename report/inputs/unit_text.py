@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["COMMON", "Unit", "UnitError", "examples", "parse_unit"]
+__all__ = ["COMMON", "ParsedUnit", "UnitError", "examples", "parse_unit"]
 
 _LONGEST = 60
 _HIGHEST = 12
@@ -27,7 +27,7 @@ Dimension = tuple[tuple[str, int], ...]
 
 
 @dataclass(frozen=True)
-class Unit:
+class ParsedUnit:
     """A unit as printed, with its exact size.
 
     Parameters
@@ -123,7 +123,7 @@ _TOKEN = re.compile(
 
 
 @lru_cache(maxsize=256)
-def parse_unit(text: str) -> Unit:
+def parse_unit(text: str) -> ParsedUnit:
     """Read a unit, exactly.
 
     Parameters
@@ -145,15 +145,15 @@ def parse_unit(text: str) -> Unit:
     """
     stripped = text.strip()
     if stripped in _PURE:
-        return Unit(text, Fraction(1), ())
+        return ParsedUnit(text, Fraction(1), ())
     if len(text) > _LONGEST:
         raise UnitError("LS424", text, 0)
     start = text.index(stripped)
     scale, dimension = _Parser(stripped, start).whole()
-    return Unit(text, scale, _sorted(dimension))
+    return ParsedUnit(text, scale, _sorted(dimension))
 
 
-def examples(unit: Unit) -> str:
+def examples(unit: ParsedUnit) -> str:
     """Return units of the same dimension, for "allowed"."""
     names = [name for name, (_, dimension) in COMMON.items() if dimension == unit.dimension]
     plain = [name for name in names if name.isascii()]

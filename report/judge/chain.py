@@ -25,7 +25,7 @@ from ..plan.derivatives import Local, Slope, derivatives, with_unknowns
 from ..plan.kept import as_data, of_data, of_sheet
 from ..sheet import Sheet
 
-__all__ = ["Chain", "Made", "Pattern", "Step"]
+__all__ = ["Chain", "Level", "Made", "Pattern"]
 
 Numbered = NDArray[np.intp]
 _NONE = np.zeros(0, dtype=np.intp)
@@ -76,7 +76,7 @@ class Pattern:
 
 
 @dataclass(frozen=True)
-class Step:
+class Level:
     """Nodes that rest on none of one another.
 
     Parameters
@@ -173,7 +173,7 @@ class Chain:
         """The sheet of the derivatives over the rows."""
         return Laid(self.made.program.sheet, dict(self.layouts))
 
-    def _step(self, nodes: tuple[Local, ...]) -> Step:
+    def _step(self, nodes: tuple[Local, ...]) -> Level:
         """The nodes' entries, and how they come about."""
         first, width, terms = self.length, 0, 0
         slopes, of, along, starts = [], [_NONE], [_NONE], [_NONE]
@@ -196,7 +196,7 @@ class Chain:
                 terms += order.size
                 self._add(node.name, rows[begins], by[begins])
         terms_of, theirs_at, begin = (np.concatenate(each) for each in (of, along, starts))
-        return Step(nodes, tuple(slopes), terms_of, theirs_at, begin, slice(first, self.length))
+        return Level(nodes, tuple(slopes), terms_of, theirs_at, begin, slice(first, self.length))
 
     def _add(self, name: str, rows: Numbered, by: Numbered) -> None:
         """Entries of a node."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..cells.marks import Count, Margin, margins
+from ..cells.marks import Margin, MarkCount, margins
 from ..cells.values import Cell, Status
 from ..messages.diagnostics import Check, Location
 from ..sheet import Column, Given, Sheet
@@ -185,7 +185,7 @@ class _Oddities:
         if not odd:
             inside = f"inside {limit.source}" if limit.source else f"none {limit.mark}"
             return Check(LIMIT, name, True, f"{margin.of.name}: {inside}", self.inputs.place)
-        said = f"{Count(margin, len(odd.told), self.report.marks.count(margin).size).said}: "
+        said = f"{MarkCount(margin, len(odd.told), self.report.marks.count(margin).size).said}: "
         if margin.of.axis is None:
             said = f"{limit.told}: "
         return self.check(

@@ -7,16 +7,29 @@ a symbol stands for, which sums are taken before, what is asked of a value. All 
 from __future__ import annotations
 
 from .lowering import lowered, lowered_column
-from .nodes import Given, Leaf, Map, Node, Part, Plan, Root, RowMedian, RowSum, Total, free_name, taken_over
+from .nodes import (
+    GivenNode,
+    Leaf,
+    Map,
+    Node,
+    Part,
+    Plan,
+    RootNode,
+    RowMedian,
+    RowSum,
+    Total,
+    free_name,
+    taken_over,
+)
 
 __all__ = [
-    "Given",
+    "GivenNode",
     "Leaf",
     "Map",
     "Node",
     "Part",
     "Plan",
-    "Root",
+    "RootNode",
     "RowMedian",
     "RowSum",
     "Total",

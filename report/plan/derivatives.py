@@ -50,11 +50,10 @@ from sympy import (
 )
 from sympy.core.function import ArgumentIndexError
 
-from ..column import Axis, Column
-from ..column import Root as RootRule
+from ..column import Axis, Column, Root
 from ..sheet import Sheet
 from .lowering import RESERVED, lowered
-from .nodes import Given, Leaf, Map, Node, Part, Plan, Root, RowSum, Total, free_name
+from .nodes import GivenNode, Leaf, Map, Node, Part, Plan, RootNode, RowSum, Total, free_name
 
 __all__ = ["Derivatives", "Local", "Slope", "derivatives", "with_unknowns"]
 
@@ -153,7 +152,7 @@ def with_unknowns(sheet: Sheet, again: Mapping[str, str]) -> Sheet:
 
 def _unknown(column: Column, name: str) -> Column:
     """The unknown of a root as a root of its own."""
-    assert isinstance(column.rule, RootRule)
+    assert isinstance(column.rule, Root)
     rule = replace(column.rule, value=column.rule.unknown)
     return replace(column, name=name, rule=rule, positive=False, requires=(), limits=())
 
@@ -171,9 +170,9 @@ class _Making:
 
     def node(self, node: Node) -> Iterator[Local]:
         """A node, after the sums of its equation if it is a root."""
-        if isinstance(node, Root):
+        if isinstance(node, RootNode):
             yield from _RootMaking(self, node).locals()
-        elif isinstance(node, Given):
+        elif isinstance(node, GivenNode):
             yield self.local(node.column, lambda: _size(self.own[node.column.name]), {})
         elif isinstance(node, Map):
             value = _chosen(node.value)
@@ -264,7 +263,7 @@ class _Making:
 class _RootMaking:
     """The derivatives of a root: sums with the unknown are nodes of their own, taken where the root lies."""
 
-    def __init__(self, making: _Making, node: Root) -> None:
+    def __init__(self, making: _Making, node: RootNode) -> None:
         self.making, self.root, self.column = making, node, node.column
         self.unknown = node.unknown
         self.moving: dict[Symbol, tuple[Axis, Expr]] = {}

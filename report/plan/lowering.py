@@ -9,11 +9,9 @@ from typing import Any
 from sympy import Expr, Indexed, Integer, Max, Min, Symbol, false
 
 from ...derivations.reductions import REDUCTIONS, Median
-from ..sheet import Axis, Column, Formula, Sheet, name_of
-from ..sheet import Given as GivenRule
-from ..sheet import Root as RootRule
+from ..sheet import Axis, Column, Formula, Given, Root, Sheet, name_of
 from .domain import defined, is_positive, positive, typed_symbols
-from .nodes import Given, Leaf, Map, Node, Plan, Root, RowMedian, RowSum, Total
+from .nodes import GivenNode, Leaf, Map, Node, Plan, RootNode, RowMedian, RowSum, Total
 
 __all__ = ["lowered", "lowered_column"]
 
@@ -146,9 +144,9 @@ class Lowering:
     def column(self, column: Column) -> list[Node]:
         """The nodes of a column: its totals, then itself."""
         rule, nodes = column.rule, list[Node]()
-        if isinstance(rule, GivenRule):
-            return [Given(column, *self.sheet.guards.get(column.name, (column.symbol, None)))]
-        unknown = rule.unknown if isinstance(rule, RootRule) else None
+        if isinstance(rule, Given):
+            return [GivenNode(column, *self.sheet.guards.get(column.name, (column.symbol, None)))]
+        unknown = rule.unknown if isinstance(rule, Root) else None
 
         def lower(expression: Any) -> Any:
             plain = self.plain(expression, column, column.axis, unknown)
@@ -165,7 +163,7 @@ class Lowering:
             nodes.append(Map(column, lower(rule.expression), requires, defined(asked), sign))
         else:
             nodes.append(
-                Root(
+                RootNode(
                     column,
                     rule.unknown,
                     lower(rule.low),

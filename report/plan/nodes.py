@@ -13,13 +13,13 @@ from sympy.logic.boolalg import Boolean
 from ..column import Axis, Column
 
 __all__ = [
-    "Given",
+    "GivenNode",
     "Leaf",
     "Map",
     "Node",
     "Part",
     "Plan",
-    "Root",
+    "RootNode",
     "RowMedian",
     "RowSum",
     "Total",
@@ -134,7 +134,7 @@ def taken_over(expressions: Iterable[Basic]) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True)
-class Given:
+class GivenNode:
     """A column whose values come with the data.
 
     Parameters
@@ -200,7 +200,7 @@ class Map:
 
 
 @dataclass(frozen=True)
-class Root:
+class RootNode:
     """A column of which each row is made of the only zero of an equation in an interval.
 
     Parameters
@@ -260,7 +260,7 @@ class Part:
     value: Expr
 
 
-Node = Given | Total | Part | Map | Root
+Node = GivenNode | Total | Part | Map | RootNode
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from typing import Any
 
-from .nodes import Given, Leaf, Map, Node, Part, Plan, Root, Total
+from .nodes import GivenNode, Leaf, Map, Node, Part, Plan, RootNode, Total
 
 __all__ = ["text"]
 
@@ -27,7 +27,7 @@ def text(plan: Plan, columns: Collection[str] | None = None) -> str:
     return "\n".join([*lines, *(["", *legend] if legend else [])]) + "\n"
 
 
-def _on(node: Given | Map | Root) -> str:
+def _on(node: GivenNode | Map | RootNode) -> str:
     return f" on {node.column.axis.name}" if node.column.axis is not None else ""
 
 
@@ -41,7 +41,7 @@ def _node(plan: Plan, node: Node) -> Iterator[str]:
         yield f"{node.symbol}{on} = {node.value}"
         return
     name = f"{plan.own[node.column.name]}{_on(node)}"
-    if isinstance(node, Given):
+    if isinstance(node, GivenNode):
         yield f"{name}: given"
         if node.allowed is not None:
             yield f"    allowed: {node.allowed}"
@@ -66,7 +66,7 @@ def _node(plan: Plan, node: Node) -> Iterator[str]:
 def _expressions(node: Node) -> Iterator[Any]:
     if isinstance(node, Total):
         yield node.terms
-    elif isinstance(node, Given):
+    elif isinstance(node, GivenNode):
         yield from () if node.allowed is None else (node.allowed,)
     elif isinstance(node, Part):
         yield node.value

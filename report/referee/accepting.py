@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..inputs.csvtable import Field, Row, Table, read_table
+from ..inputs.csvtable import CsvRow, CsvTable, Field, read_table
 from ..inputs.published import COLUMNS, Pin
 from ..inputs.sources import open_source
 from ..messages.errors import Findings
@@ -20,7 +20,7 @@ from ..result.verdict import OTHERWISE, UNEXPECTED, UNPINNED, UNREASONED
 if TYPE_CHECKING:
     from ..result.result import Comparison, Report
 
-__all__ = ["Accepted", "Change", "accepted"]
+__all__ = ["Accepted", "RowChange", "accepted"]
 
 _BLANK = " \t\u00a0"
 _BYTE_ORDER_MARK = "\ufeff".encode()
@@ -30,7 +30,7 @@ Words = Mapping[str, str]
 
 
 @dataclass(frozen=True)
-class Change:
+class RowChange:
     """A row of the table that is written anew.
 
     Parameters
@@ -56,7 +56,7 @@ class Accepted:
         The file.
     before, after : bytes
         All of it.
-    changes : tuple of Change
+    changes : tuple of RowChange
         The rows whose words change, the first line among them if it names another column.
     others : int
         How many rows only get an empty field, because a column is new.
@@ -65,7 +65,7 @@ class Accepted:
     path: Path
     before: bytes
     after: bytes
-    changes: tuple[Change, ...] = ()
+    changes: tuple[RowChange, ...] = ()
     others: int = 0
 
 
@@ -118,24 +118,26 @@ def _words(comparison: Comparison, reason: str) -> Words:
 # --- rows as they are written ------------------------------------------------------------------------------
 
 
-def _names(table: Table) -> list[str]:
+def _names(table: CsvTable) -> list[str]:
     return [field.text for field in table.header]
 
 
-def _lines(table: Table, words: Sequence[Words], new: Sequence[str]) -> Iterator[tuple[Row, Change, bool]]:
+def _lines(
+    table: CsvTable, words: Sequence[Words], new: Sequence[str]
+) -> Iterator[tuple[CsvRow, RowChange, bool]]:
     """The rows that change, and whether their words do: some only get an empty field for a new column."""
-    header = Row(table.header, table.header[0].begin)
-    titles: list[tuple[Row, Words, bool]] = [(header, {name: name for name in new}, True)] if new else []
+    header = CsvRow(table.header, table.header[0].begin)
+    titles: list[tuple[CsvRow, Words, bool]] = [(header, {name: name for name in new}, True)] if new else []
     rows = ((row, each, bool(each)) for row, each in zip(table.rows, words, strict=True))
     for row, each, told in (*titles, *rows):
         before = table.source.text[row.offset : row.fields[-1].end]
         after = ",".join(_written(table, row, each, new))
         if after != before:
             line = table.source.at(row.offset).line or 0
-            yield row, Change(line, before, after), told
+            yield row, RowChange(line, before, after), told
 
 
-def _written(table: Table, row: Row, words: Words, new: Sequence[str]) -> list[str]:
+def _written(table: CsvTable, row: CsvRow, words: Words, new: Sequence[str]) -> list[str]:
     """The fields of a row: those that do not change as they stand, with their quotes and blanks."""
     text, names = table.source.text, _names(table)
     quoted = all(_is_quoted(text, field) for field in row.fields)

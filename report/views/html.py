@@ -15,13 +15,13 @@ from ..document.material import Material
 from ..document.numbers import is_pure
 from ..document.parts import Item, why_address
 from ..document.tables import Tables
-from ..document.tree import Column, Entry, Math, Number, Refer, Silent, Unit
+from ..document.tree import Entry, Math, Number, Refer, Silent, TableColumn, Unit
 from ..machine.staging import put
 from ..result.result import Report
 from . import live
 from .compact import short_markup, short_style
 from .escape import Markup, html
-from .made import Made
+from .issued import Issued
 from .mathml import mathml, mathml_block
 from .typeset import block
 from .units import unit_html
@@ -92,7 +92,7 @@ class HtmlWriter(Writer):
         """The identifier of the sentence that says why a cell has no value."""
         return why_address(cell)
 
-    def entry(self, column: Column, entry: Entry) -> Markup:
+    def entry(self, column: TableColumn, entry: Entry) -> Markup:
         """A cell of a table: one of the sheet, or words."""
         if isinstance(entry, Item):
             return Markup(self._macros.box(entry))
@@ -178,7 +178,7 @@ def render(report: Report, figures: Mapping[str, str], program: str | None = Non
     return _squeezed(short_markup(whole))
 
 
-def write(made: Made, stage: Path) -> None:
+def write(made: Issued, stage: Path) -> None:
     """Write report.html."""
     figures = {name: svg.decode() for name, svg in made.figures("svg").items()}
     put(stage / "report.html", render(made.report, figures, made.program))

@@ -11,7 +11,7 @@ import numpy as np
 from msgspec import UNSET
 
 from ...derivations.text import text_of_equation
-from ..cells.marks import Count
+from ..cells.marks import MarkCount
 from ..cells.values import Status
 from ..files import values as form
 from ..files.form import alike, text
@@ -21,12 +21,12 @@ from ..result import verdict_data
 from ..result.result import Comparison, Report
 from ..result.verdict import Verdict
 from ..sheet import Column, Formula, Given, RepeatAxis
-from .made import Made
+from .issued import Issued
 
 __all__ = ["manifest", "proof_grounds", "proof_statuses", "values", "write"]
 
 
-def write(made: Made, stage: Path) -> None:
+def write(made: Issued, stage: Path) -> None:
     """Write values.json."""
     put(stage / "values.json", values(made.report))
 
@@ -102,7 +102,7 @@ def _generated(report: Report, column: Column, axis: RepeatAxis) -> form.Column:
     )
 
 
-def _marked(count: Count) -> form.Marked:
+def _marked(count: MarkCount) -> form.Marked:
     """How many of the rows that a scalar rests on carry a mark."""
     margin = count.margin
     return form.Marked(cell=margin.of.name, mark=margin.limit.mark, rows=count.number, of=count.size)

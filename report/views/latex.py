@@ -14,11 +14,11 @@ from ...derivations.equation import Equation
 from ..document.material import Material
 from ..document.numbers import is_pure
 from ..document.parts import Item
-from ..document.tree import Column, Entry, Formula, Math, Number, Refer, Silent, Table, Unit
+from ..document.tree import Display, Entry, Math, Number, Refer, Silent, Table, TableColumn, Unit
 from ..machine.staging import put
 from ..result.result import Report
 from .escape import Markup, tex
-from .made import Made
+from .issued import Issued
 from .typeset import TEXT_WIDTH, block
 from .units import unit_tex
 from .writer import Writer
@@ -78,7 +78,7 @@ class LatexWriter(Writer):
             return Markup(rf"\ref{{{self.label(node.label)}}}")
         return Markup(rf"\hyperref[{self.label(node.label)}]{{{tex(node.label)}}}")
 
-    def formula(self, node: Formula) -> Markup:
+    def display(self, node: Display) -> Markup:
         """A displayed equation; one with a number stands where it is shown first."""
         label = node.equation.label
         if not node.numbered:
@@ -89,7 +89,7 @@ class LatexWriter(Writer):
 
     def numbered(self, equation: Equation) -> Markup:
         """A displayed equation with its number, for a template."""
-        return self.formula(Formula(equation, numbered=True))
+        return self.display(Display(equation, numbered=True))
 
     def reference(self, label: str) -> Markup:
         """A reference from a template."""
@@ -123,7 +123,7 @@ class LatexWriter(Writer):
         """What the columns of a table are to LaTeX: aligned numbers, words that are broken, or neither."""
         return Markup("".join(map(_column, table.columns)))
 
-    def entry(self, column: Column, entry: Entry) -> Markup:
+    def entry(self, column: TableColumn, entry: Entry) -> Markup:
         """What stands in a cell; among numbers that are aligned, what is none goes in braces."""
         if isinstance(entry, Silent):
             return Markup(rf"{{\color{{gray}}{tex(entry.text)}}}")
@@ -139,7 +139,7 @@ class LatexWriter(Writer):
         return Markup(rf"{{{self(entry)}}}" if plain is None else plain)
 
 
-def _column(column: Column) -> str:
+def _column(column: TableColumn) -> str:
     if column.form:
         return f"S[table-format={column.form}]"
     if column.share:
@@ -167,6 +167,6 @@ def render(report: Report, figures: Collection[str]) -> str:
     return writer.render("latex/article.j2", body=Markup(body))
 
 
-def write(made: Made, stage: Path) -> None:
+def write(made: Issued, stage: Path) -> None:
     """Write report.tex beside its figures."""
     put(stage / "report.tex", render(made.report, made.figures("pdf")))

@@ -21,7 +21,7 @@ from ..cells.address import index_text
 from ..charts import Chart, Series
 from ..document.charted import PREFIXES, Words, unit_text
 from ..document.material import Material
-from ..document.math import Printer
+from ..document.math import MathPrinter
 from ..document.parts import slug
 from ..document.tree import Inlines, Math, Unit
 from ..inputs.unit_text import parse_unit
@@ -33,7 +33,7 @@ from .compact import short_script
 from .live_files import given
 from .writer import TEMPLATES
 
-__all__ = ["SCRIPTS", "Part", "data", "drawn", "limits", "parts", "script"]
+__all__ = ["SCRIPTS", "BarPart", "data", "drawn", "limits", "parts", "script"]
 
 SCRIPTS = (
     "page.js",
@@ -243,7 +243,7 @@ def _printed(report: Report, name: str) -> Printed | None:
 
 
 @dataclass(frozen=True)
-class Part:
+class BarPart:
     """What the formula bar shows of a column.
 
     Parameters
@@ -264,11 +264,11 @@ class Part:
     equation: Math | None
 
 
-def parts(report: Report, document: Material) -> Iterator[Part]:
+def parts(report: Report, document: Material) -> Iterator[BarPart]:
     """What the formula bar shows of every column."""
     for column in report.sheet.columns:
         equation = Put(document).equation(column)
-        yield Part(
+        yield BarPart(
             column,
             document.sentences.symbol(column.name),
             document.sentences.rich(column.meaning),
@@ -282,7 +282,7 @@ _BETWEEN = re.compile(
 )
 
 
-class Put(Printer):
+class Put(MathPrinter):
     """Prints an equation with a numbered place for every cell, size and running number in it."""
 
     def __init__(self, document: Material) -> None:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 
-from ..document.notation import FUNCTIONS, NONE, Part, read
+from ..document.notation import FUNCTIONS, NONE, Notation, read
 from .escape import Markup, html
-from .typeset import Block, relates
+from .typeset import Typeset, relates
 
 __all__ = ["mathml", "mathml_block"]
 
-_MINUS = Part("sign", "−")
+_MINUS = Notation("sign", "−")
 _BEFORE_SIGN = frozenset("=([{")
 _STAND_APART = frozenset({"letter", "upright", "number", "fence", "scripts", "fraction", "cases"})
 """What a function that is a factor keeps its distance from."""
@@ -28,7 +28,7 @@ def mathml(latex: str, display: bool = False) -> Markup:
     return Markup(f"<math{mode}>{_inside(latex, display)}</math>")
 
 
-def mathml_block(made: Block) -> Markup:
+def mathml_block(made: Typeset) -> Markup:
     """MathML of a displayed equation, a row of a table for each of its lines."""
     if len(made.rows) == 1:
         return mathml(made.latex, display=True)
@@ -48,10 +48,10 @@ def _inside(latex: str, display: bool) -> str:
     return _row(read(latex).parts, display)
 
 
-def _row(parts: Sequence[Part], display: bool = False, opened: bool = False) -> str:
+def _row(parts: Sequence[Notation], display: bool = False, opened: bool = False) -> str:
     """Parts in a line; limits stand below and above where it is displayed."""
     printed = []
-    before = Part("sign", "(") if opened else None
+    before = Notation("sign", "(") if opened else None
     for part in parts:
         own = _part(part, display)
         if before is not None:
@@ -65,13 +65,13 @@ def _row(parts: Sequence[Part], display: bool = False, opened: bool = False) -> 
     return "".join(printed)
 
 
-def _group(part: Part) -> str:
+def _group(part: Notation) -> str:
     """One element: a row of several, and of a lone sign, whose spacing a group changes."""
     parts = part.parts if part.kind == "row" else (part,)
     return _part(parts[0]) if len(parts) == 1 and parts[0].kind != "sign" else f"<mrow>{_row(parts)}</mrow>"
 
 
-def _part(part: Part, display: bool = False) -> str:
+def _part(part: Notation, display: bool = False) -> str:
     text = html(part.text)
     match part.kind:
         case "letter":

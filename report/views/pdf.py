@@ -10,7 +10,7 @@ from pathlib import Path
 from ..machine.programs import ProgramFailed, run
 from ..messages.errors import LoopsheetError, diagnose
 from . import latex
-from .made import Made
+from .issued import Issued
 
 __all__ = ["TexFailed", "TexMissing", "compile", "write"]
 
@@ -30,7 +30,7 @@ class TexFailed(RuntimeError):
     """TeX could not print the report: that is our bug, for everything foreign was escaped."""
 
 
-def write(made: Made, stage: Path) -> None:
+def write(made: Issued, stage: Path) -> None:
     """Write report.tex beside its figures, and report.pdf of them."""
     latex.write(made, stage)
     compile(stage)

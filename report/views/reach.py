@@ -41,7 +41,7 @@ GRID = "#e6e6e6"
 
 
 @dataclass(frozen=True)
-class Row:
+class ReachRow:
     """A published value in the picture; lengths are in units of its last digit, from its own value.
 
     Parameters
@@ -73,7 +73,7 @@ class Row:
         return self.verdict in (EXACT, REACHABLE)
 
 
-def rows(report: Report) -> tuple[Row, ...]:
+def rows(report: Report) -> tuple[ReachRow, ...]:
     """The published values that have an interval of what is reachable, by where it is published."""
     names = latex_names(report.ledger.vocabulary, report.sheet.columns)
     found = [_row(one, names) for one in _known(report)]
@@ -88,7 +88,7 @@ def _known(report: Report) -> list[Comparison]:
     return [one for one in report.comparisons if one.refereed and one.refereed.low is not None]
 
 
-def _row(one: Comparison, names: dict[str, str]) -> Row:
+def _row(one: Comparison, names: dict[str, str]) -> ReachRow:
     published, verdict = one.published, one.refereed
     assert verdict is not None
     assert verdict.low is not None
@@ -99,7 +99,7 @@ def _row(one: Comparison, names: dict[str, str]) -> Row:
     symbol = _symbol(name_latex(published.cell, names), published.cell)
     source = drawable(published.source)
     low, high = (float(end - printed.value) / unit for end in printed.interval)
-    return Row(
+    return ReachRow(
         f"{source}, {symbol}" if index else source,
         f"{index or symbol}: {printed.text}",
         (verdict.low - centre) / unit,
@@ -166,7 +166,7 @@ def draw(report: Report) -> Figure:
     axes.set_xlim(left, right)
     axes.set_ylim(lines - 0.4, -0.6)
 
-    places: list[tuple[float, Row]] = []
+    places: list[tuple[float, ReachRow]] = []
     line = 0
     for heading, members in groupby(found, key=lambda row: row.place):
         _beside(axes, heading, (left, line + 0.05), 3)
@@ -199,7 +199,7 @@ def _beside(axes: Axes, text: str, at: tuple[float, float], points: float) -> No
     )  # fmt: skip
 
 
-def _limits(found: Iterable[Row]) -> tuple[float, float]:
+def _limits(found: Iterable[ReachRow]) -> tuple[float, float]:
     ends = [end for row in found for end in (row.low, row.high, row.here or 0.0, *row.band)]
     low, high = _scaled(ends).min(), _scaled(ends).max()
     room = 0.06 * (high - low)
@@ -218,7 +218,7 @@ def _abscissa(axes: Axes, lines: int) -> None:
     _strokes(axes, ends, color=GRID, lw=0.5, zorder=0.7)
 
 
-def _band(axes: Axes, places: Sequence[tuple[float, Row]]) -> None:
+def _band(axes: Axes, places: Sequence[tuple[float, ReachRow]]) -> None:
     """What prints as published: one band, for all that were shortened in the same way."""
     if len({row.band for _, row in places}) == 1:
         axes.axvspan(*_scaled(places[0][1].band), color=PALE, lw=0, zorder=0.5)
@@ -239,7 +239,7 @@ def _strokes(axes: Axes, ends: Sequence[tuple[float, float]], **style: Any) -> N
         axes.plot(*zip(*pair, strict=True), **style)
 
 
-def _bars(axes: Axes, places: Sequence[tuple[float, Row]]) -> None:
+def _bars(axes: Axes, places: Sequence[tuple[float, ReachRow]]) -> None:
     """Full where the published value is reachable, hollow where it is not; arrowheads where they go on."""
     solid = [(place, row.low, row.high) for place, row in places if row.solid]
     hollow = [(place, row.low, row.high) for place, row in places if not row.solid]
@@ -252,7 +252,7 @@ def _bars(axes: Axes, places: Sequence[tuple[float, Row]]) -> None:
                 axes.plot(_scaled([end]), [place], marker, ms=5, color=colour, clip_on=False, zorder=3)
 
 
-def _marks(axes: Axes, places: Sequence[tuple[float, Row]]) -> None:
+def _marks(axes: Axes, places: Sequence[tuple[float, ReachRow]]) -> None:
     """A ring for the recomputed value; a cross on what is out of reach."""
     here = [(float(_scaled(row.here)), place) for place, row in places if row.here is not None]
     if here:
@@ -269,7 +269,7 @@ def _marks(axes: Axes, places: Sequence[tuple[float, Row]]) -> None:
     _strokes(axes, ends, color=LOADING, lw=1.8, zorder=4)
 
 
-def _key(figure: Figure, places: Sequence[tuple[float, Row]]) -> None:
+def _key(figure: Figure, places: Sequence[tuple[float, ReachRow]]) -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 

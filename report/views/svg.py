@@ -16,7 +16,7 @@ from matplotlib.image import imsave
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
-from ..document.notation import Part, fragments, read
+from ..document.notation import Notation, fragments, read
 
 __all__ = ["written"]
 
@@ -235,5 +235,5 @@ def _letters(text: str) -> str | None:
     return made
 
 
-def _is_flat(part: Part) -> bool:
+def _is_flat(part: Notation) -> bool:
     return part.kind not in _DRAWN and all(map(_is_flat, part.parts))

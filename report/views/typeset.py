@@ -8,10 +8,10 @@ from functools import lru_cache
 
 from sympy import Expr
 
-from ..document.math import Printer
-from ..document.notation import Part, read
+from ..document.math import MathPrinter
+from ..document.notation import Notation, read
 
-__all__ = ["TEXT_WIDTH", "Block", "block", "relates", "width"]
+__all__ = ["TEXT_WIDTH", "Typeset", "block", "relates", "width"]
 
 TEXT_WIDTH = 60.0
 """How wide a line may be beside the number of its equation, in letters."""
@@ -20,7 +20,7 @@ _SHORT = 14.0
 
 
 @dataclass(frozen=True)
-class Block:
+class Typeset:
     """A displayed equation, broken into lines.
 
     Parameters
@@ -62,12 +62,12 @@ def relates(row: str) -> bool:
     return row.startswith("=")
 
 
-def block(printer: Printer, members: Sequence[Expr], room: float = TEXT_WIDTH) -> Block:
+def block(printer: MathPrinter, members: Sequence[Expr], room: float = TEXT_WIDTH) -> Typeset:
     """Break an equation into lines, before a relation or between the terms of a sum.
 
     Parameters
     ----------
-    printer : Printer
+    printer : MathPrinter
     members : sequence of Expr
         The sides of the equation, or one relation.
     room : float
@@ -76,7 +76,7 @@ def block(printer: Printer, members: Sequence[Expr], room: float = TEXT_WIDTH) -
     sides = [printer.terms(member) for member in members]
     whole = " = ".join(printer.join(side) for side in sides)
     if width(whole) <= room or (len(members) == 1 and len(sides[0]) == 1):
-        return Block("", (whole,))
+        return Typeset("", (whole,))
     first = printer.join(sides[0])
     left = first if len(sides) > 1 and width(first) <= _SHORT else ""
     rows: list[str] = []
@@ -100,7 +100,7 @@ def block(printer: Printer, members: Sequence[Expr], room: float = TEXT_WIDTH) -
                 rows.append(piece)
             else:
                 rows[-1] += " " + piece
-    return Block(left, tuple(rows))
+    return Typeset(left, tuple(rows))
 
 
 # --- how wide --------------------------------------------------------------------------------------------
@@ -121,7 +121,7 @@ def width(latex: str) -> float:
     return _width(read(latex))
 
 
-def _width(part: Part) -> float:
+def _width(part: Notation) -> float:
     inside = [_width(each) for each in part.parts]
     match part.kind:
         case "fraction":

@@ -8,7 +8,7 @@ from sympy import Expr, Symbol
 
 from ...derivations.equation import Equation
 from ...derivations.reductions import REDUCTIONS
-from ...derivations.text import Writer, text_of_equation
+from ...derivations.text import Wording, text_of_equation
 from ..cells.trace import Group, dependents_of, precedents_of
 from ..cells.values import Cell
 from ..result.result import Report
@@ -137,7 +137,7 @@ def _equation(report: Report, column: Column, row: int, cell: Cell) -> Iterator[
         yield _line("", f"over {', '.join(sizes)}")
     elif cell.value is not None:
         # A formula's own side is the cell itself; a root's equation shows the cell inside of it.
-        text = Writer(report.ledger.vocabulary).text
+        text = Wording(report.ledger.vocabulary).text
         numbers = [text(member) for member in equation.at(_numbers(report, column, row)).members]
         if isinstance(column.rule, Formula):
             numbers = [cell.address, numbers[-1], _number(cell.value)]

@@ -18,9 +18,9 @@ from xlsxwriter.worksheet import Worksheet
 from ..cells.grid import SCALARS, STEPS, Grid
 from ..machine.staging import put
 from ..result.result import Report
-from .made import Made
+from .issued import Issued
 from .xlsx_charts import write_charts
-from .xlsx_inputs import Inputs
+from .xlsx_inputs import GivenCells
 from .xlsx_marks import mark_outside
 from .xlsx_pages import write_equations, write_published, write_report
 from .xlsx_style import Style
@@ -44,7 +44,7 @@ class _Worksheet(Worksheet):  # type: ignore[misc] # XlsxWriter comes without ty
         return formula.removeprefix("{").removeprefix("=").removesuffix("}")
 
 
-def write(made: Made, stage: Path) -> None:
+def write(made: Issued, stage: Path) -> None:
     """Write report.xlsx."""
     put(stage / "report.xlsx", made.workbook)
 
@@ -74,7 +74,7 @@ def render(report: Report, grid: Grid) -> bytes:
 
 def _write(book: Any, report: Report, grid: Grid) -> None:
     """Make the worksheets in the order in which they are read, then fill them."""
-    style, inputs = Style(book), Inputs(report, grid)
+    style, inputs = Style(book), GivenCells(report, grid)
     names = [SCALARS, *([_FIGURES] if grid.drawn and report.workbook.charts else []), *grid.axes]
     names += [STEPS] if grid.on(STEPS) else []
     names += [_PUBLISHED] if report.comparisons else []

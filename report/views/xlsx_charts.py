@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..cells.address import index_text
-from ..cells.grid import Block, Grid
+from ..cells.grid import CellBlock, Grid
 from ..charts import Series, copied, shade
 from ..document.charted import Words, plain
 from ..result.result import Report
@@ -66,7 +66,7 @@ def _axis(name: str, from_zero: bool, log: bool) -> dict[str, Any]:
     }
 
 
-def _told(sheet: Any, style: Style, row: int, label: str, block: Block, words: Words) -> str:
+def _told(sheet: Any, style: Style, row: int, label: str, block: CellBlock, words: Words) -> str:
     """Write a label with a number behind it, in the unit of its cell; the address of what is written."""
     form = number_format(block.values, words.report.shown[block.name].digits)
     unit = "" if block.unit == "1" else f" {block.unit}"
@@ -98,7 +98,7 @@ def _series(words: Words, grid: Grid, series: Series) -> Iterator[dict[str, Any]
 
 
 def _one(
-    label: str, series: Series, colour: str, x: Block, y: Block, first: int, rows: int
+    label: str, series: Series, colour: str, x: CellBlock, y: CellBlock, first: int, rows: int
 ) -> dict[str, Any]:
     looks: dict[str, Any] = {"marker": {"type": "none"}, "line": {"color": colour, "width": 1.5}}
     if series.style == "points":

@@ -10,13 +10,13 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-from ..cells.grid import FIRST_ROW, SCALARS, Block, Grid, Place, checked, letters
+from ..cells.grid import FIRST_ROW, SCALARS, CellBlock, Grid, Place, checked, letters
 from ..cells.values import CODES, Status
 from ..quantity import Printed
 from ..result.result import Report
 from .xlsx_style import Style, open_format, said
 
-__all__ = ["Inputs"]
+__all__ = ["GivenCells"]
 
 _MOST_NOTES = 500
 """Cells of a column that get a note of their own; a longer one has it in its header only."""
@@ -29,7 +29,7 @@ _ROWS_TOLD = FIRST_ROW - 5
 _CODE, _FINE = CODES[Status.INPUT], "ok"
 
 
-class Inputs:
+class GivenCells:
     """The given cells: each column's printed numbers, what is allowed, and what is refused.
 
     Parameters
@@ -42,7 +42,7 @@ class Inputs:
         self.report, self.grid = report, grid
         self.counts = {axis.repeats for axis in grid.axes.values() if axis.repeats}
 
-    def allowed(self, block: Block) -> str:
+    def allowed(self, block: CellBlock) -> str:
         """What a cell must be, as a sentence without its full stop."""
         if block.name in self.counts:
             return f"{block.name} decides how many rows there are: change report.toml and build again"
@@ -50,7 +50,7 @@ class Inputs:
 
     # --- cells
 
-    def write(self, sheet: Any, style: Style, block: Block) -> None:
+    def write(self, sheet: Any, style: Style, block: CellBlock) -> None:
         """Write the given cells of a column, with what Excel is to accept in them."""
         printed, place = self.report.inputs.printed(block.name), block.place
         fixed = block.name in self.counts
@@ -69,13 +69,13 @@ class Inputs:
         refused = {"type": "formula", "criteria": f"={self._refused(block)}".replace("$", "")}
         sheet.conditional_format(*every, refused | {"format": style("finding")})
 
-    def note(self, block: Block, printed: Printed) -> str:
+    def note(self, block: CellBlock, printed: Printed) -> str:
         """What a cell is, what it may be, and where its number comes from."""
         source = printed.where.partition(":")[0]
         given = f"Given as {printed.text} {printed.unit} in {printed.where}." if source else "The default."
         return "\n".join([f"{block.name}: {block.meaning}.", f"{self.allowed(block)}.", given])
 
-    def validation(self, block: Block) -> dict[str, Any]:
+    def validation(self, block: CellBlock) -> dict[str, Any]:
         """What Excel is to accept in the cells of a column."""
         return {
             "validate": "custom",
@@ -87,13 +87,13 @@ class Inputs:
 
     # --- what is told beside the cells
 
-    def write_told(self, sheet: Any, style: Style, blocks: Sequence[Block], note: Place) -> None:
+    def write_told(self, sheet: Any, style: Style, blocks: Sequence[CellBlock], note: Place) -> None:
         """Write beside each row which of its given cells are refused, and above all what became of rows."""
         for row in range(note.rows):
             style.formula(sheet, note.row + row, note.column, self.told(blocks, row), _FINE, style("aside"))
         style.formula(sheet, _ROWS_TOLD, 0, self._rows(blocks, note), "", style("error"))
 
-    def write_left_out(self, sheet: Any, style: Style, blocks: Sequence[Block], note: Place) -> int:
+    def write_left_out(self, sheet: Any, style: Style, blocks: Sequence[CellBlock], note: Place) -> int:
         """Write those that are left out below, as texts that no formula counts; how many rows that takes."""
         if not (left_out := self.report.inputs.left_out):
             return 0
@@ -107,7 +107,7 @@ class Inputs:
             style.text(sheet, row, note.column, each.reason, "aside")
         return 2 + len(left_out)
 
-    def told(self, blocks: Sequence[Block], row: int = 0) -> str:
+    def told(self, blocks: Sequence[CellBlock], row: int = 0) -> str:
         """The formula that tells which given cells of a row are refused, and what they must be."""
         refused = [self._refused(block, row) for block in blocks]
         told = [
@@ -116,12 +116,12 @@ class Inputs:
         ]
         return f'=IF(OR({",".join(refused)}),"{_CODE} "&{"&".join(told)},"{_FINE}")'
 
-    def _refused(self, block: Block, row: int = 0) -> str:
+    def _refused(self, block: CellBlock, row: int = 0) -> str:
         """The formula, without its equals sign, that says whether a given cell is refused."""
         place = self.grid[checked(block.name)].place
         return f"NOT(ISNUMBER({place.cell(row, place.worksheet)}))"
 
-    def _rows(self, blocks: Sequence[Block], note: Place) -> str:
+    def _rows(self, blocks: Sequence[CellBlock], note: Place) -> str:
         """The formula that tells of rows that were put in, taken out, or written below the last one."""
         columns, first = [block.place.column for block in blocks], note.row + note.rows + 1
         below = f"${letters(min(columns))}${first}:${letters(max(columns))}${first + _BELOW - 1}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ..cells.grid import Block, Grid, letters
+from ..cells.grid import CellBlock, Grid, letters
 from ..result.result import Report
 from .xlsx_style import Style
 
@@ -38,7 +38,7 @@ def mark_outside(sheets: Mapping[str, Any], style: Style, report: Report, grid: 
             )
 
 
-def counted(report: Report, grid: Grid, block: Block) -> tuple[str, str]:
+def counted(report: Report, grid: Grid, block: CellBlock) -> tuple[str, str]:
     """From how many rows a scalar was computed, how many carry marks: a formula, and as it is now."""
     parts, now = [], []
     for axis, formula in block.kept.items():

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ...derivations.proof import IDENTITY
-from ...derivations.text import Writer, text_of_equation
+from ...derivations.text import Wording, text_of_equation
 from ..cells.address import index_text
-from ..cells.grid import CHECKED, SCALARS, Block, Grid, checked, factors, letters
+from ..cells.grid import CHECKED, SCALARS, CellBlock, Grid, checked, factors, letters
 from ..result.result import Comparison, Report
 from .json import proof_grounds, proof_statuses
-from .xlsx_inputs import Inputs
+from .xlsx_inputs import GivenCells
 from .xlsx_marks import TITLE, counted
 from .xlsx_style import Style, height
 from .xlsx_tables import mark_errors, write_block
@@ -22,7 +22,7 @@ __all__ = ["write_equations", "write_published", "write_report"]
 # --- the result and the scalars -----------------------------------------------------------------------------
 
 
-def write_report(sheet: Any, style: Style, report: Report, grid: Grid, inputs: Inputs) -> None:
+def write_report(sheet: Any, style: Style, report: Report, grid: Grid, inputs: GivenCells) -> None:
     """Write the first worksheet: what came out, what went in, how to use the workbook."""
     scalars = grid.on(SCALARS, "given", "computed", "margin")
     names = max([18, *(1.15 * len(block.name) for block in scalars)])
@@ -51,9 +51,9 @@ def write_report(sheet: Any, style: Style, report: Report, grid: Grid, inputs: I
     sheet.hide_gridlines(2)
 
 
-def _groups(blocks: Sequence[Block]) -> Iterator[list[Block]]:
+def _groups(blocks: Sequence[CellBlock]) -> Iterator[list[CellBlock]]:
     """Blocks that stand one below the other."""
-    group: list[Block] = []
+    group: list[CellBlock] = []
     for block in blocks:
         if group and block.place.row != group[-1].place.row + 1:
             yield group
@@ -63,13 +63,15 @@ def _groups(blocks: Sequence[Block]) -> Iterator[list[Block]]:
         yield group
 
 
-def _title(report: Report, group: Sequence[Block]) -> str:
+def _title(report: Report, group: Sequence[CellBlock]) -> str:
     if group[0].name in report.workbook.headline:
         return "Result"
     return {"given": "Given", "margin": TITLE}.get(group[0].kind, "On the way")
 
 
-def _write_scalar(sheet: Any, style: Style, report: Report, grid: Grid, block: Block, inputs: Inputs) -> None:
+def _write_scalar(
+    sheet: Any, style: Style, report: Report, grid: Grid, block: CellBlock, inputs: GivenCells
+) -> None:
     column, row = report.marks.values.sheet[block.name], block.place.row
     style.text(sheet, row, 0, block.name, "name")
     write_block(
@@ -264,7 +266,7 @@ def write_equations(sheet: Any, style: Style, report: Report) -> None:
     for row, equation in enumerate(report.ledger.equations(), start=4):
         claim = text_of_equation(equation, report.ledger.vocabulary)
         if equation.conditions:
-            claim += "\nwhere " + ", ".join(map(Writer(report.ledger.vocabulary).text, equation.conditions))
+            claim += "\nwhere " + ", ".join(map(Wording(report.ledger.vocabulary).text, equation.conditions))
         cells = (
             equation.label,
             equation.title,

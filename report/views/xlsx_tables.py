@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..cells.grid import FIRST_ROW, STEPS, Block, Grid, letters
+from ..cells.grid import FIRST_ROW, STEPS, CellBlock, Grid, letters
 from ..result.result import Report
-from .xlsx_inputs import Inputs
+from .xlsx_inputs import GivenCells
 from .xlsx_marks import TITLE
 from .xlsx_style import Style, height, number_format, said
 
@@ -29,7 +29,7 @@ _GROUPS = {
 
 
 def write_block(
-    sheet: Any, style: Style, report: Report, block: Block, inputs: Inputs, name: str = "number"
+    sheet: Any, style: Style, report: Report, block: CellBlock, inputs: GivenCells, name: str = "number"
 ) -> None:
     """Write the cells of a block."""
     if block.kind == "given":
@@ -51,7 +51,7 @@ def write_block(
             sheet.write_comment(place.row + row, place.column, f"as issued: {reason}", {"x_scale": 3})
 
 
-def _number_format(report: Report, block: Block) -> str:
+def _number_format(report: Report, block: CellBlock) -> str:
     shown = report.shown.get(block.of or block.name)
     return number_format(block.values, shown.digits if shown else 4)
 
@@ -59,7 +59,7 @@ def _number_format(report: Report, block: Block) -> str:
 # --- the worksheet of an axis ----------------------------------------------------------------------------
 
 
-def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, inputs: Inputs) -> None:
+def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, inputs: GivenCells) -> None:
     """Write the worksheet that holds the rows of an axis."""
     axis, blocks, below = grid.axes[name], grid.on(name), 0
     main = [b for b in blocks if b.kind in ("given", "computed")] or list(blocks)
@@ -101,7 +101,7 @@ def mark_errors(
     sheet.conditional_format(first_row, first_column, last_row, last_column, rule)
 
 
-def _width(block: Block) -> float:
+def _width(block: CellBlock) -> float:
     if block.kind == "index":
         return _INDEX_WIDTH
     if block.kind == "step":
@@ -109,7 +109,7 @@ def _width(block: Block) -> float:
     return max(_WIDTH, 1.15 * len(block.name) + 6)
 
 
-def _write_header(sheet: Any, style: Style, report: Report, block: Block) -> None:
+def _write_header(sheet: Any, style: Style, report: Report, block: CellBlock) -> None:
     at = block.place.column
     options = {"level": 1} if block.kind in ("step", "carried", "checked") else {}
     sheet.set_column(at, at, _width(block), None, options)
@@ -136,7 +136,7 @@ def _write_note(sheet: Any, style: Style, at: int) -> None:
         style.text(sheet, row, at, words, name)
 
 
-def _write_groups(sheet: Any, style: Style, report: Report, blocks: Sequence[Block]) -> None:
+def _write_groups(sheet: Any, style: Style, report: Report, blocks: Sequence[CellBlock]) -> None:
     """Say above the columns what the further ones are for."""
     before = ""
     for block in blocks:

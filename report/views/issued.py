@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from ..result.result import Report
 
-__all__ = ["Made"]
+__all__ = ["Issued"]
 
 
 @dataclass(frozen=True)
-class Made:
+class Issued:
     """A finished report, and what is made of it for several views at once.
 
     Parameters
