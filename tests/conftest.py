@@ -122,6 +122,7 @@ def unjudged(report: "Report", unrefereed: None, monkeypatch: pytest.MonkeyPatch
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--seen", action="store_true", help="the paper's report is right as it is")
     group = parser.getgroup("campaigns", "campaigns drawn at random (tests/campaign_sizes.py)")
     group.addoption("--campaigns", choices=SIZES, default="few", help="how many (default: few)")
     group.addoption("--seed", type=int, default=SEED, help=f"which ones (default: {SEED})")

@@ -34,8 +34,9 @@ PARTS = {
     "referee": (("report/referee/*.py",), ("test_referee", "test_referee_explanations")),
     "views": (
         ("report/views/*.py", "report/document/*.py"),
-        ("test_views_html", "test_views_latex", "test_views_generic", "test_views_xlsx", "test_views_referee",
-         "test_numbers", "test_math", "test_json"),
+        ("paper/test_paper_issued", "test_views_html", "test_views_latex", "test_views_generic",
+         "test_views_xlsx", "test_views_referee", "test_numbers", "test_math", "test_json", "test_checks",
+         "test_figures", "test_svg", "test_escape", "test_narrative"),
     ),
 }  # fmt: skip
 """For each part, its sources and the tests that are to notice."""
