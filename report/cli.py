@@ -13,6 +13,7 @@ from contextlib import AbstractContextManager, nullcontext, redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO, cast
 
+from .machine.garbage import seldom_collected
 from .machine.stopping import heeded, stoppable
 from .machine.timing import RUN
 from .messages.diagnostics import VisibleStream
@@ -131,6 +132,7 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; return its exit code."""
+    seldom_collected()
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # a terminal of another encoding still gets all
     try:
