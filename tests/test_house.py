@@ -99,6 +99,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
             "document",
             "files",
             "inputs.unit_text",
+            "machine.kept",
             "machine.programs",
             "machine.staging",
             "result",

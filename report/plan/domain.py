@@ -8,6 +8,7 @@ expression has a value, and doubles are to blame.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any
 
 from sympy import (
@@ -101,6 +102,7 @@ def assumed(bounds: Bounds) -> dict[str, bool]:
     return {"positive" if least > 0 or bounds.low_open else "nonnegative": True}
 
 
+@lru_cache(maxsize=4096)
 def defined(expression: Any) -> Boolean:
     """Say where an expression has a value, as a condition that every engine can print.
 
@@ -165,6 +167,7 @@ def is_positive(expression: Expr) -> bool:
     return bool(expression.xreplace(known).is_positive)
 
 
+@lru_cache(maxsize=4096)
 def positive(expression: Expr) -> Boolean:
     """Say where an expression is positive, by the signs of its factors: no double may hold their product.
 

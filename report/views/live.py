@@ -25,6 +25,7 @@ from ..document.math import MathPrinter
 from ..document.parts import slug
 from ..document.tree import Inlines, Math, Unit
 from ..inputs.unit_text import parse_unit
+from ..machine.kept import kept
 from ..quantity import Bounds, Printed
 from ..result.result import Report
 from ..result.verdict import OTHERWISE, UNEXPECTED
@@ -82,7 +83,7 @@ def script(program: str, runtime: str, drawings: bool = True) -> str:
     names = (name for name in SCRIPTS if drawings or name not in DRAWING)
     own = [(TEMPLATES / "live" / name).read_text(encoding="utf-8") for name in names]
     whole = "\n".join(["(() => {", runtime, f"const PROGRAM = {program};", *own, "})();", ""])
-    text = short_script(whole)
+    text: str = kept("script of the page", [whole], lambda: short_script(whole))
     if re.search(r"</script|<!--|<script", text, re.IGNORECASE):
         raise ValueError("the script of the page must not hold the end of its element")
     return text

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from base64 import b64decode, b64encode
 from collections.abc import Mapping
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any, ClassVar
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, pass_context
+from jinja2 import BytecodeCache, Environment, FileSystemLoader, StrictUndefined, pass_context
+from jinja2.bccache import Bucket
 from jinja2.runtime import Context
 
 from ..document.material import Material
@@ -16,6 +18,7 @@ from ..document.narrative import sections
 from ..document.parts import Item, slug
 from ..document.said import Said
 from ..document.tree import Math, Node, Number, Refer, Section, Unit
+from ..machine.kept import kept
 from .escape import Markup
 
 __all__ = ["TEMPLATES", "Writer", "environment"]
@@ -113,6 +116,18 @@ def _printed(context: Context, value: Any) -> Markup:
     return context["w"](value)  # type: ignore[no-any-return]
 
 
+class _Compiled(BytecodeCache):
+    """Templates are compiled once, and kept by what they say."""
+
+    def load_bytecode(self, bucket: Bucket) -> None:
+        if (found := kept("template", [bucket.key, bucket.checksum], None)) is not None:
+            bucket.bytecode_from_string(b64decode(found))
+
+    def dump_bytecode(self, bucket: Bucket) -> None:
+        parts = [bucket.key, bucket.checksum]
+        kept("template", parts, lambda: b64encode(bucket.bytecode_to_string()).decode())
+
+
 @lru_cache(maxsize=1)
 def environment() -> Environment:
     """The templates' environment: the writer ``w`` prints everything, and a name that is not there raises.
@@ -121,6 +136,7 @@ def environment() -> Environment:
     """
     return Environment(
         loader=FileSystemLoader(TEMPLATES),
+        bytecode_cache=_Compiled(),
         block_start_string="((*",
         block_end_string="*))",
         variable_start_string="(((",
