@@ -13,6 +13,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from small_report import end_gauge
@@ -21,6 +22,7 @@ from loopsheet.report import build, cost
 from loopsheet.report.cli import main
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.machine.background import Later
 from loopsheet.report.messages.errors import InputError, OutputError, UsageError
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
@@ -132,7 +134,9 @@ def test_same_bytes_everywhere(issued: Path, tmp_path: Path) -> None:
 
 
 def test_the_referee_says_the_same_of_values_that_it_is_told(paper: Report) -> None:
-    found = build._refereed(Study(PAPER).recipe, pickle.loads(pickle.dumps(paper.values.plain)))
+    plain = Later[tuple[Any, ...]]()
+    plain.told.append(pickle.loads(pickle.dumps(paper.values.plain)))
+    found = build._refereed(Study(PAPER).recipe, plain)
     assert found == (paper.referee, paper.comparisons)
 
 
