@@ -7,17 +7,15 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from mpmath import mpf
-from sympy import Expr, Max, Piecewise, Rational, Sum, Symbol, cos, exp, log, sqrt
+from sympy import Expr, Rational, Sum, Symbol, cos, log
 
 from loopsheet.derivations.equation import Equation
 from loopsheet.report.cells.values import Status
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.judge import engines
-from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, Root, Sheet
+from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
 
 
@@ -25,9 +23,8 @@ def whole(name: str) -> Symbol:
     return Symbol(name, integer=True, positive=True)
 
 
-k, i, j, p, n, n_pairs = (whole(name) for name in ("k", "i", "j", "p", "n", "n_pairs"))
+k, n = whole("k"), whole("n")
 ROWS = Axis("rows", k, n)
-PAIRS = PairAxis("pairs", p, n_pairs, of=ROWS, first=i, second=j)
 a, b = Column("a", ROWS, Given()), Column("b", None, Given())
 x = Symbol("x", positive=True)
 
@@ -62,12 +59,6 @@ def test_data_are_taken_exactly() -> None:
         assert close(text, mpf(3) / 10)
 
 
-def test_formulas_have_fifty_digits() -> None:
-    values = evaluate(b, formula("f", exp(sqrt(b.symbol)) * log(b.symbol) + Max(b.symbol, 3)), b=2)
-    with mpmath.workdps(60):
-        assert close(values.value["f"][0], mpmath.exp(mpmath.sqrt(2)) * mpmath.log(2) + 3)
-
-
 def test_sums_have_fifty_digits_although_they_cancel() -> None:
     rows = [Fraction(10) ** 20, Fraction(1, 3), -(Fraction(10) ** 20)]
     values = evaluate(a, formula("f", Sum(a[k], (k, 1, n))), a=rows)
@@ -78,12 +69,8 @@ def test_sums_have_fifty_digits_although_they_cancel() -> None:
 @pytest.mark.parametrize(
     ("form", "low", "high", "expected"),
     [
-        (x**2 - 2, 0, 2, lambda: mpmath.sqrt(2)),
         (cos(x) - x, 0, 1, lambda: mpmath.findroot(lambda t: mpmath.cos(t) - t, 0.7)),
-        (x**9 - 2 ** Rational(9), 0, 1000, lambda: mpf(2)),
-        (exp(-x) - exp(-40), 0, 100, lambda: mpf(40)),
         ((x - Rational(1, 7)) * (1 - Rational(1, 10**30)), 0, 1, lambda: mpf(1) / 7),
-        (x - 1, 0, 2, lambda: mpf(1)),
         (log(x), Rational(1, 10**30), 10**30, lambda: mpf(1)),
         ((x - 3) ** 3, 0, 10, lambda: mpf(3)),
     ],
@@ -96,13 +83,6 @@ def test_roots_have_fifty_digits(form: Expr, low: int, high: int, expected: Any)
         assert abs(values.value["r"][0] / expected() - 1) < mpf(10) ** -digits
 
 
-def test_an_end_need_not_show_its_sign() -> None:
-    # At x = 1 the form is zero too; the sign given for the end counts, not the value there.
-    values = evaluate(root((x - 1) * (x - Rational(1, 3)), Rational(0), Rational(1), sign_high=-Rational(1)))
-    with mpmath.workdps(60):
-        assert abs(values.value["r"][0] - mpf(1) / 3) < mpf(10) ** -50
-
-
 def test_two_roots_are_both_found() -> None:
     column = root(x**2 - 3 * x + 2, Rational(0), Rational(9), turning=(Rational(3, 2),))
     values = evaluate(column)
@@ -111,58 +91,13 @@ def test_two_roots_are_both_found() -> None:
     assert values.value["r"] == [None]
 
 
-def test_what_has_no_root_says_so() -> None:
-    assert evaluate(root(x + 1, Rational(0), Rational(1))).status["r"] == [Status.NOROOT]
-
-
 def test_a_form_without_a_sign_at_an_end_is_outside_the_domain() -> None:
     assert evaluate(root(1 / (x - 1), Rational(0), Rational(1))).status["r"] == [Status.DOMAIN]
-
-
-def test_a_division_by_zero_is_outside_the_domain() -> None:
-    values = evaluate(a, formula("f", 1 / (a[k] - 2), ROWS), a=[1, 2, 3])
-    assert values.status["f"] == [Status.OK, Status.DOMAIN, Status.OK]
-
-
-def test_cases_are_chosen_row_by_row() -> None:
-    cases = Piecewise((a[k], a[k] > 2), (b.symbol, True))
-    assert [float(v) for v in evaluate(a, b, formula("f", cases, ROWS), a=[1, 3], b=7).value["f"]] == [
-        7.0,
-        3.0,
-    ]
-
-
-def test_a_sum_within_a_sum() -> None:
-    inner = Sum(a[i] * a[j], (p, 1, n_pairs))
-    used = formula("used", a[i] - a[j], PAIRS)
-    values = evaluate(a, used, formula("f", Sum(a[k] * inner, (k, 1, n))), a=[1, 2, 4])
-    assert values.value["f"] == [7 * 14]
 
 
 # ----------------------------------------------------------------------- the same as the other engine
 SHEET = soft_impact(frozenset({"ball_mass"}))
 PROGRAM = engine.Program.of(SHEET)
-tests = st.tuples(
-    st.floats(1.0, 6.0),
-    st.one_of(st.just(0.0), st.floats(0.3, 0.98), st.just(1.0)),
-    st.one_of(st.floats(1e-5, 9e-5), st.just(None)),
-)
-
-
-@settings(derandomize=True, max_examples=40)
-@given(st.lists(tests, min_size=2, max_size=4), st.sampled_from([1.0, 1.25, 1.5, 2.5]))
-def test_both_engines_agree_on_every_status(
-    rows: list[tuple[float, float, float | None]], beta: float
-) -> None:
-    v, e, x_p = (list(column) for column in zip(*rows, strict=True))
-    data = {"v": v, "e": e, "x_p": x_p, "beta": beta, "ball_mass": 8e-3, "points_per_pair": 3}
-    labels = {"tests": range(1, len(rows) + 1)}
-    doubles = {**data, "x_p": [float("nan") if value is None else value for value in x_p]}
-    values = engine.evaluate(SHEET, labels, doubles, PROGRAM)
-    judged = exact.evaluate(SHEET, labels, data)
-    for column in SHEET.order:
-        for cell, status in zip(values.cells(column.name), judged.status[column.name], strict=True):
-            assert cell.status is status, (cell.reason, status)
 
 
 def test_the_comparison_of_engines_finds_what_differs() -> None:

@@ -39,7 +39,7 @@ from loopsheet.report.engines.numpy import Program, kernel
 from loopsheet.report.engines.numpy_code import ArrayPrinter
 from loopsheet.report.engines.numpy_rows import Kept
 from loopsheet.report.plan import RowSum
-from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Sheet, SheetError
+from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet, SheetError
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
 
 x, y, z = (Symbol(name, positive=True) for name in "xyz")
@@ -103,63 +103,14 @@ def whole(name: str) -> Symbol:
     return Symbol(name, integer=True, positive=True)
 
 
-k, i, j, p, q, s = (whole(name) for name in "kijpqs")
-n, n_pairs, n_points = whole("n"), whole("n_pairs"), whole("n_points")
+k, n = whole("k"), whole("n")
 ROWS = Axis("rows", k, n)
-PAIRS = PairAxis("pairs", p, n_pairs, of=ROWS, first=i, second=j)
-POINTS = RepeatAxis("points", q, n_points, of=PAIRS, step=s, count="count")
-a, w, count = Column("a", ROWS, Given()), Column("w", None, Given()), Column("count", None, Given())
+a = Column("a", ROWS, Given())
 
 
 def formula(name: str, expression: Expr, axis: Axis | None = None, positive: bool = False) -> Column:
     equation = Equation("(1)", (Symbol(name), expression), "")
     return Column(name, axis, Formula(equation), positive=positive)
-
-
-gap = formula("gap", a[j] - a[i], PAIRS)
-SCOPES: dict[str, tuple[Expr, Axis | None, Any]] = {
-    # On the points a pair's cell is its own pair's; in a sum over the pairs it is each in turn.
-    "own and summed": (
-        gap[p] / Sum(gap[p], (p, 1, n_pairs)),
-        POINTS,
-        lambda A, G, W: np.repeat(G, 2) / G.sum(),
-    ),
-    "own in a sum": (a[k] - Sum(a[k], (k, 1, n)) / n, ROWS, lambda A, G, W: A - A.mean()),
-    "a constant in a sum": (Sum(w.symbol, (k, 1, n)), None, lambda A, G, W: [len(A) * W]),
-    "a number in a sum": (Sum(2, (k, 1, n)), None, lambda A, G, W: [2 * len(A)]),
-    "a sum in a sum": (
-        Sum(a[k] * Sum(gap[p] ** 2, (p, 1, n_pairs)), (k, 1, n)),
-        None,
-        lambda A, G, W: [A.sum() * (G**2).sum()],
-    ),
-    "members in a sum": (Sum(a[i] * a[j], (p, 1, n_pairs)), None, lambda A, G, W: [2 * 3 + 2 * 7 + 3 * 7]),
-    "a running number": (
-        s * w.symbol + gap[p],
-        POINTS,
-        lambda A, G, W: np.repeat(G, 2) + W * np.tile([1, 2], 3),
-    ),
-    "a running number in a sum": (Sum(s * gap[p], (q, 1, n_points)), None, lambda A, G, W: [3 * G.sum()]),
-    "a median": (Median(gap[p], (p, 1, n_pairs)) * w.symbol, None, lambda A, G, W: [np.median(G) * W]),
-    "a median of a set's parts": (Median(gap[p], (q, 1, n_points)), None, lambda A, G, W: [np.median(G)]),
-    "a median of members": (a[k] - Median(a[j], (p, 1, n_pairs)), ROWS, lambda A, G, W: A - 7),
-    "a size without a sum": (gap[p] / n_pairs, PAIRS, lambda A, G, W: G / 3),
-    "a scalar on an axis": (w.symbol + 0 * w.symbol, PAIRS, lambda A, G, W: [W] * 3),
-    "a number on an axis": (Integer(4), PAIRS, lambda A, G, W: [4] * 3),
-}
-
-
-@pytest.mark.parametrize("case", SCOPES)
-def test_both_engines_know_which_row_is_meant(case: str) -> None:
-    expression, axis, expected = SCOPES[case]
-    used = formula("used", s + 0 * gap[p], POINTS)
-    sheet = Sheet((a, w, count, gap, used, formula("f", expression, axis)))
-    data: dict[str, Any] = {"a": [2.0, 3.0, 7.0], "w": 0.5, "count": 2}
-    values = engine.evaluate(sheet, {"rows": [1, 2, 3]}, data)
-    A = np.array(data["a"])
-    want = np.asarray(expected(A, np.array([1.0, 5.0, 4.0]), 0.5), dtype=float)
-    np.testing.assert_allclose(values.value["f"], want, rtol=1e-15)
-    judged = exact.evaluate(sheet, {"rows": [1, 2, 3]}, data)
-    np.testing.assert_allclose([float(value) for value in judged.value["f"]], want, rtol=1e-15)
 
 
 def test_columns_may_be_called_as_the_program_calls_its_own() -> None:

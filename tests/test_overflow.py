@@ -3,120 +3,27 @@
 from collections.abc import Callable
 from typing import Any
 
+import engine_cases
 import mpmath
 import numpy as np
 import pytest
-from sympy import Piecewise, Rational, Sum, Symbol, acos, exp, log, symbols
+from sympy import Piecewise, Sum, Symbol, acos, exp, log, symbols
 
-from loopsheet.derivations.equation import Equation, Kind
-from loopsheet.report.cells.values import Status, Values
+from loopsheet.report.cells.values import Status
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.judge.engines import compare
 from loopsheet.report.judge.readers import Case, run_javascript
 from loopsheet.report.plan import RowSum
 from loopsheet.report.plan.domain import SMALLEST, defined, is_positive
-from loopsheet.report.quantity import Bounds
-from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 k, n = symbols("k n", integer=True, positive=True)
-ITEMS = Axis("items", k, n)
-a = Column("a", ITEMS, Given("given", Bounds(low=0, low_open=True)))
-b = Column("b", ITEMS, Given("given"), positive=False)
-A, B = a[k], b[k]
+OK, DOMAIN, OVERFLOW = Status.OK, Status.DOMAIN, Status.OVERFLOW
 
 
-def column(name: str, value: Any, positive: bool = True) -> Column:
-    equation = Equation("(1)", (Symbol("made"), value), "for a test", Kind.DEFINITION)
-    return Column(name, ITEMS, Formula(equation), positive=positive)
-
-
-def root(name: str, form: Any, value: Any, low: Any, high: Any) -> Column:
-    equation = Equation("(2)", (form, 0 * form), "for a test", Kind.DEFINITION)
-    return Column(name, ITEMS, Root(equation, equation, U, value, low, high, Rational(1, 2)), positive=False)
-
-
-U = Symbol("u", positive=True)
-
-SHEET = Sheet(
-    (
-        a, b,
-        column("product", A**80),
-        column("quotient", A / (B - 1)),
-        column("quotient_of_any_sign", A / (B - 1), positive=False),
-        column("product_of_any_sign", B * A**80, positive=False),
-        column("factors", (B - 1) ** 2 * (B + 2) * A**80),
-        column("power", (B - 1) ** A),
-        column("logarithm", log(B), positive=False),
-        column("difference", A - B),
-        column("on_the_way", A**80 / (1 + A**79)),
-        column("cases", Piecewise((exp(-A), B < 1), (log(B - 2), True)), positive=False),
-        column("unknown", acos(A), positive=False),
-        column("all_or_none", A + Sum(1 / (B - 1), (k, 1, n)), positive=False),
-        root("solved", U * A - 1, U**80, Rational(0), Rational(10**9)),
-    )
-)  # fmt: skip
-
-OK, DOMAIN, NOROOT, OVERFLOW = Status.OK, Status.DOMAIN, Status.NOROOT, Status.OVERFLOW
-CASES: list[tuple[float, float, dict[str, Status]]] = [  # a, b, and the codes of some cells
-    (2.0, 3.0, {"product": OK, "quotient": OK, "power": OK, "logarithm": OK, "difference": DOMAIN}),
-    (2.0, 1.0, {"quotient": DOMAIN, "quotient_of_any_sign": DOMAIN, "power": DOMAIN, "all_or_none": DOMAIN}),
-    (1e5, 3.0, {"product": OVERFLOW, "product_of_any_sign": OVERFLOW, "on_the_way": OVERFLOW}),
-    (1e-5, 3.0, {"product": OVERFLOW, "product_of_any_sign": OK, "on_the_way": OVERFLOW, "solved": OVERFLOW}),
-    (1e5, -3.0, {"product_of_any_sign": OVERFLOW, "logarithm": DOMAIN, "cases": OK}),
-    (2000.0, 3.0, {"power": OVERFLOW, "unknown": DOMAIN}),
-    (2.5, -3.0, {"power": DOMAIN}),
-    (1.0, 2.0, {"cases": DOMAIN, "difference": DOMAIN}),
-    (1.0, 1.0, {"difference": DOMAIN, "unknown": OK}),
-    (3e-308, 2.9e-308, {"difference": OVERFLOW}),
-    (1e300, -1.7e308, {"difference": OK}),
-    (1e308, -1.7e308, {"difference": OVERFLOW}),
-    (1e-5, 4.0, {"factors": OVERFLOW, "power": OK}),
-    (1e-5, 1.0, {"factors": DOMAIN}),
-    (1e-5, -1.5, {"factors": OVERFLOW}),
-    (1e-5, -3.0, {"factors": DOMAIN}),
-]  # fmt: skip
-LABELS = {"items": range(1, len(CASES) + 1)}
-DATA = {"a": [case[0] for case in CASES], "b": [case[1] for case in CASES]}
-
-
-@pytest.fixture(scope="module")
-def values() -> Values:
-    return engine.evaluate(SHEET, LABELS, DATA)
-
-
-def test_the_codes_are_those_that_were_thought_out(values: Values) -> None:
-    for row, (_, _, expected) in enumerate(CASES):
-        found = {name: Status(int(values.status[name][row])) for name in expected}
-        # A sum over the rows is one for all of them: it has no value since one row has none.
-        assert found == expected, CASES[row][:2]
-
-
-def test_50_digits_agree_but_for_what_only_they_can_compute(values: Values) -> None:
-    judged = exact.evaluate(SHEET, LABELS, DATA)
-    for name in SHEET.by_name:
-        differ = [
-            (row, ours, theirs)
-            for row, (ours, theirs) in enumerate(zip(values.status[name], judged.status[name], strict=True))
-            if ours != theirs
-        ]
-        if name == "on_the_way":  # a step towards it is beyond doubles, the value is not
-            assert differ
-            assert all((ours, theirs) == (OVERFLOW, OK) for _, ours, theirs in differ)
-        else:
-            assert not differ, name
-
-
-def test_javascript_has_the_same_codes(values: Values, require: Callable[..., str]) -> None:
-    require("node")
-    reading = run_javascript(Case(SHEET, LABELS, DATA))
-    assert not reading.failure
-    for name in SHEET.by_name:
-        assert reading.status[name] == [Status(int(code)).code for code in values.status[name]], name
-
-
-def test_it_says_that_there_is_a_value_and_what_is_in_the_way(values: Values) -> None:
+def test_it_says_that_there_is_a_value_and_what_is_in_the_way() -> None:
+    values = engine_cases.values()
     assert values.cell("product", (3,)).reason == (
         "#OVERFLOW! product[3]: (1) has a value here that no double holds: "
         "it, or a step towards it, is above 1.8e308, or positive and below 2.2e-308"
@@ -147,7 +54,6 @@ def test_50_digits_go_by_what_the_value_rounds_to() -> None:
 
 x, y = symbols("x y", real=True)
 P, Q = symbols("P Q", positive=True)
-ROWS = Sum(1 / x, (k, 1, n))
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -70,14 +71,17 @@ WORKBOOK = Workbook(
 )
 """
 ENGINE = """\
+from loopsheet.report.cells.values import CODES
 from loopsheet.report.engines import exact
 from loopsheet.report.judge.readers import Reading
 
 def run(case):
     found = exact.evaluate(case.sheet, case.labels, case.data)
     value = {name: [None if x is None else float(x) for x in each] for name, each in found.value.items()}
-    value["dh"][-1] *= 1 + 1e-9
-    return Reading("abacus", "abacus 1.0", value, {name: ["ok"] * len(each) for name, each in value.items()})
+    status = {name: [CODES[code] for code in each] for name, each in found.status.items()}
+    for name in {"dh", "two_sums"} & value.keys():
+        value[name][-1] *= 1 + 1e-9
+    return Reading("abacus", "abacus 1.0", value, status)
 """
 VIEW = """\
 from loopsheet.report.machine.staging import put
@@ -126,8 +130,8 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
     for name, text in FOLDER.items():
         (folder / name).write_text(text, encoding="utf-8")
 
-    def command(*words: str) -> subprocess.CompletedProcess[str]:
-        full = [sys.executable, "-m", "loopsheet", *words, "--no-cache"]
+    def command(*words: str, module: str = "loopsheet") -> subprocess.CompletedProcess[str]:
+        full = [sys.executable, "-m", module, *words, *(["--no-cache"] if module == "loopsheet" else [])]
         settings = {**os.environ, "PYTHONPATH": str(place)}
         return subprocess.run(full, cwd=folder, env=settings, capture_output=True, text=True, check=False)
 
@@ -169,3 +173,12 @@ def test_every_engine_computes_them_and_a_new_one_is_judged_with_the_others(
     assert [line for line in done.stdout.splitlines() if line.startswith("finding")] == [
         "finding: dh[3-4]: abacus is off by 9.3e-10"
     ]
+
+
+def test_the_suite_of_engines_takes_a_new_one_by_its_line(run: Run) -> None:
+    """Found are what it says wrong, and the case of which only 50 digits know the value."""
+    suite = [str(ROOT / "tests" / "test_engines.py"), "-k", "abacus", "-p", "no:cacheprovider"]
+    done = run("-q", "--no-header", *suite, module="pytest")
+    failed = re.findall(r"^FAILED .*\[abacus-(\w+)\]", done.stdout, re.MULTILINE)
+    assert failed == ["two_sums", "on_the_way"], done.stdout + done.stderr
+    assert " passed" in done.stdout

@@ -257,9 +257,9 @@ def _kernels(sheet: Sheet, plan: Plan, nodes: Sequence[PlanNode]) -> str:
 
 
 def _references(sheet: Sheet, column: Column) -> Iterable[tuple[str, str | None, str | None]]:
-    """The cells that a column names: the column, the index, and the axis whose rows the index belongs to."""
+    """The cells that a column names: the column, the index, and the axis of the sum that it stands in."""
     for reference in sheet.named(column):
-        index, over = reference.index, reference.over or (reference.index and column.axis)
+        index, over = reference.index, reference.over
         yield name_of(reference.cell), None if index is None else str(index), over.name if over else None
 
 

@@ -180,9 +180,9 @@ function leaveOut(keep, doubtful, axis, layouts, status) {
 // The first error among the precedents; a sum has one only if none of its rows has a value.
 function inherited(doubtful, axis, row, layouts, status, sizes) {
   for (const [name, index, over] of doubtful) {
-    const own = over === null || over === axis, codes = status[name];
+    const own = over === null, codes = status[name];
     if (!own && sizes[over] > 0) continue;
-    const place = index === null ? 0 : layouts[over].rows[index][own ? row : 0];
+    const place = index === null ? 0 : layouts[over ?? axis].rows[index][own ? row : 0];
     const code = own || layouts[over].size > 0 ? codes[place] : STATUS.DOMAIN;
     if (code !== STATUS.OK) return code;
   }

@@ -47,11 +47,9 @@ class Trace {
   // The cells that a cell is computed from: for each name in its rule the rows that it stands for.
   precedents(name, row) {
     const column = this.declared[name];
-    return column.refs.map(([other, index, scope]) => {
-      if (index === null) return { name: other, rows: [0], summed: false };
-      const layout = this.sheet.layouts[scope], named = layout.rows[index];
-      if (scope === column.axis) return { name: other, rows: [named[row]], summed: false };
-      return { name: other, rows: Array.from(named), summed: true };
+    return column.refs.map(([other, index, over]) => {
+      const named = index === null ? [0] : this.sheet.layouts[over ?? column.axis].rows[index];
+      return { name: other, over, rows: index === null || over !== null ? Array.from(named) : [named[row]] };
     });
   }
 
@@ -60,10 +58,10 @@ class Trace {
     const found = [];
     for (const column of this.order) {
       const rows = new Set();
-      for (const [other, index, scope] of column.refs) {
+      for (const [other, index, over] of column.refs) {
         if (other !== name) continue;
-        const own = scope === column.axis && index !== null, all = this.size(column.name);
-        const named = index === null ? null : this.sheet.layouts[scope].rows[index];
+        const own = over === null && index !== null, all = this.size(column.name);
+        const named = index === null ? null : this.sheet.layouts[over ?? column.axis].rows[index];
         if (!own) for (let n = 0; n < all && (named === null || named.includes(row)); n++) rows.add(n);
         else for (let n = 0; n < all; n++) if (named[n] === row) rows.add(n);
       }
@@ -74,7 +72,9 @@ class Trace {
 
   // The cell where an error began: the first precedent in error, followed to its end.
   culprit(name, row) {
-    for (const { name: other, rows } of this.precedents(name, row)) {
+    for (const { name: other, rows, over } of this.precedents(name, row)) {
+      // A sum is in error only if no row has a value.
+      if (over !== null && (this.sheet.counted[name]?.[over] ?? this.sheet.layouts[over].size) > 0) continue;
       if (rows.length && !this.isOk(other, rows[0])) return this.culprit(other, rows[0]);
     }
     return { name, row };
