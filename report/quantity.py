@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 
 __all__ = ["Bounds", "Printed"]
 
@@ -120,12 +121,12 @@ class Printed:
         mantissa = self.text.lower().partition("e")[0]
         return len(mantissa.replace(".", "").lstrip("+-").lstrip("0")) or 1
 
-    @property
+    @cached_property
     def half_unit(self) -> Fraction:
         """Half a unit of the last printed digit, in SI."""
         return self.scale * Fraction(1, 2) * Fraction(10) ** -self.decimals
 
-    @property
+    @cached_property
     def interval(self) -> tuple[Fraction, Fraction]:
         """The least and the largest value in SI that print so, ends included.
 

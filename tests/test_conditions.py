@@ -129,14 +129,35 @@ def test_what_is_not_known_is_infinite() -> None:
 
 @pytest.mark.parametrize("most", [0, numbers.EXPANDED])
 def test_a_large_sheet_has_no_smaller_bounds(monkeypatch: pytest.MonkeyPatch, most: int) -> None:
+    """Where rows rest on two scalars; what one does to them is the same in a sheet of any size."""
     monkeypatch.setattr(numbers, "EXPANDED", most)
-    mean = formula("m", Sum(x[k], (k, 1, n)) / n)
-    found = bounded(mean, formula("c", x[k] - mean.symbol, ROWS))["c"]
+    mean, more = formula("m", Sum(x[k], (k, 1, n)) / n), formula("d", A + 1)
+    one = formula("c", x[k] - mean.symbol, ROWS)
+    two = formula("f", x[k] - mean.symbol + more.symbol, ROWS)
+    found = bounded(mean, more, one, two)
     exactly = np.array([1.0, 2.0, 5.0])
     m = 8 / 3
     rest = m + 8 / 3  # the quotient and the sum
     apart, alone = exactly + 8 / 3, exactly * 2 / 3 + (8 - exactly) / 3
-    assert found == pytest.approx(exactly + m + rest + (apart if most == 0 else alone))
+    assert found["c"] == pytest.approx(exactly + m + rest + alone)
+    third = 4 + (4 + 3)  # its size, its own rounding and that of its datum
+    assert found["f"] == pytest.approx(exactly + m + rest + third + (apart if most == 0 else alone))
+
+
+def test_what_is_not_known_beside_a_scalar_is_infinite() -> None:
+    """By its own rounding or by the scalar's, and nowhere else."""
+    jumps = formula("j", floor(A))
+    y = formula("y", sqrt(x[k] - 1), ROWS)  # its slope has no value where it begins
+    own = Column("y", ROWS, Given(), positive=False)[k]
+    found = bounded(
+        jumps,
+        y,
+        formula("d", A + 1),
+        formula("c", own * Symbol("d"), ROWS),
+        formula("f", own * Symbol("j"), ROWS),
+    )
+    assert np.isinf(found["c"]).tolist() == [True, False, False]
+    assert np.isinf(found["f"]).all()
 
 
 def test_a_median_rests_on_the_rows_in_the_middle() -> None:

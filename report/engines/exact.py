@@ -118,6 +118,8 @@ def _held(value: Any, positive: bool) -> Any:
     """A value that a double can hold, be it rounded."""
     if isinstance(value, mpmath.mpc) or not mpmath.isfinite(value) or (positive and not value > 0):
         raise _Failed(Status.DOMAIN)
+    if -1000 < mpmath.mag(value) < 1000:
+        return value  # its size is known without comparing it with numbers of a thousand bits
     if abs(value) >= LARGEST or (positive and value < SMALLEST):
         raise _Failed(Status.OVERFLOW)
     return value

@@ -90,9 +90,25 @@ class _Spread(Numbers):
     def total(self, name: str, of_scalars: Array) -> Array:
         """All roundings times what they do to each row of a column."""
         direct, scalars = self.matrices(name)
+        if np.diff(scalars.indptr).max(initial=0) == 1:
+            return self.beside_one(direct, scalars, of_scalars)
         if scalars.nnz and direct.shape[0] * direct.shape[1] <= EXPANDED:
             return self.weighed(direct.toarray() + scalars @ self.whole)
         return self.weighed(direct) + _weighed(scalars, of_scalars)
+
+    def beside_one(self, direct: Any, scalars: Any, of_scalars: Array) -> Array:
+        """The same where no row rests on two scalars: what one does to a row, and what is other beside it."""
+        size = direct.shape[0]
+        times, which = np.zeros(size), np.zeros(size, dtype=np.intp)
+        resting = np.flatnonzero(np.diff(scalars.indptr))
+        times[resting], which[resting] = scalars.data, scalars.indices
+        rows = np.repeat(np.arange(size), np.diff(direct.indptr))
+        theirs, errors = times[rows] * self.whole[which[rows], direct.indices], self.rounding[direct.indices]
+        both = direct.data + theirs
+        more = np.where(np.isinf(errors) & (both != 0), np.inf, (np.abs(both) - np.abs(theirs)) * errors)
+        found = np.where(times == 0, 0.0, np.abs(times) * of_scalars[which])
+        total: Array = found + np.bincount(rows, np.where(both == theirs, 0.0, more), size)
+        return np.where(np.isfinite(total), total, np.inf)
 
     def matrices(self, name: str) -> tuple[Any, Any]:
         """The derivatives of a column by ways that pass no scalar, and those by scalars."""

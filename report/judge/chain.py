@@ -154,19 +154,15 @@ class Chain:
 
     def cells(self, places: Sequence[tuple[str, int]]) -> Pattern:
         """The entries of some cells, by column and row; each cell is a row."""
-        key = tuple(places)
-        if key not in self._cells:
-            every = [self.patterns[name].only(np.array([row])) for name, row in places]
-            number = np.repeat(np.arange(len(places)), [own.rows.size for own in every])
-            by, entries = (
-                np.concatenate([_NONE, *(getattr(own, part) for own in every)]) for part in ("by", "entries")
-            )
-            self._cells[key] = Pattern(number, by, entries)
-        return self._cells[key]
-
-    @cached_property
-    def _cells(self) -> dict[tuple[tuple[str, int], ...], Pattern]:
-        return {}
+        numbers: dict[str, list[int]] = {}
+        for number, (name, _) in enumerate(places):
+            numbers.setdefault(name, []).append(number)
+        found = [(_NONE, _NONE, _NONE)]
+        for name, which in numbers.items():
+            own = self.patterns[name].only(np.array([places[number][1] for number in which]))
+            found.append((np.array(which)[own.rows], own.by, own.entries))
+        rows, by, entries = map(np.concatenate, zip(*found, strict=True))
+        return Pattern(rows, by, entries)
 
     @cached_property
     def laid(self) -> Laid:

@@ -39,11 +39,12 @@ def sensitivities(chain: Chain, values: Values, cells: Sequence[tuple[str, int]]
     float array (..., cells, sources)
         In SI; NaN for a cell without a value, and where nothing is known.
     """
-    found: Array = Numbers(chain, values).go().derivatives(chain.cells(cells), len(cells))
+    along = Numbers(chain, values)
+    found: Array = along.go().derivatives(chain.cells(cells), len(cells))
     for n, (name, row) in enumerate(cells):
-        odd = values.status[name][..., row] != Status.OK
-        if odd.any():
-            found[..., n, :] = np.where(odd[..., None], np.nan, found[..., n, :])
+        if name in along.odd:
+            odd = values.status[name][..., row, None] != Status.OK
+            found[..., n, :] = np.where(odd, np.nan, found[..., n, :])
     return found
 
 

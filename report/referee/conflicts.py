@@ -51,7 +51,7 @@ class Conflicts:
 
     def without(self, values: Set[int]) -> Conflict | Best:
         """A conflict among all values but some; an input that yields the others if there is none."""
-        for known in sorted(self.known, key=lambda conflict: not conflict.certain):
+        for known in self.known:
             if not known.values & values:
                 return known
         for left_out, found in self.met:
@@ -74,6 +74,7 @@ class Conflicts:
         if not conflict.certain and members != rest and self._alone(members).mismatch <= 1:
             conflict = Conflict(rest, certain=False)
         self.known.append(conflict)
+        self.known.sort(key=lambda each: not each.certain)  # what is certain speaks first
         return conflict
 
     def _alone(self, members: frozenset[int]) -> Best:
