@@ -27,7 +27,7 @@ PARTS = {
         ("report/engines/*.py",),
         (
             "test_engine_numpy", "test_engine_exact", "test_engine_javascript", "test_engine_excel",
-            "test_roots", "test_root_certificates", "test_overflow", "test_values",
+            "test_roots", "test_root_certificates", "test_overflow", "test_values", "test_engines",
         ),
     ),
     "judge": (("report/judge/*.py",), ("test_conditions", "test_enclosure", "test_analysis_engines")),

@@ -78,6 +78,7 @@ def test_why_tells_what_the_formula_bar_tells(capsys: pytest.CaptureFixture[str]
 @pytest.mark.parametrize(
     ("cell", "said"),
     [
+        ("x[1-2-3]", ["in SI     x[1-2-3] = (4.18451e-05)*3/50 = 2.51071e-06"]),
         ("x_p[2]", ["given     as 29.7 um, measurements.csv:3:", "used by   alpha[1-2] = 1.258"]),
         ("m_red", ["(L", "ball_mass = 8.366 g"]),
         ("alpha_mean", ["over 10 pairs", "alpha[4-5] = 1.371"]),

@@ -66,6 +66,7 @@ P, Q = symbols("P Q", positive=True)
         (log(x) / (x - 2), [1], [2, 0]),
         (Piecewise((1 / x, x > 0), (x, True)), [0, 1, -1], []),
         (Piecewise((x, x > 0)), [1], [-1]),
+        (Sum(log(x), (k, 1, 3)), [1], [0]),
     ],
 )  # fmt: skip
 def test_where_an_expression_is_defined(expression: Any, holds: list[float], fails: list[float]) -> None:
@@ -76,7 +77,10 @@ def test_where_an_expression_is_defined(expression: Any, holds: list[float], fai
         assert where.subs({x: at, P: 0.5, y: -1}) == False, at  # noqa: E712 - sympy's false
 
 
-@pytest.mark.parametrize("expression", [P * Q**-2, exp(x) / (1 + x**2), log(P), Sum(exp(x), (k, 1, n))])
+@pytest.mark.parametrize(
+    "expression",
+    [P * Q**-2, exp(x) / (1 + x**2), log(P), Sum(exp(x), (k, 1, n)), RowSum(exp(x), Symbol("rows"))],
+)
 def test_what_is_defined_everywhere(expression: Any) -> None:
     assert defined(expression) == True  # noqa: E712 - sympy's true
 

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sympy import Expr, Integer, Rational, Sum, Symbol, exp, log
+from sympy import Expr, Integer, Rational, Sum, Symbol, exp, log, simplify
 
 from loopsheet.derivations.equation import Equation
 from loopsheet.derivations.reductions import Median
 from loopsheet.report.cli import main
 from loopsheet.report.engines.numpy import Program, evaluate
 from loopsheet.report.plan import Leaf, Map, Part, RowSum, Total, lowered
-from loopsheet.report.plan.derivatives import derivatives
+from loopsheet.report.plan.derivatives import derivatives, rounding
 from loopsheet.report.plan.text import text
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, Root, Sheet
@@ -91,6 +91,31 @@ def test_a_number_before_a_sum_is_no_other_sum() -> None:
     totals = [node for node in lowered(Sheet((a, twice))).nodes if isinstance(node, Total)]
     assert [str(total.terms) for total in totals] == ["a"]
     assert str(totals[0].written) == "Sum(a[k], (k, 1, n))"
+
+
+def test_a_sum_of_nothing_is_nothing() -> None:
+    assert RowSum(Integer(0), Symbol("rows")) == 0
+
+
+X, Y = Symbol("X", positive=True), Symbol("Y", positive=True)
+
+
+@pytest.mark.parametrize(
+    ("expression", "found"),
+    [
+        (X, 0),
+        (-X, 0),
+        (-X * Y, X * Y),
+        (X + Y, X + Y),
+        (X / Y, X / Y),
+        (X / (X + Y), X / (X + Y) + X / (X + Y) ** 2 * (X + Y)),
+        (exp(X * Y), exp(X * Y) * (1 + X * Y)),
+        (log(X * Y), abs(log(X * Y)) + 1),
+        ((X + Y) ** 3, (X + Y) ** 3 * (1 + 3)),
+    ],
+)
+def test_what_rounding_does_is_its_own_and_that_of_what_it_is_made_of(expression: Expr, found: Expr) -> None:
+    assert simplify(rounding(expression) - found) == 0
 
 
 def test_a_name_that_is_taken_is_not_given_twice() -> None:

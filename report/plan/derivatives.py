@@ -55,7 +55,7 @@ from ..sheet import Sheet
 from .lowering import RESERVED, lowered
 from .nodes import GivenNode, Leaf, Map, Node, Part, Plan, RootNode, RowSum, Total, free_name
 
-__all__ = ["Derivatives", "Local", "Slope", "derivatives", "with_unknowns"]
+__all__ = ["Derivatives", "Local", "Slope", "derivatives", "rounding", "with_unknowns"]
 
 _NO_FUNCTIONS = (Derivative, Subs, DiracDelta, Heaviside)
 
