@@ -7,13 +7,14 @@ import json
 import re
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar, get_type_hints
+from typing import Annotated, Any, Final, Literal, TypeVar, get_type_hints
 
 import msgspec
 
 from ..messages.errors import InputError, Location, diagnose
 
 __all__ = [
+    "SCHEMA",
     "Form",
     "Index",
     "Malformed",
@@ -31,8 +32,9 @@ LARGEST = 500_000_000
 """Bytes."""
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
-Schema = Literal[1]
+SCHEMA: Final = 1
 """Another number says that the file has another form."""
+Schema = Literal[1]
 Text = Annotated[str, msgspec.Meta(pattern=r"^[^\x00]*$")]
 """JSON can write NUL, and no file and no terminal can hold it."""
 Index = tuple[int, ...]
@@ -109,6 +111,8 @@ def _located(said: str, content: bytes, form: type[Form]) -> str:
             wrong = (f".{key}" for key in table if not _fits(table, key, kind))
             said = said.replace("[...]", next(wrong, "[...]"), 1)
     said, _, place = said.partition(" - at ")
+    if place == "`$.schema`":
+        return f'it does not say "schema": {SCHEMA}'
     place = place.replace("`", "").replace("$.", "").replace("$", "the file")
     return f"{place}: {said[:1].lower()}{said[1:]}" if place else f"{said[:1].lower()}{said[1:]}"
 

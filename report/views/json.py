@@ -14,7 +14,7 @@ from ...derivations.text import text_of_equation
 from ..cells.marks import MarkCount
 from ..cells.values import Status
 from ..files import values as form
-from ..files.form import alike, text
+from ..files.form import SCHEMA, alike, text
 from ..files.manifest import Manifest
 from ..machine.staging import put
 from ..result import verdict_data
@@ -39,7 +39,7 @@ def values(report: Report) -> str:
     """
     return text(
         form.Result(
-            schema=1,
+            schema=SCHEMA,
             workbook=report.workbook.name,
             title=report.title,
             cells={column.name: _column(report, column) for column in report.sheet.columns},
@@ -197,7 +197,7 @@ def manifest(report: Report, outputs: Mapping[str, bytes], sources: Mapping[str,
 
     return text(
         Manifest(
-            schema=1,
+            schema=SCHEMA,
             title=report.title,
             inputs=hashes(report.inputs.files),
             outputs=hashes(outputs),
