@@ -8,11 +8,11 @@ cancels here too. This bound over |c|, at least 1, is the condition of the cell.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
 
 from ..cells.layout import Layout
 from ..cells.values import Status, Values
@@ -62,6 +62,43 @@ EXPANDED = 1 << 24
 bounds are added, which is never less."""
 
 
+@dataclass(frozen=True)
+class _Entries:
+    """A matrix of few entries, in the order of its rows and columns; a product adds them up in this order."""
+
+    values: Array
+    rows: NDArray[np.intp]
+    columns: NDArray[np.intp]
+    size: int
+
+    @property
+    def counts(self) -> NDArray[np.intp]:
+        """How many each row has."""
+        return np.bincount(self.rows, minlength=self.size)
+
+    def __abs__(self) -> _Entries:
+        return replace(self, values=np.abs(self.values))
+
+    def __matmul__(self, other: Array) -> Array:
+        found: Array = np.bincount(self.rows, self.values * other[self.columns], self.size).astype(np.float64)
+        return found
+
+    def dense(self, columns: int) -> Array:
+        """All of its numbers."""
+        places = self.rows * columns + self.columns
+        found: Array = np.bincount(places, self.values, self.size * columns).astype(np.float64)
+        return found.reshape(self.size, columns)
+
+    def times(self, other: Array) -> Array:
+        """The product with a matrix."""
+        found = np.zeros((self.size, other.shape[1]))
+        place = np.arange(self.rows.size) - np.searchsorted(self.rows, self.rows)
+        for n in range(place.max(initial=-1) + 1):
+            which = place == n
+            found[self.rows[which]] += self.values[which, None] * other[self.columns[which]]
+        return found
+
+
 class _Spread(Numbers):
     """The total derivatives of every node by all roundings there are.
 
@@ -90,35 +127,33 @@ class _Spread(Numbers):
     def total(self, name: str, of_scalars: Array) -> Array:
         """All roundings times what they do to each row of a column."""
         direct, scalars = self.matrices(name)
-        if np.diff(scalars.indptr).max(initial=0) == 1:
+        if scalars.counts.max(initial=0) == 1:
             return self.beside_one(direct, scalars, of_scalars)
-        if scalars.nnz and direct.shape[0] * direct.shape[1] <= EXPANDED:
-            return self.weighed(direct.toarray() + scalars @ self.whole)
+        if scalars.rows.size and direct.size * self.chain.number <= EXPANDED:
+            return self.weighed(direct.dense(self.chain.number) + scalars.times(self.whole))
         return self.weighed(direct) + _weighed(scalars, of_scalars)
 
-    def beside_one(self, direct: Any, scalars: Any, of_scalars: Array) -> Array:
+    def beside_one(self, direct: _Entries, scalars: _Entries, of_scalars: Array) -> Array:
         """The same where no row rests on two scalars: what one does to a row, and what is other beside it."""
-        size = direct.shape[0]
+        size, rows, by = direct.size, direct.rows, direct.columns
         times, which = np.zeros(size), np.zeros(size, dtype=np.intp)
-        resting = np.flatnonzero(np.diff(scalars.indptr))
-        times[resting], which[resting] = scalars.data, scalars.indices
-        rows = np.repeat(np.arange(size), np.diff(direct.indptr))
-        theirs, errors = times[rows] * self.whole[which[rows], direct.indices], self.rounding[direct.indices]
-        both = direct.data + theirs
+        times[scalars.rows], which[scalars.rows] = scalars.values, scalars.columns
+        theirs, errors = times[rows] * self.whole[which[rows], by], self.rounding[by]
+        both = direct.values + theirs
         more = np.where(np.isinf(errors) & (both != 0), np.inf, (np.abs(both) - np.abs(theirs)) * errors)
         found = np.where(times == 0, 0.0, np.abs(times) * of_scalars[which])
         total: Array = found + np.bincount(rows, np.where(both == theirs, 0.0, more), size)
         return np.where(np.isfinite(total), total, np.inf)
 
-    def matrices(self, name: str) -> tuple[Any, Any]:
+    def matrices(self, name: str) -> tuple[_Entries, _Entries]:
         """The derivatives of a column by ways that pass no scalar, and those by scalars."""
         chain, cells = self.chain, self.chain.patterns[name]
-        size, sources = chain.sources[name].size, chain.number
-        entries, direct = self.entries[cells.entries], cells.by < sources
-        ends = (direct, 0, sources), (~direct, sources, len(chain.scalars))
+        order = np.lexsort((cells.by, cells.rows))
+        rows, by, entries = cells.rows[order], cells.by[order], self.entries[cells.entries[order]]
+        direct, size = by < chain.number, chain.sources[name].size
         own, scalars = (
-            sparse.csr_array((entries[w], (cells.rows[w], cells.by[w] - first)), shape=(size, number))
-            for w, first, number in ends
+            _Entries(entries[which], rows[which], by[which] - first, size)
+            for which, first in ((direct, 0), (~direct, chain.number))
         )
         return own, scalars
 
