@@ -6,8 +6,9 @@ A case is a column with what its rows are: numbers in closed form, or codes. An 
 
 from __future__ import annotations
 
+import importlib
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -35,9 +36,9 @@ from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.derivations.reductions import Median
 from loopsheet.report.cells.grid import Grid
 from loopsheet.report.cells.values import Status, Values
-from loopsheet.report.engines import excel_grid
+from loopsheet.report.engines import ENGINES, excel_grid
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.judge.readers import Book, Case
+from loopsheet.report.judge.readers import Book, Case, Reading
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
 from loopsheet.report.views.xlsx import _Worksheet
@@ -219,6 +220,7 @@ def errors(
     limits = ((A[j] > A[i], "a must rise"), (B[i] < 100, "b is at most 100"))
     slope = add("slope", log(B[j] / B[i]) / (A[j] - A[i]), both, requires=limits)
     mean = add("mean", Sum(slope[p], (p, 1, pairs)) / pairs)
+    add("middle", Median(slope[p], (p, 1, pairs)))
     add("scaled", mean.symbol * C.symbol)
     add("offset", A[k] - mean.symbol, rows)
     add("excess", A[k] - Sum(A[k], (k, 1, size)) / size, rows)
@@ -242,8 +244,8 @@ errors(
 )
 errors(
     "missing", [1, 2, 3], [2, NAN, 5], labels=(10, 30, 20),
-    slope=[INPUT, log(Rational(5, 2)) / 2, INPUT], mean=[log(Rational(5, 2)) / 2],
-    scaled=[log(Rational(5, 2))], gap=[1, INPUT, 4],
+    slope=[INPUT, log(5 * half) / 2, INPUT], mean=[log(5 * half) / 2], middle=[log(5 * half) / 2],
+    scaled=[log(5 * half)], gap=[1, INPUT, 4],
 )  # fmt: skip
 errors(
     "many_missing", [1, 2, 3], [NAN, NAN, 5],
@@ -276,6 +278,20 @@ GAPS = {
     ("xlsx", "solved"): "the same, and its steps come to an end",
 }
 """What an engine is known not to do, and why; a gap that is closed is noticed."""
+
+PROGRAMS = {"JavaScript": ("node",), "xlsx": ("soffice", "libreoffice")}
+"""What an engine needs to be installed: one of these."""
+
+
+def found_by(name: str, case: Case, require: Callable[..., str]) -> Reading:
+    """What an engine of the registry finds."""
+    if name in PROGRAMS:
+        require(*PROGRAMS[name])
+    module, _, function = ENGINES[name].partition(":")
+    found: Reading = getattr(importlib.import_module(module), function)(case)
+    assert not found.failure
+    return found
+
 
 # --- all of it --------------------------------------------------------------------------------------------
 

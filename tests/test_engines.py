@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable
 from functools import cache
 from typing import Any
@@ -17,8 +16,6 @@ from loopsheet.report.engines import ENGINES, exact
 from loopsheet.report.judge.engines import EPS, LIMIT, Judge, _number
 from loopsheet.report.judge.readers import Case, Reading
 from loopsheet.report.plan.domain import SMALLEST
-
-PROGRAMS = {"JavaScript": ("node",), "xlsx": ("soffice", "libreoffice")}
 
 
 @pytest.fixture(scope="module")
@@ -41,12 +38,7 @@ def reading(case: Case, judge: Judge, require: Callable[..., str]) -> Callable[[
         if engine == "exact":
             status = {name: [CODES[code] for code in codes] for name, codes in judge.judged.status.items()}
             return Reading(engine, "", judge.judged.value, status)  # type: ignore[arg-type]
-        if engine in PROGRAMS:
-            require(*PROGRAMS[engine])
-        module, _, function = ENGINES[engine].partition(":")
-        found: Reading = getattr(importlib.import_module(module), function)(case)
-        assert not found.failure
-        return found
+        return engine_cases.found_by(engine, case, require)
 
     return of
 
