@@ -16,7 +16,7 @@ from loopsheet.report.engines.numpy import evaluate
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.judge import bounds as numbers
 from loopsheet.report.judge.chain import Chain, Made
-from loopsheet.report.judge.sensitivity import Numbers, sensitivities
+from loopsheet.report.judge.sensitivity import Numbers
 from loopsheet.report.plan import derivatives
 from loopsheet.report.prepared import Prepared
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
@@ -184,7 +184,7 @@ def test_a_batch_of_sensitivities_has_no_number_where_a_cell_has_no_value() -> N
     )
     values = evaluate(sheet, {"rows": [1, 2, 3, 4]}, {"a": 1.0, "b": 3.0, "x": given})
     chain = Chain(Made.of(sheet), values.layouts, {"x": np.arange(4), "b": np.array([4])})
-    found = sensitivities(chain, values, [("y", 0), ("c", 0), ("t", 0)])
+    found = Numbers(chain, values).go().at([("y", 0), ("c", 0), ("t", 0)])
     slope = 0.5 / np.sqrt(np.maximum(given - 1, 0.25))
     none = np.full(5, np.nan)
     assert found[0] == pytest.approx(

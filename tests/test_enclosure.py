@@ -104,6 +104,21 @@ def test_derivatives_of_a_search_against_differences(campaign: Campaign, tied: t
     assert (np.delete(among, mean, axis=0) == np.delete(found, mean, axis=0)).all()
 
 
+def test_what_is_printed_is_computed_once(campaign: Campaign, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Most searches begin there; what they find elsewhere is of where they are."""
+    problem, runs = table(campaign, "Table 2"), list[int]()
+    run = Program.run
+    monkeypatch.setattr(Program, "run", lambda *given: runs.append(1) or run(*given))
+    start, other = problem.box.start, problem.box.low
+    first, again, elsewhere = problem.at(start), problem.only([3]).at(start), problem.at(other)
+    assert len(runs) == 2
+    assert (again.cells == first.cells[[3]]).all()
+    assert (elsewhere.cells == problem.evaluate(other[None])[0]).all()
+    box = problem.box
+    assert (problem.only([3]).slopes(again, box) == problem.slopes(first, box)[[3]]).all()
+    assert (problem.slopes(elsewhere, box) != problem.slopes(first, box)).any()
+
+
 def test_no_sample_beats_the_certified_mismatch(campaign: Campaign) -> None:
     problem = table(campaign, "Table 2")
     found = best(problem)

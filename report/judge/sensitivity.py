@@ -18,34 +18,9 @@ from ..engines.numpy import parts
 from ..plan.derivatives import Local, Slope
 from .chain import Chain, Numbered, Pattern
 
-__all__ = ["Along", "Numbers", "sensitivities"]
+__all__ = ["Along", "Numbers"]
 
 Array = NDArray[np.float64]
-
-
-def sensitivities(chain: Chain, values: Values, cells: Sequence[tuple[str, int]]) -> Array:
-    """The derivatives of some cells by the sources of a chain.
-
-    Parameters
-    ----------
-    chain : Chain
-    values : Values
-        All columns of the sheet; they may have batch axes.
-    cells : sequence of (str, int)
-        Columns and rows.
-
-    Returns
-    -------
-    float array (..., cells, sources)
-        In SI; NaN for a cell without a value, and where nothing is known.
-    """
-    along = Numbers(chain, values)
-    found: Array = along.go().derivatives(chain.cells(cells), len(cells))
-    for n, (name, row) in enumerate(cells):
-        if name in along.odd:
-            odd = values.status[name][..., row, None] != Status.OK
-            found[..., n, :] = np.where(odd, np.nan, found[..., n, :])
-    return found
 
 
 class Along:
@@ -143,6 +118,26 @@ class Numbers(Along):
             for column in values.sheet.columns
             if self.odd and values.sheet.summed_axes(column)
         }
+
+    def at(self, cells: Sequence[tuple[str, int]]) -> Array:
+        """The derivatives of some cells by the sources of the chain.
+
+        Parameters
+        ----------
+        cells : sequence of (str, int)
+            Columns and rows.
+
+        Returns
+        -------
+        float array (..., cells, sources)
+            In SI; NaN for a cell without a value, and where nothing is known.
+        """
+        found: Array = self.derivatives(self.chain.cells(cells), len(cells))
+        for n, (name, row) in enumerate(cells):
+            if name in self.odd:
+                odd = self.values.status[name][..., row, None] != Status.OK
+                found[..., n, :] = np.where(odd, np.nan, found[..., n, :])
+        return found
 
     def slope(self, node: Local, slope: Slope) -> Array:
         """Those of a median count for the rows in its middle."""

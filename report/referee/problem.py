@@ -20,7 +20,7 @@ from ..cells.values import Status, Values
 from ..engines.numpy import Program, evaluate
 from ..inputs.published import PublishedValue
 from ..judge.chain import Chain, Made
-from ..judge.sensitivity import sensitivities
+from ..judge.sensitivity import Numbers
 from ..quantity import Printed
 from ..result.verdict import Witness
 from ..sheet import Given, Sheet
@@ -229,18 +229,20 @@ class Problem:
 
     def evaluate(self, points: Array) -> Array:
         """The published cells (points, published) in SI at points (points, unknowns); NaN for no value."""
-        return self._computed(points)[0]
+        return self._cells(points, self._values(points))
 
-    def _computed(self, points: Array) -> tuple[Array, Values]:
-        """The published cells at points, and all that the sheet computes there."""
-        data, found = self.data(points), np.empty((len(points), len(self.published)))
-        plain = evaluate(self.sheet, self.campaign.labels, data, self.program)
+    def _values(self, points: Array) -> Values:
+        """All that the sheet computes at points."""
+        return evaluate(self.sheet, self.campaign.labels, self.data(points), self.program)
+
+    def _cells(self, points: Array, plain: Values) -> Array:
+        found = np.empty((len(points), len(self.published)))
         for way in dict.fromkeys(self.ways):
-            values = plain if way is None else way.evaluate(self.campaign, data, plain)
+            values = plain if way is None else way.evaluate(self.campaign, self.data(points), plain)
             for name, (which, rows) in self._asked[way].items():
                 alive = values.status[name][..., rows] == Status.OK
                 found[:, which] = np.where(alive, values.value[name][..., rows], np.nan)
-        return found, plain
+        return found
 
     def mismatch(self, cells: Array) -> Array:
         """How far cells are from what was published, in half units of the last digit."""
@@ -251,9 +253,16 @@ class Problem:
         return found
 
     def at(self, point: Array) -> Here:
-        """The published cells at a point."""
-        cells, values = self._computed(point[None])
-        return Here(point, cells[0], values)
+        """The published cells at a point. Most searches begin at what is printed: that is computed once."""
+        points, known, key = point[None], self.campaign.shared, self._printed
+        values = known.get(key) if np.array_equal(point, self.box.start) else self._values(points)
+        if values is None:
+            values = known[key] = self._values(points)
+        return Here(point, self._cells(points, values)[0], values)
+
+    @property
+    def _printed(self) -> tuple[Any, ...]:
+        return "printed", id(self.program), *self.asked_of
 
     def _differences(self, point: Array, box: Box) -> Array:
         size = np.abs(point)
@@ -274,12 +283,21 @@ class Problem:
         """
         found = np.zeros((len(self.published), len(self.unknowns)))
         following = [n for n, way in enumerate(self.ways) if way is None and n not in self.ignored]
-        found[following] = sensitivities(self._chain, here.values, [self.places[n] for n in following])[0]
+        found[following] = self._along(here).at([self.places[n] for n in following])[0]
         asked = [n for n, way in enumerate(self.ways) if way is not None and n not in self.ignored]
         if asked:
             found[asked] = self._differences(here.point, box)[asked]
         found[:, box.width <= 0] = 0.0
         return found
+
+    def _along(self, here: Here) -> Numbers:
+        """What all derivatives at a point are made of; at what is printed they are made once."""
+        known, key = self.campaign.shared, ("along", *self._printed)
+        if here.values is not known.get(self._printed):
+            return Numbers(self._chain, here.values).go()
+        if key not in known:
+            known[key] = Numbers(self._chain, here.values).go()
+        return known[key]  # type: ignore[no-any-return]
 
     @property
     def _chain(self) -> Chain:
