@@ -30,7 +30,10 @@ PARTS = {
             "test_roots", "test_root_certificates", "test_overflow", "test_values", "test_engines",
         ),
     ),
-    "judge": (("report/judge/*.py",), ("test_conditions", "test_enclosure", "test_analysis_engines")),
+    "judge": (
+        ("report/judge/*.py",),
+        ("test_conditions", "test_enclosure", "test_analysis_engines", "test_oddities"),
+    ),
     "referee": (("report/referee/*.py",), ("test_referee", "test_referee_explanations")),
     "views": (
         ("report/views/*.py", "report/document/*.py"),

@@ -266,3 +266,29 @@ def test_a_root_over_all_rows_is_counted_once_and_not_once_a_row(monkeypatch: py
     assert set(asked) <= {1}
     assert found.value["rate"].low.shape == (1,)
     assert found.value["rate"].low[0] < value < found.value["rate"].high[0]
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "known"),
+    [
+        (0.04, 0.05, True),
+        (0.10, 0.14, True),
+        (0.14, 0.16, False),  # 3/exp(3) is .1494: one root for some of these, two for others
+        (0.16, 0.30, False),  # two
+        (0.36, 0.38, False),  # 1/e is .3679: two roots or none
+    ],
+)
+def test_a_root_is_known_if_it_is_the_only_one_whatever_lies_in_the_box(
+    low: float, high: float, known: bool
+) -> None:
+    a, z = Column("a", None, Given()), Symbol("z", positive=True)
+    equation = Equation("", (z * exp(-z) - a.symbol, Integer(0)), "", Kind.DEFINITION)
+    ends = Rational(1, 100), Rational(3)
+    sheet = Sheet((a, Column("root", None, Root(equation, equation, z, z, *ends, Rational(1, 2)))))
+    program = Program.of(sheet)
+    layouts = engine.evaluate(sheet, {}, {"a": [low]}, program).layouts
+    found = Enclosure(sheet, program, layouts, {"a": Intervals([low], [high])})
+    assert bool(found.sure["root"][0]) is known
+    for datum in np.linspace(low, high, 5) if known else ():
+        value = engine.evaluate(sheet, {}, {"a": [datum]}, program).scalar("root")
+        assert found.value["root"].low[0] <= value <= found.value["root"].high[0]
