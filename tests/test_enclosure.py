@@ -23,7 +23,7 @@ from loopsheet.report.quantity import Bounds
 from loopsheet.report.referee.campaign import Campaign
 from loopsheet.report.referee.certificate import Certificate
 from loopsheet.report.referee.minimax import best
-from loopsheet.report.referee.problem import Problem
+from loopsheet.report.referee.problem import Box, Problem
 from loopsheet.report.referee.ways import from_printed
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
 from loopsheet.report.study import Study
@@ -68,14 +68,18 @@ def test_bounds_are_narrow(campaign: Campaign) -> None:
 
 
 def test_derivatives_hold_those_of_every_sample(campaign: Campaign) -> None:
-    """The search and the certificate have the same derivatives: one at a point, one over all of the box."""
+    """The search and the certificate have the same derivatives: one at a point, one over all of a box.
+
+    Over a box that is a point these are known to ten digits, which no difference has.
+    """
     problem = table(campaign, "Table 2")
     slopes = Certificate(problem)._slopes
-    for point in samples(problem, 40):
+    for point in samples(problem, 10):
         found = problem.slopes(problem.at(point), problem.box)
-        slack = 1e-12 * np.abs(found)
-        assert (found >= slopes.low - slack).all()
-        assert (found <= slopes.high + slack).all()
+        for held in (slopes, Certificate(problem, Box(point, point, point))._slopes):
+            slack = 1e-10 * np.abs(found)
+            assert (found >= held.low - slack).all()
+            assert (found <= held.high + slack).all()
 
 
 def test_derivatives_of_some_values_are_those_of_all(campaign: Campaign) -> None:
