@@ -296,3 +296,28 @@ def test_a_root_is_known_if_it_is_the_only_one_whatever_lies_in_the_box(
     for datum in np.linspace(low, high, 5) if known else ():
         value = engine.evaluate(sheet, {}, {"a": [datum]}, program).scalar("root")
         assert found.value["root"].low[0] <= value <= found.value["root"].high[0]
+
+
+@pytest.mark.parametrize(("low", "high", "known"), [(0.2, 0.3, True), (0.05, 0.2, False), (0.9, 1.1, False)])
+def test_a_root_is_not_known_if_it_may_lie_outside_of_its_interval(
+    low: float, high: float, known: bool
+) -> None:
+    a, z = Column("a", None, Given()), Symbol("z", positive=True)
+    equation = Equation("", (z - a.symbol, Integer(0)), "", Kind.DEFINITION)
+    ends = Rational(1, 10), Rational(1)
+    sheet = Sheet((a, Column("root", None, Root(equation, equation, z, z, *ends, Rational(1, 2)))))
+    program = Program.of(sheet)
+    layouts = engine.evaluate(sheet, {}, {"a": [low]}, program).layouts
+    found = Enclosure(sheet, program, layouts, {"a": Intervals([low], [high])})
+    assert bool(found.sure["root"][0]) is known
+
+
+def test_what_may_be_zero_is_not_sure_to_be_positive() -> None:
+    a = Column("a", None, Given(bounds=Bounds(low=0)))
+    twice = Column("twice", None, Formula(Equation("", (Symbol("twice"), 2 * a.symbol), "", Kind.DEFINITION)))
+    sheet = Sheet((a, twice))
+    program = Program.of(sheet)
+    layouts = engine.evaluate(sheet, {}, {"a": [1.0]}, program).layouts
+    for low, known in ((0.0, False), (1e-3, True)):
+        found = Enclosure(sheet, program, layouts, {"a": Intervals([low], [1.0])})
+        assert bool(found.sure["twice"][0]) is known
