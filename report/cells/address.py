@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
-__all__ = ["address", "index_text"]
+__all__ = ["address", "index_text", "parts"]
 
 
 def index_text(index: Sequence[int]) -> str:
@@ -19,3 +20,13 @@ def address(name: str, index: Sequence[int]) -> str:
     ('alpha[1-2]', 'alpha_mean')
     """
     return f"{name}[{index_text(index)}]" if index else name
+
+
+def parts(text: str) -> tuple[str, str] | None:
+    """Column and row of an address that somebody wrote, no row for a whole column; None of what is none.
+
+    >>> parts("alpha[1-2]"), parts("alpha_mean"), parts("alpha[1-2")
+    (('alpha', '1-2'), ('alpha_mean', ''), None)
+    """
+    found = re.fullmatch(r"([^\[\]]*)(?:\[([^\[\]]+)\])?", text)
+    return None if found is None else (found[1], found[2] or "")

@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
-from ..cells.address import index_text
+from ..cells.address import index_text, parts
 from ..messages.errors import Findings, Location, listing, suggest
 
 __all__ = ["EXAMPLE", "Expectation", "check_expected"]
@@ -14,9 +14,8 @@ __all__ = ["EXAMPLE", "Expectation", "check_expected"]
 EXAMPLE = '"alpha[1-2]" = "both drops from one height"'
 """A line of the section."""
 
-_ADDRESS = re.compile(
-    r"test +(?P<test>[0-9]{1,9})|(?P<cell>[^\[\]]*)(?:\[(?P<index>[0-9]{1,9}(?:-[0-9]{1,9})*)\])?"
-)
+_TEST = re.compile("test +([0-9]{1,9})")
+_ROW = re.compile("(?:[0-9]{1,9}(?:-[0-9]{1,9})*)?")
 
 
 @dataclass(frozen=True)
@@ -45,11 +44,12 @@ class Expectation:
         >>> Expectation("test 3", "heard twice", Location()).cell
         ('', (3,))
         """
-        found = _ADDRESS.fullmatch(self.address)
-        if found is None:
+        if test := _TEST.fullmatch(self.address):
+            return "", (int(test[1]),)
+        found = parts(self.address)
+        if found is None or not _ROW.fullmatch(found[1]):
             return self.address, ()
-        index = found["test"] or found["index"] or ""
-        return found["cell"] or "", tuple(map(int, filter(None, index.split("-"))))
+        return found[0], tuple(map(int, filter(None, found[1].split("-"))))
 
     def covers(self, cell: str, index: tuple[int, ...], tests: Collection[int]) -> bool:
         """Whether it speaks of a cell, by itself or by one of the tests that it rests on."""

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from ..cells.address import parts
 from ..messages.errors import (
     Findings,
     ForeignCode,
@@ -474,7 +475,7 @@ class _Reader:
 
     def cell(self, address: str, measurements: Measurements, at: Location) -> tuple[str, int] | None:
         """Return column and row of a measured cell, ``x_p[2]``."""
-        name, _, index = address.removesuffix("]").partition("[")
+        name, index = parts(address) or (address, "")
         columns, tests = measurements.measured, list(map(str, measurements.tests))
         if name not in columns:
             known, suggestion = listing(columns), suggest(name, columns)

@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, TextIO
 
-from ..cells.address import index_text
+from ..cells.address import index_text, parts
 from ..inputs.folders import WORD
 from ..messages.diagnostics import visible
 
@@ -165,11 +165,11 @@ def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
     """
     from ..messages.errors import UsageError, diagnose, listing, suggest
 
-    name, opened, rest = address.partition("[")
-    index = rest.removesuffix("]")
-    if opened and (not index or index == rest or "]" in index):
+    found = parts(address)
+    if found is None:
         known = "a column such as alpha, or a row of it in brackets, such as alpha[1-2] or x_m[3]"
         raise UsageError(diagnose("LS604", kind="cell", text=address, known=known, suggestion=""))
+    name, index = found
     if name not in report.sheet:
         names = [column.name for column in report.sheet.columns]
         known, hint = listing(names, most=60), suggest(name, names)

@@ -71,8 +71,9 @@ class GivenCells:
 
     def note(self, block: CellBlock, printed: Printed) -> str:
         """What a cell is, what it may be, and where its number comes from."""
-        source = printed.where.partition(":")[0]
-        given = f"Given as {printed.text} {printed.unit} in {printed.where}." if source else "The default."
+        given = (
+            f"Given as {printed.text} {printed.unit} in {printed.where}." if printed.where else "The default."
+        )
         return "\n".join([f"{block.name}: {block.meaning}.", f"{self.allowed(block)}.", given])
 
     def validation(self, block: CellBlock) -> dict[str, Any]:
