@@ -6,7 +6,7 @@ import ast
 import re
 import sys
 import types
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -143,11 +143,10 @@ def place_of(path: Path, code: bytes, field: str, word: str = "") -> Location:
     return _found(path, text, found)
 
 
-def place_of_column(path: Path, code: bytes, complaint: str) -> Location:
-    """Where what a sheet complains of is written: a text that it quotes, or the column it begins with."""
+def place_of_column(path: Path, code: bytes, about: Sequence[str]) -> Location:
+    """Where what a sheet complains of is written: a column of the first name that there is, or the name."""
     text = code.decode("utf-8", "replace")
-    ways = [_quoted(word) for word in re.findall("'([^']+)'", complaint)]
-    ways += [rf"Column\(\s*{_quoted(complaint.partition(':')[0].partition(' ')[0])}"]
+    ways = (rf"{before}{_quoted(name)}" for name in about for before in (r"Column\(\s*", ""))
     found = (re.search(way, text) for way in ways)
     return _found(path, text, next(filter(None, found), None))
 

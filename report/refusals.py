@@ -20,7 +20,7 @@ __all__ = ["of_sheet", "refuse_what_is_misnamed", "refuse_what_is_missing", "ref
 
 def of_sheet(inputs: Inputs, error: SheetError) -> InputError:
     """What is wrong with the sheet of a user's own workbook, with its place there."""
-    at = place_of_column(*_own_code(inputs), str(error))
+    at = place_of_column(*_own_code(inputs), error.about)
     return InputError(diagnose("LS213", at, text=inputs.workbook.name, reason=str(error)))
 
 
@@ -64,11 +64,13 @@ def refuse_what_is_not_stated(sheet: Sheet, ledger: Ledger) -> None:
                 written = text_of_equation(equation.origin, ledger.vocabulary)
                 raise SheetError(
                     f"{column.name} is computed from {equation.label} {written}, "
-                    "which the ledger does not have: add it there, with its derivation if it is a claim"
+                    "which the ledger does not have: add it there, with its derivation if it is a claim",
+                    column.name,
                 )
         if isinstance(rule, Root) and not supported(rule.form, rule.equation, ledger):
             raise SheetError(
-                f"{column.name} solves {rule.form.label}, which is not derived from {rule.equation.label}"
+                f"{column.name} solves {rule.form.label}, which is not derived from {rule.equation.label}",
+                column.name,
             )
 
 

@@ -54,7 +54,19 @@ __all__ = [
 
 
 class SheetError(ValueError):
-    """A workbook declares something that cannot be a sheet."""
+    """A workbook declares something that cannot be a sheet.
+
+    Parameters
+    ----------
+    sentence : str
+    *about : str
+        What it is about, as the workbook calls it; where it is declared may be looked for by the first that
+        stands there.
+    """
+
+    def __init__(self, sentence: str, *about: str) -> None:
+        super().__init__(sentence)
+        self.about = about
 
 
 class CycleError(SheetError):
@@ -62,7 +74,7 @@ class CycleError(SheetError):
 
     def __init__(self, path: tuple[str, ...]) -> None:
         self.path = path
-        super().__init__("columns depend on one another in a circle: " + " -> ".join(path))
+        super().__init__("columns depend on one another in a circle: " + " -> ".join(path), *path)
 
 
 @dataclass(frozen=True)
@@ -92,7 +104,9 @@ class Sheet:
         names: dict[str, Column] = {}
         for column in self.columns:
             if column.name in names:
-                raise SheetError(f"the column {column.name!r} has two rules; a name has exactly one")
+                raise SheetError(
+                    f"the column {column.name!r} has two rules; a name has exactly one", column.name
+                )
             names[column.name] = column
         object.__setattr__(self, "by_name", names)
         _check_names(self)
@@ -118,7 +132,7 @@ class Sheet:
             for parent in axis.parents:
                 add(parent)
             if found.setdefault(axis.name, axis) != axis:
-                raise SheetError(f"two different index sets are called {axis.name!r}")
+                raise SheetError(f"two different index sets are called {axis.name!r}", axis.name)
 
         for column in self.columns:
             if column.axis is not None:
@@ -281,28 +295,34 @@ def _check_names(sheet: Sheet) -> None:
             count = sheet.by_name.get(axis.count)
             if count is None or count.axis is not None or not isinstance(count.rule, Given):
                 raise SheetError(
-                    f"{axis.name}: {axis.count!r} must be a given scalar; it says how many rows there are"
+                    f"{axis.name}: {axis.count!r} must be a given scalar; it says how many rows there are",
+                    axis.count,
                 )
         for symbol, what in own.items():
             if symbol.name in taken:
                 raise SheetError(
-                    f"the symbol {symbol.name!r} is {taken[symbol.name]} and {what} of {axis.name}"
+                    f"the symbol {symbol.name!r} is {taken[symbol.name]} and {what} of {axis.name}",
+                    symbol.name,
                 )
             taken[symbol.name] = f"{what} of {axis.name}"
     for column in sheet.columns:
         _check_name(column.name, "a column's")
         if column.name in taken:
-            raise SheetError(f"the column {column.name!r} is called as {taken[column.name]} is; rename one")
+            raise SheetError(
+                f"the column {column.name!r} is called as {taken[column.name]} is; rename one", column.name
+            )
         unknown = column.rule.unknown.name if isinstance(column.rule, Root) else column.name
         if unknown != column.name and (unknown in sheet.by_name or unknown in taken):
             raise SheetError(
-                f"{column.name}: its unknown {unknown!r} is called as something else of the sheet is"
+                f"{column.name}: its unknown {unknown!r} is called as something else of the sheet is",
+                unknown,
+                column.name,
             )
 
 
 def _check_name(name: str, whose: str) -> None:
     if not name.isidentifier() or iskeyword(name):
-        raise SheetError(f"{name!r} cannot be {whose} name: letters, digits and _ make a name")
+        raise SheetError(f"{name!r} cannot be {whose} name: letters, digits and _ make a name", name)
 
 
 def _check_symbols(sheet: Sheet, column: Column) -> None:
@@ -314,7 +334,8 @@ def _check_symbols(sheet: Sheet, column: Column) -> None:
             if total.has(column.rule.unknown):
                 raise SheetError(
                     f"{column.name}: {total} names the unknown of a row; a root whose equation sums over its "
-                    f"unknown is one number, not one for each of {column.axis.name}"
+                    f"unknown is one number, not one for each of {column.axis.name}",
+                    column.name,
                 )
 
 
@@ -326,15 +347,17 @@ def _check_scope(sheet: Sheet, column: Column, expression: Basic, axis: Axis | N
             known = ", ".join(f"({a.index}, 1, {a.size})" for a in sheet.axes) or "none"
             shown = ", ".join(map(str, limits))
             raise SheetError(
-                f"{column.name}: a sum runs over all rows of one index set ({known}), not over {shown}"
+                f"{column.name}: a sum runs over all rows of one index set ({known}), not over {shown}",
+                column.name,
             )
         if isinstance(expression, Median) and not isinstance(expression.function, Indexed):
             raise SheetError(
                 f"{column.name}: a median is of the cells of a column, not of {expression.function}; "
-                "give that a column of its own"
+                "give that a column of its own",
+                column.name,
             )
         if isinstance(expression, Median) and isinstance(column.rule, Root):
-            raise SheetError(f"{column.name}: a median in a root has to be a column of its own")
+            raise SheetError(f"{column.name}: a median in a root has to be a column of its own", column.name)
         _check_scope(sheet, column, expression.function, over)
     elif isinstance(expression, Indexed):
         _check_cell(sheet, column, expression, axis)
@@ -352,7 +375,8 @@ def _check_symbol(sheet: Sheet, column: Column, symbol: Symbol, axis: Axis | Non
     other = _find(sheet, column, symbol.name)
     if other.axis is not None:
         raise SheetError(
-            f"{column.name}: {symbol.name} has one value for each of {other.axis.name}; say which"
+            f"{column.name}: {symbol.name} has one value for each of {other.axis.name}; say which",
+            column.name,
         )
 
 
@@ -364,7 +388,8 @@ def _check_cell(sheet: Sheet, column: Column, cell: Indexed, axis: Axis | None) 
         place = "a scalar" if other.axis is None else f"on {other.axis.name}"
         allowed = ", ".join(f"{i} ({a.name})" for i, a in maps.items()) or "none"
         raise SheetError(
-            f"{column.name}: {cell} names a row of nothing: {other.name} is {place}; indices here: {allowed}"
+            f"{column.name}: {cell} names a row of nothing: {other.name} is {place}; indices here: {allowed}",
+            column.name,
         )
 
 
@@ -373,5 +398,5 @@ def _find(sheet: Sheet, column: Column, name: str) -> Column:
     if other is None:
         near = close(name, sheet.by_name)
         hint = f"; did you mean {near!r}?" if near else ""
-        raise SheetError(f"{column.name}: no column is called {name!r}{hint}")
+        raise SheetError(f"{column.name}: no column is called {name!r}{hint}", name, column.name)
     return other

@@ -119,7 +119,7 @@ def _margin(inside: Basic, column: Column) -> Expr:
             return inside.rhs - inside.lhs
         case Ge() | Gt():
             return inside.lhs - inside.rhs
-    raise SheetError(f"{column.name}: a limit compares by < or >, it cannot be {inside}")
+    raise SheetError(f"{column.name}: a limit compares by < or >, it cannot be {inside}", column.name)
 
 
 @dataclass(frozen=True)

@@ -59,7 +59,8 @@ class _Checker(Dimensions):
 
     def fail(self, expression: Basic, problem: str) -> DimensionMismatch:
         """The complaint names the column and its equation."""
-        return DimensionMismatch(f"{self.column.name} {self.column.source}: {problem} in {sstr(expression)}")
+        said = f"{self.column.name} {self.column.source}: {problem} in {sstr(expression)}"
+        return DimensionMismatch(said, self.column.name)
 
     def of_cell(self, cell: Expr) -> Dimension:
         """The dimension of a cell of the sheet."""
@@ -85,7 +86,9 @@ def exponents(sheet: Sheet, column: Column, index: Expr | None) -> dict[str, Exp
     found: dict[str, Expr] = {}
     for name in re.findall(r"\^([A-Za-z_]\w*)", column.unit):
         if name not in sheet:
-            raise DimensionMismatch(f"its unit {column.unit!r} names {name!r}, which is no column")
+            raise DimensionMismatch(
+                f"its unit {column.unit!r} names {name!r}, which is no column", column.unit
+            )
         other = sheet[name]
         row = index if index is not None else (None if column.axis is None else column.axis.index)
         found[name] = other.symbol if other.axis is None else other[row]
@@ -105,7 +108,7 @@ def check(sheet: Sheet) -> None:
         try:
             own = dimension_of_unit(column.unit, exponents(sheet, column, None))
         except DimensionMismatch as problem:
-            raise DimensionMismatch(f"{column.name}: {problem}") from None
+            raise DimensionMismatch(f"{column.name}: {problem}", column.unit, column.name) from None
         rule = column.rule
         if isinstance(rule, Formula):
             _expect(checker, rule.expression, own)
@@ -119,7 +122,7 @@ def check(sheet: Sheet) -> None:
                 if end is not None:
                     checker.of(end)
         elif not isinstance(rule, Given):
-            raise SheetError(f"{column.name}: unknown kind of rule {rule!r}")
+            raise SheetError(f"{column.name}: unknown kind of rule {rule!r}", column.name)
         for condition, _ in column.requires:
             checker.relation(condition)
         for limit in column.limits:

@@ -209,7 +209,7 @@ def enclosing(sheet: Sheet, plan: Plan, node: RootNode) -> Enclosing:
         exponents = _exponents((form, steepness), plain) if known == True else None  # noqa: E712
         reach = None if exponents is None or len(run.totals) != 1 else kernel([*map(magnitude, exponents)])
         return Enclosing(run.arguments, run.totals, run.source, reach=reach)
-    raise SheetError(f"{node.column.name}: NumPy cannot compute {form}")
+    raise SheetError(f"{node.column.name}: NumPy cannot compute {form}", node.column.name)
 
 
 def _exponents(expressions: tuple[Expr, ...], unknown: Symbol) -> list[Expr] | None:
