@@ -210,6 +210,20 @@ def test_what_is_no_output_of_ours_is_told(tmp_path: Path) -> None:
         verify(tmp_path, None)
 
 
+@pytest.mark.parametrize("left", [{}, {"report.txt": "0" * 64}])
+def test_a_manifest_cannot_make_us_look_away(left: dict[str, str], campaign: Path) -> None:
+    """What it leaves out is there, and may hold anything."""
+    path, values = (campaign / "out" / name for name in ("manifest.json", "values.json"))
+    manifest = json.loads(path.read_text())
+    path.write_text(json.dumps(manifest | {"outputs": left}))
+    values.write_text(values.read_text().replace("1.3", "1.5"))
+    found = verify(campaign / "out", campaign)
+    (told,) = [check.message for check in found.checks if check.name == "values.json"]
+    assert told == "values.json lies there, but is no part of the build that its manifest tells of"
+    assert failed(found)["output"] == [*left, "values.json"]
+    assert found.verdict.startswith("different")
+
+
 def test_a_manifest_cannot_make_us_look_elsewhere(campaign: Path) -> None:
     path = campaign / "out" / "manifest.json"
     manifest = json.loads(path.read_text())

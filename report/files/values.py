@@ -82,7 +82,7 @@ class Column(Form, frozen=True, kw_only=True):
     of: Text | UnsetType = UNSET
     unit: Text
     rule: Text = ""
-    size: int | UnsetType = UNSET
+    size: Annotated[int, Meta(ge=0)] | UnsetType = UNSET
     index: list[Row] | UnsetType = UNSET
     value: Cells | UnsetType = UNSET
     status: list[str] | dict[str, int] | str
