@@ -3,7 +3,7 @@
 PYTHON ?= python3
 OUT ?= out
 UV ?= uv==0.13.8
-WORKERS ?= 4
+WORKERS ?= 3
 SEED ?=
 EACH ?=
 PART ?=
@@ -32,7 +32,7 @@ help:
 	@echo 'make lock        pin the dependencies of pyproject.toml again (UPGRADE=--upgrade: to the newest)'
 	@echo 'make clean       remove all that was made here'
 	@echo 'PYTHON=python3.12 make ... takes another interpreter (3.11 or later) for $(VENV)'
-	@echo 'WORKERS=2 make ... tests in two processes instead of four'
+	@echo 'WORKERS=2 make ... tests in two processes instead of three'
 
 report: $(VENV)/.runtime
 	$(BIN)/loopsheet build paper --out '$(OUT)'
