@@ -27,6 +27,7 @@ from .which_workbook import shipped_workbook
 
 __all__ = ["Verification", "verify"]
 
+_UNTOLD = "lies there, but is no part of the build that its manifest tells of"
 _HALF = "a build was killed while it put its files in place: some are of it, some are older"
 
 
@@ -141,8 +142,9 @@ def _outputs(out: Path, then: Manifest, now: Manifest, rounded: str) -> Iterator
         was, again = then.outputs.get(name), now.outputs.get(name)
         file = out / name
         if was is None:
-            lies = "lies there, but is no part of the build that its manifest tells of"
-            yield Check("output", name, False, f"{name} {lies if file.is_file() else 'was not built then'}")
+            yield Check(
+                "output", name, False, f"{name} {_UNTOLD if file.is_file() else 'was not built then'}"
+            )
         elif not _is_inside(out, file) or not file.is_file():
             yield Check("output", name, False, f"{name} is missing")
         elif _sha256(file) != was:
@@ -218,7 +220,8 @@ def _verdict(checks: tuple[Check, ...], then: Manifest, found: Differences | Non
         return f"different: {' and '.join(changed)} changed"
     if any(check.message == _HALF for check in failed):
         return f"different: {_HALF}; build it again"
-    if all(c.message.endswith(("after it was built", "is missing")) for c in failed if c.kind == "output"):
+    since = ("after it was built", "is missing", _UNTOLD)
+    if all(check.message.endswith(since) for check in failed if check.kind == "output"):
         return "different: the outputs were changed after they were built, and nothing else was"
     if not then.sources:
         return "different: the manifest does not say with which sources it was built"

@@ -15,6 +15,7 @@ from campaign_sizes import SEED, SIZES, Sizes
 from hypothesis import settings
 from hypothesis.internal.conjecture import providers
 from hypothesis.internal.constants_ast import Constants, constants_from_module
+from small_report import end_gauge
 
 import loopsheet
 
@@ -68,6 +69,14 @@ def find_program(*names: str) -> str:
 def require() -> Callable[..., str]:
     """Give `require("latexmk")`, or `require("chromium", "chromium-browser")` where names differ."""
     return find_program
+
+
+@pytest.fixture
+def gauge(tmp_path: Path) -> Path:
+    """A small report folder in an otherwise empty one."""
+    folder = tmp_path / "gauge"
+    folder.mkdir()
+    return end_gauge(folder)
 
 
 # --- the shipped paper, made once: nothing in it may be changed, `replace` gives another ---

@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from small_report import end_gauge
 
 from loopsheet.report import build, cost
 from loopsheet.report.cli import main
@@ -32,13 +31,6 @@ def copy_paper(folder: Path) -> Path:
     """A folder of one's own, a copy of the shipped one."""
     shutil.copytree(PAPER, folder)
     return folder
-
-
-@pytest.fixture
-def gauge(tmp_path: Path) -> Path:
-    """A small report folder, for what is the same whatever is written."""
-    (tmp_path / "gauge").mkdir()
-    return end_gauge(tmp_path / "gauge")
 
 
 def hashes(folder: Path) -> dict[str, str]:

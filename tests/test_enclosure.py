@@ -272,6 +272,13 @@ def test_a_root_over_all_rows_is_counted_once_and_not_once_a_row(monkeypatch: py
     assert found.value["rate"].low[0] < value < found.value["rate"].high[0]
 
 
+def enclosed(sheet: Sheet, low: float, high: float) -> Enclosure:
+    """The cells of a sheet whose only given one, `a`, lies in an interval."""
+    program = Program.of(sheet)
+    layouts = engine.evaluate(sheet, {}, {"a": [low]}, program).layouts
+    return Enclosure(sheet, program, layouts, {"a": Intervals([low], [high])})
+
+
 @pytest.mark.parametrize(
     ("low", "high", "known"),
     [
@@ -289,12 +296,10 @@ def test_a_root_is_known_if_it_is_the_only_one_whatever_lies_in_the_box(
     equation = Equation("", (z * exp(-z) - a.symbol, Integer(0)), "", Kind.DEFINITION)
     ends = Rational(1, 100), Rational(3)
     sheet = Sheet((a, Column("root", None, Root(equation, equation, z, z, *ends, Rational(1, 2)))))
-    program = Program.of(sheet)
-    layouts = engine.evaluate(sheet, {}, {"a": [low]}, program).layouts
-    found = Enclosure(sheet, program, layouts, {"a": Intervals([low], [high])})
+    found = enclosed(sheet, low, high)
     assert bool(found.sure["root"][0]) is known
     for datum in np.linspace(low, high, 5) if known else ():
-        value = engine.evaluate(sheet, {}, {"a": [datum]}, program).scalar("root")
+        value = engine.evaluate(sheet, {}, {"a": [datum]}, found.program).scalar("root")
         assert found.value["root"].low[0] <= value <= found.value["root"].high[0]
 
 
@@ -306,18 +311,12 @@ def test_a_root_is_not_known_if_it_may_lie_outside_of_its_interval(
     equation = Equation("", (z - a.symbol, Integer(0)), "", Kind.DEFINITION)
     ends = Rational(1, 10), Rational(1)
     sheet = Sheet((a, Column("root", None, Root(equation, equation, z, z, *ends, Rational(1, 2)))))
-    program = Program.of(sheet)
-    layouts = engine.evaluate(sheet, {}, {"a": [low]}, program).layouts
-    found = Enclosure(sheet, program, layouts, {"a": Intervals([low], [high])})
-    assert bool(found.sure["root"][0]) is known
+    assert bool(enclosed(sheet, low, high).sure["root"][0]) is known
 
 
 def test_what_may_be_zero_is_not_sure_to_be_positive() -> None:
     a = Column("a", None, Given(bounds=Bounds(low=0)))
     twice = Column("twice", None, Formula(Equation("", (Symbol("twice"), 2 * a.symbol), "", Kind.DEFINITION)))
     sheet = Sheet((a, twice))
-    program = Program.of(sheet)
-    layouts = engine.evaluate(sheet, {}, {"a": [1.0]}, program).layouts
     for low, known in ((0.0, False), (1e-3, True)):
-        found = Enclosure(sheet, program, layouts, {"a": Intervals([low], [1.0])})
-        assert bool(found.sure["twice"][0]) is known
+        assert bool(enclosed(sheet, low, 1.0).sure["twice"][0]) is known

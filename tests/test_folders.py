@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from small_report import FILES, end_gauge
+from small_report import FILES
 
 from loopsheet.report.cli import main
 from loopsheet.report.inputs import folders
@@ -41,14 +41,6 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureF
         return code, captured.out, captured.err
 
     return run
-
-
-@pytest.fixture
-def gauge(tmp_path: Path) -> Path:
-    """A small report folder in an otherwise empty one."""
-    folder = tmp_path / "gauge"
-    folder.mkdir()
-    return end_gauge(folder)
 
 
 def files(folder: Path) -> list[str]:
