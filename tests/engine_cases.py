@@ -41,7 +41,7 @@ from loopsheet.report.engines import numpy as engine
 from loopsheet.report.judge.readers import Book, Case, Reading
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
-from loopsheet.report.views.xlsx import _Worksheet
+from loopsheet.report.views.xlsx_columns import ColumnwiseSheet
 
 OK, INPUT, DOMAIN, OVERFLOW = Status.OK, Status.INPUT, Status.DOMAIN, Status.OVERFLOW
 NOROOT, TWOROOTS = Status.NOROOT, Status.TWOROOTS
@@ -306,7 +306,7 @@ def book_of(grid: Grid) -> bytes:
         for block in grid.blocks:
             place = block.place
             if place.worksheet not in sheets:
-                sheets[place.worksheet] = book.add_worksheet(place.worksheet, _Worksheet)
+                sheets[place.worksheet] = book.add_worksheet(place.worksheet, ColumnwiseSheet)
             for row in range(place.rows):
                 at = (place.row + row, place.column)
                 if block.formulas and block.array:

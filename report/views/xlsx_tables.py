@@ -37,12 +37,14 @@ def write_block(
         return
     place = block.place
     if block.kind == "index":
-        for row, value in enumerate(block.values):
-            sheet.write_number(place.row + row, place.column, value, style("index"))
+        sheet.write_numbers(place.row, place.column, block.values, style("index"))
         return
     form = style("step") if block.kind == "step" else style(name, _number_format(report, block))
-    for row, (formula, value) in enumerate(zip(block.formulas, block.values, strict=True)):
-        style.formula(sheet, place.row + row, place.column, formula, value, form, block.array)
+    if block.array:
+        for row, (formula, value) in enumerate(zip(block.formulas, block.values, strict=True)):
+            style.formula(sheet, place.row + row, place.column, formula, value, form, array=True)
+    else:
+        sheet.write_formulas(place.row, place.column, block.formulas, block.values, form)
     if block.kind == "computed":
         # No formula names the roots that there are; as issued they are known.
         values, labels = report.values, report.values.labels(report.sheet[block.name])
