@@ -52,6 +52,7 @@ and in such a folder, or with its name or 'paper' at the end:
   loopsheet prove "(11)"               how equation (11) follows, step by step
   loopsheet show alpha                 all cells of a column, with all digits
   loopsheet why "alpha[1-2]"           one number: its equation, its proof, what it rests on
+  loopsheet budget alpha_mean          how uncertain it is, and where that comes from
   loopsheet verify                     the same report again? if not, which number and why
   loopsheet diff out other/out         two results, number by number
 """

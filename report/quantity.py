@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 
+from .distribution import Error, Shape
+
 __all__ = ["Bounds", "Printed"]
 
 
@@ -95,8 +97,9 @@ class Printed:
         One printed unit in SI (1/1000000 for ``um``).
     mode : str
         How it was shortened: ``"rounded"`` or ``"truncated"``.
-    given_u : Fraction or None
-        A standard uncertainty in SI that the user gave; without it the digits say it.
+    stated : tuple of Error or None
+        The errors that the user stated, each independent of all others; none of them if it is exact. Without
+        a statement the digits say it.
     where : str
         ``file:line:column``, for messages and for tracing.
     """
@@ -106,7 +109,7 @@ class Printed:
     value: Fraction
     scale: Fraction
     mode: str = "rounded"
-    given_u: Fraction | None = None
+    stated: tuple[Error, ...] | None = None
     where: str = ""
 
     @property
@@ -139,12 +142,20 @@ class Printed:
         return self.value - self.half_unit, self.value + self.half_unit
 
     @property
-    def u(self) -> float:
-        """Standard uncertainty in SI: the given one, else rectangular over the values that print so.
+    def errors(self) -> tuple[Error, ...]:
+        """Its errors: the stated ones, else that of the digits.
 
         The printed value stands for an interval one last-digit unit wide, whether it was rounded or
-        truncated, so its standard deviation is half a unit over the square root of three (GUM 4.3.7).
+        truncated: rectangular, half a unit to both sides of its middle (JCGM 100, 4.3.7).
         """
-        if self.given_u is not None:
-            return float(self.given_u)
-        return float(self.half_unit) / math.sqrt(3)
+        return (Error(self.half_unit, Shape.RECTANGULAR),) if self.stated is None else self.stated
+
+    @property
+    def shift(self) -> Fraction:
+        """How much the expectation is larger than what is printed, in SI; half a unit if it was truncated."""
+        return sum(self.interval, Fraction(0)) / 2 - self.value if self.stated is None else Fraction(0)
+
+    @property
+    def u(self) -> float:
+        """Standard uncertainty in SI, of all its errors."""
+        return math.hypot(*(error.u for error in self.errors))

@@ -11,6 +11,7 @@ from .inputs.inputs import Inputs, load
 from .inputs.unit_text import UnitError as NotAUnit
 from .inputs.unit_text import parse_unit
 from .machine.provenance import versions
+from .machine.timing import timed
 from .messages.errors import LoopsheetError, UsageError, diagnose
 from .prepared import Prepared
 from .which_workbook import find_workbook
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from .messages.errors import Diagnostic
     from .result.agreement import Agreement
     from .result.result import Comparison, Plotted, Report, Shown
+    from .result.uncertain import Uncertainties
     from .result.verdict import Referee
     from .sheet import Column, Sheet
     from .workbook import Workbook
@@ -46,6 +48,7 @@ __all__ = [
     "refuse_too_many_rows",
     "shown",
     "silent",
+    "uncertain",
 ]
 
 Step = Callable[[str], None]
@@ -123,6 +126,7 @@ def evaluated(made: Prepared, ledger: Ledger, step: Step) -> Report:
         errata=(),
         comparisons=compare(inputs.published, values),
         plotted=cache(lambda: plotted(workbook, values, inputs)),
+        uncertain=cache(lambda: uncertain(workbook, values, inputs)),
         versions=versions(),
     )
     return replace(report, oddities=oddities(report))
@@ -262,6 +266,14 @@ def plotted(workbook: Workbook, values: Values, inputs: Inputs) -> Plotted:
     more = drawn(workbook, values.sheet)
     every = extend(values, more.columns, more.given)
     return Plotted(every, {c.name: shown(c, every.sheet, inputs) for c in every.sheet.columns})
+
+
+def uncertain(workbook: Workbook, values: Values, inputs: Inputs) -> Uncertainties:
+    """The standard uncertainties of the cells, and the budgets of the headline."""
+    from .uncertainty.propagation import uncertainties
+
+    with timed("uncertainties"):
+        return uncertainties(inputs, values, workbook.headline)
 
 
 def for_a_grid(report: Report) -> Drawn:

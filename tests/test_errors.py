@@ -268,13 +268,17 @@ CASES: dict[str, Callable[[], None]] = {
     "LS405": csv("2.940", "2.940e999999999"),
     "LS406": csv("2.940", "-2.940"),
     "LS407": lambda: campaign(
-        csv="test,v [m/s],u(v) [mm/s],e [1],x_p [um]\n1,2.334,0,0.530,23.5\n2,2.940,1.5,0.512,29.7\n"
+        csv="test,v [m/s],u(v) [mm/s],e [1],x_p [um]\n1,2.334,-1,0.530,23.5\n2,2.940,1.5,0.512,29.7\n"
     ),
     "LS421": csv("x_p [um]", "x_p [Um]"),
     "LS422": csv("x_p [um]", "x_p [kg]"),
     "LS423": csv("e [1]", "e [dB]"),
     "LS424": csv("v [m/s]", "v [m/s^99]"),
     "LS425": csv("v [m/s]", "v [km/min kg]"),
+    "LS431": toml("8.366 g", "8.366 g, U = 0.02"),
+    "LS432": toml("8.366 g", "8.366 g +-0.02"),
+    "LS433": toml("8.366 g", "8.366(4) g, u = 0.02"),
+    "LS434": toml("[published]", '[uncertainty.correlation]\n"v, e" = "1.2"\n[published]'),
     "LS501": published("1-2", "2-Jan"),
     "LS502": published("differs", "differ"),
     "LS504": published("\nTable 2", "\nTable 2,alpha,1-2,1.234,1,,\nTable 2"),

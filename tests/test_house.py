@@ -49,7 +49,7 @@ def rooms(*names: str) -> set[str]:
 
 
 # What an author of a workbook writes with, and what becomes of it.
-AUTHOR = PROVER | rooms("messages", "quantity", "column", "sheet", "charts", "workbook")
+AUTHOR = PROVER | rooms("messages", "distribution", "quantity", "column", "sheet", "charts", "workbook")
 DECLARED = AUTHOR | rooms("cells")
 
 MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
@@ -62,7 +62,8 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.files": (rooms("files", "messages"), {"msgspec"}),
     "report.machine": (rooms("files", "machine", "messages"), set()),
     "report.machine.provenance": (set(), {"numpy"}),
-    "report.quantity": (set(), set()),
+    "report.distribution": (set(), set()),
+    "report.quantity": (rooms("distribution"), set()),
     "report.content": (set(), ALGEBRA),
     "report.column": (PROVER | rooms("content", "quantity"), ALGEBRA),
     "report.sheet": (PROVER | rooms("column", "messages", "quantity"), ALGEBRA),
@@ -70,7 +71,9 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.cells": (DECLARED - rooms("workbook"), ALGEBRA | {"numpy", "pint"}),
     "report.workbook": (DECLARED, ALGEBRA),
     "report.inputs": (
-        rooms("cells.address", "charts", "inputs", "messages", "quantity", "sheet", "workbook"),
+        rooms(
+            "cells.address", "charts", "distribution", "inputs", "messages", "quantity", "sheet", "workbook"
+        ),
         set(),
     ),
     "report.inputs.unit_text": (rooms("messages"), {"pint"}),
@@ -85,6 +88,10 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.judge": (
         DECLARED | rooms("engines", "inputs", "judge", "machine", "plan", "result") | {"derivations"},
         NUMERIC,
+    ),
+    "report.uncertainty": (
+        DECLARED | rooms("engines", "inputs", "judge", "result", "uncertainty"),
+        {"numpy", "scipy"},
     ),
     "report.referee": (DECLARED | rooms("engines", "inputs", "judge", "referee", "result"), NUMERIC),
     "report.archive": (DECLARED | rooms("archive", "files", "inputs", "machine", "result"), {"msgspec"}),

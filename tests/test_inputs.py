@@ -12,7 +12,7 @@ from loopsheet.report.inputs.number_text import read_printed
 from loopsheet.report.inputs.published import Pin
 from loopsheet.report.inputs.unit_text import parse_unit
 from loopsheet.report.messages.errors import InputError, UnknownWorkbook, diagnose
-from loopsheet.report.quantity import Bounds
+from loopsheet.report.quantity import Bounds, Printed
 from loopsheet.report.workbook import Measured, Parameter, Workbook
 
 PAPER = Path(__file__).parent.parent / "data" / "soft_steel"
@@ -156,13 +156,18 @@ def test_any_compatible_unit_and_any_order_of_columns(read: Reader) -> None:
     assert inputs.header_units == {"v": "km/h", "e": "%", "x_p": "inch"}
 
 
+def stated(number: Printed) -> Fraction | None:
+    """The width of the one error that was stated of a number."""
+    return None if number.stated is None else number.stated[0].width
+
+
 def test_given_uncertainties_are_in_si_and_for_their_column(read: Reader) -> None:
     header = "test,v [m/s],u(v) [mm/s],e [1],x_p [um],u( x_p ) [nm]\n"
     csv = header + "1,2.334,1.5,0.530,23.5,40\n2,2.940,2,0.512,29.7,4e1\n"
     inputs = read(csv=csv)
-    assert [number.given_u for number in inputs.measured["v"]] == [Fraction(15, 10**4), Fraction(2, 10**3)]
-    assert [number.given_u for number in inputs.measured["x_p"]] == [Fraction(4, 10**8)] * 2
-    assert [number.given_u for number in inputs.measured["e"]] == [None, None]
+    assert [stated(number) for number in inputs.measured["v"]] == [Fraction(15, 10**4), Fraction(2, 10**3)]
+    assert [stated(number) for number in inputs.measured["x_p"]] == [Fraction(4, 10**8)] * 2
+    assert [stated(number) for number in inputs.measured["e"]] == [None, None]
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """Printed numbers keep their digits; bounds are data."""
 
 import math
+from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 
@@ -8,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from loopsheet.report.distribution import Error
 from loopsheet.report.quantity import Bounds, Printed
 
 DIGITS = st.text("0123456789", min_size=1, max_size=12)
@@ -23,8 +25,8 @@ def numbers(draw: st.DrawFn) -> str:
     return sign + whole + fraction + exponent
 
 
-def printed(text: str, scale: Fraction = Fraction(1), given_u: Fraction | None = None) -> Printed:
-    return Printed(text, "u", Fraction(text) * scale, scale, given_u=given_u)
+def printed(text: str, scale: Fraction = Fraction(1), u: Fraction | None = None) -> Printed:
+    return Printed(text, "u", Fraction(text) * scale, scale, stated=None if u is None else (Error(u),))
 
 
 @given(numbers())
@@ -61,7 +63,20 @@ def test_half_a_unit_is_in_si() -> None:
 
 def test_the_digits_give_a_rectangular_uncertainty_and_a_given_one_wins() -> None:
     assert printed("2.940").u == 0.0005 / math.sqrt(3)
-    assert printed("2.940", given_u=Fraction(1, 500)).u == 0.002
+    assert printed("2.940", u=Fraction(1, 500)).u == 0.002
+
+
+@pytest.mark.parametrize(("text", "shift"), [("2.94", "0.005"), ("-2.94", "-0.005")])
+def test_what_was_truncated_is_expected_half_a_unit_further_from_zero(text: str, shift: str) -> None:
+    number = replace(printed(text), mode="truncated")
+    assert (number.shift, number.u) == (Fraction(shift), 0.005 / math.sqrt(3))
+    assert printed(text).shift == replace(number, stated=(Error(Fraction(1)),)).shift == 0
+
+
+def test_errors_add_in_squares_and_what_is_exact_has_none() -> None:
+    number = replace(printed("2.940"), stated=(Error(Fraction(3)), Error(Fraction(4))))
+    assert number.u == 5
+    assert replace(number, stated=()).u == 0
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ from small_report import judged, pure
 from sympy import Symbol
 
 from loopsheet.derivations.equation import Equation, Kind
+from loopsheet.report.distribution import Error
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.inputs.published import PublishedValue
@@ -272,7 +273,7 @@ def test_uncertainties_combine_in_quadrature_and_cover_twice(text: str, verdict:
     total = Formula(Equation("", (Symbol("y"), a[k] + b[k]), "for a test", Kind.DEFINITION))
     sheet = Sheet((a, b, Column("y", a.axis, total)))
     measured = {
-        name: [replace(pure(digits), given_u=Fraction(u))]
+        name: [replace(pure(digits), stated=(Error(Fraction(u)),))]
         for name, digits, u in (("a", "10.000", "0.3"), ("b", "20.000", "0.4"))
     }
     (comparison,) = judged(sheet, measured, {}, lambda _: [PublishedValue("Table", "y", (1,), pure(text))])

@@ -9,14 +9,16 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
-from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
+from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Context, Decimal, localcontext
 
-__all__ = ["RAISED", "Numeral", "decimals", "is_pure", "read", "rounded", "shown", "table_format"]
+__all__ = ["RAISED", "Numeral", "decimals", "is_pure", "read", "rounded", "shown", "stated", "table_format"]
 
 _BEYOND = 2
 """An integer part with more digits than these beyond the known ones is written with a power of ten."""
 _LEADING = 3
 """So are numbers with more zeros than this behind the decimal point."""
+_DOUBLE = 15
+"""Digits that every double has."""
 _GROUPS = 5
 """From this many digits on, the integer part is grouped by three."""
 MINUS = "\u2212"
@@ -155,6 +157,58 @@ def shown(values: Iterable[float | None], scale: float, digits: int) -> list[Num
     known = [value for value in scaled if value]
     scientific = any(rounded(value, digits).exponent is not None for value in known)
     return [None if value is None else rounded(value, digits, scientific) for value in scaled]
+
+
+def stated(value: float, u: float, most: int = 2) -> tuple[Numeral, Numeral]:
+    r"""Show a value and its standard uncertainty, with as many digits as the uncertainty leaves.
+
+    The uncertainty has at most two digits; it is rounded up where rounding would make it smaller by more than
+    a twentieth (JCGM 100, 7.2.6; EA-4/02, 6.3).
+
+    Parameters
+    ----------
+    value : float
+        A finite number.
+    u : float
+        In the same unit, greater than 0.
+    most : int
+        Digits of the uncertainty.
+
+    Returns
+    -------
+    tuple of Numeral
+        Both with the same decimals and the same power of ten, if a double has so many digits.
+
+    Examples
+    --------
+    >>> [numeral.plain for numeral in stated(1.30264345, 0.00350146)]
+    ['1.3026', '0.0035']
+    >>> [numeral.plain for numeral in stated(1.01871737e9, 3.756e7)]
+    ['1.019e9', '0.038e9']
+    >>> [numeral.plain for numeral in stated(0.2, 9.96, 1)], [n.plain for n in stated(0.0, 0.104, 1)]
+    (['0', '10'], ['0.0', '0.1'])
+    """
+    places = _places(u, most)
+    size = max(abs(value), u)
+    first = max(_rounded(size, 1)[1], places)
+    if first - places >= _DOUBLE:  # more digits than a double has: each by itself
+        return rounded(value, _DOUBLE), rounded(u, most)
+    # Zeros in front of the point would pass for digits that are known.
+    power = first if places > 1 else rounded(size, first - places + 1).exponent
+    with localcontext(Context(prec=400, rounding=ROUND_HALF_EVEN)):
+        step = Decimal(1).scaleb(places)
+        up = (Decimal(u) / step).to_integral_value(ROUND_CEILING)
+        short = (Decimal(u) / step).to_integral_value()
+        told = up if short * step < Decimal(u) * Decimal("0.95") else short
+        behind = max(0, (power or 0) - places)
+        pair = [(Decimal(value) / step).to_integral_value() * step, told * step]
+        value_text, u_text = (f"{number.scaleb(-(power or 0)):.{behind}f}" for number in pair)
+    return _figure(value_text, power), _figure(u_text, power)
+
+
+def _places(u: float, digits: int) -> int:
+    """The power of ten of the last digit of an uncertainty, after it was rounded."""
+    return _rounded(u, digits)[1] - digits + 1
 
 
 def table_format(figures: Iterable[Numeral | None]) -> str:

@@ -69,7 +69,7 @@ class Column(Form, frozen=True, kw_only=True):
     reason : str or null
         Why there is no root, or more than one.
     u : number or null
-        The standard uncertainty of what the user gave.
+        The standard uncertainty, in SI; null where there is no value, and where nothing is known.
     mark : str or null
         That it lies outside of what its source allows.
     rows : table of int

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..cells.address import parts
 from ..messages.errors import (
@@ -26,10 +25,13 @@ from .number_text import NumberError, read_printed
 from .parameters import read_parameters, wrong_type
 from .published import PublishedValue, check_published, read_published
 from .sources import Source, open_source, read_bytes
+from .tables import TomlTables
 from .tomlfile import TomlFile, read_toml
+from .uncertainty import Stated, read_bare, read_uncertainty
 from .unit_text import parse_unit
 
 if TYPE_CHECKING:
+    from ..distribution import Shape
     from ..messages.errors import Diagnostic
     from ..quantity import Printed
     from ..workbook import Workbook
@@ -89,6 +91,8 @@ class Inputs:
         The tests that take no part, each with its reason; all else is about the others.
     aside : tuple of PublishedValue
         Published values that rest on a test that is left out: they are not compared.
+    uncertainty : Stated
+        What report.toml states of the errors of whole columns, of what they share, and of correlations.
     """
 
     folder: Path
@@ -107,6 +111,7 @@ class Inputs:
     by_source: bool = False
     left_out: tuple[LeftOut, ...] = ()
     aside: tuple[PublishedValue, ...] = ()
+    uncertainty: Stated = field(default_factory=lambda: Stated({}))
 
     @property
     def about_source(self) -> bool:
@@ -223,21 +228,28 @@ class _Reader:
         self.findings = Findings()
         self.files: dict[str, bytes] = {}
         self.toml: TomlFile
+        self.tables: TomlTables
         self.workbook: Workbook | None = None
         self.free: dict[str, Location] = {}
         self.by_source = False
+        self.bare: Shape | None = None
 
     def read(self) -> Inputs:
         toml = self.open_toml()
         if toml is None:
             self.findings.check()
             raise AssertionError("a folder was refused without a finding")
-        self.toml = toml
-        self.keys((), ("title", "workbook", "parameters", "measurements", "expected", "published"))
+        self.toml, self.tables = toml, TomlTables(toml, self.findings)
+        sections = ("parameters", "measurements", "uncertainty", "expected", "published")
+        self.tables.keys((), ("title", "workbook", *sections))
+        self.bare = read_bare(self.tables)
         self.workbook = self.open_workbook()
         title = self.title()
         parameters, given = self.parameters()
         measurements = self.measurements()
+        uncertainty = Stated({})
+        if measurements is not None and "uncertainty" in toml.data:
+            uncertainty, parameters, measurements = self.uncertainty(parameters, measurements)
         computable = not self.findings.found
         published = self.published()
         expected = self.expected()
@@ -262,6 +274,7 @@ class _Reader:
             errata,
             self.by_source,
             measurements.left_out,
+            uncertainty=uncertainty,
         )
         if self.findings.found:
             self.findings.found.extend(self.more(inputs))
@@ -303,75 +316,11 @@ class _Reader:
 
     # ------------------------------------------------------------------ report.toml
 
-    def keys(self, table: tuple[str, ...], known: Iterable[str]) -> dict[str, Any]:
-        """Return a table after a look at its keys; an absent one, or no table at all, is empty."""
-        data: Any = self.toml.data
-        for name in table:
-            data = data.get(name, {})
-        known = tuple(known)
-        where = "[" + ".".join(table) + "]" if table else "report.toml"
-        if not isinstance(data, dict):
-            # A key above the first table header and a table of the same name look alike to a beginner.
-            wrong_type(self.toml, self.findings, table, f"a table {where}", f"{where} on a line of its own")
-            return {}
-        for key in data:
-            if key not in known:
-                suggestion = suggest(key, known)
-                allowed = listing(known) if known else "no key"
-                self.findings.add(
-                    "LS203",
-                    self.toml.key(*table, key),
-                    text=key,
-                    table=where,
-                    known=allowed,
-                    suggestion=suggestion,
-                )
-        return {key: value for key, value in data.items() if key in known}
-
-    def text(self, table: tuple[str, ...], key: str, example: str, required: bool = False) -> str | None:
-        """Return the text of a key, if it is there and is text on one line."""
-        data: Any = self.toml.data
-        for name in table:
-            data = data.get(name, {})
-            if not isinstance(data, dict):
-                return None  # keys() has reported it
-        name = key if re.fullmatch(r"[\w-]+", key, re.ASCII) else f'"{key}"'
-        line = f'{name} = "{example}"'
-        if key not in data:
-            # A misspelt key is one problem, not two.
-            if required and not any(close(word, [key]) for word in data):
-                where = "[" + ".".join(table) + "]" if table else "report.toml"
-                self.findings.add("LS204", self.toml.key(*table), text=key, table=where, example=line)
-            return None
-        path = (*table, key)
-        value = data[key]
-        if not isinstance(value, str):
-            wrong_type(self.toml, self.findings, path, "text in quotes", line)
-            return None
-        control = re.search("[\x00-\x1f\x7f-\x9f\u2028\u2029\ufffe\uffff]", value)
-        if control:
-            self.findings.add("LS112", self.toml.value(*path), text=f"U+{ord(control.group()):04X}")
-            return None
-        if not value.strip():
-            self.findings.add("LS403", self.toml.value(*path), name=key, allowed=f"text, such as {line}")
-            return None
-        return value.strip()
-
-    def names(self, *path: str) -> dict[str, Location]:
-        """Return a list of names, each with its place."""
-        data: Any = self.toml.data
-        for key in path:
-            data = data.get(key, [])
-        if not isinstance(data, list) or not all(isinstance(name, str) for name in data):
-            wrong_type(self.toml, self.findings, path, "a list of names in quotes", f'{path[-1]} = ["C_log"]')
-            return {}
-        return dict.fromkeys(data, self.toml.value(*path))
-
     def title(self) -> str | None:
-        return self.text((), "title", "Soft steel, ball drop")
+        return self.tables.text((), "title", "Soft steel, ball drop")
 
     def open_workbook(self) -> Workbook | None:
-        name = self.text((), "workbook", "soft_impact", required=True)
+        name = self.tables.text((), "workbook", "soft_impact", required=True)
         if name is None:
             return None
         at = self.toml.value("workbook")
@@ -397,8 +346,8 @@ class _Reader:
             return {}, frozenset()
         declared = {parameter.name: parameter for parameter in self.workbook.parameters}
         before = len(self.findings.found)
-        written = self.keys(("parameters",), declared)
-        printed = read_parameters(self.toml, written, self.workbook.parameters, self.findings)
+        written = self.tables.keys(("parameters",), declared)
+        printed = read_parameters(self.toml, written, self.workbook.parameters, self.findings, self.bare)
         given = frozenset(written)
         # A misspelt name would also be missing from its combination: that is one problem, not two.
         above = self.toml.data
@@ -413,12 +362,12 @@ class _Reader:
     # ------------------------------------------------------------------ the tables
 
     def measurements(self) -> Measurements | None:
-        table = self.keys(("measurements",), ("file", "printed"))
+        table = self.tables.keys(("measurements",), ("file", "printed"))
         above = self.toml.data
         missing = isinstance(above.get("measurements", {}), dict)
         if "measurements" not in above:  # a misspelt header is one problem, not two
             missing = not any(close(word, ["measurements"]) for word in above)
-        name = self.text(("measurements",), "file", "measurements.csv", required=missing)
+        name = self.tables.text(("measurements",), "file", "measurements.csv", required=missing)
         known = None if self.workbook is None else [column.name for column in self.workbook.measured]
         modes = self.modes("measurements", known) if "printed" in table else {}
         if name is None:
@@ -433,14 +382,28 @@ class _Reader:
             source, self.workbook.measured if self.workbook else None, modes, self.findings
         )
 
+    def uncertainty(
+        self, parameters: dict[str, Printed], measurements: Measurements
+    ) -> tuple[Stated, dict[str, Printed], Measurements]:
+        """Read what is stated of columns and parameters, and state it of their numbers."""
+        declared = self.workbook.declared.items() if self.workbook else ()
+        counted = {name for name, each in declared if each.bounds.integer}
+        single = {name: (printed,) for name, printed in parameters.items()}
+        numbers = {name: column for name, column in measurements.measured.items() if column}
+        stated = read_uncertainty(self.tables, numbers | single, counted, measurements.tests, self.bare)
+        parameters = {name: printed for name, (printed,) in stated.of(single).items()}
+        return stated, parameters, replace(measurements, measured=stated.of(measurements.measured))
+
     def modes(self, of: str, known: list[str] | None) -> dict[str, str]:
         """How the columns of a file were shortened, where it was not by rounding."""
         path = (of, "printed")
         written = self.toml.data[of]["printed"]
-        table = self.keys(path, written if known is None and isinstance(written, dict) else known or ())
+        table = self.tables.keys(
+            path, written if known is None and isinstance(written, dict) else known or ()
+        )
         modes = {}
         for column in table:
-            mode = self.text(path, column, "truncated")
+            mode = self.tables.text(path, column, "truncated")
             if mode is not None and mode not in MODES:
                 at = self.toml.value(*path, column)
                 self.findings.add(
@@ -460,14 +423,14 @@ class _Reader:
             table = {}
         found = {}
         for address in table:
-            text = self.text(path, address, "29.8")
+            text = self.tables.text(path, address, "29.8")
             place = self.cell(address, measurements, self.toml.key(*path, address))
             if text is None or place is None:
                 continue
             printed = measurements.measured[place[0]][place[1]]
             try:
                 found[place] = replace(
-                    read_printed(text, parse_unit(printed.unit), mode=printed.mode), given_u=printed.given_u
+                    read_printed(text, parse_unit(printed.unit), mode=printed.mode), stated=printed.stated
                 )
             except NumberError as error:
                 self.findings.add(error.code, self.toml.value(*path, address), name=address, **error.fields)
@@ -496,7 +459,7 @@ class _Reader:
             wrong_type(self.toml, self.findings, (path,), "a table [expected]", EXAMPLE)
             return ()
         # What has no reason is refused, and its cell is looked at all the same.
-        reasons = {address: self.text((path,), address, "double bounce heard") for address in table}
+        reasons = {address: self.tables.text((path,), address, "double bounce heard") for address in table}
         return tuple(
             Expectation(address, reason or "", self.toml.key(path, address))
             for address, reason in reasons.items()
@@ -505,13 +468,13 @@ class _Reader:
     def published(self) -> tuple[PublishedValue, ...]:
         if "published" not in self.toml.data:
             return ()
-        table = self.keys(("published",), ("file", "by", "free", "printed", "errata"))
+        table = self.tables.keys(("published",), ("file", "by", "free", "printed", "errata"))
         is_table = isinstance(self.toml.data["published"], dict)
-        name = self.text(("published",), "file", "published.csv", required=is_table)
+        name = self.tables.text(("published",), "file", "published.csv", required=is_table)
         if name is None or not table:
             return ()
-        self.free = self.names("published", "free")
-        if by := self.text(("published",), "by", _SOURCE):
+        self.free = self.tables.names("published", "free")
+        if by := self.tables.text(("published",), "by", _SOURCE):
             self.by_source = by == _SOURCE
             if not self.by_source:
                 at = self.toml.value("published", "by")

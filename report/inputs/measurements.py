@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from ..distribution import Error
 from .csvtable import CsvTable, Field, match_columns, read_table
 from .number_text import NumberError, read_printed, read_value
 from .unit_text import ParsedUnit, UnitError, examples, parse_unit
@@ -137,7 +138,7 @@ def read_measurements(
                 )
                 if f"u({name})" in places:
                     given = _uncertainty(table, row.fields[places[f"u({name})"]], name, unit_of_u, findings)
-                    printed = printed and replace(printed, given_u=given)
+                    printed = printed and _with(table, cell, printed, name, given, findings)
                 read.append(printed)
             values[name] = tuple(printed for printed in read if printed is not None)
     if len(findings.found) > before:
@@ -244,14 +245,24 @@ def _tests(table: CsvTable, place: int, findings: Findings) -> tuple[int, ...]:
 def _uncertainty(
     table: CsvTable, field: Field, name: str, unit: ParsedUnit | None, findings: Findings
 ) -> Fraction | None:
-    """Read the standard uncertainty that the user gave for a measured number."""
+    """Read the standard uncertainty that the user gave for a measured number, in SI."""
     try:
         u = read_printed(field.text, unit or parse_unit("1"))
     except NumberError as error:
-        fields = {**error.fields, "allowed": "a standard uncertainty greater than 0"}
+        fields = {**error.fields, "allowed": "a standard uncertainty of at least 0"}
         findings.add(error.code, table.at(field), name=f"u({name})", **fields)
         return None
-    if u.value <= 0:
+    if u.value < 0:
         findings.add("LS407", table.at(field), name=f"u({name})", text=field.text)
         return None
     return u.value
+
+
+def _with(
+    table: CsvTable, field: Field, printed: Printed, name: str, u: Fraction | None, findings: Findings
+) -> Printed:
+    """A number with the standard uncertainty of its column, of which it says nothing itself."""
+    if printed.stated is not None:
+        hint = f"leave out the column u({name}), or what stands in parentheses"
+        findings.add("LS433", table.at(field), name=name, suggestion=hint)
+    return replace(printed, stated=None if u is None else (Error(u, said=f"u({name})"),))

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Protocol
 
+from ..distribution import Error
 from ..quantity import Printed
 from .unit_text import parse_unit
 
@@ -24,6 +26,7 @@ _EITHER = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
 _NOT_FINITE = frozenset(
     {"nan", "inf", "infinity", "∞", "#n/a", "#div/0!", "#value!", "#num!", "#ref!", "n/a"}
 )
+_CONCISE = re.compile(r"(?P<mantissa>[^()]*)\((?P<u>[0-9]+)\)(?P<power>[eE][+-]?[0-9]+)?")
 _LONGEST = 100
 _TOP = 300
 _LARGEST = Fraction(10) ** _TOP
@@ -139,7 +142,7 @@ def read_value(
     Parameters
     ----------
     text : str
-        The number.
+        The number; in parentheses behind it its standard uncertainty in units of its last digit.
     unit : ParsedUnit or None
         Its unit; None if that is not known, and then the range is not looked at.
     declared : Declared
@@ -151,8 +154,13 @@ def read_value(
     mode, where : str
         As for :class:`Printed`.
     """
+    concise = _CONCISE.fullmatch(text)
+    digits = concise["mantissa"] + (concise["power"] or "") if concise else text
     try:
-        printed = read_printed(text, unit or parse_unit(declared.unit), mode=mode, where=where)
+        printed = read_printed(digits, unit or parse_unit(declared.unit), mode=mode, where=where)
+        if concise:
+            u = read_number(concise["u"]) * 2 * printed.half_unit
+            printed = replace(printed, stated=(Error(u, said=text),))
     except NumberError as error:
         fields = {**error.fields, "allowed": f"a number ({declared.meaning})"}
         findings.add(error.code, at, name=declared.name, **fields)

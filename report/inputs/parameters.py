@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ..messages.errors import Findings, Location
 from .number_text import read_printed, read_value
+from .stated import SHAPES, StatementError, read_statement
 from .unit_text import ParsedUnit, UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from ..distribution import Shape
     from ..quantity import Printed
     from ..workbook import Parameter
     from .tomlfile import TomlFile
@@ -22,6 +25,8 @@ __all__ = ["read_parameters", "wrong_type"]
 _SPACELESS = re.compile(
     r"(?P<number>[+-]?[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?+)(?P<unit>[^\W\d_].*|[°%].*)", re.DOTALL
 )
+_BEHIND = re.compile(r"[,;]\s*|(?=±|\+-|\+/-)")
+_LIMITS = re.compile(r"(?:±|\+-|\+/-)\s*[0-9.]+(?:[eE][+-]?[0-9]+)?(?P<behind>[^,;]*)")
 _TYPES = {
     str: "text",
     bool: "true or false",
@@ -33,7 +38,11 @@ _TYPES = {
 
 
 def read_parameters(
-    toml: TomlFile, written: Mapping[str, object], declared: Iterable[Parameter], findings: Findings
+    toml: TomlFile,
+    written: Mapping[str, object],
+    declared: Iterable[Parameter],
+    findings: Findings,
+    bare: Shape | None,
 ) -> dict[str, Printed]:
     """Read the parameters that were given, and fill in the defaults of the others.
 
@@ -47,12 +56,14 @@ def read_parameters(
         What the workbook wants.
     findings : Findings
         Where findings go.
+    bare : Shape or None
+        What limits without a word mean.
     """
     printed: dict[str, Printed] = {}
     for parameter in declared:
         number = None
         if parameter.name in written:
-            number = _Reader(toml, parameter, findings).read(written[parameter.name])
+            number = _Reader(toml, parameter, findings, bare).read(written[parameter.name])
         elif parameter.default is not None:
             digits, _, unit = parameter.default.partition(" ")
             number = read_printed(digits, parse_unit(unit or "1"))
@@ -74,8 +85,8 @@ def wrong_type(toml: TomlFile, findings: Findings, path: tuple[str, ...], wanted
 class _Reader:
     """Reads one parameter."""
 
-    def __init__(self, toml: TomlFile, parameter: Parameter, findings: Findings) -> None:
-        self.toml = toml
+    def __init__(self, toml: TomlFile, parameter: Parameter, findings: Findings, bare: Shape | None) -> None:
+        self.toml, self.bare = toml, bare
         self.parameter = parameter
         self.findings = findings
         self.path = ("parameters", parameter.name)
@@ -100,11 +111,29 @@ class _Reader:
             return None
         digits, _, rest = value.strip().partition(" ")
         start = value.find(digits)
-        unit = rest.strip()
+        unit, said, begins = _apart(rest, value.find(rest, start + len(digits)) if rest else 0)
         size = self.unit(unit, value.find(unit, start + len(digits)), digits)
         place = self.toml.value(*self.path, start=start, length=max(len(digits), 1))
         where = self.toml.trace(*self.path)
-        return read_value(digits, size, self.parameter, place, self.findings, where=where)
+        printed = read_value(digits, size, self.parameter, place, self.findings, where=where)
+        return self.stated(printed, said, begins) if said and printed and size else printed
+
+    def stated(self, printed: Printed, text: str, begins: int) -> Printed | None:
+        """The number with what is stated behind it; None, with a finding, if that is not understood."""
+        if printed.stated is not None:
+            hint = "leave out what stands in parentheses, or what stands behind the number"
+            self.findings.add(
+                "LS433", self.part(begins, len(text)), name=self.parameter.name, suggestion=hint
+            )
+            return None
+        try:
+            return replace(
+                printed, stated=read_statement(text, parse_unit(printed.unit), self.bare).of(printed)
+            )
+        except StatementError as error:
+            at = self.part(begins + error.start, max(len(error.text), 1))
+            self.findings.add(error.code, at, text=error.text, suggestion=error.suggestion)
+            return None
 
     def unit(self, text: str, start: int, digits: str) -> ParsedUnit | None:
         """Read the unit; None, with a finding, if it is not one of the right dimension."""
@@ -129,3 +158,18 @@ class _Reader:
 
     def part(self, start: int, length: int) -> Location:
         return self.toml.value(*self.path, start=start, length=length)
+
+
+def _apart(text: str, start: int) -> tuple[str, str, int]:
+    """What stands behind a number: its unit, what is stated of it, and where that begins.
+
+    >>> _apart("mm, U = 0.03, k = 2", 5), _apart("+-0.1 mm rect", 5)
+    (('mm', 'U = 0.03, k = 2', 9), ('mm', '+-0.1 mm rect', 5))
+    """
+    found = _BEHIND.search(text)
+    if found is None:
+        return text.strip(), "", 0
+    unit, said = text[: found.start()].strip(), text[found.end() :]
+    if not unit and (limits := _LIMITS.match(said)):
+        unit = " ".join(word for word in limits["behind"].split() if word not in SHAPES)
+    return unit, said.strip(), start + found.end()

@@ -10,8 +10,8 @@ on is kept once.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import groupby
 from typing import Any
@@ -50,6 +50,15 @@ class Made:
         told = of_sheet(sheet, "derivatives and roundings" if roundings else "derivatives", (), make)
         nodes = of_data(told["nodes"], tuple[Local, ...])
         return cls(nodes, Program.of_texts(with_unknowns(sheet, told["again"]), told["program"]))
+
+    def only(self, names: Collection[str]) -> Made:
+        """Those of some nodes, and of what they rest on."""
+        needed, kept = set(names), []
+        for node in reversed(self.nodes):
+            if node.name in needed:
+                needed.update(slope.by for slope in node.slopes)
+                kept.append(node)
+        return replace(self, nodes=tuple(reversed(kept)))
 
 
 @dataclass(frozen=True)

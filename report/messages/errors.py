@@ -237,9 +237,9 @@ CATALOGUE: dict[str, Entry] = {
         "check the sign, the decimal point and the unit {unit} that it is read in",
     ),
     "LS407": Entry(
-        "uncertainty not positive",
-        "{name} is not positive: '{text}'",
-        "a standard uncertainty greater than 0",
+        "uncertainty negative",
+        "{name} is negative: '{text}'",
+        "a standard uncertainty of at least 0",
         "without the column, the uncertainty follows from the printed digits",
     ),
     "LS421": Entry("unknown unit", "unknown unit '{text}'", "{known}", "{suggestion}"),
@@ -261,6 +261,29 @@ CATALOGUE: dict[str, Entry] = {
         "'{text}' follows a slash without parentheses: is it above or below the line?",
         "one meaning, such as J/(kg*K)",
         "put parentheses around what is below the line",
+    ),
+    # Uncertainties
+    "LS431": Entry(
+        "not an uncertainty",
+        "'{text}' is not understood as an uncertainty",
+        "u = 0.02; U = 0.03, k = 2; +-0.1 rect (tri, arcsine); 0.5 % of reading + 2 digits; s = 0.02, n = 5; "
+        "exact",
+        "{suggestion}",
+    ),
+    "LS432": Entry(
+        "limits of unknown meaning",
+        "'{text}' does not say what it is",
+        "a word behind it: rect, tri or arcsine for limits, 'normal, k = 2' for an expanded uncertainty",
+        'plus_minus = "rect" in [uncertainty] says it once for all',
+    ),
+    "LS433": Entry(
+        "stated twice", "the uncertainty of {name} is stated twice", "one statement", "{suggestion}"
+    ),
+    "LS434": Entry(
+        "correlation out of reach",
+        "{reason}",
+        "correlation coefficients between -1 and 1 that can hold together",
+        "{suggestion}",
     ),
     # Published values
     "LS501": Entry(

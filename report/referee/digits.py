@@ -27,7 +27,7 @@ def respelt(of: Printed, units: int) -> Printed:
     places = len(mantissa.partition(".")[2])
     text = f"{Decimal(mantissa) + Decimal(units).scaleb(-places):.{places}f}{e}{power}"
     return Printed(
-        text, of.unit, Fraction(text) * of.scale, of.scale, of.mode, of.given_u, of.where
+        text, of.unit, Fraction(text) * of.scale, of.scale, of.mode, of.stated, of.where
     )  # fmt: skip
 
 

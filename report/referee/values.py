@@ -165,7 +165,7 @@ class _Alone:
     def _u(self, n: int) -> float | None:
         """Combined standard uncertainty, first order, if some input has one that was stated."""
         printed = [unknown.printed for unknown in self.problem.unknowns]
-        if not any(p is not None and p.given_u is not None for p in printed):
+        if not any(p is not None and p.stated is not None for p in printed):
             return None
         own = np.array([0.0 if p is None else p.u for p in printed])
         with np.errstate(over="ignore", invalid="ignore"):

@@ -15,6 +15,7 @@ from ..messages.diagnostics import Check
 from ..sheet import Sheet
 from ..workbook import Workbook
 from .agreement import Agreement
+from .uncertain import Uncertainties
 from .verdict import (
     OTHERWISE,
     UNAMENDED,
@@ -152,6 +153,8 @@ class Report:
         In the order of published.csv.
     plotted : callable
         Computes what charts ask for besides.
+    uncertain : callable
+        Computes the standard uncertainties of the cells.
     engines : tuple of Agreement
         What the judge of the engines found, NumPy first; empty if it was not asked.
     oddities : tuple of Check
@@ -175,6 +178,7 @@ class Report:
     errata: tuple[Erratum, ...]
     comparisons: tuple[Comparison, ...]
     plotted: Callable[[], Plotted]
+    uncertain: Callable[[], Uncertainties]
     engines: tuple[Agreement, ...] = ()
     oddities: tuple[Check, ...] = ()
     referee: Referee = field(default_factory=Referee)

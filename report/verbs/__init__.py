@@ -3,7 +3,7 @@
 A verb is listed here and imports what it needs when it runs, so that ``--help`` answers at once.
 """
 
-from . import build, check, crate, diff, new, prove, schema, show, verify, watch, why
+from . import budget, build, check, crate, diff, new, prove, schema, show, verify, watch, why
 
 VERBS = {
     "build": build,
@@ -12,6 +12,7 @@ VERBS = {
     "prove": prove,
     "show": show,
     "why": why,
+    "budget": budget,
     "new": new,
     "verify": verify,
     "diff": diff,

@@ -24,6 +24,7 @@ __all__ = [
     "Progress",
     "count",
     "find",
+    "find_one",
     "folder_argument",
     "format_argument",
     "keeping_arguments",
@@ -153,6 +154,23 @@ class Progress:
         if self.stream.isatty() and self.shown:
             self.stream.write("\r" + " " * len(self.shown) + "\r")
             self.stream.flush()
+
+
+def find_one(report: Report, address: str) -> tuple[Column, tuple[int, ...]]:
+    """The column of an address such as ``alpha[1-2]``, and the one row that it names.
+
+    Raises
+    ------
+    UsageError
+        There is no such cell, or more than one.
+    """
+    from ..messages.errors import UsageError, diagnose, listing
+
+    column, labels = find(report, address)
+    if len(labels) != 1:
+        known = listing(report.values.cell(column.name, label).address for label in labels)
+        raise UsageError(diagnose("LS604", kind="single cell", text=address, known=known, suggestion=""))
+    return column, labels[0]
 
 
 def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:

@@ -7,7 +7,7 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from .common import OK, Progress, find, folder_argument, keeping_arguments
+from .common import OK, Progress, find_one, folder_argument, keeping_arguments
 
 if TYPE_CHECKING:
     from ..study import Study
@@ -35,11 +35,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _told(study: Study, address: str) -> str:
-    from ..messages.errors import UsageError, diagnose, listing
     from ..views.why import equations_of, why
 
-    column, labels = find(report := study.computed, address)
-    if len(labels) != 1:
-        known = listing(report.values.cell(column.name, label).address for label in labels)
-        raise UsageError(diagnose("LS604", kind="single cell", text=address, known=known, suggestion=""))
-    return why(replace(report, proofs=study.proofs(equations_of(column))), column.name, labels[0])
+    column, label = find_one(report := study.computed, address)
+    return why(replace(report, proofs=study.proofs(equations_of(column))), column.name, label)

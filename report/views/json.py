@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from ..machine.staging import put
 from ..result import verdict_data
 from ..result.result import Comparison, Report
 from ..result.verdict import Verdict
-from ..sheet import Column, Formula, Given, RepeatAxis
+from ..sheet import Column, Formula, RepeatAxis
 from .issued import Issued
 
 __all__ = ["manifest", "proof_grounds", "proof_statuses", "values", "write"]
@@ -75,8 +76,8 @@ def _column(report: Report, column: Column) -> form.Column:
     if column.name in report.values.roots:
         reasons = [cell.reason or None for cell in report.values.cells(column.name)]
         entry["reason"] = told(reasons)
-    if isinstance(column.rule, Given):
-        entry["u"] = _given_uncertainty(report, column)
+    if column.name in (known := report.uncertain().u):
+        entry["u"] = told([_short(u) for u in known[column.name].tolist()])
     if column.limits:
         marks = [mark or None for mark in report.marks.of(column.name)]
         entry["mark"] = told(marks)
@@ -115,10 +116,9 @@ def _rule(report: Report, column: Column) -> str:
     return f"{column.source} {text_of_equation(column.equation, report.ledger.vocabulary)}"
 
 
-def _given_uncertainty(report: Report, column: Column) -> Any:
-    if column.name in report.inputs.measured:
-        return [printed.u for printed in report.inputs.measured[column.name]]
-    return None if column.exact else report.inputs.parameters[column.name].u
+def _short(u: float) -> float | None:
+    """A standard uncertainty with the digits that no processor changes."""
+    return float(f"{u:.9g}") if math.isfinite(u) else None
 
 
 def proof_statuses(report: Report) -> dict[str, str]:

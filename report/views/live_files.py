@@ -75,17 +75,19 @@ def _saved(name: str) -> str:
 
 
 def _uncertainties(report: Report, measured: Mapping[str, tuple[Printed, ...]]) -> dict[str, dict[str, str]]:
-    """The standard uncertainties that were given, in the unit of the header, by column and test."""
+    """The standard uncertainties of the table, in the unit of the header, by column and test."""
     given = {
-        name: numbers for name, numbers in measured.items() if any(n.given_u is not None for n in numbers)
+        name: numbers
+        for name, numbers in measured.items()
+        if name not in report.inputs.uncertainty.columns and any(number.stated for number in numbers)
     }
     return {
         name: {
-            str(test): _decimal(number.given_u / number.scale)
+            str(test): _decimal(number.stated[0].width / number.scale)
             for test, number in zip(report.inputs.tests, numbers, strict=True)
-            if number.given_u is not None
+            if number.stated
         }
-        | {str(each.test): each.texts[f"u({name})"] for each in report.inputs.left_out}
+        | {str(each.test): each.texts.get(f"u({name})", "") for each in report.inputs.left_out}
         for name, numbers in given.items()
     }
 

@@ -1,0 +1,70 @@
+"""What is known of an error: its distribution, as JCGM 100 and JCGM 101 describe what is known of a quantity.
+
+A width is kept exactly as it was said; the standard uncertainty is made of it where it is asked for.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+from types import MappingProxyType
+
+__all__ = ["DIVISORS", "Error", "Shape"]
+
+
+class Shape(StrEnum):
+    """How an error is distributed; its width is half of what it may be, without ends its standard deviation.
+
+    A Student t has the width s / sqrt(n) of JCGM 100 (4.2.3): the scale, not the standard deviation.
+    """
+
+    NORMAL = "normal"
+    STUDENT = "t"
+    RECTANGULAR = "rectangular"
+    TRIANGULAR = "triangular"
+    ARCSINE = "arcsine"
+
+
+DIVISORS: Mapping[Shape, float] = MappingProxyType(
+    {
+        Shape.NORMAL: 1.0,
+        Shape.STUDENT: 1.0,
+        Shape.RECTANGULAR: math.sqrt(3),
+        Shape.TRIANGULAR: math.sqrt(6),
+        Shape.ARCSINE: math.sqrt(2),
+    }
+)
+"""The width over the standard uncertainty (JCGM 100, 4.3.7, 4.3.9; JCGM 101, 6.4.6)."""
+
+
+@dataclass(frozen=True)
+class Error:
+    """One error of a number, or of several.
+
+    Parameters
+    ----------
+    width : Fraction
+        In SI, at least 0: half of the range, or the standard uncertainty itself where there are no ends.
+    shape : Shape
+    dof : float
+        Degrees of freedom of the standard uncertainty; infinite where it is known.
+    said : str
+        How it was stated; empty if it follows from printed digits.
+    """
+
+    width: Fraction
+    shape: Shape = Shape.NORMAL
+    dof: float = math.inf
+    said: str = ""
+
+    @property
+    def u(self) -> float:
+        """The standard uncertainty, in SI.
+
+        >>> Error(Fraction(1, 2), Shape.RECTANGULAR).u
+        0.2886751345948129
+        """
+        return float(self.width) / DIVISORS[self.shape]

@@ -1,0 +1,93 @@
+"""The tables of report.toml: their keys, texts and lists of names, each looked at where it stands."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from ..messages.errors import Findings, Location, close, listing, suggest
+from .parameters import wrong_type
+
+if TYPE_CHECKING:
+    from .tomlfile import TomlFile
+
+__all__ = ["TomlTables"]
+
+
+class TomlTables:
+    """What is read of the tables of a TOML file.
+
+    Parameters
+    ----------
+    toml : TomlFile
+    findings : Findings
+        Where findings go.
+    """
+
+    def __init__(self, toml: TomlFile, findings: Findings) -> None:
+        self.toml, self.findings = toml, findings
+
+    def keys(self, table: tuple[str, ...], known: Iterable[str]) -> dict[str, Any]:
+        """Return a table after a look at its keys; an absent one, or no table at all, is empty."""
+        data: Any = self.toml.data
+        for name in table:
+            data = data.get(name, {})
+        known = tuple(known)
+        where = "[" + ".".join(table) + "]" if table else "report.toml"
+        if not isinstance(data, dict):
+            # A key above the first table header and a table of the same name look alike to a beginner.
+            wrong_type(self.toml, self.findings, table, f"a table {where}", f"{where} on a line of its own")
+            return {}
+        for key in data:
+            if key not in known:
+                suggestion = suggest(key, known)
+                allowed = listing(known) if known else "no key"
+                self.findings.add(
+                    "LS203",
+                    self.toml.key(*table, key),
+                    text=key,
+                    table=where,
+                    known=allowed,
+                    suggestion=suggestion,
+                )
+        return {key: value for key, value in data.items() if key in known}
+
+    def text(self, table: tuple[str, ...], key: str, example: str, required: bool = False) -> str | None:
+        """Return the text of a key, if it is there and is text on one line."""
+        data: Any = self.toml.data
+        for name in table:
+            data = data.get(name, {})
+            if not isinstance(data, dict):
+                return None  # keys() has reported it
+        name = key if re.fullmatch(r"[\w-]+", key, re.ASCII) else f'"{key}"'
+        line = f'{name} = "{example}"'
+        if key not in data:
+            # A misspelt key is one problem, not two.
+            if required and not any(close(word, [key]) for word in data):
+                where = "[" + ".".join(table) + "]" if table else "report.toml"
+                self.findings.add("LS204", self.toml.key(*table), text=key, table=where, example=line)
+            return None
+        path = (*table, key)
+        value = data[key]
+        if not isinstance(value, str):
+            wrong_type(self.toml, self.findings, path, "text in quotes", line)
+            return None
+        control = re.search("[\x00-\x1f\x7f-\x9f\u2028\u2029\ufffe\uffff]", value)
+        if control:
+            self.findings.add("LS112", self.toml.value(*path), text=f"U+{ord(control.group()):04X}")
+            return None
+        if not value.strip():
+            self.findings.add("LS403", self.toml.value(*path), name=key, allowed=f"text, such as {line}")
+            return None
+        return value.strip()
+
+    def names(self, *path: str) -> dict[str, Location]:
+        """Return a list of names, each with its place."""
+        data: Any = self.toml.data
+        for key in path:
+            data = data.get(key, [])
+        if not isinstance(data, list) or not all(isinstance(name, str) for name in data):
+            wrong_type(self.toml, self.findings, path, "a list of names in quotes", f'{path[-1]} = ["C_log"]')
+            return {}
+        return dict.fromkeys(data, self.toml.value(*path))

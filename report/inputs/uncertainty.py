@@ -1,0 +1,280 @@
+"""The section ``[uncertainty]`` of report.toml: what is stated of whole columns, and what errors share.
+
+[uncertainty]
+x_p = "0.5 % of reading + 2 digits"
+
+[uncertainty.shared."height datum"]      # one error, the same in every test
+of = "x_p"
+stated = "+-0.2 um rect"
+groups = [[1, 2], [3, 4]]                # or the same in the tests of a group
+
+[uncertainty.correlation]
+"v, e" = "0.3"                           # of the errors of one test
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from ..messages.errors import listing, suggest
+from .number_text import NumberError, read_number
+from .parameters import wrong_type
+from .stated import SHAPES, StatedErrors, StatementError, read_statement
+from .unit_text import parse_unit
+
+if TYPE_CHECKING:
+    from ..distribution import Error, Shape
+    from ..quantity import Printed
+    from .tables import TomlTables
+
+__all__ = ["SharedError", "Stated", "read_bare", "read_uncertainty"]
+
+SECTION = "uncertainty"
+Numbers = Mapping[str, tuple["Printed", ...]]
+
+
+@dataclass(frozen=True)
+class SharedError:
+    """One error of many cells of a column: of all, or of those of a group.
+
+    Parameters
+    ----------
+    name : str
+        What it is, in the words of the file.
+    of : str
+        The column.
+    statement : StatedErrors
+        Of one error; what is a share of the value is a scale error, and larger for a larger value.
+    groups : tuple of tuple of int
+        The tests of each group; none: all tests are one. A test of no group has no such error.
+    """
+
+    name: str
+    of: str
+    statement: StatedErrors
+    groups: tuple[tuple[int, ...], ...] = ()
+
+    def error(self, printed: Printed) -> Error:
+        """What it is for a number."""
+        return self.statement.of(printed)[0]
+
+
+@dataclass(frozen=True)
+class Stated:
+    """What the section says.
+
+    Parameters
+    ----------
+    columns : mapping of str to StatedErrors
+        Of measured columns and of parameters.
+    shared : tuple of SharedError
+    correlations : mapping of (str, str) to float
+        Between the errors of two columns in the same test, or of two parameters.
+    """
+
+    columns: Mapping[str, StatedErrors]
+    shared: tuple[SharedError, ...] = ()
+    correlations: Mapping[tuple[str, str], float] = field(default_factory=dict)
+
+    def of(self, numbers: Numbers) -> dict[str, tuple[Printed, ...]]:
+        """Numbers with what is stated of them."""
+        return {
+            name: tuple(replace(each, stated=self.columns[name].of(each)) for each in column)
+            if name in self.columns
+            else column
+            for name, column in numbers.items()
+        }
+
+
+def read_bare(tables: TomlTables) -> Shape | None:
+    """What limits without a word mean, here and behind the numbers of parameters; None: it is not said."""
+    word = tables.text((SECTION,), "plus_minus", "rect")
+    words = [word for word, shape in SHAPES.items() if shape != "normal"]
+    if word is None or word in words:
+        return SHAPES[word] if word else None
+    path, known, suggestion = (SECTION, "plus_minus"), listing(words), suggest(word, words)
+    at, table = tables.toml.value(*path), ".".join(path)
+    tables.findings.add("LS203", at, text=word, table=table, known=known, suggestion=suggestion)
+    return None
+
+
+def read_uncertainty(
+    tables: TomlTables,
+    numbers: Numbers,
+    counted: Collection[str],
+    tests: Collection[int],
+    bare: Shape | None,
+) -> Stated:
+    """Read the section; what is wrong with it is told where it stands.
+
+    Parameters
+    ----------
+    tables : TomlTables
+        Of report.toml.
+    numbers : mapping of str to tuple of Printed
+        What was given, by column and parameter.
+    counted : collection of str
+        Those that are whole numbers by their nature.
+    tests : collection of int
+    bare : Shape or None
+        From :func:`read_bare`.
+    """
+    reader = _Reader(tables, numbers, counted, tests)
+    written = tables.keys((SECTION,), (*numbers, "plus_minus", "shared", "correlation"))
+    columns = {name: reader.column(name, bare) for name in written if name in numbers}
+    shared = [reader.shared(name, bare) for name in reader.names("shared")]
+    own = {name: found for name, found in columns.items() if found is not None}
+    several = {name for name, found in own.items() if len(found.parts) != 1}
+    correlations = reader.possible(dict(reader.correlations(several)))
+    return Stated(
+        own,
+        tuple(found for found in shared if found is not None),
+        correlations,
+    )
+
+
+class _Reader:
+    """Reads one section."""
+
+    def __init__(
+        self, tables: TomlTables, numbers: Numbers, counted: Collection[str], tests: Collection[int]
+    ) -> None:
+        self.tables, self.numbers, self.counted, self.tests = tables, numbers, counted, tests
+        self.findings, self.toml = tables.findings, tables.toml
+
+    def names(self, table: str) -> tuple[str, ...]:
+        """The keys of a table of the section, whatever they are."""
+        section: Any = self.toml.data.get(SECTION, {})
+        found = section.get(table, {}) if isinstance(section, dict) else {}
+        if not isinstance(found, dict):
+            example = f"[{SECTION}.{table}]"
+            wrong_type(self.toml, self.findings, (SECTION, table), f"a table {example}", example)
+            return ()
+        return tuple(found)
+
+    def statement(self, path: tuple[str, ...], of: str, bare: Shape | None) -> StatedErrors | None:
+        """What a text says of a column, whose unit is that of what has none."""
+        text = self.tables.text(path[:-1], path[-1], "U = 0.03, k = 2", required=True)
+        if text is None:
+            return None
+        if of in self.counted:
+            hint = f"{of} is a whole number that the method counts with: it has none"
+            self.findings.add("LS431", self.toml.value(*path), text=text, suggestion=hint)
+            return None
+        try:
+            return read_statement(text, parse_unit(self.numbers[of][0].unit), bare)
+        except StatementError as error:
+            at = self.toml.value(*path, start=error.start, length=max(len(error.text), 1))
+            self.findings.add(error.code, at, text=error.text, suggestion=error.suggestion)
+            return None
+
+    def column(self, name: str, bare: Shape | None) -> StatedErrors | None:
+        """What is said of a column or a parameter, which says nothing itself."""
+        if any(number.stated is not None for number in self.numbers[name]):
+            hint = "leave out what stands in [uncertainty], or what stands beside the numbers"
+            self.findings.add("LS433", self.toml.key(SECTION, name), name=name, suggestion=hint)
+            return None
+        return self.statement((SECTION, name), name, bare)
+
+    def shared(self, name: str, bare: Shape | None) -> SharedError | None:
+        """An error that cells share."""
+        path = (SECTION, "shared", name)
+        written = self.tables.keys(path, ("of", "stated", "groups"))
+        of = self.tables.text(path, "of", next(iter(self.numbers), "x_p"), required=True)
+        if of is None or of not in self.numbers:
+            if of is not None:
+                known, suggestion = listing(self.numbers), suggest(of, self.numbers)
+                at = self.toml.value(*path, "of")
+                self.findings.add("LS505", at, text=of, known=known, suggestion=suggestion)
+            return None
+        statement = self.statement((*path, "stated"), of, bare)
+        groups = self.groups((*path, "groups")) if "groups" in written else ()
+        if statement is None or groups is None:
+            return None
+        if len(statement.parts) != 1:
+            at, hint = self.toml.value(*path, "stated"), "each error that is shared has a table of its own"
+            self.findings.add("LS431", at, text=self.tables.text(path, "stated", ""), suggestion=hint)
+            return None
+        return SharedError(name, of, statement, groups)
+
+    def groups(self, path: tuple[str, ...]) -> tuple[tuple[int, ...], ...] | None:
+        """Lists of tests, of which none stands in two."""
+        written: Any = self.toml.data
+        for key in path:
+            written = written[key]
+        lists = isinstance(written, list) and all(isinstance(group, list) for group in written)
+        if not lists or not all(type(test) is int for group in written for test in group):
+            example = "groups = [[1, 2], [3, 4]]"
+            wrong_type(self.toml, self.findings, path, "a list of lists of tests", example)
+            return None
+        seen: set[int] = set()
+        for test in (test for group in written for test in group):
+            if test not in self.tests or test in seen:
+                known = listing(map(str, self.tests)) + ", each once"
+                self.findings.add("LS506", self.toml.value(*path), name="groups", text=test, known=known)
+                return None
+            seen.add(test)
+        return tuple(map(tuple, written))
+
+    def correlations(self, several: Collection[str]) -> Iterator[tuple[tuple[str, str], float]]:
+        """Coefficients by the names of two columns."""
+        for key in self.names("correlation"):
+            path = (SECTION, "correlation", key)
+            text = self.tables.text(path[:-1], key, "0.3")
+            pair = tuple(re.split(r"\s*,\s*", key.strip()))
+            if text is None:
+                continue
+            if len(pair) != 2 or pair[0] == pair[1] or not all(name in self.numbers for name in pair):
+                known = f"two of {listing(self.numbers)} with a comma between them"
+                self.findings.add("LS505", self.toml.key(*path), text=key, known=known, suggestion="")
+                continue
+            if reason := self.why_not(text, pair, several):
+                self.findings.add("LS434", self.toml.value(*path), reason=reason, suggestion="")
+                continue
+            yield (pair[0], pair[1]), float(read_number(text))
+
+    def why_not(self, text: str, pair: Collection[str], several: Collection[str]) -> str:
+        """Why a coefficient cannot be; empty if it can."""
+        try:
+            if not -1 <= read_number(text) <= 1:
+                raise NumberError("LS434")
+        except NumberError:
+            return f"'{text}' is no correlation coefficient"
+        if len({len(self.numbers[name]) for name in pair}) != 1:
+            return f"{' and '.join(pair)} have not the same rows"
+        if odd := [name for name in pair if name in several]:
+            return f"the numbers of {odd[0]} have not one error each"
+        return ""
+
+    def possible(self, found: dict[tuple[str, str], float]) -> dict[tuple[str, str], float]:
+        """Coefficients if they can hold together: then no combination has a negative variance."""
+        names = sorted({name for pair in found for name in pair})
+        coefficients = {frozenset(pair): Fraction(r) for pair, r in found.items()}
+        matrix = [
+            [Fraction(1) if a == b else coefficients.get(frozenset((a, b)), Fraction(0)) for b in names]
+            for a in names
+        ]
+        if _is_covariance(matrix):
+            return found
+        reason = f"these correlations of {listing(names)} cannot hold together"
+        self.findings.add("LS434", self.toml.key(SECTION, "correlation"), reason=reason, suggestion="")
+        return {}
+
+
+def _is_covariance(matrix: list[list[Fraction]]) -> bool:
+    """Whether a symmetric matrix has no negative eigenvalue, by elimination, exactly."""
+    if not matrix:
+        return True
+    (pivot, *row), rest = matrix[0], [line[1:] for line in matrix[1:]]
+    if pivot < 0 or (pivot == 0 and any(row)):
+        return False
+    if pivot:
+        rest = [
+            [a - x * y / pivot for a, y in zip(line, row, strict=True)]
+            for line, x in zip(rest, row, strict=True)
+        ]
+    return _is_covariance(rest)

@@ -1,0 +1,143 @@
+"""What is known of the uncertainty of cells: where it comes from, cell by cell."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..distribution import Shape
+
+__all__ = ["Budget", "Contribution", "ErrorSource", "Uncertainties"]
+
+
+@dataclass(frozen=True)
+class ErrorSource:
+    """One error that is independent of all others, unless a correlation says otherwise.
+
+    Parameters
+    ----------
+    name : str
+        The address of the cell it is an error of, or the name of what cells share.
+    shape : Shape
+    dof : float
+        Degrees of freedom; infinite where its standard uncertainty is known.
+    moves : tuple of (str, int, float)
+        Columns and rows that it is an error of, and its standard uncertainty there, in SI.
+    said : str
+        How it was stated; empty if it follows from printed digits.
+    """
+
+    name: str
+    shape: Shape
+    dof: float
+    moves: tuple[tuple[str, int, float], ...]
+    said: str = ""
+
+    @property
+    def u(self) -> float | None:
+        """Its standard uncertainty in SI; None if it is larger in one cell than in another."""
+        sizes = {u for _, _, u in self.moves}
+        return sizes.pop() if len(sizes) == 1 else None
+
+
+@dataclass(frozen=True)
+class Contribution:
+    """What one source does to a cell.
+
+    Parameters
+    ----------
+    source : ErrorSource
+    estimate : float or None
+        The value it is an error of, in SI; None if there are several.
+    unit : str
+        The SI unit of estimate and uncertainty.
+    u : float
+        To first order, with the sign of the sensitivity, in the SI unit of the cell.
+    share : float
+        Of the variance of the cell; all of them together are 1. With correlations it may be negative.
+    """
+
+    source: ErrorSource
+    estimate: float | None
+    unit: str
+    u: float
+    share: float
+
+    @property
+    def sensitivity(self) -> float | None:
+        """How much the cell changes with it, in SI."""
+        return self.u / self.source.u if self.source.u else None
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The uncertainty of one cell and where it comes from (JCGM 100, 5 and annex H).
+
+    Parameters
+    ----------
+    cell : str
+        Its address.
+    name, label
+        Its column, and the label of its row.
+    value, u : float
+        In SI; `u` is the combined standard uncertainty, NaN where nothing is known of it.
+    contributions : tuple of Contribution
+        The largest first; what does nothing is left out.
+    correlations : mapping of (str, str) to float
+        Between these sources.
+    dof : float
+        Effective degrees of freedom by the formula of Welch and Satterthwaite, rounded to two decimals, then
+        truncated; NaN where correlated sources have a finite number.
+    level : float
+        Coverage probability.
+    factor : float
+        Coverage factor; NaN where there are no degrees of freedom.
+    because : str
+        What the coverage factor was taken from.
+    second : float
+        The part of the variance that is of second order, in the square of the cell's SI unit; 0 where first
+        order is enough.
+    """
+
+    cell: str
+    name: str
+    label: tuple[int, ...]
+    value: float
+    u: float = math.nan
+    contributions: tuple[Contribution, ...] = ()
+    correlations: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    dof: float = math.nan
+    level: float = math.nan
+    factor: float = math.nan
+    because: str = ""
+    second: float = 0.0
+
+    @property
+    def expanded(self) -> float:
+        """The expanded uncertainty, in SI."""
+        return self.factor * self.u
+
+    @property
+    def is_known(self) -> bool:
+        """Whether there is a standard uncertainty, even if it is 0."""
+        return math.isfinite(self.u)
+
+
+@dataclass(frozen=True)
+class Uncertainties:
+    """The standard uncertainty of every cell, and the budgets of the result.
+
+    Parameters
+    ----------
+    u : mapping of column name to float array (rows,)
+        In SI; NaN where a cell has no value, and where nothing is known.
+    budgets : tuple of Budget
+        Of the cells of the headline.
+    """
+
+    u: Mapping[str, NDArray[np.float64]]
+    budgets: tuple[Budget, ...] = ()

@@ -1,0 +1,1 @@
+"""The uncertainty of every number: what is known of the inputs, propagated along the sheet's derivatives."""

@@ -1,0 +1,91 @@
+"""Degrees of freedom and coverage factors (JCGM 100, annex G; EA-4/02, S9 and S10)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..distribution import DIVISORS, Shape
+
+__all__ = ["LEVEL", "coverage", "effective"]
+
+LEVEL = 0.95
+"""The coverage probability that is stated where nobody asks for another; 0.9545 is another one."""
+
+DOMINANT = 0.3
+"""One source dominates where all others together are at most so much of it (EA-4/02, S9.14)."""
+
+_QUANTILES: dict[Shape, Callable[[float], float]] = {
+    Shape.RECTANGULAR: lambda p: p,
+    Shape.TRIANGULAR: lambda p: 1 - math.sqrt(1 - p),
+    Shape.ARCSINE: lambda p: math.sin(p * math.pi / 2),
+}
+"""Which part of the width holds the middle share p of a distribution with ends."""
+
+
+def effective(u: float, contributions: NDArray[np.float64], dof: Sequence[float]) -> float:
+    """Effective degrees of freedom of a sum, by Welch and Satterthwaite (JCGM 100, G.2b).
+
+    Parameters
+    ----------
+    u : float
+        The combined standard uncertainty.
+    contributions : float array (sources,)
+        In the same unit.
+    dof : sequence of float
+        Of each source, which is independent of the others.
+
+    Returns
+    -------
+    float
+        Rounded to two decimals, then truncated: 8.999 is 9, 8.99 is 8. At least 1; infinite if all are.
+
+    Examples
+    --------
+    >>> effective(5.0, np.array([3.0, 4.0]), [4.0, math.inf])
+    30.0
+    """
+    below = sum(c**4 / n for c, n in zip((contributions / u).tolist(), dof, strict=True)) if u > 0 else 0.0
+    return float(max(1, math.floor(round(1 / below, 2)))) if below > 0 else math.inf
+
+
+def coverage(
+    shapes: Sequence[Shape], contributions: NDArray[np.float64], dof: float, level: float = LEVEL
+) -> tuple[float, str]:
+    """The coverage factor of a sum, and what it was taken from.
+
+    Parameters
+    ----------
+    shapes : sequence of Shape
+        Of the sources.
+    contributions : float array (sources,)
+        Of the same.
+    dof : float
+        The effective degrees of freedom.
+    level : float
+        The coverage probability.
+
+    Examples
+    --------
+    >>> coverage([Shape.RECTANGULAR], np.array([1.0]), math.inf)
+    (1.6454482671904334, 'the rectangular source that dominates')
+    """
+    if math.isnan(dof):
+        return math.nan, "nothing: correlated sources have finite degrees of freedom"
+    sizes = np.abs(contributions)
+    if sizes.size:
+        largest = int(sizes.argmax())
+        rest = math.sqrt(float(np.sum(np.delete(sizes, largest) ** 2)))
+        if shapes[largest] in _QUANTILES and rest <= DOMINANT * sizes[largest]:
+            shape = shapes[largest]
+            return DIVISORS[shape] * _QUANTILES[shape](level), f"the {shape} source that dominates"
+    from scipy.special import stdtrit
+
+    if math.isinf(dof):
+        from statistics import NormalDist
+
+        return NormalDist().inv_cdf((1 + level) / 2), "a normal distribution"
+    return float(stdtrit(dof, (1 + level) / 2)), f"a t distribution with {dof:.0f} degrees of freedom"

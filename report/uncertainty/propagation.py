@@ -1,0 +1,225 @@
+"""The law of propagation of uncertainty over a whole sheet (JCGM 100, 5.1 and 5.2).
+
+A cell's derivatives by all that was given come from the sheet itself, exactly
+(:mod:`~loopsheet.report.judge.sensitivity`). What two cells share is counted once: a mean of pairs that rest
+on the same tests has the variance it has, no other.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cells.address import address
+from ..cells.layout import how_large
+from ..cells.values import Status, Values
+from ..inputs.inputs import Inputs
+from ..judge.chain import Chain, Made
+from ..judge.sensitivity import Numbers
+from ..result.uncertain import Budget, Contribution, Uncertainties
+from ..sheet import Given, RepeatAxis
+from .coverage import LEVEL, coverage, effective
+from .second_order import SecondOrder
+from .sources import correlations, given, sources
+
+__all__ = ["Spread", "uncertainties"]
+
+Array = NDArray[np.float64]
+
+LARGEST = 300_000
+"""Cells; beyond, nothing is told of what rests on generated rows: the way to each would have to be held."""
+AT_ONCE = 1 << 22
+"""So many derivatives are held at the same time."""
+NOTHING = 1e-12
+"""A contribution that is less than this share of the largest is left out of a budget."""
+
+
+class Spread:
+    """How the errors of what was given spread over a sheet.
+
+    Parameters
+    ----------
+    inputs : Inputs
+    values : Values
+        All columns, without a batch.
+
+    Attributes
+    ----------
+    sources : tuple of ErrorSource
+    correlations : mapping of (str, str) to float
+        Between the errors of two given numbers, by their addresses.
+    """
+
+    def __init__(self, inputs: Inputs, values: Values) -> None:
+        self.values = values
+        self.sources = sources(inputs, values)
+        known = {source.name for source in self.sources}
+        stated = correlations(inputs, values)
+        self.correlations = {pair: r for pair, r in stated.items() if known.issuperset(pair)}
+        numbers, size = {}, 0
+        for column in given(values):
+            rows = len(values.labels(column))
+            numbers[column.name] = np.arange(size, size + rows)
+            size += rows
+        moves = [(n, *move) for n, source in enumerate(self.sources) for move in source.moves]
+        self._by = np.array([numbers[name][row] for _, name, row, _ in moves], dtype=np.intp)
+        self._u = np.array([u for *_, u in moves])
+        self._first = np.searchsorted([n for n, *_ in moves], np.arange(len(self.sources)))
+        made = Made.of(values.sheet).only(self._listed(values))
+        chain = Chain(made, values.layouts, numbers)
+        self._along = Numbers(chain, values).go()
+        self.second: SecondOrder | None = None
+        """What is of second order; None for a sheet that is too large, and where errors are correlated."""
+        if self.sources and not self.correlations and SecondOrder.is_small(values, self.sources):
+            self.second = SecondOrder(chain, values, self.sources, self._by_source)
+        number = {source.name: n for n, source in enumerate(self.sources)}
+        self._pairs = [(number[a], number[b], r) for (a, b), r in self.correlations.items()]
+
+    def contributions(self, cells: Sequence[tuple[str, int]]) -> Array:
+        """What each source contributes to some cells, with its sign.
+
+        Parameters
+        ----------
+        cells : sequence of (str, int)
+            Columns and rows.
+
+        Returns
+        -------
+        float array (cells, sources)
+            In the SI unit of each cell; NaN for a cell without a value.
+        """
+        if not self.sources:
+            dead = [self.values.status[name][row] != Status.OK for name, row in cells]
+            return np.where(np.array(dead, dtype=bool)[:, None], np.nan, np.zeros((len(cells), 1)))
+        return self._by_source(self._along.at(cells))
+
+    def _by_source(self, derivatives: Array) -> Array:
+        """From derivatives by the given numbers to what a standard uncertainty of each source does."""
+        with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
+            moved = derivatives[..., self._by] * self._u
+            found: Array = np.add.reduceat(moved, self._first, axis=-1)
+        return found
+
+    def u(self, name: str) -> Array:
+        """The combined standard uncertainty of every row of a column (rows,), in SI."""
+        rows = len(self.values.status[name])
+        if name not in self._known:
+            return np.full(rows, np.nan)
+        width = max(1, self._along.chain.number, self.second.width if self.second else 0)
+        some = max(1, AT_ONCE // width)
+        found = np.empty(rows)
+        for first in range(0, rows, some):
+            cells = [(name, row) for row in range(first, min(first + some, rows))]
+            own = self.contributions(cells)
+            found[first : first + some] = np.sqrt(self._variance(own) + self._more(cells, own))
+        return np.where(np.isfinite(found), found, np.nan)
+
+    def _more(self, cells: Sequence[tuple[str, int]], own: Array) -> Array:
+        """The variance of second order; nothing where it is not known."""
+        return (
+            np.zeros(len(cells)) if self.second is None else np.nan_to_num(self.second.variance(cells, own))
+        )
+
+    def covariance(self, cells: Sequence[tuple[str, int]]) -> Array:
+        """Variances and covariances of some cells (cells, cells)."""
+        found = self.contributions(cells)
+        return found @ self._with_correlated(found).T
+
+    def _with_correlated(self, found: Array) -> Array:
+        """Contributions times the correlation matrix of their sources."""
+        moved = found.copy()
+        for a, b, r in self._pairs:
+            moved[:, a] += r * found[:, b]
+            moved[:, b] += r * found[:, a]
+        return moved
+
+    def _variance(self, found: Array) -> Array:
+        """Of first order."""
+        with np.errstate(all="ignore"):
+            variance: Array = np.sum(found * self._with_correlated(found), axis=1)
+            return np.maximum(variance, 0.0)
+
+    def _listed(self, values: Values) -> list[str]:
+        """The columns of which something is told: of a large sheet, those that rest on no generated rows."""
+        self._known = {
+            column.name
+            for column in values.sheet.columns
+            if how_large(values.sheet, values.layouts) <= LARGEST
+            or not any(isinstance(c.axis, RepeatAxis) for c in (column, *values.sheet.ancestors(column)))
+        }
+        return sorted(self._known)
+
+    # --- one cell ---
+
+    def budget(self, name: str, row: int, level: float = LEVEL) -> Budget:
+        """Where the uncertainty of a cell comes from.
+
+        Parameters
+        ----------
+        name : str
+            Its column.
+        row : int
+        level : float
+            The coverage probability of its expanded uncertainty.
+        """
+        column = self.values.sheet[name]
+        label = self.values.labels(column)[row]
+        value = float(self.values.value[name][row])
+        if name not in self._known:
+            return Budget(address(name, label), name, label, value, level=level)
+        cell = [(name, row)]
+        found = self.contributions(cell)
+        own, second = found[0, : len(self.sources)], float(self._more(cell, found)[0])
+        first = float(self._variance(found)[0])
+        u = math.sqrt(first + second)
+        together = self._with_correlated(found)[0, : len(self.sources)]
+        shares = own * together / u**2 if u > 0 else np.zeros(len(own))
+        dof = self._effective(math.sqrt(first), own)
+        shapes = [source.shape for source in self.sources]
+        factor, because = coverage(shapes, own, dof, level)
+        order = [
+            int(n)
+            for n in np.argsort(-np.abs(shares), kind="stable")
+            if abs(own[n]) > NOTHING * np.abs(own).max()
+        ]
+        told = tuple(self._contribution(n, float(own[n]), float(shares[n])) for n in order)
+        names = {self.sources[n].name for n in order}
+        correlated = {pair: r for pair, r in self.correlations.items() if names.issuperset(pair)}
+        return Budget(
+            address(name, label), name, label, value, u, told, correlated, dof, level, factor, because, second
+        )
+
+    def _contribution(self, n: int, u: float, share: float) -> Contribution:
+        source = self.sources[n]
+        name, row, _ = source.moves[0]
+        estimate = float(self.values.value[name][row]) if len(source.moves) == 1 else None
+        return Contribution(source, estimate, self.values.sheet[name].unit, u, share)
+
+    def _effective(self, u: float, own: Array) -> float:
+        dof = [source.dof for source in self.sources]
+        correlated = {n for a, b, _ in self._pairs for n in (a, b) if own[a] and own[b]}
+        if any(np.isfinite(dof[n]) for n in correlated):
+            return float("nan")
+        return effective(u, own, dof)
+
+
+def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Uncertainties:
+    """The standard uncertainty of every cell that is listed, and the budgets of some.
+
+    Parameters
+    ----------
+    inputs : Inputs
+    values : Values
+        All columns, without a batch.
+    headline : sequence of str
+        The columns whose cells get a budget each.
+    """
+    spread, sheet = Spread(inputs, values), values.sheet
+    listed = [
+        c.name for c in sheet.columns if not isinstance(c.axis, RepeatAxis) or isinstance(c.rule, Given)
+    ]
+    budgets = (spread.budget(name, row) for name in headline for row in range(len(values.status[name])))
+    return Uncertainties({name: spread.u(name) for name in listed}, tuple(budgets))

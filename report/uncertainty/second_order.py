@@ -1,0 +1,117 @@
+"""The terms of second order of the law of propagation (JCGM 100, 5.1.2, note).
+
+They count where a cell's first derivatives vanish or change within the errors themselves: a product of two
+errors around zero, say, has no uncertainty to first order. The derivatives are the sheet's own, exact; their
+changes are taken from sheets that are computed a little to either side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cells.layout import how_large
+from ..cells.values import Values
+from ..distribution import Shape
+from ..engines.numpy import evaluate
+from ..judge.chain import Chain
+from ..judge.sensitivity import Numbers
+from ..result.uncertain import ErrorSource
+
+__all__ = ["SecondOrder"]
+
+Array = NDArray[np.float64]
+
+STEP = 1 / 16
+"""In standard uncertainties. For cells that are of third order in their inputs any step would do."""
+COUNTS = 0.05
+"""The terms count from this share of the variance of first order on."""
+LARGEST = 1 << 23
+"""Sheets times cells; beyond, the terms are not looked at."""
+
+_FOURTH = {Shape.RECTANGULAR: 9 / 5, Shape.TRIANGULAR: 12 / 5, Shape.ARCSINE: 3 / 2}
+"""The fourth moment over the square of the variance; 3 for a normal error, as JCGM 100 takes all errors."""
+
+
+class SecondOrder:
+    """What a sheet's second derivatives add to its variances.
+
+    Parameters
+    ----------
+    chain : Chain
+        From the given numbers to all cells.
+    values : Values
+    sources : sequence of ErrorSource
+        Independent of one another.
+    by_source : callable
+        Takes derivatives by the given numbers (..., cells, numbers); returns those by the sources, in
+        standard uncertainties (..., cells, sources).
+    """
+
+    def __init__(
+        self,
+        chain: Chain,
+        values: Values,
+        sources: Sequence[ErrorSource],
+        by_source: Callable[[Array], Array],
+    ) -> None:
+        self.sources, self.by_source = sources, by_source
+        self.fourth = np.array([_FOURTH.get(source.shape, 3.0) for source in sources])
+        self.width = 2 * len(sources) * max(1, chain.number)
+        self._along = Numbers(chain, _beside(values, sources)).go()
+
+    @staticmethod
+    def is_small(values: Values, sources: Sequence[ErrorSource]) -> bool:
+        """Whether the sheet is small enough for it."""
+        return 2 * len(sources) * how_large(values.sheet, values.layouts) <= LARGEST
+
+    def variance(self, cells: Sequence[tuple[str, int]], first: Array) -> Array:
+        """The variance of some cells that the terms of second order make (cells,).
+
+        Parameters
+        ----------
+        cells : sequence of (str, int)
+        first : float array (cells, sources)
+            What each source contributes to first order.
+
+        Returns
+        -------
+        float array (cells,)
+            In the squares of the cells' SI units; 0 where it does not count. NaN where a cell has no value so
+            near to its own.
+        """
+        beside = self.by_source(self._along.at(cells))
+        up, down = beside[: len(self.sources)], beside[len(self.sources) :]
+        with np.errstate(all="ignore"):
+            # [cell, i, j]: by source i and source j, and by i and twice by j
+            second = np.moveaxis(up - down, 0, -1) / (2 * STEP)
+            third = np.moveaxis(up - 2 * first + down, 0, -1) / STEP**2
+            itself = np.eye(len(self.sources), dtype=bool)
+            bends = second**2 * np.where(itself, (self.fourth - 1) / 4, 1 / 2)
+            turns = first[:, :, None] * third * np.where(itself, self.fourth / 3, 1.0)
+            bent, turned = bends.sum(axis=(1, 2)), turns.sum(axis=(1, 2))
+            own = np.sum(first**2, axis=1)
+            # A sum that would be negative is no variance: then the terms of the fourth order count too.
+            more = np.where(own + bent + turned > 0, bent + turned, bent)
+            found: Array = np.where(bent <= COUNTS * own, 0.0, more)
+        return found
+
+
+def _beside(values: Values, sources: Sequence[ErrorSource]) -> Values:
+    """The sheet a step up and a step down along every source (2 sources, rows)."""
+    sheet = values.sheet
+    moved = {
+        name: np.tile(values.value[name], (2 * len(sources), 1))
+        for name in dict.fromkeys(name for source in sources for name, _, _ in source.moves)
+    }
+    for n, source in enumerate(sources):
+        for name, row, u in source.moves:
+            moved[name][n, row] += STEP * u
+            moved[name][n + len(sources), row] -= STEP * u
+    labels = {
+        axis.name: values.layouts[axis.name].labels[:, 0].tolist() for axis in sheet.axes if not axis.parents
+    }
+    given = {name: values.value[name] for name in sheet.bounds if name in values.value}
+    return evaluate(sheet, labels, given | moved)

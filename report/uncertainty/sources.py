@@ -1,0 +1,76 @@
+"""The errors behind a report: of each given number, and those that several share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from ..cells.address import address
+from ..cells.values import Values
+from ..inputs.inputs import Inputs
+from ..result.uncertain import ErrorSource
+from ..sheet import Column, Given
+
+__all__ = ["correlations", "sources"]
+
+
+def sources(inputs: Inputs, values: Values) -> tuple[ErrorSource, ...]:
+    """All errors of what was given, in the order of the sheet, then those that are shared.
+
+    A number that the workbook declares exact has none unless one was stated.
+
+    Parameters
+    ----------
+    inputs : Inputs
+    values : Values
+        Of the sheet; they tell what rows are called.
+    """
+    return (*_own(inputs, values), *_shared(inputs, values))
+
+
+def _own(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
+    for column in given(values):
+        printed = inputs.printed(column.name)
+        for row, (label, number) in enumerate(zip(values.labels(column), printed, strict=True)):
+            errors = () if column.exact and number.stated is None else number.errors
+            name = address(column.name, label)
+            for error in errors:
+                if error.width:
+                    told = f"{name}, {error.said}" if len(errors) > 1 else name
+                    moves = ((column.name, row, error.u),)
+                    yield ErrorSource(told, error.shape, error.dof, moves, error.said)
+
+
+def _shared(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
+    for each in inputs.uncertainty.shared:
+        if each.of not in values.sheet:
+            continue  # a parameter that the sheet of this folder does not use
+        column = values.sheet[each.of]
+        printed = inputs.printed(each.of)
+        rows = {label: row for row, label in enumerate(values.labels(column))}
+        for group in each.groups or (tuple(label[0] if label else 0 for label in rows),):
+            errors = [(rows[(test,) if test else ()], test) for test in group]
+            first = each.error(printed[errors[0][0]])
+            moves = tuple((column.name, row, each.error(printed[row]).u) for row, _ in errors)
+            named = f" (test{'s' * (len(group) > 1)} {', '.join(map(str, group))})" if each.groups else ""
+            if first.width:
+                yield ErrorSource(f"{each.name}{named}", first.shape, first.dof, moves, first.said)
+
+
+def given(values: Values) -> tuple[Column, ...]:
+    """The given columns of a sheet that are measured, and not counted."""
+    sheet = values.sheet
+    return tuple(
+        column
+        for column in sheet.columns
+        if isinstance(column.rule, Given) and not sheet.bounds[column.name].integer
+    )
+
+
+def correlations(inputs: Inputs, values: Values) -> Mapping[tuple[str, str], float]:
+    """The correlation coefficients that were stated, by the names of two sources."""
+    found = {}
+    for (one, other), coefficient in inputs.uncertainty.correlations.items():
+        if one in values.sheet and other in values.sheet:
+            for label in values.labels(values.sheet[one]):
+                found[address(one, label), address(other, label)] = coefficient
+    return found

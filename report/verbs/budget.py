@@ -1,0 +1,59 @@
+"""`budget`: where the uncertainty of one number comes from."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+from .common import OK, Progress, find_one, folder_argument, format_argument, keeping_arguments
+
+if TYPE_CHECKING:
+    from ..study import Study
+
+HELP = "tell how uncertain one number is, and where that comes from"
+LEVEL = 0.95
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what it takes."""
+    parser.add_argument("cell", metavar="CELL", help="alpha[1-2], x_m[3] or alpha_mean")
+    folder_argument(parser)
+    said = "coverage probability of the expanded uncertainty in percent (default: 95)"
+    parser.add_argument("--level", metavar="P", type=_level, default=LEVEL, help=said)
+    format_argument(parser, "text", "markdown", "json")
+    keeping_arguments(parser)
+
+
+def _level(text: str) -> float:
+    """Read a probability in percent, for argparse."""
+    try:
+        percent = float(text.rstrip("% "))
+    except ValueError:
+        percent = 0.0
+    if not 1 <= percent < 100:
+        raise argparse.ArgumentTypeError(f"not a probability from 1 to below 100 percent: '{text}'")
+    return percent / 100
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the budget of a cell."""
+    from ..inputs.folders import report_folder
+    from ..study import Study
+
+    with Progress(sys.stderr) as progress:
+        study = Study(report_folder(options.folder), step=progress)
+        parts = options.cell, options.format, repr(options.level)
+        told = study.kept("budget", lambda: _told(study, *parts), *parts)
+    print(told)
+    return OK
+
+
+def _told(study: Study, address: str, form: str, level: str) -> str:
+    from ..uncertainty.propagation import Spread
+    from ..views.budget import FORMATS
+
+    column, label = find_one(report := study.computed, address)
+    spread = Spread(report.inputs, report.values)
+    row = report.values.row(column, label)
+    return FORMATS[form](report, spread.budget(column.name, row, float(level)))

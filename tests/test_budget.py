@@ -1,0 +1,77 @@
+"""`loopsheet budget`: what it prints, and what it refuses."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report.cli import main
+
+FILES = {
+    "report.toml": """\
+workbook = "soft_impact"
+[parameters]
+ball_mass = "8.366 g, exact"
+[measurements]
+file = "measurements.csv"
+[uncertainty]
+v = "exact"
+e = "exact"
+x_p = "u = 0.1 um, dof = 4"
+[uncertainty.shared.datum]
+of = "x_p"
+stated = "u = 0.2 um"
+groups = [[1, 2]]
+""",
+    "measurements.csv": (
+        "test,v [m/s],e [1],x_p [um]\n1,2.2,0.535,22.58\n2,3.1,0.505,31.92\n3,4.3,0.47,44.61\n"
+    ),
+}
+
+
+@pytest.fixture
+def campaign(tmp_path: Path) -> str:
+    """A campaign in which only depths are uncertain."""
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    return str(tmp_path)
+
+
+def told(capsys: pytest.CaptureFixture[str], *words: str) -> str:
+    assert main(["budget", *words, "--no-cache"]) == 0
+    return capsys.readouterr().out
+
+
+def test_a_given_number(campaign: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert told(capsys, "x_p[1]", campaign) == (
+        "x_p[1] = 22.58 um, u = 0.22 um, U = 0.44 um with k = 1.98 for 95 %\n\n"
+        "source              estimate  u        distribution  dof  contribution  share\n"
+        "datum (tests 1, 2)  —         0.20 um  normal        ∞    0.200 um      80.0 %\n"
+        "x_p[1]              22.58 um  0.10 um  t             4    0.100 um      20.0 %\n\n"
+        "100 effective degrees of freedom\n"
+        "k comes from a t distribution with 100 degrees of freedom\n"
+    )
+
+
+def test_for_a_program_it_has_all_digits(campaign: str, capsys: pytest.CaptureFixture[str]) -> None:
+    found = json.loads(told(capsys, "x_p[3]", campaign, "--format", "json", "--level", "99"))
+    assert (found["u"], found["dof"], found["level"]) == (pytest.approx(1e-7, rel=1e-12), 4, 0.99)
+    assert found["k"] == pytest.approx(4.604, abs=5e-4)  # JCGM 100:2008, table G.2: 4.60
+    assert [source["source"] for source in found["sources"]] == ["x_p[3]"]
+
+
+def test_for_a_pull_request_it_is_a_table(campaign: str, capsys: pytest.CaptureFixture[str]) -> None:
+    found = told(capsys, "alpha[1-2]", campaign, "--format", "markdown").splitlines()
+    assert found[0].startswith("alpha\\[1-2\\] = 1.")
+    assert found[2].startswith("| source | estimate | u |")
+    assert found[4].startswith("| x\\_p\\[")
+
+
+def test_an_exact_one(campaign: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert told(capsys, "ball_mass", campaign) == "ball_mass = 8.366 g, exactly\n"
+
+
+@pytest.mark.parametrize("words", [["alpha"], ["alfa"], ["alpha[1-9]"], ["x_p[1]", "--level", "100"]])
+def test_what_is_refused(campaign: str, capsys: pytest.CaptureFixture[str], words: list[str]) -> None:
+    assert main(["budget", words[0], campaign, *words[1:]]) == 2
+    assert "error[LS6" in capsys.readouterr().err

@@ -1,0 +1,244 @@
+"""Uncertainties as text: what is understood, what is refused, and where the finding points."""
+
+import math
+from collections.abc import Callable
+from contextlib import suppress
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from loopsheet.report.distribution import Shape
+from loopsheet.report.inputs.inputs import Inputs, load
+from loopsheet.report.inputs.number_text import read_printed
+from loopsheet.report.inputs.stated import StatementError, read_statement
+from loopsheet.report.inputs.unit_text import parse_unit
+from loopsheet.report.messages.errors import InputError
+from loopsheet.report.which_workbook import find_workbook
+
+MM = parse_unit("mm")
+
+
+def errors(text: str, number: str = "12.50") -> tuple[tuple[float, Shape, float], ...]:
+    """The standard uncertainties in mm that are stated of a number in mm, their shapes, their dof."""
+    found = read_statement(text, MM).of(read_printed(number, MM))
+    return tuple((error.u * 1000, error.shape, error.dof) for error in found)
+
+
+@pytest.mark.parametrize(
+    ("text", "u", "shape", "dof"),
+    [
+        ("u = 0.02", 0.02, Shape.NORMAL, math.inf),
+        ("u = 20 um", 0.02, Shape.NORMAL, math.inf),
+        ("u=2e-2 mm, dof=7", 0.02, Shape.STUDENT, 7),
+        ("U = 0.03, k = 2", 0.015, Shape.NORMAL, math.inf),
+        ("U = 0.075 um, k = 3, dof = 18", 25e-6, Shape.STUDENT, 18),
+        ("U = 0.0196, p = 95 %", 0.0196 / 1.959963984540054, Shape.NORMAL, math.inf),
+        ("U = 0.02, p = 0.9545", 0.01, Shape.NORMAL, math.inf),
+        ("+-0.1 rect", 0.1 / 3**0.5, Shape.RECTANGULAR, math.inf),
+        ("± 0.1 mm tri", 0.1 / 6**0.5, Shape.TRIANGULAR, math.inf),
+        ("+/- 100 um arcsine", 0.1 / 2**0.5, Shape.ARCSINE, math.inf),
+        ("+-0.1 uniform, dof = 50", 0.1 / 3**0.5, Shape.RECTANGULAR, 50),
+        ("+-0.1 normal, k = 2", 0.05, Shape.NORMAL, math.inf),
+        ("0.5 % of reading + 2 digits", (0.0625 + 0.02) / 3**0.5, Shape.RECTANGULAR, math.inf),
+        ("0.5% + 10 um tri", (0.0625 + 0.01) / 6**0.5, Shape.TRIANGULAR, math.inf),
+        ("u = 1 % of reading", 0.125, Shape.NORMAL, math.inf),
+        ("s = 0.03, n = 9", 0.01, Shape.STUDENT, 8),
+        ("s = 0.02, n = 2", 0.02 / 2**0.5, Shape.STUDENT, 1),
+        ("t scale = 0.01, dof = 4", 0.01, Shape.STUDENT, 4),
+        ("t sd = 0.02, dof = 4", 0.02 / 2**0.5, Shape.STUDENT, 4),
+    ],
+)
+def test_what_is_understood(text: str, u: float, shape: Shape, dof: float) -> None:
+    ((found, own, freedom),) = errors(text)
+    assert (found, own, freedom) == (pytest.approx(u, rel=2e-4 if "0.9545" in text else 1e-12), shape, dof)
+
+
+def test_a_share_of_the_reading_follows_the_value() -> None:
+    statement = read_statement("1 % of reading", MM)
+    sizes = [statement.of(read_printed(text, MM))[0].width for text in ("10.0", "-20.0", "0.0")]
+    assert sizes == [Fraction(1, 10_000), Fraction(2, 10_000), 0]
+
+
+def test_errors_stand_one_after_another_and_none_is_exact() -> None:
+    assert [u for u, _, _ in errors("u = 0.3; +-0.4 normal, k = 1")] == pytest.approx([0.3, 0.4])
+    assert errors("exact") == ()
+
+
+def test_bare_limits_mean_what_was_said_once_for_all() -> None:
+    assert read_statement("+-0.1", MM, Shape.TRIANGULAR).parts[0].shape is Shape.TRIANGULAR
+    with pytest.raises(StatementError) as refused:
+        read_statement("+-0.1", MM)
+    assert refused.value.code == "LS432"
+
+
+@pytest.mark.parametrize(
+    ("text", "culprit", "start"),
+    [
+        ("0.1", "0.1", 0),
+        ("U = 0.03", "U = 0.03", 0),
+        ("U = 0.03, k = 2, p = 95 %", "U = 0.03", 0),
+        ("U = 0.03, p = 95 %, dof = 5", "U = 0.03", 0),
+        ("k = 2", "k = 2", 0),
+        ("u = 1 s", "s", 6),
+        ("u = 1 mmm", "mmm", 6),
+        ("u = -1", "-1", 4),
+        ("u = 1,5", "5", 6),
+        ("u = ", "", 3),
+        ("u = 0.1, k = 2", "k = 2", 9),
+        ("u = 0.1; u = x", "x", 13),
+        ("+-0.1 normal", "+-0.1 normal", 0),
+        ("+-0.1 rect, k = 2", "+-0.1 rect", 0),
+        ("+-0.1 rct", "rct", 6),
+        ("s = 0.1", "s = 0.1", 0),
+        ("s = 0.1, n = 1", "n = 1", 9),
+        ("s = 0.1, n = 2.5", "n = 2.5", 9),
+        ("t sd = 0.1, dof = 2", "t sd = 0.1", 0),
+        ("t scale = 0.1", "t scale = 0.1", 0),
+        ("u = 0.1, dof = 0", "dof = 0", 9),
+        ("U = 0.1, p = 100 %", "p = 100 %", 9),
+        ("u = 1e999", "1e999", 4),
+        ("", "", 0),
+    ],
+)
+def test_what_is_refused_and_where(text: str, culprit: str, start: int) -> None:
+    with pytest.raises(StatementError) as refused:
+        read_statement(text, MM)
+    found = refused.value
+    assert (found.code, found.text, found.start) == ("LS431", culprit, start)
+
+
+def test_percent_of_a_percentage_is_not_guessed() -> None:
+    with pytest.raises(StatementError, match="LS431"):
+        read_statement("u = 0.5 %", parse_unit("%"))
+    part = read_statement("u = 0.5 % of reading", parse_unit("%")).parts[0]
+    assert (part.relative, part.absolute) == (Fraction(1, 200), 0)
+
+
+@given(st.text("uUkpsnt =.,;+-±%01 mreadingofdct", max_size=30))
+def test_any_text_is_understood_or_refused_within_it(text: str) -> None:
+    def understood() -> None:
+        found = read_statement(text, MM)
+        assert all(error.width >= 0 for error in found.of(read_printed("12.50", MM)))
+
+    with suppress(StatementError):
+        understood()
+        return
+    with pytest.raises(StatementError) as refused:
+        read_statement(text, MM)
+    start, culprit = refused.value.start, refused.value.text
+    assert text[start : start + len(culprit)] == culprit
+
+
+# --- in a folder ------------------------------------------------------------------------------------------
+
+TOML = """\
+workbook = "soft_impact"
+[parameters]
+ball_mass = "{mass}"
+[measurements]
+file = "measurements.csv"
+[uncertainty]
+{section}
+"""
+CSV = "test,v [m/s],e [1],x_p [um]\n1,2.334,0.530,23.5\n2,2.940,0.512,29.7\n3,4.089,0.479,41.6(2)\n"
+Read = Callable[..., Inputs]
+
+
+@pytest.fixture
+def read(tmp_path: Path) -> Read:
+    """Read a folder whose mass, section and table are given."""
+
+    def read(section: str = "", mass: str = "8.366 g", csv: str = CSV) -> Inputs:
+        (tmp_path / "report.toml").write_text(TOML.format(mass=mass, section=section), encoding="utf-8")
+        (tmp_path / "measurements.csv").write_text(csv, encoding="utf-8")
+        return load(tmp_path, find_workbook)
+
+    return read
+
+
+@pytest.mark.parametrize(
+    ("mass", "u"),
+    [
+        ("8.366(4) g", 4e-6),
+        ("8.366 g, U = 6 mg, k = 2", 3e-6),
+        ("8.366 +-0.006 g normal, k = 2", 3e-6),
+        ("8.366 g ±0.003 rect", 3e-6 / 3**0.5),
+        ("8.366 g; exact", 0),
+        ("8.366 g", 5e-7 / 3**0.5),
+    ],
+)
+def test_a_parameter_says_it_behind_its_number(read: Read, mass: str, u: float) -> None:
+    found = read(mass=mass).parameters["ball_mass"]
+    assert (found.u, found.text, found.unit) == (pytest.approx(u, rel=1e-12), "8.366", "g")
+
+
+def test_a_cell_says_it_in_parentheses_and_a_column_in_the_section(read: Read) -> None:
+    inputs = read('v = "u = 5 mm/s"\nball_mass = "0.1 % of reading"')
+    assert [number.u for number in inputs.measured["v"]] == [0.005] * 3
+    assert inputs.parameters["ball_mass"].u == pytest.approx(8.366e-6 / 3**0.5)
+    *digits, stated = inputs.measured["x_p"]
+    assert [number.stated for number in digits] == [None, None]
+    assert (stated.text, stated.u) == ("41.6", pytest.approx(2e-7))
+
+
+def test_what_bare_limits_mean_holds_for_parameters_too(read: Read) -> None:
+    inputs = read('plus_minus = "tri"\nv = "+-0.1"', mass="8.366 +-0.006 g")
+    assert inputs.parameters["ball_mass"].u == pytest.approx(6e-6 / 6**0.5)
+    assert inputs.measured["v"][0].u == pytest.approx(0.1 / 6**0.5)
+
+
+def test_what_is_shared(read: Read) -> None:
+    section = (
+        '[uncertainty.shared."height datum"]\nof = "v"\nstated = "+-0.01 rect"\ngroups = [[1, 3], [2]]\n'
+    )
+    (shared,) = read(section).uncertainty.shared
+    assert (shared.name, shared.of, shared.groups) == ("height datum", "v", ((1, 3), (2,)))
+
+
+@pytest.mark.parametrize(
+    ("section", "code", "culprit"),
+    [
+        ('w = "exact"', "LS203", "w"),
+        ('v = "+-1"', "LS432", "+-1"),
+        ('v = "u = 1 s"', "LS431", "s"),
+        ('v = "u = 1 m/s, k = 2"', "LS431", "k = 2"),
+        ("v = 0.1", "LS205", "0.1"),
+        ('x_p = "u = 1 um"', "LS433", "x_p"),
+        ('points_per_pair = "u = 1"', "LS431", '"u = 1"'),
+        ('plus_minus = "rectt"', "LS203", '"rectt"'),
+        ("shared = 3", "LS205", "3"),
+        ('[uncertainty.shared.a]\nof = "w"\nstated = "u = 1"', "LS505", '"w"'),
+        ('[uncertainty.shared.a]\nof = "v"', "LS204", "uncertainty.shared.a"),
+        ('[uncertainty.shared.a]\nof = "v"\nstated = "exact"', "LS431", '"exact"'),
+        ('[uncertainty.shared.a]\nof = "v"\nstated = "u = 1"\ngroups = [[1], [1]]', "LS506", "[[1], [1]]"),
+        ('[uncertainty.shared.a]\nof = "v"\nstated = "u = 1"\ngroups = [1]', "LS205", "[1]"),
+        ('[uncertainty.correlation]\n"v, w" = "0.1"', "LS505", '"v, w"'),
+        ('[uncertainty.correlation]\n"v, e" = "1.1"', "LS434", '"1.1"'),
+        ('[uncertainty.correlation]\n"v, ball_mass" = "0.1"', "LS434", '"0.1"'),
+        ('e = "u = 1; u = 2"\n[uncertainty.correlation]\n"v, e" = "0.1"', "LS434", '"0.1"'),
+        (
+            '[uncertainty.correlation]\n"v, e" = "0.9"\n"e, x_p" = "0.9"\n"v, x_p" = "-0.9"',
+            "LS434",
+            "uncertainty.correlation",
+        ),
+    ],
+)
+def test_what_is_wrong_is_told_where_it_stands(read: Read, section: str, code: str, culprit: str) -> None:
+    with pytest.raises(InputError) as refused:
+        read(section)
+    (found,) = refused.value.diagnostics
+    at = found.at
+    assert found.code == code
+    assert (at.source or "")[(at.column or 1) - 1 :][: at.length] == culprit
+
+
+def test_a_column_of_uncertainties_and_parentheses_are_one_too_many(read: Read) -> None:
+    csv = "test,v [m/s],e [1],x_p [um],u(x_p) [um]\n1,2.334,0.530,23.5,0.1\n2,2.940,0.512,29.7(2),0\n"
+    with pytest.raises(InputError) as refused:
+        read(csv=csv)
+    assert [found.code for found in refused.value.diagnostics] == ["LS433"]
+    inputs = read(csv=csv.replace("(2)", ""))
+    assert [number.u for number in inputs.measured["x_p"]] == [pytest.approx(1e-7), 0]

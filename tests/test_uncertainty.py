@@ -1,0 +1,270 @@
+"""The law of propagation over whole sheets: the paper, published budgets, and differences of whole sheets."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from small_report import end_gauge
+
+from loopsheet.report.distribution import Shape
+from loopsheet.report.engines.numpy import evaluate
+from loopsheet.report.result.result import Report
+from loopsheet.report.study import Study
+from loopsheet.report.uncertainty import propagation
+from loopsheet.report.uncertainty.coverage import coverage, effective
+from loopsheet.report.uncertainty.propagation import Spread
+
+PAPER = Path(__file__).parent.parent / "data" / "soft_steel"
+
+
+@pytest.fixture(scope="module")
+def paper() -> Report:
+    """The shipped paper, computed."""
+    return Study(PAPER).computed
+
+
+@pytest.fixture(scope="module")
+def spread(paper: Report) -> Spread:
+    """Its uncertainties."""
+    return Spread(paper.inputs, paper.values)
+
+
+# --- the paper --------------------------------------------------------------------------------------------
+
+
+def test_the_ten_exponents(spread: Spread) -> None:
+    known = [0.0156, 0.0059, 0.0045, 0.0039, 0.0087, 0.0057, 0.0046, 0.0196, 0.0096, 0.0113]
+    assert spread.u("alpha") == pytest.approx(known, abs=5.1e-5)
+
+
+def test_a_mean_of_what_shares_tests_has_the_variance_it_has(spread: Spread) -> None:
+    (u,) = spread.u("alpha_mean")
+    assert u == pytest.approx(0.0035015, abs=5e-8)
+    covariance = spread.covariance([("alpha", row) for row in range(10)])
+    assert math.sqrt(covariance.sum()) / 10 == pytest.approx(u, rel=1e-12)
+    assert np.sqrt(np.diag(covariance)) == pytest.approx(spread.u("alpha"), rel=1e-12)
+
+
+def test_ten_pairs_of_five_tests_have_four_ways_to_vary(spread: Spread) -> None:
+    covariance = spread.covariance([("alpha", row) for row in range(10)])
+    scale = np.sqrt(np.diag(covariance))
+    found = np.linalg.eigvalsh(covariance / np.outer(scale, scale))[::-1]
+    assert found[:4] == pytest.approx([3.5, 3.0, 2.1, 1.4], abs=0.06)
+    assert abs(found[4:]).max() < 1e-3
+
+
+def test_the_interval_of_the_mean(spread: Spread) -> None:
+    budget = spread.budget("alpha_mean", 0)
+    ends = budget.value - budget.expanded, budget.value + budget.expanded
+    assert ends == pytest.approx((1.29578, 1.30951), abs=5e-6)
+    assert sum(each.share for each in budget.contributions) == pytest.approx(1, rel=1e-12)
+    assert [each.source.name for each in budget.contributions][:3] == ["x_p[1]", "x_p[3]", "e[5]"]
+
+
+def test_what_is_exact_has_no_uncertainty_and_moves_nothing(spread: Spread) -> None:
+    assert spread.u("beta").tolist() == spread.u("points_per_pair").tolist() == [0]
+    budget = spread.budget("beta", 0)
+    assert (budget.u, budget.contributions, budget.is_known) == (0, (), True)
+
+
+def test_of_a_large_sheet_what_rests_on_no_generated_rows(
+    paper: Report, monkeypatch: pytest.MonkeyPatch, spread: Spread
+) -> None:
+    monkeypatch.setattr(propagation, "LARGEST", 10)
+    large = Spread(paper.inputs, paper.values)
+    assert large.u("alpha_mean") == pytest.approx(spread.u("alpha_mean"), rel=1e-12)
+    assert np.isnan(large.u("alpha_log")).all()
+    assert not large.budget("alpha_log", 0).is_known
+
+
+def test_in_parts_it_is_the_same(paper: Report, monkeypatch: pytest.MonkeyPatch, spread: Spread) -> None:
+    monkeypatch.setattr(propagation, "AT_ONCE", 1)
+    assert Spread(paper.inputs, paper.values).u("C") == pytest.approx(spread.u("C"), rel=1e-14)
+
+
+# --- against whole sheets ---------------------------------------------------------------------------------
+
+
+@settings(max_examples=10, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(st.floats(-0.02, 0.02), min_size=15, max_size=15))
+def test_any_campaign_against_differences(paper: Report, shifts: list[float]) -> None:
+    """Each source up and down by a thousandth of itself, through the engine."""
+    sheet, base = paper.sheet, paper.values
+    names = ("v", "e", "x_p")
+    moved = {
+        name: base.value[name] * (1 + np.array(shifts[5 * n : 5 * n + 5])) for n, name in enumerate(names)
+    }
+    data = {name: base.value[name] for name in sheet.bounds} | moved
+    labels = {"tests": paper.inputs.tests}
+    values = evaluate(sheet, labels, data)
+    own = Spread(paper.inputs, values)
+    if own.second is not None and np.isnan(values.value["alpha"]).any():
+        return  # a pair without a root: told of elsewhere
+    variance: dict[str, Any] = dict.fromkeys(("alpha", "alpha_mean", "C_log", "Cprime_eq7"))
+    number = len(own.sources)
+    beside = {name: np.tile(np.asarray(column, dtype=float), (2, number, 1)) for name, column in data.items()}
+    for n, source in enumerate(own.sources):
+        for name, row, u in source.moves:
+            beside[name][:, n, row] += (1e-3 * u, -1e-3 * u)
+    for name in ("beta", "points_per_pair"):
+        beside[name] = data[name]
+    sides = evaluate(sheet, labels, beside)
+    for name in variance:
+        up, down = sides.value[name]
+        variance[name] = np.sum(((up - down) / 2e-3) ** 2, axis=0)
+    for name, found in variance.items():
+        first = own._variance(own.contributions([(name, row) for row in range(len(values.status[name]))]))
+        assert first == pytest.approx(found, rel=1e-5)
+
+
+# --- published budgets ------------------------------------------------------------------------------------
+
+H1 = """\
+workbook = "workbook.py"
+[parameters]
+l_S = "50.000623 mm, U = 0.075 um, k = 3, dof = 18"
+dalpha = "0 K^-1, +-1e-6 rect, dof = 50"
+alpha_S = "11.5e-6 K^-1, +-2e-6 rect"
+theta = "-0.1 K, u = 0.2"
+cycle = "0 +-0.5 K arcsine"
+dtheta = "0 K, +-0.05 rect, dof = 2"
+[measurements]
+file = "d.csv"
+[uncertainty]
+d = "u = 5.8 nm, dof = 24; u = 3.9 nm, dof = 5; u = 6.7 nm, dof = 8"
+"""
+
+
+@pytest.fixture
+def gauge_block(tmp_path: Path) -> Callable[..., Spread]:
+    """The uncertainties of the end gauge, with its report.toml changed."""
+
+    def made(*changes: tuple[str, str]) -> Spread:
+        text = H1
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new)
+        end_gauge(tmp_path, report=text)
+        report = Study(tmp_path).computed
+        return Spread(report.inputs, report.values)
+
+    return made
+
+
+def test_end_gauge(gauge_block: Callable[..., Spread]) -> None:
+    """JCGM 100:2008, H.1: 32 nm to first order, 16 degrees of freedom, 34 nm with the second order."""
+    budget = gauge_block().budget("l", 0, 0.99)
+    assert math.sqrt(budget.u**2 - budget.second) * 1e9 == pytest.approx(31.7, abs=0.05)
+    assert round(budget.u * 1e9) == 34
+    assert (budget.dof, round(budget.factor, 2)) == (16, 2.92)
+    known = {"l_S": 25, "dtheta": 16.6, "dalpha": 2.9}
+    found = {each.source.name: abs(each.u) * 1e9 for each in budget.contributions}
+    assert {name: found[name] for name in known} == pytest.approx(known, abs=0.05)
+    three = sum(u**2 for name, u in found.items() if name.startswith("d["))
+    assert math.sqrt(three) == pytest.approx(9.7, abs=0.05)
+    # u(alpha_S) and u(theta) contribute nothing to first order; the terms of H.1.7 are 11.7 nm and 1.7 nm.
+    assert {"alpha_S", "theta", "cycle"}.isdisjoint(found)
+    assert math.sqrt(budget.second) * 1e9 == pytest.approx(math.hypot(11.7, 1.7), abs=0.05)
+
+
+def test_where_first_order_is_nothing(gauge_block: Callable[..., Spread]) -> None:
+    """A product of two errors around zero."""
+    exact = [("U = 0.075 um, k = 3, dof = 18", "exact"), ("+-0.05 rect, dof = 2", "exact")]
+    d = ('d = "u = 5.8 nm, dof = 24; u = 3.9 nm, dof = 5; u = 6.7 nm, dof = 8"', 'd = "exact"')
+    budget = gauge_block(*exact, d, ("-0.1 K, u = 0.2", "0 K, u = 0.2")).budget("l", 0)
+    product = 0.050000623 * 1e-6 / 3**0.5 * math.hypot(0.2, 0.5 / 2**0.5)
+    assert (budget.u, budget.contributions) == (pytest.approx(product, rel=1e-9), ())
+
+
+@pytest.mark.parametrize(("r", "factor"), [("1", 2.0), ("-1", 0.0), ("0.5", math.sqrt(3))])
+def test_correlation(gauge_block: Callable[..., Spread], r: str, factor: float) -> None:
+    """Two equal contributions: as amounts if fully correlated, nothing if against one another."""
+    spread = gauge_block(
+        ("l_S = ", 'cycle = "0 K, exact"\nl_S = '),
+        ('cycle = "0 +-0.5 K arcsine"\n', ""),
+        ("U = 0.075 um, k = 3, dof = 18", "u = 10 nm"),
+        ("+-1e-6 rect, dof = 50", "exact"),
+        ("+-0.05 rect, dof = 2", f"u = {10e-9 / (0.050000623 * 11.5e-6)!r}"),
+        ('d = "u = 5.8 nm, dof = 24; u = 3.9 nm, dof = 5; u = 6.7 nm, dof = 8"', 'd = "exact"'),
+        ("[measurements]", f'[uncertainty.correlation]\n"l_S, dtheta" = "{r}"\n[measurements]'),
+        ("[uncertainty]\n", "[uncertainty]\ntheta = 'exact'\n"),
+        ("-0.1 K, u = 0.2", "-0.1 K"),
+    )
+    budget = spread.budget("l", 0)
+    # dtheta lowers the length: what correlates positively cancels
+    opposite = {2.0: 0.0, 0.0: 2.0, math.sqrt(3): 1.0}[factor]
+    assert budget.u * 1e9 == pytest.approx(10 * opposite, abs=1e-6)
+
+
+def test_a_shared_error_does_not_average_out(tmp_path: Path) -> None:
+    """Of five offsets the mean keeps a fifth of the variance, of one shared offset all of it."""
+    report = Study(PAPER).computed
+    base = Spread(report.inputs, report.values)
+    everything = [(name, row) for name in ("x_p",) for row in range(5)]
+    mean = np.full(5, 0.2)
+    apart = mean @ base.covariance(everything) @ mean
+    assert apart == pytest.approx(np.sum(base.u("x_p") ** 2) / 25, rel=1e-12)
+    stated = replace(report.inputs, uncertainty=_shared(tmp_path))
+    shared = Spread(stated, report.values)
+    together = mean @ shared.covariance(everything) @ mean
+    assert together - apart == pytest.approx((0.2e-6) ** 2 / 3, rel=1e-9)
+    groups = {source.name for source in shared.sources if "datum" in source.name}
+    assert groups == {"datum"}
+
+
+def _shared(folder: Path) -> object:
+    for name in ("measurements.csv", "published.csv"):
+        (folder / name).write_bytes((PAPER / name).read_bytes())
+    text = (PAPER / "report.toml").read_text(encoding="utf-8")
+    more = '\n[uncertainty.shared.datum]\nof = "x_p"\nstated = "+-0.2 um rect"\n'
+    (folder / "report.toml").write_text(text + more, encoding="utf-8")
+    return Study(folder).inputs.uncertainty
+
+
+# --- coverage ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("shape", "level", "factor"),
+    [
+        (Shape.RECTANGULAR, 0.95, 0.95 * 3**0.5),
+        (Shape.ARCSINE, 0.95, 2**0.5 * math.sin(0.95 * math.pi / 2)),
+        (Shape.TRIANGULAR, 0.95, 6**0.5 * (1 - 0.05**0.5)),
+        (Shape.NORMAL, 0.95, 1.959963984540054),
+        (Shape.NORMAL, 0.9545, 2.0000024),
+    ],
+)
+def test_the_factor_follows_the_source_that_dominates(shape: Shape, level: float, factor: float) -> None:
+    shapes, sizes = [Shape.NORMAL, shape, Shape.RECTANGULAR], np.array([0.1, -1.0, 0.2])
+    assert coverage(shapes, sizes, math.inf, level)[0] == pytest.approx(factor, rel=1e-7)
+    assert coverage(shapes, np.array([0.6, -1.0, 0.6]), math.inf, 0.95)[0] == pytest.approx(1.959963984540054)
+
+
+@pytest.mark.parametrize(("dof", "level", "factor"), [(16, 0.99, 2.92), (5, 0.95, 2.57), (1, 0.95, 12.71)])
+def test_the_factor_of_t(dof: float, level: float, factor: float) -> None:
+    """JCGM 100:2008, table G.2."""
+    assert coverage([Shape.STUDENT], np.array([1.0]), dof, level)[0] == pytest.approx(factor, abs=0.005)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "dof", "found"),
+    [
+        ([3.0, 4.0], [4.0, math.inf], 30),
+        ([1.0], [8.999], 9),
+        ([1.0], [8.99], 8),
+        ([1.0], [0.5], 1),
+        ([0.0, 0.0], [1.0, 1.0], math.inf),
+        ([1.0, 1.0], [math.inf, math.inf], math.inf),
+    ],
+)
+def test_effective_degrees_of_freedom(sizes: list[float], dof: list[float], found: float) -> None:
+    own = np.array(sizes)
+    assert effective(float(np.sqrt(np.sum(own**2))), own, dof) == found
