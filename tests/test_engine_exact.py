@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 from mpmath import mpf
-from sympy import Expr, Rational, Sum, Symbol, cos, log
+from sympy import Expr, Integer, Rational, Sum, Symbol, cos, log
 
 from loopsheet.derivations.equation import Equation
 from loopsheet.report.cells.values import Status
@@ -81,6 +81,29 @@ def test_roots_have_fifty_digits(form: Expr, low: int, high: int, expected: Any)
         # A triple root has a third of the digits, as it must.
         digits = 18 if form == (x - 3) ** 3 else 50
         assert abs(values.value["r"][0] / expected() - 1) < mpf(10) ** -digits
+
+
+def test_a_guess_saves_looks_at_sums_and_moves_no_digit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever is guessed, the root is where the equation has been seen with either sign at 50 digits."""
+    narrow, looks = exact._narrow, dict.fromkeys((1, 1 + 1e-9, 2, mpf("nan")), 0)
+    form = Sum(a[k] * x**40, (k, 1, n)) - Sum(a[k] ** 2, (k, 1, n))
+    steady = root(form, Integer(0), Integer(5), sign_low=Integer(-1), sign_high=Integer(1))
+    for spoilt in looks:
+
+        def guessing(form: Any, *ends: Any, guess: Any = None, spoilt: Any = spoilt) -> Any:
+            def look(u: Any) -> Any:
+                looks[spoilt] += guess is not None
+                return form(u)
+
+            return narrow(look, *ends, guess and guess * spoilt)
+
+        monkeypatch.setattr(exact, "_narrow", guessing)
+        values = evaluate(a, steady, a=[1, 2, 4])
+        with mpmath.workdps(70):
+            assert close(values.value["r"][0], mpf(3) ** (mpf(1) / 40))
+    best, near, *others = looks.values()
+    assert 0 < best < near < min(others)
+    assert 2 * best < min(others)
 
 
 def test_two_roots_are_both_found() -> None:

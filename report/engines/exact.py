@@ -38,6 +38,9 @@ __all__ = ["DIGITS", "ExactValues", "evaluate", "laid_out"]
 DIGITS = 50
 _GUARD = 15
 """Digits carried beyond those that are promised: sums and differences eat some."""
+_CLOSE = mpmath.mpf(f"1e-{DIGITS + 5}")
+_ROUGHLY = 1e-12
+"""As parts of a root: how close it is sought, and how close doubles should come."""
 
 
 @dataclass(frozen=True)
@@ -226,6 +229,8 @@ class _Exact:
         given = [None if end is None else scope.function(end) for end in (rule.sign_low, rule.sign_high)]
         counted = None if certified(self.sheet, column) else scope.enclosing(rule)
         turning = [] if counted else [scope.function(point) for point in rule.turning]
+        # A sum takes long at 50 digits, and as doubles no time.
+        rough = _Roughly(scope).root(rule) if _sums([rule.expression]) else None
 
         def solve(row: int) -> Any:
             points, right = [low(row)], high(row)
@@ -254,7 +259,10 @@ class _Exact:
                 except Doubtful as doubtful:
                     self.roots.setdefault(column.name, {})[row] = doubtful.part
                     raise _Failed(Status.UNDECIDED) from None
-            roots = [value(row, _narrow(lambda u: form(row, u), a, b, rising)) for a, b, rising in found]
+            roots = []
+            for a, b, rising in found:
+                guess = None if rough is None else rough(row, *map(float, (a, b, rising)))
+                roots.append(value(row, _narrow(lambda u: form(row, u), a, b, rising, _CLOSE, guess=guess)))
             if len(roots) == 1:
                 return roots[0]
             if not roots:
@@ -265,19 +273,22 @@ class _Exact:
         return solve
 
 
-def _narrow(form: Callable[[Any], Any], left: Any, right: Any, rising: Any) -> Any:
-    """The sign change between two points, to working precision.
+def _narrow(
+    form: Callable[[Any], Any], left: Any, right: Any, rising: Any, close: Any, guess: Any = None
+) -> Any:
+    """The sign change between two points, as close as is asked, in the arithmetic of the points.
 
-    Halving until the equation itself has been seen with either sign, so that it need not have one at the
-    ends; then Anderson and Björck's regula falsi, which keeps the bracket and gains digits fast.
+    To both sides of the guess, then halving, until the equation itself has been seen with either sign, so
+    that it need not have one at the ends; then Anderson and Björck's regula falsi, which keeps the bracket
+    and gains digits fast.
 
     Source: N. Anderson and Å. Björck, A new high order method of regula falsi type for computing a root of
     an equation, BIT 13 (1973) 253-264.
     """
-    close = mpmath.mpf(10) ** -(DIGITS + 5)
+    near = [] if guess is None else [guess * (1 - _ROUGHLY), guess * (1 + _ROUGHLY)]
     at_left = at_right = None
     while at_left is None or at_right is None:
-        here = (left + right) / 2
+        here = next((point for point in near if left < point < right), (left + right) / 2)
         f = form(here) * rising
         if f == 0 or mpmath.isnan(f) or right - left <= abs(here) * close:
             return here if f == f else f
@@ -288,8 +299,10 @@ def _narrow(form: Callable[[Any], Any], left: Any, right: Any, rising: Any) -> A
     before, kept = None, 0
     while True:
         here = right - at_right * (right - left) / (at_right - at_left)
+        if before is not None and abs(here - before) <= abs(here) * close:
+            return here
         f = form(here) * rising
-        if f == 0 or mpmath.isnan(f) or (before is not None and abs(here - before) <= abs(here) * close):
+        if f == 0 or mpmath.isnan(f):
             return here if f == f else f
         # An end that is kept twice has its value reduced, or it would be kept for ever.
         if f > 0:
@@ -304,7 +317,7 @@ def _narrow(form: Callable[[Any], Any], left: Any, right: Any, rising: Any) -> A
 def _share(new: Any, old: Any) -> Any:
     """What is left of the value of an end that is kept twice, from the values at the other end."""
     share = 1 - new / old
-    return share if share > 0 else mpmath.mpf(1) / 2
+    return share if share > 0 else type(share)(0.5)
 
 
 class _Scope:
@@ -320,6 +333,9 @@ class _Scope:
 
     def __init__(self, engine: _Exact, column: Column, kept: Mapping[str, list[int]]) -> None:
         self.engine, self.column, self.kept = engine, column, kept
+
+    modules = "mpmath"
+    """What expressions are printed for."""
 
     def function(self, expression: Basic, unknown: Symbol | None = None) -> Callable[..., Any]:
         """An expression of the column's own row."""
@@ -387,7 +403,7 @@ class _Scope:
         self, expressions: Sequence[Basic], axis: Axis | None, unknown: Symbol | None
     ) -> Callable[..., Sequence[Any]]:
         """Several expressions of a row of an axis at once, so that their common parts are computed once."""
-        printed = _printed(tuple(expressions), unknown)
+        printed = _printed(tuple(expressions), unknown, self.modules)
         readers = [self._reader(cell, axis) for cell in printed.cells]
         sums = self._totals(printed.totals, unknown)
 
@@ -400,7 +416,7 @@ class _Scope:
     def _totals(self, totals: Sequence[Expr], unknown: Symbol | None) -> Callable[..., list[Any]]:
         """All sums, those over one axis in one pass; one that the unknown does not move is taken once."""
         passes = []
-        take = [median if isinstance(total, Median) else mpmath.fsum for total in totals]
+        take = [isinstance(total, Median) for total in totals]
         for axis in self.engine.sheet.axes:
             for moving in (False, True):
                 mine = [
@@ -418,8 +434,7 @@ class _Scope:
             for number, (mine, terms, rows, moving) in enumerate(passes):
                 sums = fixed.get(number)
                 if sums is None:
-                    columns = zip(*(terms(row, *at) for row in rows), strict=True)
-                    sums = [take[n](column) for n, column in zip(mine, columns, strict=False)]
+                    sums = self._taken([take[n] for n in mine], terms, rows, at)
                     if not moving:
                         fixed[number] = sums
                 for n, total in zip(mine, sums or [mpmath.mpf(0)] * len(mine), strict=True):
@@ -427,6 +442,18 @@ class _Scope:
             return found
 
         return run
+
+    def _taken(
+        self, medians: Sequence[bool], terms: Callable[..., Any], rows: Sequence[int], at: Sequence[Any]
+    ) -> list[Any]:
+        """The medians or sums of several terms over rows; nothing of no rows."""
+        columns = zip(*(terms(row, *at) for row in rows), strict=True)
+        taken = zip(medians, columns, strict=False)
+        return [median(column) if middle else mpmath.fsum(column) for middle, column in taken]
+
+    def _numbers(self, numbers: list[Any]) -> Any:
+        """What is read, row by row."""
+        return numbers
 
     def _size(self, axis: Axis) -> int:
         return self.engine.layouts[axis.name].size
@@ -437,18 +464,48 @@ class _Scope:
         if cell in sheet.sizes:
             counted = sheet.sizes[cell]
             number = mpmath.mpf(len(self.kept.get(counted.name, range(self._size(counted)))))
+            (number,) = self._numbers([number])
             return lambda _: number
         if axis is not None and cell in axis.ordinals:
             ordinals = [mpmath.mpf(n) for n in layouts[axis.name].ordinals[cell].tolist()]
-            return ordinals.__getitem__
-        values = self.engine.value[name_of(cell)]
+            return self._numbers(ordinals).__getitem__  # type: ignore[no-any-return]
+        values = self._numbers(self.engine.value[name_of(cell)])
         if not isinstance(cell, Indexed):
             return lambda _: values[0]
         rows = rows_of(cell, axis, layouts)
         if rows is None:
-            return values.__getitem__
-        table = rows.tolist()
-        return lambda row: values[table[row]]
+            return values.__getitem__  # type: ignore[no-any-return]
+        return lambda row: values[rows[row]]
+
+
+class _Roughly(_Scope):
+    """The same in doubles, all terms of a sum at once: where a root is about."""
+
+    modules = "numpy"
+
+    def __init__(self, scope: _Scope) -> None:
+        super().__init__(scope.engine, scope.column, scope.kept)
+
+    def root(self, rule: Root) -> Callable[..., Any]:
+        """Where a row has its root between two ends; NaN if doubles do not tell."""
+        form = self.function(rule.expression, rule.unknown)
+
+        def guess(row: int, left: float, right: float, rising: float) -> Any:
+            with np.errstate(all="ignore"):
+                return mpmath.mpf(_narrow(lambda u: form(row, u), left, right, rising, _ROUGHLY))
+
+        return guess
+
+    def _numbers(self, numbers: list[Any]) -> Any:
+        return np.array([np.nan if number is None else float(number) for number in numbers])
+
+    def _taken(
+        self, medians: Sequence[bool], terms: Callable[..., Any], rows: Sequence[int], at: Sequence[Any]
+    ) -> list[Any]:
+        which = np.array(rows, dtype=np.intp)
+        columns = [np.broadcast_to(column, which.shape) for column in terms(which, *at)]
+        taken = zip(medians, columns, strict=True)
+        return [np.median(column) if middle else column.sum() for middle, column in taken]
 
 
 @dataclass(frozen=True)
@@ -461,8 +518,8 @@ class _Printed:
 
 
 @lru_cache(maxsize=512)
-def _printed(expressions: tuple[Basic, ...], unknown: Symbol | None) -> _Printed:
-    """Print expressions for mpmath; the same for whatever data, and slower than to evaluate a small sheet."""
+def _printed(expressions: tuple[Basic, ...], unknown: Symbol | None, modules: str) -> _Printed:
+    """Print expressions; the same for whatever data, and slower than to evaluate a small sheet."""
     outermost = _sums(expressions)
     totals = {total: Symbol(f"total_{n}") for n, total in enumerate(outermost)}
     outer = [expression.xreplace(totals) for expression in expressions]
@@ -472,7 +529,7 @@ def _printed(expressions: tuple[Basic, ...], unknown: Symbol | None) -> _Printed
     named = {*plain.values(), *totals.values(), unknown}
     symbols = sorted(set().union(*(body.free_symbols for body in bodies)) - named, key=str)
     arguments = [*plain.values(), *symbols, *totals.values()] + ([] if unknown is None else [unknown])
-    function = lambdify(arguments, bodies, modules="mpmath", cse=len(bodies) > 1)
+    function = lambdify(arguments, bodies, modules=modules, cse=len(bodies) > 1)
     return _Printed((*cells, *symbols), tuple(outermost), function)
 
 
