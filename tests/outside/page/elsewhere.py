@@ -102,7 +102,7 @@ def _opening(call: webdriver.Call, folder: Path) -> Open:
 
     def open_it(path: Path) -> Live:
         own = _new(folder / f"page{len(list(folder.iterdir()))}")
-        live = Elsewhere(page=webdriver.Page(call), path=path, folder=own, downloads=folder / "downloads")
+        live = Elsewhere(page=webdriver.Page.new(call), path=path, folder=own, downloads=folder / "downloads")
         live.load()
         return live
 

@@ -298,7 +298,7 @@ FULL = """Storage.prototype.setItem = () => { throw new DOMException("full", "Qu
 
 @pytest.mark.parametrize("script", [NO_MEMORY, FULL])
 def test_a_page_whose_browser_keeps_nothing_works(open_page: Open, copied: Path, script: str) -> None:
-    live = open_page(copied)
+    live = open_page(copied, own=True)
     live.page.add_init_script(script)
     reload(live)
     assert live.text("live-note") == ""

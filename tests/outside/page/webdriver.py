@@ -98,7 +98,7 @@ def _marionette(connection: socket.socket, answers: BinaryIO) -> Call:
         _, _, error, result = receive()
         if error:
             raise WebDriverError(f"{name}: {error['error']}: {error['message']}")
-        return result.get("value", result)
+        return result.get("value", result) if isinstance(result, dict) else result
 
     receive()  # who it is
     return call
@@ -107,13 +107,15 @@ def _marionette(connection: socket.socket, answers: BinaryIO) -> Call:
 # --- WebKit -------------------------------------------------------------------------------------------------
 
 _PATHS = {
-    "Navigate": "/url",
-    "ExecuteScript": "/execute/sync",
-    "FindElement": "/element",
-    "ElementClick": "/element/{id}/click",
-    "PerformActions": "/actions",
-    "NewWindow": "/window/new",
-    "SwitchToWindow": "/window",
+    "Navigate": ("POST", "/url"),
+    "ExecuteScript": ("POST", "/execute/sync"),
+    "FindElement": ("POST", "/element"),
+    "ElementClick": ("POST", "/element/{id}/click"),
+    "PerformActions": ("POST", "/actions"),
+    "NewWindow": ("POST", "/window/new"),
+    "GetWindowHandle": ("GET", "/window"),
+    "SwitchToWindow": ("POST", "/window"),
+    "CloseWindow": ("DELETE", "/window"),
 }
 
 
@@ -126,13 +128,16 @@ def webkit(program: str, screen: str, folder: Path, downloads: Path) -> Iterator
         port = free.getsockname()[1]
         free.close()
         display = running.enter_context(_screen(screen, folder))
-        running.enter_context(_running([program, f"--port={port}"], folder, DISPLAY=display))
+        # Without a graphics card composing layers costs more than all else, also of a page at rest.
+        settings = {"DISPLAY": display, "WEBKIT_DISABLE_COMPOSITING_MODE": "1"}
+        running.enter_context(_running([program, f"--port={port}"], folder, **settings))
         until(lambda: _answers(port), "WebKitWebDriver")
         session = _ask(port, "POST", "/session", {"capabilities": {}})["sessionId"]
 
         def call(name: str, /, **parameters: Any) -> Any:
-            path = _PATHS[name].format(**parameters)
-            return _ask(port, "POST", f"/session/{session}{path}", parameters)
+            method, path = _PATHS[name]
+            sent = parameters if method == "POST" else None
+            return _ask(port, method, f"/session/{session}{path.format(**parameters)}", sent)
 
         yield call
         _ask(port, "DELETE", f"/session/{session}", None)
@@ -234,9 +239,19 @@ class Page:
     """A window of one of these browsers."""
 
     call: Call
+    home: str
+    """The window that the browser began with, which stays."""
 
-    def __post_init__(self) -> None:
-        self.call("SwitchToWindow", handle=self.call("NewWindow", type="window")["handle"])
+    @classmethod
+    def new(cls, call: Call) -> Page:
+        home = call("GetWindowHandle")
+        call("SwitchToWindow", handle=call("NewWindow", type="window")["handle"])
+        return cls(call, home)
+
+    def close(self) -> None:
+        """No page works on behind the next one."""
+        self.call("CloseWindow")
+        self.call("SwitchToWindow", handle=self.home)
 
     @property
     def keyboard(self) -> Keyboard:
