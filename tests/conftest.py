@@ -2,13 +2,14 @@
 
 import os
 import shutil
+import subprocess
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from pathlib import Path
 from pkgutil import walk_packages
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from campaign_sizes import SEED, SIZES, Sizes
@@ -18,6 +19,7 @@ from hypothesis.internal.constants_ast import Constants, constants_from_module
 from small_report import end_gauge
 
 import loopsheet
+from loopsheet.report.machine.background import Background
 
 if TYPE_CHECKING:
     from loopsheet.report.result.result import Report
@@ -43,6 +45,14 @@ def constants() -> Constants:
 
 os.environ["LOOPSHEET_CACHE"] = ""
 """Nothing is kept from one test to another, by no process: what a test looks at was made for it."""
+
+
+@pytest.fixture(scope="module")
+def keeping(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """What is made of the same bytes is kept from test to test of a file, as it is for users."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("LOOPSHEET_CACHE", str(tmp_path_factory.mktemp("kept")))
+        yield
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -114,9 +124,14 @@ def issued(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def unrefereed(monkeypatch: pytest.MonkeyPatch) -> None:
     """No referee, who takes longer than all else."""
-    from loopsheet.report import stages
+    from loopsheet.report import build, referee, stages
+    from loopsheet.report.result.verdict import Referee
 
-    monkeypatch.setattr(stages, "refereed", lambda report, *_: report)
+    def unasked(made: Any, values: Any, *_: object) -> Any:
+        return Referee(), referee.compare(made.inputs.published, values)
+
+    for module in (build, stages):
+        monkeypatch.setattr(module, "refereed_values", unasked)
 
 
 @pytest.fixture
@@ -125,6 +140,35 @@ def unjudged(report: "Report", unrefereed: None, monkeypatch: pytest.MonkeyPatch
     from loopsheet.report import stages
 
     monkeypatch.setattr(stages, "judged", lambda report, *_: report)
+
+
+# --- processes ---
+
+
+@pytest.fixture
+def beside() -> None:
+    """Where that is what matters, a build has processes beside its own."""
+
+
+@pytest.fixture(autouse=True)
+def _in_this_process(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else it builds as where the system lets none begin: most reports here take less than a process does."""
+    from loopsheet.report import build
+
+    if "beside" not in request.fixturenames:
+        monkeypatch.setattr(build, "Background", Here)
+
+
+class Here(Background[Any]):
+    """A call for which no process may be begun."""
+
+    def __init__(self, function: Callable[..., Any], *arguments: Any) -> None:
+        def refused(*_: object, **__: object) -> None:
+            raise PermissionError
+
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(subprocess, "Popen", refused)
+            super().__init__(function, *arguments)
 
 
 # --- campaigns that are drawn at random ---

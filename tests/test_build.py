@@ -132,7 +132,7 @@ def test_the_referee_says_the_same_of_values_that_it_is_told(paper: Report) -> N
     assert found == (paper.referee, paper.comparisons)
 
 
-@pytest.mark.usefixtures("unjudged")
+@pytest.mark.usefixtures("unjudged", "beside")
 def test_proofs_from_a_process_of_their_own_are_of_the_ledgers_own_equations(
     report: Report, tmp_path: Path
 ) -> None:

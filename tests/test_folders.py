@@ -7,7 +7,7 @@ import json
 import os
 import re
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -21,12 +21,7 @@ from loopsheet.report.verbs import VERBS
 Run = Callable[..., tuple[int, str, str]]
 
 
-@pytest.fixture(scope="module", autouse=True)
-def _kept(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """What is made of the same bytes is kept from test to test, as it is for users."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("LOOPSHEET_CACHE", str(tmp_path_factory.mktemp("kept")))
-        yield
+pytestmark = pytest.mark.usefixtures("keeping")
 
 
 @pytest.fixture
