@@ -6,11 +6,12 @@ from typing import Any
 
 import driving
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 HERE = Path(__file__).parent
 
 Open = Callable[..., driving.Live]
+SIZE: ViewportSize = {"width": 1280, "height": 720}
 
 
 @pytest.fixture(scope="session")
@@ -28,27 +29,33 @@ def browser(require: Callable[..., str]) -> Iterator[Browser]:
         found.close()
 
 
+Windows = dict[str, list[Page]]
+
+
 @pytest.fixture(scope="session")
-def windows() -> list[Page]:
-    """Windows that were used and are as new: to open one takes a browser as long as to load a page."""
-    return []
+def windows() -> Windows:
+    """Windows that were used and are as new, by their options: one is as long in coming as the page."""
+    return {}
 
 
 @pytest.fixture
-def open_page(browser: Browser, issued: Path, windows: list[Page]) -> Iterator[Open]:
+def open_page(browser: Browser, issued: Path, windows: Windows) -> Iterator[Open]:
     """Open a file, the page of the paper without one, in a browser that has no network.
 
-    With options, or `own=True`, in a window that is not used again.
+    With `own=True` in a window that is not used again.
     """
     opened: list[driving.Live] = []
-    again: list[Page] = []
+    again: list[tuple[str, Page]] = []
 
-    def open_it(path: Path | None = None, own: bool = False, **options: Any) -> driving.Live:
-        own = own or bool(options)
-        new = own or not windows
-        page = browser.new_context(offline=True, **options).new_page() if new else windows.pop()
+    def open_it(
+        path: Path | None = None, own: bool = False, viewport: ViewportSize = SIZE, **options: Any
+    ) -> driving.Live:
+        kind = repr(sorted(options.items()))
+        free = [] if own else windows.setdefault(kind, [])
+        page = free.pop() if free else browser.new_context(offline=True, **options).new_page()
         if not own:
-            again.append(page)
+            again.append((kind, page))
+        page.set_viewport_size(viewport)
         live = driving.Live(page, path or issued)
         opened.append(live)
         live.load()
@@ -56,11 +63,13 @@ def open_page(browser: Browser, issued: Path, windows: list[Page]) -> Iterator[O
 
     yield open_it
     heard = [error for live in opened for error in live.errors]
+    for kind, page in again:
+        if not page.is_closed():
+            _forget(page)
+            windows[kind].append(page)
+    used = {page for pages in windows.values() for page in pages}
     for live in opened:
-        if live.page in again and not live.page.is_closed():
-            _forget(live.page)
-            windows.append(live.page)
-        else:
+        if live.page not in used:
             live.page.context.close()
     assert heard == []
 
@@ -71,6 +80,7 @@ def _forget(page: Page) -> None:
         if other != page:
             other.close()
     page.goto("about:blank")
+    page.emulate_media(media="null")
     what = {"origin": "file://", "storageTypes": "all"}
     page.context.new_cdp_session(page).send("Storage.clearDataForOrigin", what)
 
