@@ -182,10 +182,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 LONGEST = (
-    "test_browsers.py", "test_same_anywhere.py", "test_seen_intervals.py", "test_build.py", "test_misra1a.py",
-    "test_libreoffice.py", "test_folders.py", "test_cli.py", "test_page_access.py", "test_page_digits.py",
-    "test_page_lasting.py", "test_pytest_plugin.py", "test_environments.py", "test_hyperformula.py",
-    "test_figures.py", "test_ledger.py", "test_page.py", "test_open_xml.py", "test_campaigns.py",
+    "test_browsers.py", "test_page_access.py", "test_page_lasting.py", "test_page.py", "test_page_digits.py",
+    "test_pytest_plugin.py", "test_libreoffice.py", "test_referee_forged.py", "test_hyperformula.py",
+    "test_verify.py", "test_page_layout.py", "test_build.py", "test_cli.py", "test_referee.py",
+    "test_environments.py", "test_engines_random.py", "test_page_saving.py", "test_figures.py",
+    "test_same_anywhere.py",
 )  # fmt: skip
 """The files that take longest, as they are measured: begun first, none is left over for a single worker."""
 
