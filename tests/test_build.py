@@ -110,21 +110,6 @@ def test_what_a_long_build_takes_is_told_before_it_begins(
     )
 
 
-def test_same_bytes_everywhere(issued: Path, tmp_path: Path) -> None:
-    """Process, hash seed, time zone, locale, folder and working directory must not show."""
-    home = tmp_path / "another place"
-    home.mkdir()
-    folder = copy_paper(home / "in put")
-    elsewhere = {"PYTHONHASHSEED": "4711", "TZ": "Asia/Tokyo", "LC_ALL": "C", "HOME": str(home)}
-    subprocess.run(
-        [sys.executable, "-m", "loopsheet", "build", str(folder), "--out", "o"],
-        cwd=home, env={**os.environ, **elsewhere}, check=True, capture_output=True,
-    )  # fmt: skip
-    found = hashes(home / "o")
-    assert found == hashes(issued / "out")
-    assert len(found) > 8
-
-
 def test_the_referee_says_the_same_of_values_that_it_is_told(paper: Report) -> None:
     plain = Later[tuple[Any, ...]]()
     plain.told.append(pickle.loads(pickle.dumps(paper.values.plain)))

@@ -204,6 +204,7 @@ def test_the_report_says_how_its_engines_agree(tmp_path: Path) -> None:
     assert "How the engines agree" in (tmp_path / "report.tex").read_text()
 
 
+@pytest.mark.usefixtures("unrefereed")
 def test_a_known_difference_that_vanishes_is_a_finding(
     campaign: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

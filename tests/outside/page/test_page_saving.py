@@ -22,6 +22,7 @@ def page_of(folder: Path, place: Path) -> Path:
     return place / "report.html"
 
 
+@pytest.mark.usefixtures("unrefereed")
 def test_a_test_left_out_stays_with_its_reason(live: Live, open_page: Open, tmp_path: Path) -> None:
     live.page.locator('[data-use="3"]').click()
     assert live.page.locator('[data-reason="2"]').is_hidden()
@@ -105,6 +106,7 @@ def test_a_reason_is_taken_back_and_given_again(live: Live) -> None:
     assert live.text("live-banner") == ""
 
 
+@pytest.mark.usefixtures("unrefereed")
 def test_files_keep_their_names_and_a_workbook_comes_along(open_page: Open, tmp_path: Path) -> None:
     folder = tmp_path / "own"
     (folder / "data").mkdir(parents=True)
