@@ -1,6 +1,7 @@
 """`loopsheet budget`: what it prints, and what it refuses."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -75,3 +76,16 @@ def test_an_exact_one(campaign: str, capsys: pytest.CaptureFixture[str]) -> None
 def test_what_is_refused(campaign: str, capsys: pytest.CaptureFixture[str], words: list[str]) -> None:
     assert main(["budget", words[0], campaign, *words[1:]]) == 2
     assert "error[LS6" in capsys.readouterr().err
+
+
+def test_the_report_says_it_of_every_result(issued: Path) -> None:
+    values = json.loads((issued / "out" / "values.json").read_text(encoding="utf-8"))["cells"]
+    page, tex = ((issued / "out" / f"report.{form}").read_text(encoding="utf-8") for form in ("html", "tex"))
+    row = re.search(r'id="?caption-uncertain.*?</table>', page, re.DOTALL)
+    assert row is not None
+    for name in ("alpha_mean", "alpha_median", "alpha_log", "alpha_lin"):
+        u = f"{values[name]['u']:.4f}"
+        assert f"<td>{u}<td>1.96<td>" in row[0]
+        assert rf"\num{{{u}}}" in tex
+    assert r"\num{0.038e9}" in tex
+    assert f"{values['C_log']['u']:.2g}" == "3.8e+07"

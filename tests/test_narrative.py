@@ -178,6 +178,15 @@ def test_every_sentence_that_can_be_named_is_named() -> None:
 def test_every_chapter_comes_where_there_is_something_to_tell(report: Report) -> None:
     said = Said(Material(report), ())
     names = [section.name for section in sections("generic", said)]
-    assert {"result", "values", "published", "equations", "derivations", "errata", "reproduce"} == set(names)
+    assert {
+        "result",
+        "values",
+        "published",
+        "equations",
+        "derivations",
+        "errata",
+        "reproduce",
+        "uncertainty",
+    } == set(names)
     bare = replace(report, comparisons=(), errata=(), engines=(), proofs=())
     assert "published" not in [section.name for section in sections("generic", Said(Material(bare), ()))]

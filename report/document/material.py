@@ -16,6 +16,7 @@ from ..cells.marks import MarkCount
 from ..cells.values import Cell
 from ..messages.diagnostics import Check
 from ..result.result import Report
+from ..result.uncertain import Budget
 from ..sheet import Axis, Column, Given, Root
 from ..workbook import FigureSpec, TableSpec
 from .math import MathPrinter, latex_names, name_latex
@@ -189,6 +190,13 @@ class Material:
         ):
             return Badge(proof.status.value if proof else "not checked", "stated")
         return Badge(proof.status.value, "holds" if proof.status.passes else "fails")
+
+    # --- uncertainties
+
+    @cached_property
+    def budgets(self) -> tuple[Budget, ...]:
+        """Those of the results of which something is known."""
+        return tuple(budget for budget in self.report.uncertain().budgets if budget.is_known and budget.u > 0)
 
     # --- published values
 

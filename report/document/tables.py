@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby, islice
@@ -11,11 +12,12 @@ from ..cells.address import index_text
 from ..inputs.measurements import LeftOut
 from ..inputs.published import PublishedValue
 from ..result import verdict_words as words
+from ..result.uncertain import Budget, Contribution
 from ..result.verdict import ALL, INPUT, UNREACHABLE, TableVerdict
 from ..sheet import Axis
 from ..workbook import TableSpec
 from .material import Material
-from .numbers import is_pure, read, table_format
+from .numbers import Numeral, decimals, is_pure, read, rounded, stated, table_format
 from .parts import MOST, Head, Pair, SourceGroup, described, slug, why_address
 from .refereed import GOOD, RefereedPair, shown_mismatch
 from .tree import (
@@ -38,6 +40,8 @@ from .tree import (
 
 __all__ = ["Tables"]
 
+MOST_SOURCES, LEAST_SHARE = 3, 0.05
+"""The sources of an uncertainty that are named, and the least share of the variance of one."""
 OFF_BY = "recomputed minus published, in units of the last published digit"
 
 
@@ -156,12 +160,60 @@ class Tables:
         told = self.material.limits(heads)
         return (*joined(map(self.rich, told), "; "), ".") if told else ()
 
+    # --- what is known of the uncertainty
+
+    def uncertain(self) -> Table:
+        """The results with their uncertainties, and the sources that most of it comes from."""
+        made = (
+            _Made("result", lambda budget: Math(self._of(budget).latex), "symbol"),
+            _Made("value", lambda budget: Number(self._stated(budget)[0])),
+            _Made("u", lambda budget: Number(self._stated(budget)[1])),
+            _Made("k", self._factor),
+            _Made("U", self._expanded),
+            _Made("unit", lambda budget: Unit(self._of(budget).unit)),
+            _Made("most of it from", self._largest, "words", 0.24),
+        )
+        level = f"{100 * self.material.budgets[0].level:.12g}\u00a0%"
+        caption = (Strong(("Uncertainty of the results.",)), f" U is the expanded one, for {level}")
+        return _table("uncertain", caption, made, [((), self.material.budgets)], look="list", wide=True)
+
+    def _of(self, budget: Budget) -> Head:
+        return self.material.head(self.report.sheet[budget.name])
+
+    def _scale(self, budget: Budget) -> float:
+        return self.report.shown[budget.name].scale
+
+    def _stated(self, budget: Budget) -> tuple[Numeral, Numeral]:
+        scale = self._scale(budget)
+        return stated(budget.value / scale, budget.u / scale)
+
+    def _expanded(self, budget: Budget) -> Number | None:
+        if math.isnan(budget.factor):
+            return None
+        scale = self._scale(budget)
+        return Number(stated(budget.value / scale, budget.expanded / scale)[1])
+
+    def _factor(self, budget: Budget) -> Number | None:
+        return None if math.isnan(budget.factor) else Number(rounded(budget.factor, 3))
+
+    def _largest(self, budget: Budget) -> Inlines:
+        """The sources with the largest shares of the variance."""
+        told = [
+            self._source(each) for each in budget.contributions[:MOST_SOURCES] if each.share >= LEAST_SHARE
+        ]
+        if budget.second:
+            told.append((f"second order\u00a0{_percent(budget.second / budget.u**2)}",))
+        return joined(told, ", ")
+
+    def _source(self, each: Contribution) -> Inlines:
+        return Code(each.source.name), f"\u00a0{_percent(each.share)}"
+
     # --- what is published
 
     def published(self, group: SourceGroup) -> Table:
         """The published values of one place of the source, beside those that are recomputed."""
         made = (
-            _Made("cell", lambda pair: _symbol(pair.head)),
+            _Made("cell", lambda pair: Math(pair.head.latex)),
             _Made("index", lambda pair: pair.index),
             _Made("published", _printed, "aligned"),
             _Made("recomputed", lambda pair: Number(pair.again, pair.comparison.again), "aligned"),
@@ -209,7 +261,7 @@ class Tables:
         """What the referee says of every value by itself."""
         tip = "the least that was found, in half units of the last published digit"
         made = (
-            _Made("value", lambda value: value.pair.index or _symbol(value.pair.head)),
+            _Made("value", lambda value: value.pair.index or Math(value.pair.head.latex)),
             _Made(
                 "published", lambda value: Number(value.pair.published, value.pair.printed.text), "aligned"
             ),
@@ -306,6 +358,10 @@ class Tables:
             return {"identifier": why_address(one.cell) if one.cell.why else ""}
 
         return _table("missing-cells", caption, made, rows, row, look="list", cut=self.material.cut_remarks)
+
+
+def _percent(share: float) -> str:
+    return f"{decimals(100 * share, 0).text}\u00a0%"
 
 
 def _headed(head: Head) -> TableColumn:
