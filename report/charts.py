@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from sympy import Expr, Symbol
-
-from ..derivations.equation import Equation, Kind
 from .sheet import Axis, Column, Formula, Sheet
+
+if TYPE_CHECKING:
+    from sympy import Expr
 
 __all__ = [
     "BLUE", "INK", "STYLES", "VERMILION", "Chart", "Drawn", "Series", "copied", "drawn", "shade",
@@ -101,6 +101,10 @@ class Drawn:
 
 def drawn(name: str, axis: Axis, value: Expr, unit: str = "1", meaning: str = "", **more: Any) -> Column:
     """A column that only charts ask for; what else a :class:`Column` takes is `more`."""
+    from sympy import Symbol
+
+    from ..derivations.equation import Equation, Kind
+
     equation = Equation("", (Symbol("drawn"), value), "", Kind.DEFINITION, "for the chart")
     return Column(name, axis, Formula(equation), unit, meaning, positive=False, **more)
 

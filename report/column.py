@@ -5,18 +5,18 @@ Nothing here knows a model, a number or an output.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from sympy import And, Basic, Eq, Expr, Indexed, IndexedBase, Rational, Rel, Symbol, floor
-from sympy.logic.boolalg import Boolean
-
-from ..derivations.equation import Equation
-from ..derivations.reductions import REDUCTIONS
 from .content import content
 from .quantity import Bounds
+
+if TYPE_CHECKING:
+    from sympy import Basic, Expr, Indexed, Rel, Symbol
+    from sympy.logic.boolalg import Boolean
+
+    from ..derivations.equation import Equation
 
 __all__ = [
     "Axis",
@@ -24,15 +24,30 @@ __all__ = [
     "Formula",
     "Given",
     "Limit",
+    "Mentioned",
     "PairAxis",
     "Reference",
     "RepeatAxis",
     "Root",
     "Rule",
-    "name_of",
-    "references",
-    "within",
+    "SheetError",
 ]
+
+
+class SheetError(ValueError):
+    """A workbook declares something that cannot be a sheet.
+
+    Parameters
+    ----------
+    sentence : str
+    *about : str
+        What it is about, as the workbook calls it; where it is declared may be looked for by the first that
+        stands there.
+    """
+
+    def __init__(self, sentence: str, *about: str) -> None:
+        super().__init__(sentence)
+        self.about = about
 
 
 # --- index sets ------------------------------------------------------------------------------------------
@@ -55,11 +70,33 @@ class Axis:
     name: str
     index: Symbol
     size: Symbol
+    _WORDS: ClassVar[tuple[str, ...]] = ("index_name", "size_name")
 
     @property
     def row(self) -> str:
         """What one of its rows is called: ``test`` of ``tests``."""
         return self.name.removesuffix("s") or self.name
+
+    @cached_property
+    def index_name(self) -> str:
+        """What the index is called."""
+        return str(self.index.name)
+
+    @cached_property
+    def size_name(self) -> str:
+        """What its size is called."""
+        return str(self.size.name)
+
+    @property
+    def words(self) -> dict[str, Any]:
+        """What it says, but its symbols and parents."""
+        own = {name: getattr(self, name) for name in self._WORDS}
+        return {"name": self.name, "content": self.content, **own}
+
+    @cached_property
+    def alone(self) -> Axis:
+        """The same with rows that come with the data, whatever it is made of."""
+        return Axis(self.name, self.index, self.size)
 
     @property
     def maps(self) -> dict[Symbol, Axis]:
@@ -67,9 +104,19 @@ class Axis:
         return {self.index: self}
 
     @property
+    def named(self) -> dict[str, Axis]:
+        """The same by what the indices are called."""
+        return {self.index_name: self}
+
+    @property
     def ordinals(self) -> tuple[Symbol, ...]:
         """Running numbers that a formula on this axis may use as values, its own first."""
         return ()
+
+    @cached_property
+    def content(self) -> str:
+        """All that it says."""
+        return content(self)
 
     @property
     def parents(self) -> tuple[Axis, ...]:
@@ -99,11 +146,22 @@ class PairAxis(Axis):
     of: Axis
     first: Symbol
     second: Symbol
+    _WORDS = (*Axis._WORDS, "members", "choice")
 
     @property
     def maps(self) -> dict[Symbol, Axis]:
         """The pair's own number and those of its two members."""
         return {self.index: self, self.first: self.of, self.second: self.of}
+
+    @cached_property
+    def members(self) -> tuple[str, str]:
+        """What the numbers of both members are called."""
+        return self.first.name, self.second.name
+
+    @property
+    def named(self) -> dict[str, Axis]:
+        """The same by what the indices are called."""
+        return {self.index_name: self, **dict.fromkeys(self.members, self.of)}
 
     @property
     def parents(self) -> tuple[Axis, ...]:
@@ -115,18 +173,23 @@ class PairAxis(Axis):
         """Which of all pairs are rows, by the places of both members, from 1."""
         return self.first < self.second
 
+    @cached_property
+    def choice(self) -> str:
+        """The same in words; empty if it is every i < j."""
+        return "" if self.chosen == (self.first < self.second) else str(self.chosen)
+
     @property
     def parts(self) -> tuple[tuple[str, str], ...]:
         """The numbers of both members."""
         return tuple(
-            (str(member), f"{which} of {self.of.name}")
-            for member, which in ((self.first, "first"), (self.second, "second"))
+            (member, f"{which} of {self.of.name}")
+            for member, which in zip(self.members, ("first", "second"), strict=True)
         )
 
     @property
     def described(self) -> str:
         """Which pairs."""
-        return f"every pair {self.chosen} of {self.of.name}"
+        return f"every pair {self.choice or ' < '.join(self.members)} of {self.of.name}"
 
 
 @dataclass(frozen=True)
@@ -137,11 +200,22 @@ class RepeatAxis(Axis):
     step: Symbol
     count: str
     """Name of the given scalar that says how many, the same for all."""
+    _WORDS = (*Axis._WORDS, "step_name", "count")
 
     @property
     def maps(self) -> dict[Symbol, Axis]:
         """The row's own number, and all that its parent's row may name."""
         return {self.index: self, **self.of.maps}
+
+    @cached_property
+    def step_name(self) -> str:
+        """What the running number is called."""
+        return str(self.step.name)
+
+    @property
+    def named(self) -> dict[str, Axis]:
+        """The same by what the indices are called."""
+        return {self.index_name: self, **self.of.named}
 
     @property
     def ordinals(self) -> tuple[Symbol, ...]:
@@ -161,12 +235,12 @@ class RepeatAxis(Axis):
     @property
     def parts(self) -> tuple[tuple[str, str], ...]:
         """What names the parent's row, and the number in it."""
-        return (*self.of.parts, (str(self.step), f"running number in each of {self.of.name}"))
+        return (*self.of.parts, (self.step_name, f"running number in each of {self.of.name}"))
 
     @property
     def described(self) -> str:
         """How its rows are counted."""
-        return f"{self.step} = 1, 2, ... {self.count} for each of {self.of.name}"
+        return f"{self.step_name} = 1, 2, ... {self.count} for each of {self.of.name}"
 
 
 # --- rules -----------------------------------------------------------------------------------------------
@@ -186,29 +260,6 @@ class Given:
 
     source: str = "given"
     bounds: Bounds = field(default_factory=Bounds)
-
-
-def within(value: Expr, bounds: Bounds) -> Boolean:
-    """That a number is allowed, for every engine to print.
-
-    Parameters
-    ----------
-    value : Expr
-        A real symbol that assumes nothing, or all of it would be true already.
-    bounds : Bounds
-
-    Examples
-    --------
-    >>> within(Symbol("e", real=True), Bounds(low=0, high=1))
-    (e >= 0) & (e <= 1)
-    """
-    low, high = (None if end is None else Rational(repr(end)) for end in (bounds.low, bounds.high))
-    tests: list[Boolean] = [Eq(value, floor(value))] if bounds.integer else []
-    if low is not None:
-        tests.append(value > low if bounds.low_open else value >= low)
-    if high is not None:
-        tests.append(value < high if bounds.high_open else value <= high)
-    return And(*tests)
 
 
 @dataclass(frozen=True)
@@ -280,6 +331,11 @@ class Root:
     none: str = "no value of the interval satisfies the equation"
     two: str = "several values of the interval satisfy the equation"
 
+    @cached_property
+    def unknown_name(self) -> str:
+        """What the unknown is called."""
+        return str(self.unknown.name)
+
     @property
     def statements(self) -> tuple[Equation, ...]:
         """What the ledger must say."""
@@ -299,6 +355,26 @@ class Root:
 
 
 Rule = Given | Formula | Root
+
+
+@dataclass(frozen=True)
+class Mentioned:
+    """What the rule of a column names, where its algebra is not at hand.
+
+    Parameters
+    ----------
+    named : tuple of (str, str or None, str or None)
+        The names of a column, of the index, of the axis that it is summed over: those of its references, in
+        the order of the sheet.
+    summed : tuple of str
+        The names of the axes that it sums over, or takes a median over.
+    content : str
+        That of the column.
+    """
+
+    named: tuple[tuple[str, str | None, str | None], ...]
+    summed: tuple[str, ...]
+    content: str
 
 
 @dataclass(frozen=True)
@@ -322,6 +398,8 @@ class Limit:
     says: str
     source: str = ""
     silent: bool = False
+    mentioned: ClassVar[Mentioned | None] = None
+    """Of the column that says how far inside a row lies, if only a part of the limit is known."""
 
     @classmethod
     def of(cls, equation: Equation) -> Limit:
@@ -385,14 +463,20 @@ class Column:
     requires: tuple[tuple[Rel, str], ...] = ()
     exact: bool = False
     limits: tuple[Limit, ...] = ()
+    mentioned: ClassVar[Mentioned | None] = None
+    """Of a column of which only a part is known."""
 
     @cached_property
     def symbol(self) -> Symbol:
         """The name as a sympy symbol, with its assumptions."""
+        from sympy import Symbol
+
         return Symbol(self.name, positive=True) if self.positive else Symbol(self.name, real=True)
 
     def __getitem__(self, index: Any) -> Indexed:
         """The cell of a row."""
+        from sympy import IndexedBase
+
         return IndexedBase(self.symbol)[index]
 
     @property
@@ -405,7 +489,7 @@ class Column:
         """The published equation behind it."""
         return None if isinstance(self.rule, Given) else self.rule.equation
 
-    @property
+    @cached_property
     def source(self) -> str:
         """Number of its equation, or where it was given."""
         return self.rule.source if isinstance(self.rule, Given) else self.rule.equation.label
@@ -427,7 +511,8 @@ class Column:
         elif isinstance(rule, Root):
             turning = len(rule.turning), bool(rule.turning_by)
             own = (rule.unknown, rule.steps, *turning, rule.sign_low is None, rule.sign_high is None)
-        every = (self.name, self.axis, self.positive, type(rule).__name__, own, self.expressions)
+        axis = self.axis and self.axis.content
+        every = (self.name, axis, self.positive, type(rule).__name__, own, self.expressions)
         return content((*every, len(self.requires)))
 
 
@@ -450,41 +535,22 @@ class Reference:
     cell: Expr
     over: Axis | None = None
 
-    @property
-    def place(self) -> tuple[str, Axis | None]:
-        """The same for a cell of which something else is assumed."""
-        return str(self.cell), self.over
+    @cached_property
+    def name(self) -> str:
+        """The column's, or what else it is called."""
+        symbol = self.cell.base.label if self._is_indexed else self.cell
+        return str(getattr(symbol, "name", symbol))
 
-    @property
-    def index(self) -> Symbol | None:
+    @cached_property
+    def index(self) -> str | None:
         """The index that names its row; None for what has one value."""
-        return self.cell.indices[0] if isinstance(self.cell, Indexed) else None
+        return self.cell.indices[0].name if self._is_indexed else None
 
+    @property
+    def _is_indexed(self) -> bool:
+        return hasattr(self.cell, "indices")
 
-def references(
-    expression: Basic, sums: Mapping[Symbol, Axis], over: Axis | None = None
-) -> Iterator[Reference]:
-    """Everything that an expression names, in the order it stands there; the same may come twice.
-
-    Parameters
-    ----------
-    expression : Basic
-    sums : mapping of Symbol to Axis
-        The axis that a sum over a running number runs over.
-    over : Axis or None
-        The axis of the sum that the expression stands in.
-    """
-    if isinstance(expression, REDUCTIONS):
-        index = expression.limits[0][0]
-        yield from references(expression.function, sums, sums[index])
-    elif isinstance(expression, (Indexed, Symbol)):
-        yield Reference(expression, over)
-    else:
-        for argument in expression.args:
-            yield from references(argument, sums, over)
-
-
-def name_of(cell: Expr) -> str:
-    """The column's name in a cell, plain or indexed."""
-    symbol = cell.base.label if isinstance(cell, Indexed) else cell
-    return symbol.name if isinstance(symbol, Symbol) else str(symbol)
+    @property
+    def written(self) -> str:
+        """As the sheet writes it."""
+        return self.name if self.index is None else f"{self.name}[{self.index}]"

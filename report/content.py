@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import fields, is_dataclass
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from sympy import Basic, srepr
+if TYPE_CHECKING:
+    from sympy import Basic
 
 __all__ = ["Untold", "content"]
 
@@ -36,7 +38,8 @@ def content(part: Any) -> str:
     "(Add(Integer(1), Symbol('x', positive=True)), 2.0)"
     """
     kind = type(part)
-    if isinstance(part, Basic):
+    sympy = sys.modules.get("sympy")  # without it, nothing is of it
+    if sympy is not None and isinstance(part, sympy.Basic):
         if (kind.__module__ or "").partition(".")[0] not in _OURS:
             raise Untold
         return f"{kind.__name__}({', '.join(map(content, part.args))})" if part.args else _leaf(part)
@@ -52,4 +55,6 @@ def content(part: Any) -> str:
 
 @lru_cache(maxsize=4096, typed=True)
 def _leaf(part: Basic) -> str:
+    from sympy import srepr
+
     return str(srepr(part))

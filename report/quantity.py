@@ -13,7 +13,12 @@ from functools import cached_property
 
 from .distribution import Error, Shape
 
-__all__ = ["Bounds", "Printed"]
+__all__ = ["LARGEST", "SMALLEST", "Bounds", "Printed"]
+
+LARGEST = 2**1024 - 2**970
+"""What is no smaller than this rounds to no finite double."""
+SMALLEST = 2.0**-1022
+"""Below, doubles lose digits, and some programs hold zero: a positive quantity has no value there."""
 
 
 @dataclass(frozen=True)

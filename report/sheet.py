@@ -10,12 +10,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from keyword import iskeyword
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from sympy import Basic, Expr, Indexed, Symbol
-from sympy.logic.boolalg import Boolean
-
-from ..derivations.reductions import REDUCTIONS, Median
 from .column import (
     Axis,
     Column,
@@ -27,12 +23,16 @@ from .column import (
     RepeatAxis,
     Root,
     Rule,
-    name_of,
-    references,
-    within,
+    SheetError,
 )
-from .messages.errors import close
+from .partly import partly
 from .quantity import Bounds
+
+if TYPE_CHECKING:
+    from sympy import Expr, Symbol
+    from sympy.logic.boolalg import Boolean
+
+    from .named import Named
 
 __all__ = [
     "Axis",
@@ -48,25 +48,7 @@ __all__ = [
     "Rule",
     "Sheet",
     "SheetError",
-    "name_of",
-    "within",
 ]
-
-
-class SheetError(ValueError):
-    """A workbook declares something that cannot be a sheet.
-
-    Parameters
-    ----------
-    sentence : str
-    *about : str
-        What it is about, as the workbook calls it; where it is declared may be looked for by the first that
-        stands there.
-    """
-
-    def __init__(self, sentence: str, *about: str) -> None:
-        super().__init__(sentence)
-        self.about = about
 
 
 class CycleError(SheetError):
@@ -111,7 +93,8 @@ class Sheet:
         object.__setattr__(self, "by_name", names)
         _check_names(self)
         for column in self.columns:
-            _check_symbols(self, column)
+            if column.mentioned is None and column.expressions:
+                self.algebra.check(column)
         object.__setattr__(self, "_named", {c.name: tuple(self._read(c)) for c in self.columns})
         object.__setattr__(self, "order", tuple(self._sorted()))
 
@@ -131,7 +114,7 @@ class Sheet:
         def add(axis: Axis) -> None:
             for parent in axis.parents:
                 add(parent)
-            if found.setdefault(axis.name, axis) != axis:
+            if (same := found.setdefault(axis.name, axis)) is not axis and same != axis:
                 raise SheetError(f"two different index sets are called {axis.name!r}", axis.name)
 
         for column in self.columns:
@@ -140,14 +123,11 @@ class Sheet:
         return tuple(found.values())
 
     @cached_property
-    def sizes(self) -> dict[Symbol, Axis]:
-        """The axis whose number of rows a symbol stands for."""
-        return {axis.size: axis for axis in self.axes}
+    def algebra(self) -> Named:
+        """What the symbols of its rules mean."""
+        from .named import Named
 
-    @cached_property
-    def indices(self) -> dict[Symbol, Axis]:
-        """The axis that a sum over a running number runs over."""
-        return {axis.index: axis for axis in self.axes}
+        return Named(self.by_name, self.axes)
 
     # --- what may be given ----------------------------------------------------------------------------
 
@@ -179,6 +159,10 @@ class Sheet:
     @cached_property
     def guards(self) -> dict[str, tuple[Symbol, Boolean]]:
         """For each given column that is bound, a datum and what it must satisfy, for engines to print."""
+        from sympy import Symbol
+
+        from .named import within
+
         data = {name: Symbol(name, real=True) for name, own in self.bounds.items() if own != Bounds()}
         return {name: (datum, within(datum, self.bounds[name])) for name, datum in data.items()}
 
@@ -199,9 +183,7 @@ class Sheet:
 
     def precedents(self, column: Column) -> tuple[Column, ...]:
         """The columns that a column is computed from, in the order they were declared."""
-        return tuple(
-            self.by_name[name] for name in dict.fromkeys(name_of(r.cell) for r in self.named(column))
-        )
+        return tuple(self.by_name[name] for name in dict.fromkeys(r.name for r in self.named(column)))
 
     def dependents(self, column: Column) -> tuple[Column, ...]:
         """The columns that are computed from a column directly."""
@@ -219,23 +201,17 @@ class Sheet:
 
     def summed_axes(self, column: Column) -> tuple[Axis, ...]:
         """The axes that its rule sums over, or takes a median over."""
-        over = {
-            total.limits[0][0] for expression in column.expressions for total in expression.atoms(*REDUCTIONS)
-        }
-        return tuple(axis for axis in self.axes if axis.index in over)
+        if column.mentioned is not None:
+            return tuple(axis for axis in self.axes if axis.name in column.mentioned.summed)
+        return self.algebra.summed(column) if column.expressions else ()
 
     def _read(self, column: Column) -> Iterator[Reference]:
         """The cells that a column names, in the order of declaration."""
-        unknown = column.rule.unknown if isinstance(column.rule, Root) else None
-        found: set[Reference] = set()
-        for expression in column.expressions:
-            for reference in references(expression, self.indices):
-                if reference.cell == unknown or reference.cell in self.sizes:
-                    continue
-                if isinstance(reference.cell, Indexed):
-                    found.add(reference)
-                elif name_of(reference.cell) in self.by_name:
-                    found.add(Reference(reference.cell))  # a scalar is the same inside and outside of sums
+        if column.mentioned is not None:
+            here = (each for each in column.mentioned.named if each[0] in self.by_name)
+            yield from (self._known(column, *each) for each in here)
+            return
+        found = set(self.algebra.of(column)) if column.expressions else set()
         for axis in _with_parents((column.axis, *self.summed_axes(column))):
             if axis.repeats:
                 found.add(Reference(self.by_name[axis.repeats].symbol))
@@ -243,12 +219,20 @@ class Sheet:
         order = {axis.name: n for n, axis in enumerate(self.axes)}
         yield from sorted(
             found,
-            key=lambda r: (
-                declared[name_of(r.cell)],
-                str(r.cell),
-                -1 if r.over is None else order[r.over.name],
-            ),
+            key=lambda r: (declared[r.name], r.written, -1 if r.over is None else order[r.over.name]),
         )
+
+    def _known(self, column: Column, name: str, index: str | None, over: str | None) -> Reference:
+        """What a column names, of which only the words are known."""
+        summed = next((axis for axis in self.axes if axis.name == over), None)
+
+        def whole() -> Reference:
+            on, other = summed or column.axis, self.by_name[name]
+            if index is None or on is None:
+                return Reference(other.symbol, summed)
+            return Reference(other[next(i for i in on.maps if i.name == index)], summed)
+
+        return partly(Reference, {"name": name, "index": index, "over": summed}, whole)
 
     def _sorted(self) -> Iterator[Column]:
         """Depth first in the order of declaration; a cycle is shown as the path that closes it."""
@@ -287,31 +271,28 @@ def _check_names(sheet: Sheet) -> None:
     taken: dict[str, str] = {}
     for axis in sheet.axes:
         _check_name(axis.name, "an index set's")
-        own = {axis.index: "the index", axis.size: "the size"}
+        own = {axis.index_name: "the index", axis.size_name: "the size"}
         if isinstance(axis, PairAxis):
-            own |= {axis.first: "the first member", axis.second: "the second member"}
+            own |= dict(zip(axis.members, ("the first member", "the second member"), strict=True))
         elif isinstance(axis, RepeatAxis):
-            own |= {axis.step: "the running number"}
+            own |= {axis.step_name: "the running number"}
             count = sheet.by_name.get(axis.count)
             if count is None or count.axis is not None or not isinstance(count.rule, Given):
                 raise SheetError(
                     f"{axis.name}: {axis.count!r} must be a given scalar; it says how many rows there are",
                     axis.count,
                 )
-        for symbol, what in own.items():
-            if symbol.name in taken:
-                raise SheetError(
-                    f"the symbol {symbol.name!r} is {taken[symbol.name]} and {what} of {axis.name}",
-                    symbol.name,
-                )
-            taken[symbol.name] = f"{what} of {axis.name}"
+        for name, what in own.items():
+            if name in taken:
+                raise SheetError(f"the symbol {name!r} is {taken[name]} and {what} of {axis.name}", name)
+            taken[name] = f"{what} of {axis.name}"
     for column in sheet.columns:
         _check_name(column.name, "a column's")
         if column.name in taken:
             raise SheetError(
                 f"the column {column.name!r} is called as {taken[column.name]} is; rename one", column.name
             )
-        unknown = column.rule.unknown.name if isinstance(column.rule, Root) else column.name
+        unknown = column.rule.unknown_name if isinstance(column.rule, Root) else column.name
         if unknown != column.name and (unknown in sheet.by_name or unknown in taken):
             raise SheetError(
                 f"{column.name}: its unknown {unknown!r} is called as something else of the sheet is",
@@ -323,80 +304,3 @@ def _check_names(sheet: Sheet) -> None:
 def _check_name(name: str, whose: str) -> None:
     if not name.isidentifier() or iskeyword(name):
         raise SheetError(f"{name!r} cannot be {whose} name: letters, digits and _ make a name", name)
-
-
-def _check_symbols(sheet: Sheet, column: Column) -> None:
-    """Every symbol is a column, a size, or a running number that means something on this axis."""
-    for expression in column.expressions:
-        _check_scope(sheet, column, expression, column.axis)
-    if isinstance(column.rule, Root) and column.axis is not None:
-        for total in column.rule.expression.atoms(*REDUCTIONS):
-            if total.has(column.rule.unknown):
-                raise SheetError(
-                    f"{column.name}: {total} names the unknown of a row; a root whose equation sums over its "
-                    f"unknown is one number, not one for each of {column.axis.name}",
-                    column.name,
-                )
-
-
-def _check_scope(sheet: Sheet, column: Column, expression: Basic, axis: Axis | None) -> None:
-    if isinstance(expression, REDUCTIONS):
-        limits = expression.limits
-        over = sheet.indices.get(limits[0][0])
-        if over is None or len(limits) != 1 or limits[0][1:] != (1, over.size):
-            known = ", ".join(f"({a.index}, 1, {a.size})" for a in sheet.axes) or "none"
-            shown = ", ".join(map(str, limits))
-            raise SheetError(
-                f"{column.name}: a sum runs over all rows of one index set ({known}), not over {shown}",
-                column.name,
-            )
-        if isinstance(expression, Median) and not isinstance(expression.function, Indexed):
-            raise SheetError(
-                f"{column.name}: a median is of the cells of a column, not of {expression.function}; "
-                "give that a column of its own",
-                column.name,
-            )
-        if isinstance(expression, Median) and isinstance(column.rule, Root):
-            raise SheetError(f"{column.name}: a median in a root has to be a column of its own", column.name)
-        _check_scope(sheet, column, expression.function, over)
-    elif isinstance(expression, Indexed):
-        _check_cell(sheet, column, expression, axis)
-    elif isinstance(expression, Symbol):
-        _check_symbol(sheet, column, expression, axis)
-    else:
-        for argument in expression.args:
-            _check_scope(sheet, column, argument, axis)
-
-
-def _check_symbol(sheet: Sheet, column: Column, symbol: Symbol, axis: Axis | None) -> None:
-    own = column.rule.unknown if isinstance(column.rule, Root) else None
-    if symbol == own or symbol in sheet.sizes or (axis is not None and symbol in axis.ordinals):
-        return
-    other = _find(sheet, column, symbol.name)
-    if other.axis is not None:
-        raise SheetError(
-            f"{column.name}: {symbol.name} has one value for each of {other.axis.name}; say which",
-            column.name,
-        )
-
-
-def _check_cell(sheet: Sheet, column: Column, cell: Indexed, axis: Axis | None) -> None:
-    other = _find(sheet, column, name_of(cell))
-    maps = {} if axis is None else axis.maps
-    where = maps.get(cell.indices[0])
-    if where is None or other.axis != where or len(cell.indices) != 1:
-        place = "a scalar" if other.axis is None else f"on {other.axis.name}"
-        allowed = ", ".join(f"{i} ({a.name})" for i, a in maps.items()) or "none"
-        raise SheetError(
-            f"{column.name}: {cell} names a row of nothing: {other.name} is {place}; indices here: {allowed}",
-            column.name,
-        )
-
-
-def _find(sheet: Sheet, column: Column, name: str) -> Column:
-    other = sheet.by_name.get(name)
-    if other is None:
-        near = close(name, sheet.by_name)
-        hint = f"; did you mean {near!r}?" if near else ""
-        raise SheetError(f"{column.name}: no column is called {name!r}{hint}", name, column.name)
-    return other

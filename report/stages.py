@@ -63,15 +63,20 @@ def silent(_: str) -> None:
     """Nobody watches."""
 
 
-def prepared(inputs: Inputs, ledger: Ledger) -> Prepared:
+def prepared(inputs: Inputs, ledger: Callable[[], Ledger]) -> Prepared:
     """The inputs with their sheet, of which dimensions and names are in order."""
     from . import refusals
+    from .kept_sheet import sheet_of
     from .sheet import SheetError
+
+    def check(sheet: Sheet) -> None:
+        from .stated import refuse_what_is_not_stated
+
+        refuse_what_is_not_stated(sheet, ledger())
 
     own = inputs.workbook.name not in SHIPPED
     try:
-        sheet = inputs.workbook.sheet(inputs.given)
-        refusals.refuse_what_is_not_stated(sheet, ledger)
+        sheet = sheet_of(inputs.workbook, inputs.given, check)
     except SheetError as error:
         if not own:
             raise  # ours, and our bug
@@ -87,7 +92,7 @@ def prepared(inputs: Inputs, ledger: Ledger) -> Prepared:
 def of_cells(inputs: Inputs) -> Sequence[Diagnostic]:
     """What is wrong with the cells that a folder names, if that is asked because something else is wrong."""
     try:
-        prepared(inputs, inputs.workbook.ledger()).check_cells()
+        prepared(inputs, inputs.workbook.ledger).check_cells()
     except LoopsheetError as error:
         return error.diagnostics
     return ()
@@ -99,7 +104,7 @@ def _drawings(inputs: Inputs) -> Collection[str]:
     return figures.drawings(inputs.workbook)
 
 
-def evaluated(made: Prepared, ledger: Ledger, step: Step) -> Report:
+def evaluated(made: Prepared, ledger: Callable[[], Ledger], step: Step) -> Report:
     """Everything but the proofs."""
     inputs, sheet = made.inputs, made.sheet
     from .cells.layout import how_large
@@ -121,7 +126,7 @@ def evaluated(made: Prepared, ledger: Ledger, step: Step) -> Report:
         marks=Marks(whole, limits),
         exactly=exactly,
         shown={column.name: shown(column, sheet, inputs) for column in sheet.columns},
-        ledger=ledger,
+        algebra=ledger,
         proofs=(),
         errata=(),
         comparisons=compare(inputs.published, values),
@@ -154,7 +159,7 @@ def judged(report: Report, every: bool = True, step: Step = silent) -> Report:
     computed = evaluate(whole.sheet, made.labels, made.data)
     if inputs is report.inputs:
         return replace(report, engines=_agreements(report, computed, every))
-    few = evaluated(made, report.ledger, silent)
+    few = evaluated(made, report.algebra, silent)
     found = _agreements(few, sample.with_own(computed, whole), every)
     rows = next(axis.name for axis in report.sheet.axes if not axis.parents)
     told = f"{len(inputs.tests)} of {len(report.inputs.tests)} {rows}"
@@ -198,9 +203,21 @@ def refereed_values(
 ) -> tuple[Referee, tuple[Comparison, ...]]:
     """The same of values alone: the verdicts, and every published value with its own."""
     from . import referee
+    from .kept_sheet import of_shipped
     from .referee.judging import referee as judge
 
-    found = judge(made.sheet, made.inputs, values, made.data, step)
+    workbook, given = made.inputs.workbook, made.inputs.given
+
+    def numbers() -> dict[str, list[str]]:
+        from .referee.numbers import numbers_of
+
+        return numbers_of(made.sheet, workbook.ledger())
+
+    def known() -> dict[str, list[str]]:
+        found: dict[str, list[str]] = of_shipped(workbook, given, "numbers of equations", numbers)
+        return found
+
+    found = judge(made.sheet, made.inputs, values, made.data, step, known)
     return found, referee.refereed(referee.compare(made.inputs.published, values), found)
 
 

@@ -116,14 +116,14 @@ class Study:
     @_part("sheet")
     def prepared(self) -> Prepared:
         """The inputs with their sheet, dimensions and names checked."""
-        return stages.prepared(self.inputs, self.ledger)
+        return stages.prepared(self.inputs, lambda: self.ledger)
 
     # --- what is computed ---
 
     @_part("values")
     def computed(self) -> Report:
         """All cells, without proofs, engines and referee."""
-        return stages.evaluated(self.prepared, self.ledger, self.step)
+        return stages.evaluated(self.prepared, lambda: self.ledger, self.step)
 
     @_part("proofs")
     def proof_data(self) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from typing import Any
 import mpmath
 import numpy as np
 from random_campaigns import SHEETS, Broken, Campaign, Node, judge_of, laid_out, numpy_reads
-from sympy import Float, Indexed, preorder_traversal
+from sympy import Float, preorder_traversal
 
 from loopsheet.report.cells.layout import rows_of
 from loopsheet.report.cells.values import CODES, Status
@@ -20,8 +20,8 @@ from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.judge.engines import EPS, LIMIT, Judge
 from loopsheet.report.judge.readers import Reading
-from loopsheet.report.plan.domain import LARGEST, SMALLEST
-from loopsheet.report.sheet import Column, Formula, name_of
+from loopsheet.report.quantity import LARGEST, SMALLEST
+from loopsheet.report.sheet import Column, Formula
 
 __all__ = ["Tally", "compare"]
 
@@ -134,9 +134,9 @@ def _steps_beyond(campaign: Campaign, judge: Judge, name: str, row: int) -> bool
     for reference in judge.sheet.named(column):
         if reference.over is not None:
             return False
-        rows = rows_of(reference.cell, column.axis, layouts)
-        at = row if isinstance(reference.cell, Indexed) else 0
-        value = judge.judged.value[name_of(reference.cell)][at if rows is None else rows[row]]
+        rows = rows_of(reference.index, column.axis, layouts)
+        at = 0 if reference.index is None else row
+        value = judge.judged.value[reference.name][at if rows is None else rows[row]]
         cells[reference.cell] = Float(value, exact.DIGITS)
     steps = (step.xreplace(cells) for step in preorder_traversal(column.rule.expression))
     return any(step.is_number and not SMALLEST <= abs(step) < LARGEST for step in steps if step != 0)

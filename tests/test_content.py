@@ -16,10 +16,12 @@ from loopsheet.report.cells.values import Status
 from loopsheet.report.column import Axis, Column, Formula, Given, PairAxis, Root
 from loopsheet.report.content import Untold, content
 from loopsheet.report.engines import numpy as engine
+from loopsheet.report.engines import numpy_texts
 from loopsheet.report.engines.numpy import Program
-from loopsheet.report.judge import bounds, chain
+from loopsheet.report.judge import bounds
 from loopsheet.report.judge.chain import Made
 from loopsheet.report.machine.kept import SETTING
+from loopsheet.report.plan import derivatives
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Sheet
 
@@ -109,8 +111,8 @@ def test_what_is_kept_computes_the_same_and_nothing_is_lowered(
         raise AssertionError
 
     with monkeypatch.context() as patch:
-        patch.setattr(engine, "lowered", fail)
-        patch.setattr(chain, "derivatives", fail)
+        patch.setattr(numpy_texts, "program_texts", fail)
+        patch.setattr(derivatives, "derivatives", fail)
         assert made() == first
         again.append(Made.of(SHEET).nodes)
         with pytest.raises(AssertionError):

@@ -48,7 +48,8 @@ from loopsheet.report.engines.excel_formulas import guard
 from loopsheet.report.engines.excel_roots import Unrolled, unroll
 from loopsheet.report.engines.excel_values import auxiliary_texts, auxiliary_values
 from loopsheet.report.machine.kept import SETTING
-from loopsheet.report.plan import RootNode, RowSum, lowered_column
+from loopsheet.report.plan.lowering import lowered_column
+from loopsheet.report.plan.nodes import RootNode, RowSum
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet

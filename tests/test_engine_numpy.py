@@ -34,10 +34,10 @@ from loopsheet.derivations.equation import Equation
 from loopsheet.derivations.reductions import Median
 from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.engines.numpy import Program, kernel
-from loopsheet.report.engines.numpy_code import ArrayPrinter
+from loopsheet.report.engines.numpy import Program
+from loopsheet.report.engines.numpy_code import ArrayPrinter, kernel
 from loopsheet.report.engines.numpy_rows import Kept
-from loopsheet.report.plan import RowSum
+from loopsheet.report.plan.nodes import RowSum
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet, SheetError
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
 

@@ -15,7 +15,7 @@ from loopsheet.report.cells.values import CODES, Status
 from loopsheet.report.engines import ENGINES, exact
 from loopsheet.report.judge.engines import EPS, LIMIT, Judge, _number
 from loopsheet.report.judge.readers import Case, Reading
-from loopsheet.report.plan.domain import SMALLEST
+from loopsheet.report.quantity import SMALLEST
 
 
 @pytest.fixture(scope="module")

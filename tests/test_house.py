@@ -49,7 +49,8 @@ def rooms(*names: str) -> set[str]:
 
 
 # What an author of a workbook writes with, and what becomes of it.
-AUTHOR = PROVER | rooms("messages", "distribution", "quantity", "column", "sheet", "charts", "workbook")
+AUTHOR = PROVER | rooms("messages", "distribution", "quantity", "column", "named", "partly", "sheet")
+AUTHOR |= rooms("charts", "workbook")
 DECLARED = AUTHOR | rooms("cells")
 
 MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
@@ -65,8 +66,10 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.distribution": (set(), set()),
     "report.quantity": (rooms("distribution"), set()),
     "report.content": (set(), ALGEBRA),
+    "report.partly": (set(), set()),
     "report.column": (PROVER | rooms("content", "quantity"), ALGEBRA),
-    "report.sheet": (PROVER | rooms("column", "messages", "quantity"), ALGEBRA),
+    "report.named": (PROVER | rooms("column", "messages", "quantity"), ALGEBRA),
+    "report.sheet": (rooms("column", "named", "partly", "quantity"), ALGEBRA),
     "report.charts": (PROVER | rooms("sheet"), ALGEBRA),
     "report.cells": (DECLARED - rooms("workbook"), ALGEBRA | {"numpy", "pint"}),
     "report.workbook": (DECLARED, ALGEBRA),
@@ -116,7 +119,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     ),
     "report.workbooks": (DECLARED | rooms("judge", "result", "workbooks") | {"derivations"}, ALGEBRA),
     "report.workbooks.soft_impact_schematics": (
-        DECLARED | rooms("engines.numpy", "result", "views.drawing", "workbooks") | {"derivations"},
+        DECLARED | rooms("engines.numpy_code", "result", "views.drawing", "workbooks") | {"derivations"},
         {"matplotlib", "numpy", "sympy"},
     ),
     # --- above them all: the study of a folder, what is made of it, and who asks

@@ -16,7 +16,7 @@ from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
-from loopsheet.report.workbooks.soft_impact_charts import columns
+from loopsheet.report.workbooks.soft_impact_curves import columns
 from loopsheet.report.workbooks.soft_impact_schematics import (
     FRICTION,
     SCHEMATIC,
@@ -61,7 +61,7 @@ def branch(values: Values, name: str) -> dict[int, tuple[Array, Array]]:
     x, F = (values.value[f"{name}_{of}"] for of in "xF")
     ok = (values.status[f"{name}_x"] == 0) & (values.status[f"{name}_F"] == 0)
     layout, labels = values.layouts["loops"], values.layouts["tests"].labels[:, 0]
-    which = labels[layout.named["k"]]
+    which = labels[layout.rows["k"]]
     return {int(test): (x[ok & (which == test)], F[ok & (which == test)]) for test in np.unique(which[ok])}
 
 

@@ -14,8 +14,9 @@ from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.judge.engines import compare
 from loopsheet.report.judge.readers import Case, run_javascript
-from loopsheet.report.plan import RowSum
-from loopsheet.report.plan.domain import SMALLEST, defined, is_positive
+from loopsheet.report.plan.domain import defined, is_positive
+from loopsheet.report.plan.nodes import RowSum
+from loopsheet.report.quantity import SMALLEST
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 k, n = symbols("k n", integer=True, positive=True)

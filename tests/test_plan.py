@@ -12,8 +12,9 @@ from loopsheet.derivations.equation import Equation
 from loopsheet.derivations.reductions import Median
 from loopsheet.report.cli import main
 from loopsheet.report.engines.numpy import Program, evaluate
-from loopsheet.report.plan import Leaf, Map, Part, RowSum, Total, lowered
 from loopsheet.report.plan.derivatives import derivatives, rounding
+from loopsheet.report.plan.lowering import lowered
+from loopsheet.report.plan.nodes import Leaf, Map, Part, RowSum, Total
 from loopsheet.report.plan.text import text
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, Root, Sheet
@@ -124,7 +125,7 @@ def test_a_name_that_is_taken_is_not_given_twice() -> None:
     names = [symbol.name for symbol in plan.leaves]
     assert len(set(names)) == len(names)
     assert plan.named["a_i"] == Leaf("cells", "a_i")
-    assert plan.named["a_i_of_pairs"] == Leaf("cells", "a", PAIRS, i)
+    assert plan.named["a_i_of_pairs"] == Leaf("cells", "a", PAIRS, "i")
 
 
 def test_what_columns_share_is_computed_once_and_costs_no_bit() -> None:

@@ -21,7 +21,7 @@ from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.engines.numpy_root import RootProgram
 from loopsheet.report.engines.roots import derivatives, hoist, householder, magnitude, step
-from loopsheet.report.plan import RowSum
+from loopsheet.report.plan.nodes import RowSum
 from loopsheet.report.sheet import Root, Sheet
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
 

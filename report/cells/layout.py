@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Expr, Indexed, Symbol, lambdify
 
-from ..sheet import Axis, Column, PairAxis, RepeatAxis, Sheet, name_of
+from ..sheet import Axis, Column, PairAxis, RepeatAxis, Sheet
 
 __all__ = ["Layout", "Precedent", "how_large", "lay_out", "precedents"]
 
@@ -23,28 +22,18 @@ class Layout:
     ----------
     size : int
         How many rows.
-    rows : mapping of Symbol to integer array (size,)
-        For each index that formulas may use, the row it names, from 0.
-    ordinals : mapping of Symbol to float array (size,)
+    rows : mapping of str to integer array (size,)
+        For each index that formulas may use, by what it is called, the row it names, from 0.
+    ordinals : mapping of str to float array (size,)
         Running numbers that formulas use as values, from 1.
     labels : integer array (size, parts)
         How each row is called: ``2`` for a test, ``1 2`` for a pair, ``1 2 7`` for a point.
     """
 
     size: int
-    rows: Mapping[Symbol, NDArray[np.intp]]
-    ordinals: Mapping[Symbol, NDArray[np.float64]]
+    rows: Mapping[str, NDArray[np.intp]]
+    ordinals: Mapping[str, NDArray[np.float64]]
     labels: NDArray[np.int64]
-
-    @cached_property
-    def named(self) -> dict[str, NDArray[np.intp]]:
-        """The rows by the names of indices."""
-        return {index.name: rows for index, rows in self.rows.items()}
-
-    @cached_property
-    def numbered(self) -> dict[str, NDArray[np.float64]]:
-        """The running numbers by their names."""
-        return {symbol.name: number for symbol, number in self.ordinals.items()}
 
 
 def lay_out(
@@ -83,21 +72,22 @@ def how_large(sheet: Sheet, layouts: Mapping[str, Layout]) -> int:
 
 def _given(axis: Axis, labels: Sequence[int]) -> Layout:
     own = np.arange(len(labels))
-    return Layout(len(labels), {axis.index: own}, {}, np.asarray(labels, dtype=np.int64).reshape(-1, 1))
+    return Layout(len(labels), {axis.index_name: own}, {}, np.asarray(labels, dtype=np.int64).reshape(-1, 1))
 
 
 @cache
 def _chosen(axis: PairAxis) -> Callable[..., NDArray[np.bool_]]:
-    if axis.chosen == (axis.first < axis.second):
-        return np.less  # nothing is printed for what nearly all choose
+    from sympy import lambdify
+
     chosen: Callable[..., NDArray[np.bool_]] = lambdify((axis.first, axis.second), axis.chosen, "numpy")
     return chosen
 
 
 def _pairs(axis: PairAxis, parent: Layout) -> Layout:
     number = np.arange(1, parent.size + 1)
-    first, second = np.nonzero(np.broadcast_to(_chosen(axis)(number[:, None], number), (parent.size,) * 2))
-    rows = {axis.index: np.arange(first.size), axis.first: first, axis.second: second}
+    chosen = _chosen(axis) if axis.choice else np.less
+    first, second = np.nonzero(np.broadcast_to(chosen(number[:, None], number), (parent.size,) * 2))
+    rows = {axis.index_name: np.arange(first.size), **dict(zip(axis.members, (first, second), strict=True))}
     return Layout(first.size, rows, {}, np.hstack([parent.labels[first], parent.labels[second]]))
 
 
@@ -107,9 +97,9 @@ def _repeats(axis: RepeatAxis, parent: Layout, count: int) -> Layout:
     which = np.repeat(np.arange(parent.size), int(count))
     step = np.tile(np.arange(1, int(count) + 1), parent.size)
     rows = {index: named[which] for index, named in parent.rows.items()}
-    rows[axis.index] = np.arange(which.size)
-    ordinals = {symbol: number[which] for symbol, number in parent.ordinals.items()}
-    ordinals[axis.step] = step.astype(np.float64)
+    rows[axis.index_name] = np.arange(which.size)
+    ordinals = {name: number[which] for name, number in parent.ordinals.items()}
+    ordinals[axis.step_name] = step.astype(np.float64)
     return Layout(which.size, rows, ordinals, np.hstack([parent.labels[which], step.reshape(-1, 1)]))
 
 
@@ -146,13 +136,13 @@ class Precedent:
 def precedents(sheet: Sheet, layouts: Mapping[str, Layout], column: Column) -> tuple[Precedent, ...]:
     """Everything that a column's rule names; columns declared first come first."""
     return tuple(
-        Precedent(sheet[name_of(r.cell)], r.over, rows_of(r.cell, r.over or column.axis, layouts))
+        Precedent(sheet[r.name], r.over, rows_of(r.index, r.over or column.axis, layouts))
         for r in sheet.named(column)
     )
 
 
-def rows_of(cell: Expr, axis: Axis | None, layouts: Mapping[str, Layout]) -> NDArray[np.intp] | None:
-    """The rows that a cell names for each row of an axis; None where they are the same, or a scalar's."""
-    if axis is None or not isinstance(cell, Indexed) or cell.indices[0] == axis.index:
+def rows_of(index: str | None, axis: Axis | None, layouts: Mapping[str, Layout]) -> NDArray[np.intp] | None:
+    """The rows that an index names for each row of an axis; None where they are the same, or a scalar's."""
+    if axis is None or index is None or index == axis.index_name:
         return None
-    return layouts[axis.name].rows[cell.indices[0]]
+    return layouts[axis.name].rows[index]

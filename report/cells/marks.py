@@ -10,15 +10,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain, count
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import And, Basic, Expr, Ge, Gt, Le, Lt, Max, Min, Or, Symbol
 
-from ...derivations.equation import Equation, Kind
-from ..column import within
-from ..quantity import Bounds
-from ..sheet import Column, Formula, Limit, Sheet, SheetError
+from ..partly import partly
+from ..sheet import Column, Formula, Limit, Sheet
 from .values import Status, Values
 
 __all__ = ["Margin", "MarkCount", "Marks", "margins", "with_margins"]
@@ -87,39 +85,29 @@ def margins(sheet: Sheet) -> tuple[Margin, ...]:
             names = chain([f"{column.name}_margin"], (f"{column.name}_margin_{n}" for n in count(2)))
             name = next(name for name in names if name not in taken)
             taken.add(name)
-            says = f"{limit.mark} where this is negative"
-            rule = Formula(Equation("", (Symbol(name), _of(limit, column)), says, Kind.DEFINITION, says))
-            own = Column(name, column.axis, rule, meaning=says, positive=False)
-            found.append(Margin(column, limit, own))
+            found.append(Margin(column, limit, _column(name, column, limit)))
     return tuple(found)
+
+
+def _column(name: str, of: Column, limit: Limit) -> Column:
+    """The column of a margin; its algebra is made at once only if it has to be read."""
+    says = f"{limit.mark} where this is negative"
+
+    def whole() -> Column:
+        from .limits import inside
+
+        return Column(name, of.axis, Formula(inside(limit, of, name, says)), meaning=says, positive=False)
+
+    if limit.mentioned is None:
+        return whole()
+    rule = partly(Formula, {}, lambda: cast(Formula, whole().rule))
+    known = {"mentioned": limit.mentioned, "content": limit.mentioned.content, "source": says, "requires": ()}
+    return partly(Column, {**vars(Column(name, of.axis, rule, meaning=says, positive=False)), **known}, whole)
 
 
 def with_margins(sheet: Sheet) -> Sheet:
     """The sheet with its margins behind its columns."""
     return Sheet((*sheet.columns, *(margin.column for margin in margins(sheet))))
-
-
-def _of(limit: Limit, column: Column) -> Expr:
-    """How far inside of a limit a row lies."""
-    if not isinstance(limit.inside, Bounds):
-        return _margin(limit.inside, column)
-    datum = Symbol(column.name, real=True)
-    found: Expr = _margin(within(datum, limit.inside), column).xreplace({datum: column.cell})
-    return found
-
-
-def _margin(inside: Basic, column: Column) -> Expr:
-    """What is negative where a relation does not hold."""
-    match inside:
-        case And():
-            return Min(*(_margin(part, column) for part in inside.args))
-        case Or():
-            return Max(*(_margin(part, column) for part in inside.args))
-        case Le() | Lt():
-            return inside.rhs - inside.lhs
-        case Ge() | Gt():
-            return inside.lhs - inside.rhs
-    raise SheetError(f"{column.name}: a limit compares by < or >, it cannot be {inside}", column.name)
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,9 @@ from sympy import Basic, Expr, Indexed, sstr
 from ...derivations import dimensions
 from ...derivations.dimensions import PURE, Dimension, DimensionError, Dimensions, text_of
 from ...derivations.vocabulary import NO_WORDS
+from ..named import name_of
 from ..quantity import Bounds
-from ..sheet import Column, Formula, Given, Root, Sheet, SheetError, name_of
+from ..sheet import Column, Formula, Given, Root, Sheet, SheetError
 
 __all__ = ["Dimension", "DimensionMismatch", "check", "dimension_of_unit"]
 

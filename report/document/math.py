@@ -19,7 +19,8 @@ from sympy.printing.latex import LatexPrinter, translate
 
 from ...derivations.reductions import Median
 from ...derivations.vocabulary import Vocabulary
-from ..sheet import Column, name_of
+from ..named import name_of
+from ..sheet import Column
 
 __all__ = ["MathPrinter", "latex_names", "name_latex", "with_index"]
 

@@ -7,25 +7,27 @@ may be. Where neither sees it, every row is decided alone (:mod:`~loopsheet.repo
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from sympy import Add, Expr, Mul, Piecewise, Symbol, ceiling, degree, diff, exp, false, floor, sift, sign
 from sympy.logic.boolalg import Boolean
 
 from ..column import Root
-from ..plan import Leaf, Plan, RootNode, RowSum, lowered_column
 from ..plan.domain import defined, typed_symbols
+from ..plan.lowering import lowered_column
+from ..plan.nodes import Leaf, Plan, RootNode, RowSum
 from ..sheet import Column, Sheet, SheetError
+from .interval_functions import holds
 from .intervals import Intervals
-from .mpmath_intervals import differences, holds, printed
-from .numpy_code import SAME, Kernel, kernel
+from .kernels import Enclosing
+from .mpmath_intervals import differences, printed
+from .numpy_code import kernel
 from .roots import magnitude
 
-__all__ = ["Enclosing", "certified", "enclosing", "held", "slope", "typed_form"]
+__all__ = ["certified", "enclosing", "held", "slope", "typed_form"]
 
 JUMPS = (floor, ceiling, sign, Piecewise)
 
@@ -162,31 +164,6 @@ def typed_form(sheet: Sheet, plan: Plan, node: RootNode) -> tuple[Expr, Symbol]:
     plain = Symbol(node.unknown.name, real=True)
     form: Expr = node.form.xreplace({**typed_symbols(sheet, plan.leaves), node.unknown: plain})
     return form, plain
-
-
-@dataclass(frozen=True)
-class Enclosing(Kernel):
-    """What intervals are put into.
-
-    Parameters
-    ----------
-    reach : Kernel or None
-        What the exponents are at most, for the largest sizes of all that they name, where the unknown stands
-        in nothing but sums of exponentials over one axis: each of their terms rises, or falls, with it.
-    """
-
-    reach: Kernel | None = None
-
-    @property
-    def plain(self) -> dict[str, Any]:
-        """What it is, as data."""
-        return {**super().plain, "reach": self.reach and self.reach.plain}
-
-    @classmethod
-    def of_plain(cls, plain: Mapping[str, Any], functions: Any = SAME) -> Self:
-        """That of such data."""
-        reach = plain["reach"] and Kernel.of_plain(plain["reach"])
-        return replace(super().of_plain(plain, functions), reach=reach)
 
 
 def enclosing(sheet: Sheet, plan: Plan, node: RootNode) -> Enclosing:

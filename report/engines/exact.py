@@ -1,7 +1,8 @@
 """The exact engine: the same sheet at 50 digits, cell by cell, to judge all other engines.
 
 It shares the sheet's rules with the others and nothing of their programs: expressions are printed for
-mpmath, roots are bracketed and then narrowed until 50 digits stand. It is slow and not meant for large data.
+mpmath (:mod:`~loopsheet.report.engines.exact_texts`), roots are bracketed and then narrowed until 50 digits
+stand. It is slow and not meant for large data.
 """
 
 from __future__ import annotations
@@ -18,20 +19,16 @@ import mpmath
 import numpy as np
 from mpmath.libmp import round_nearest, to_float
 from numpy.typing import NDArray
-from sympy import Basic, Expr, Indexed, Symbol, lambdify
 
-from ...derivations.reductions import REDUCTIONS, Median
-from ..cells.layout import Layout, lay_out, precedents, rows_of
+from ..cells.layout import Layout, lay_out, precedents
 from ..cells.values import Status, Values, how_many, inherited, rows_kept
-from ..plan import Leaf, RootNode, lowered_column
-from ..plan.domain import LARGEST, SMALLEST, typed
-from ..quantity import Bounds
-from ..sheet import Axis, Column, Formula, Given, Root, Sheet, name_of
-from .certified import certified, enclosing, slope
+from ..plan.kept import of_sheet
+from ..quantity import LARGEST, SMALLEST, Bounds
+from ..sheet import Column, Given, Sheet
 from .exact_roots import Enclose, brackets, of_arrays, of_mpmath
 from .intervals import Intervals
 from .isolation import Doubtful
-from .numpy_root import terms_of
+from .kernels import Enclosing, function_of
 
 __all__ = ["DIGITS", "ExactValues", "evaluate", "laid_out"]
 
@@ -158,11 +155,24 @@ def laid_out(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[st
     return lay_out(sheet, labels, counts)
 
 
+def _texts(sheet: Sheet) -> Mapping[str, Any]:
+    """What is computed of each column, printed now or before."""
+
+    def make() -> dict[str, Any]:
+        from .exact_texts import exact_texts
+
+        return exact_texts(sheet)
+
+    found: Mapping[str, Any] = of_sheet(sheet, "program at 50 digits", (), make)
+    return found
+
+
 class _Exact:
     """One evaluation at 50 digits."""
 
     def __init__(self, sheet: Sheet, layouts: Mapping[str, Layout], given: Mapping[str, list[Any]]) -> None:
         self.sheet, self.layouts, self.given = sheet, layouts, given
+        self.texts = _texts(sheet)
         self.value: dict[str, list[Any]] = {}
         self.status: dict[str, NDArray[np.uint8]] = {}
         self.roots: dict[str, dict[int, tuple[Any, ...]]] = {}
@@ -187,8 +197,7 @@ class _Exact:
 
     def _rule(self, column: Column, size: int) -> tuple[NDArray[np.uint8], Callable[[int], Any]]:
         """The errors that the rows inherit, and what computes the others."""
-        rule = column.rule
-        if isinstance(rule, Given):
+        if isinstance(column.rule, Given):
             return np.zeros(size, dtype=np.uint8), lambda row: self._given(column, row)
         named = precedents(self.sheet, self.layouts, column)
         kept = rows_kept(named, self.layouts, self.status)
@@ -196,10 +205,9 @@ class _Exact:
             self.counted[column.name] = some
         status = inherited(named, kept, self.status, size)
         scope = _Scope(self, column, {axis: np.flatnonzero(mask).tolist() for axis, mask in kept.items()})
-        conditions = [scope.function(condition) for condition, _ in column.requires]
-        body = (
-            scope.function(rule.expression) if isinstance(rule, Formula) else self._root(rule, column, scope)
-        )
+        texts = self.texts[column.name]
+        conditions = [scope.function(condition) for condition in texts["requires"]]
+        body = scope.function(texts["value"]) if "form" not in texts else self._root(texts, column, scope)
 
         broken = np.zeros(size, dtype=np.uint8)
         if conditions:
@@ -222,15 +230,14 @@ class _Exact:
 
     # --- roots ----------------------------------------------------------------------------------------
 
-    def _root(self, rule: Root, column: Column, scope: _Scope) -> Callable[[int], Any]:
+    def _root(self, texts: Mapping[str, Any], column: Column, scope: _Scope) -> Callable[[int], Any]:
         """Count the sign changes between turning points, then narrow the only bracket down."""
-        form, value = (scope.function(e, rule.unknown) for e in (rule.expression, rule.value))
-        low, high = scope.function(rule.low), scope.function(rule.high)
-        given = [None if end is None else scope.function(end) for end in (rule.sign_low, rule.sign_high)]
-        counted = None if certified(self.sheet, column) else scope.enclosing(rule)
-        turning = [] if counted else [scope.function(point) for point in rule.turning]
+        form, value, low, high = (scope.function(texts[name]) for name in ("form", "value", "low", "high"))
+        given = [None if end is None else scope.function(end) for end in texts["signs"]]
+        counted = None if texts["counted"] is None else scope.enclosing(texts["counted"])
+        turning = [scope.function(point) for point in texts["turning"]]
         # A sum takes long at 50 digits, and as doubles no time.
-        rough = _Roughly(scope).root(rule) if _sums([rule.expression]) else None
+        rough = None if texts["rough"] is None else _Roughly(scope).root(texts["rough"])
 
         def solve(row: int) -> Any:
             points, right = [low(row)], high(row)
@@ -321,7 +328,7 @@ def _share(new: Any, old: Any) -> Any:
 
 
 class _Scope:
-    """Turns the expressions of a column into functions of a row (and of the unknown of a root).
+    """Functions of a row of a column (and of the unknown of a root), of texts.
 
     Parameters
     ----------
@@ -333,13 +340,11 @@ class _Scope:
 
     def __init__(self, engine: _Exact, column: Column, kept: Mapping[str, list[int]]) -> None:
         self.engine, self.column, self.kept = engine, column, kept
+        self.axis = None if column.axis is None else column.axis.name
 
-    modules = "mpmath"
-    """What expressions are printed for."""
-
-    def function(self, expression: Basic, unknown: Symbol | None = None) -> Callable[..., Any]:
+    def function(self, texts: Mapping[str, Any]) -> Callable[..., Any]:
         """An expression of the column's own row."""
-        compute = self._many([expression], self.column.axis, unknown)
+        compute = self._many(texts, self.axis)
 
         def run(row: int, *at: Any) -> Any:
             try:
@@ -349,88 +354,54 @@ class _Scope:
 
         return run
 
-    def enclosing(self, rule: Root) -> Callable[[int], Enclose]:
+    def enclosing(self, texts: Mapping[str, Any]) -> Callable[[int], Enclose]:
         """What encloses the form of a root, for each row."""
-        sheet, axis = self.engine.sheet, self.column.axis
-        plain = Symbol(rule.unknown.name, real=True)
-        form = typed(sheet, rule.expression).xreplace({rule.unknown: plain})
-        named = {cell: Symbol(f"cell_{n}") for n, cell in enumerate(sorted(form.atoms(Indexed), key=str))}
-        parts = [each.xreplace(named) for each in (form, *slope(form, plain))]
-        possible = of_mpmath(*parts, plain)
-        if possible is not None:
-            symbols, of_row = possible
-            cells = {symbol: cell for cell, symbol in named.items()}
-            readers = [self._reader(cells.get(symbol, symbol), axis) for symbol in symbols]
+        if "interval" in texts:
+            readers = [self._reader(cell, self.axis) for cell in texts["cells"]]
+            of_row = of_mpmath(texts["interval"], texts["kinds"])
             return lambda row: of_row([read(row) for read in readers])
-        plan = lowered_column(sheet, self.column)
-        node = plan.nodes[-1]
-        assert isinstance(node, RootNode)
-        kernel, terms = enclosing(sheet, plan, node), terms_of(node)
-        leaves, written = plan.named, {name: total.written for name, total in plan.totals.items()}
-        named = {
-            name: self.function(written[name]) if name in written else self._read_leaf(leaves[name])
-            for name in kernel.arguments
-            if name != plain.name
-        }
+        kernel, reads = Enclosing.of_plain(texts["kernel"]), []
+        for name, over, cell, written in texts["reads"]:
+            read = self.function(written) if written else self._reader(cell, over or self.axis)
+            reads.append((name, over if name in texts["terms"] else None, read))
         kept = {}
         for name in kernel.totals:
-            kept[name] = np.zeros(self.engine.layouts[name].size, dtype=bool)
+            kept[name] = np.zeros(self._size(name), dtype=bool)
             kept[name][list(self.kept.get(name, range(kept[name].size)))] = True
 
         def of_rows(row: int) -> Enclose:
             given = {}
-            for name, read in named.items():
-                over = leaves[name].axis if name in terms else None
+            for name, over, read in reads:
                 rows = [row] if over is None else range(self._size(over))
                 numbers = [np.nan if (x := read(each)) is None else float(x) for each in rows]
                 given[name] = Intervals.near(numbers, numbers)
-            return of_arrays(kernel, given, terms, kept)
+            return of_arrays(kernel, given, texts["terms"], kept)
 
         return of_rows
 
-    def _read_leaf(self, leaf: Leaf) -> Callable[[int], Any]:
-        """A cell, size or running number of the plan, for the rows it is read on."""
-        if leaf.kind in ("size", "kept"):
-            assert leaf.axis is not None
-            return self._reader(leaf.axis.size, None)
-        if leaf.kind == "ordinal":
-            assert leaf.index is not None
-            return self._reader(leaf.index, leaf.axis)
-        column = self.engine.sheet[leaf.name]
-        return self._reader(column.cell if leaf.index is None else column[leaf.index], leaf.axis)
-
-    def _many(
-        self, expressions: Sequence[Basic], axis: Axis | None, unknown: Symbol | None
-    ) -> Callable[..., Sequence[Any]]:
+    def _many(self, texts: Mapping[str, Any], axis: str | None) -> Callable[..., Sequence[Any]]:
         """Several expressions of a row of an axis at once, so that their common parts are computed once."""
-        printed = _printed(tuple(expressions), unknown, self.modules)
-        readers = [self._reader(cell, axis) for cell in printed.cells]
-        sums = self._totals(printed.totals, unknown)
+        function = self._function(texts["source"])
+        readers = [self._reader(cell, axis) for cell in texts["cells"]]
+        sums = self._totals(texts)
 
         def run(row: int, *at: Any) -> Sequence[Any]:
-            computed: Sequence[Any] = printed.function(*(read(row) for read in readers), *sums(*at), *at)
+            computed: Sequence[Any] = function(*(read(row) for read in readers), *sums(*at), *at)
             return computed
 
         return run
 
-    def _totals(self, totals: Sequence[Expr], unknown: Symbol | None) -> Callable[..., list[Any]]:
+    def _totals(self, texts: Mapping[str, Any]) -> Callable[..., list[Any]]:
         """All sums, those over one axis in one pass; one that the unknown does not move is taken once."""
+        take = texts["medians"]
         passes = []
-        take = [isinstance(total, Median) for total in totals]
-        for axis in self.engine.sheet.axes:
-            for moving in (False, True):
-                mine = [
-                    n
-                    for n, total in enumerate(totals)
-                    if total.limits[0][0] == axis.index and total.has(unknown or Symbol("")) is moving
-                ]
-                if mine:
-                    terms = self._many([totals[n].function for n in mine], axis, unknown)
-                    passes.append((mine, terms, self.kept.get(axis.name, range(self._size(axis))), moving))
+        for told in texts["passes"]:
+            rows = self.kept.get(told["axis"], range(self._size(told["axis"])))
+            passes.append((told["which"], self._many(told["terms"], told["axis"]), rows, told["moving"]))
         fixed: dict[int, list[Any]] = {}
 
         def run(*at: Any) -> list[Any]:
-            found: list[Any] = [None] * len(totals)
+            found: list[Any] = [None] * len(take)
             for number, (mine, terms, rows, moving) in enumerate(passes):
                 sums = fixed.get(number)
                 if sums is None:
@@ -455,46 +426,51 @@ class _Scope:
         """What is read, row by row."""
         return numbers
 
-    def _size(self, axis: Axis) -> int:
-        return self.engine.layouts[axis.name].size
+    def _function(self, source: str) -> Any:
+        """The function of a text."""
+        return _mpmath(source)
 
-    def _reader(self, cell: Expr, axis: Axis | None) -> Callable[[int], Any]:
-        """What gives a cell's value for a row of the axis."""
-        sheet, layouts = self.engine.sheet, self.engine.layouts
-        if cell in sheet.sizes:
-            counted = sheet.sizes[cell]
-            number = mpmath.mpf(len(self.kept.get(counted.name, range(self._size(counted)))))
+    def _size(self, axis: str) -> int:
+        return self.engine.layouts[axis].size
+
+    def _reader(self, cell: Sequence[Any], axis: str | None) -> Callable[[int], Any]:
+        """What gives the value of a cell, size or running number for a row of an axis."""
+        kind, name, index = cell
+        layouts = self.engine.layouts
+        if kind == "size":
+            number = mpmath.mpf(len(self.kept.get(name, range(self._size(name)))))
             (number,) = self._numbers([number])
             return lambda _: number
-        if axis is not None and cell in axis.ordinals:
-            ordinals = [mpmath.mpf(n) for n in layouts[axis.name].ordinals[cell].tolist()]
+        if kind == "ordinal":
+            assert axis is not None
+            ordinals = [mpmath.mpf(n) for n in layouts[axis].ordinals[name].tolist()]
             return self._numbers(ordinals).__getitem__  # type: ignore[no-any-return]
-        values = self._numbers(self.engine.value[name_of(cell)])
-        if not isinstance(cell, Indexed):
+        values = self._numbers(self.engine.value[name])
+        if index is None:
             return lambda _: values[0]
-        rows = rows_of(cell, axis, layouts)
-        if rows is None:
-            return values.__getitem__  # type: ignore[no-any-return]
+        assert axis is not None
+        rows = layouts[axis].rows[index]
         return lambda row: values[rows[row]]
 
 
 class _Roughly(_Scope):
     """The same in doubles, all terms of a sum at once: where a root is about."""
 
-    modules = "numpy"
-
     def __init__(self, scope: _Scope) -> None:
         super().__init__(scope.engine, scope.column, scope.kept)
 
-    def root(self, rule: Root) -> Callable[..., Any]:
+    def root(self, texts: Mapping[str, Any]) -> Callable[..., Any]:
         """Where a row has its root between two ends; NaN if doubles do not tell."""
-        form = self.function(rule.expression, rule.unknown)
+        form = self.function(texts)
 
         def guess(row: int, left: float, right: float, rising: float) -> Any:
             with np.errstate(all="ignore"):
                 return mpmath.mpf(_narrow(lambda u: form(row, u), left, right, rising, _ROUGHLY))
 
         return guess
+
+    def _function(self, source: str) -> Any:
+        return _numpy(source)
 
     def _numbers(self, numbers: list[Any]) -> Any:
         return np.array([np.nan if number is None else float(number) for number in numbers])
@@ -508,37 +484,11 @@ class _Roughly(_Scope):
         return [np.median(column) if middle else column.sum() for middle, column in taken]
 
 
-@dataclass(frozen=True)
-class _Printed:
-    """Expressions as a function of the cells and totals that they name, and of the unknown if any."""
-
-    cells: tuple[Expr, ...]
-    totals: tuple[Expr, ...]
-    function: Callable[..., Sequence[Any]]
+@lru_cache(maxsize=1024)
+def _mpmath(source: str) -> Any:
+    return function_of(source, vars(mpmath))
 
 
-@lru_cache(maxsize=512)
-def _printed(expressions: tuple[Basic, ...], unknown: Symbol | None, modules: str) -> _Printed:
-    """Print expressions; the same for whatever data, and slower than to evaluate a small sheet."""
-    outermost = _sums(expressions)
-    totals = {total: Symbol(f"total_{n}") for n, total in enumerate(outermost)}
-    outer = [expression.xreplace(totals) for expression in expressions]
-    cells = sorted(set().union(*(e.atoms(Indexed) for e in outer)), key=str)
-    plain = {cell: Symbol(f"cell_{n}") for n, cell in enumerate(cells)}
-    bodies = [expression.xreplace(plain) for expression in outer]
-    named = {*plain.values(), *totals.values(), unknown}
-    symbols = sorted(set().union(*(body.free_symbols for body in bodies)) - named, key=str)
-    arguments = [*plain.values(), *symbols, *totals.values()] + ([] if unknown is None else [unknown])
-    function = lambdify(arguments, bodies, modules=modules, cse=len(bodies) > 1)
-    return _Printed((*cells, *symbols), tuple(outermost), function)
-
-
-def _sums(expressions: Sequence[Basic]) -> list[Expr]:
-    """The sums and medians in expressions that stand in no other."""
-    found: dict[Expr, None] = {}
-    for expression in expressions:
-        if isinstance(expression, REDUCTIONS):
-            found[expression] = None
-        else:
-            found.update(dict.fromkeys(_sums(expression.args)))
-    return list(found)
+@lru_cache(maxsize=128)
+def _numpy(source: str) -> Any:
+    return function_of(source, vars(np))

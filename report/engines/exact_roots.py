@@ -7,18 +7,16 @@ intervals of arrays that NumPy's program uses: there the judge is independent in
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from functools import lru_cache
 from typing import Any
 
 import mpmath
 import numpy as np
 from mpmath import iv
-from sympy import Basic, Expr, Symbol
 
-from .certified import Enclosing
+from .interval_functions import holds, running, sign
 from .intervals import Intervals
 from .isolation import HALVINGS, crossings
-from .mpmath_intervals import differences, holds, printed, sign
+from .kernels import Enclosing
 from .numpy_enclosed import EnclosedRows
 
 __all__ = ["MOST_PARTS", "brackets", "of_arrays", "of_mpmath"]
@@ -72,35 +70,18 @@ def _parts(enclose: Enclose, low: Any, high: Any, halvings: int, left: Iterator[
 # --- mpmath's intervals ----------------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=128)
-def of_mpmath(
-    form: Expr, steepness: Expr, known: Basic, unknown: Symbol
-) -> tuple[tuple[Symbol, ...], Callable[[Sequence[Any]], Enclose]] | None:
-    """What encloses a form for the values of its symbols; None if mpmath's intervals cannot.
+def of_mpmath(text: str, kinds: Sequence[str]) -> Callable[[Sequence[Any]], Enclose]:
+    """What encloses a form by mpmath's intervals, for the values of the cells that it names.
 
     Parameters
     ----------
-    form, steepness : Expr
-        In plain symbols.
-    known : Boolean
-        Where the slope tells the form's course.
-    unknown : Symbol
-
-    Returns
-    -------
-    tuple of Symbol
-        The others.
-    callable
-        Takes their values.
+    text : str
+        The function of these and of the unknown that returns the form, its slope, and the differences that
+        must compare with zero so that the slope tells its course.
+    kinds : sequence of str
+        How, for each (:func:`~loopsheet.report.engines.interval_functions.holds`).
     """
-    compared = differences(known)
-    symbols = sorted(form.free_symbols - {unknown}, key=str)
-    run = compared is not None and printed(
-        [*symbols, unknown], [form, steepness, *(each for _, each in compared)]
-    )
-    if compared is None or not run:
-        return None
-    kinds = [kind for kind, _ in compared]
+    run = running(text)
 
     def of_row(values: Sequence[Any]) -> Enclose:
         def enclose(low: Any, high: Any) -> tuple[int, int]:
@@ -117,7 +98,7 @@ def of_mpmath(
 
         return enclose
 
-    return tuple(symbols), of_row
+    return of_row
 
 
 # --- intervals of arrays ---------------------------------------------------------------------------------

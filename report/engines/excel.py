@@ -17,7 +17,7 @@ from sympy import Add, Basic, Expr, Function, Integer, Mul, Pow, Rational, Symbo
 from sympy.logic.boolalg import BooleanFunction
 from sympy.printing.printer import Printer
 
-from ..plan import Leaf, Plan, RowMedian, RowSum
+from ..plan.nodes import Leaf, Plan, RowMedian, RowSum
 
 __all__ = ["FUNCTIONS", "ExcelPrinter", "IfError", "IsNumber", "NotPrintable", "ordered"]
 

@@ -16,9 +16,10 @@ from sympy import And, Expr, Float, Rational, Rel, Symbol
 from ..cells.grid import Place, as_issued, checked, factors
 from ..cells.layout import Layout
 from ..cells.values import CODES, Status
-from ..plan import Leaf, Map, Plan, RootNode
+from ..named import within
+from ..plan.nodes import Leaf, Map, Plan, RootNode
 from ..quantity import Bounds
-from ..sheet import Axis, Column, Given, Reference, Sheet, name_of, within
+from ..sheet import Axis, Column, Given, Reference, Sheet
 from .excel import ExcelPrinter, IfError
 from .excel_roots import READY, Auxiliary, Unrolled
 
@@ -55,7 +56,7 @@ class Places:
 def carried_name(cells: Leaf) -> str:
     """What the cells are called that repeat another axis' column for the rows of this one.
 
-    >>> carried_name(Leaf("cells", "C", Axis("points", Symbol("q"), Symbol("n")), Symbol("p")))
+    >>> carried_name(Leaf("cells", "C", Axis("points", Symbol("q"), Symbol("n")), "p"))
     'C[p] of points'
     """
     return f"{cells.written} of {cells.axis and cells.axis.name}"
@@ -69,10 +70,10 @@ def carried(sheet: Sheet, column: Column) -> dict[str, tuple[Leaf, Axis]]:
 
 def _leaf(reference: Reference, axis: Axis | None) -> Leaf:
     """What is named on the rows of an axis."""
-    name, index = name_of(reference.cell), reference.index
+    name, index = reference.name, reference.index
     if axis is None or index is None:
         return Leaf("cells", name)
-    return Leaf("cells", name, axis, None if index == axis.index else index)
+    return Leaf("cells", name, axis, None if index == axis.index_name else index)
 
 
 class Formulas:
@@ -191,7 +192,8 @@ class _Writing:
         """Where cells and running numbers stand; for sums, those of another axis are repeated on this one."""
         if leaf.kind == "ordinal" and leaf.axis and leaf.index:
             # Among the parts that name a row, its own number is the last.
-            return self.places.indices[leaf.axis.name][-1 - leaf.axis.ordinals.index(leaf.index)]
+            steps = [step.name for step in leaf.axis.ordinals]
+            return self.places.indices[leaf.axis.name][-1 - steps.index(leaf.index)]
         return self.places.columns[carried_name(leaf) if rows and leaf.index is not None else leaf.name]
 
     def address(self, leaf: Leaf, rows: bool = False) -> str:
@@ -201,7 +203,7 @@ class _Writing:
             return place.cell(0, self.here)
         if rows:
             return place.range(self.here)
-        return self.fill(place, self.layouts[leaf.axis.name].rows.get(leaf.index))
+        return self.fill(place, self.layouts[leaf.axis.name].rows.get(leaf.index or ""))
 
     def symbol(self, symbol: Symbol, rows: bool = False) -> str:
         """What a symbol stands for, in SI: on a row, or on all rows that a sum runs over."""

@@ -18,8 +18,9 @@ from ..cells.layout import Layout
 from ..cells.values import Values
 from ..charts import Drawn
 from ..inputs.unit_text import UnitError, parse_unit
-from ..plan import RootNode, lowered
 from ..plan.kept import as_data, of_data, of_sheet
+from ..plan.lowering import lowered
+from ..plan.nodes import RootNode
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, Sheet
 from .certified import certified

@@ -13,7 +13,7 @@ from itertools import pairwise
 from sympy import Abs, And, Eq, Expr, Integer, Piecewise, Symbol, diff, sign
 from sympy.logic.boolalg import Boolean
 
-from ..plan import Leaf, Node, Part, Plan, RootNode, RowSum, Total, free_name
+from ..plan.nodes import Leaf, Node, Part, Plan, RootNode, RowSum, Total, free_name
 from ..sheet import Column
 from .excel import IfError, IsNumber
 from .roots import derivatives, householder

@@ -16,8 +16,9 @@ from ..cells.layout import precedents
 from ..cells.values import CODES, Status, Values, inherited, rows_kept
 from ..sheet import Sheet
 from .excel_roots import READY, Unrolled
-from .numpy import Program, parts, program_texts
-from .numpy_code import Array
+from .kernels import Array
+from .numpy import Program, parts
+from .numpy_texts import program_texts
 
 __all__ = ["auxiliary_texts", "auxiliary_values", "filled"]
 
@@ -61,7 +62,7 @@ def filled(
             shown = tuple(None if isinstance(value, str) else value for value in shown)
         elif what == "carried":
             axis, index = more
-            shown = tuple(shown[row] for row in values.layouts[axis].named[index].tolist())
+            shown = tuple(shown[row] for row in values.layouts[axis].rows[index].tolist())
         formulas = tuple(map(_literal, shown)) if what.startswith("typed") else block.formulas
         yield replace(block, values=shown, formulas=formulas)
 

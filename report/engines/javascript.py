@@ -15,9 +15,10 @@ from typing import Any
 from sympy import Expr, Symbol, cse, numbered_symbols
 from sympy.printing.jscode import JavascriptCodePrinter
 
-from ..plan import GivenNode, Leaf, Map, Plan, RootNode, RowSum, Total, lowered
-from ..plan import Node as PlanNode
-from ..sheet import Axis, Column, PairAxis, RepeatAxis, Sheet, name_of
+from ..plan.lowering import lowered
+from ..plan.nodes import GivenNode, Leaf, Map, Plan, RootNode, RowSum, Total
+from ..plan.nodes import Node as PlanNode
+from ..sheet import Axis, Column, PairAxis, RepeatAxis, Sheet
 from .certified import certified, slope, typed_form
 from .javascript_intervals import enclose, needed
 
@@ -259,8 +260,7 @@ def _kernels(sheet: Sheet, plan: Plan, nodes: Sequence[PlanNode]) -> str:
 def _references(sheet: Sheet, column: Column) -> Iterable[tuple[str, str | None, str | None]]:
     """The cells that a column names: the column, the index, and the axis of the sum that it stands in."""
     for reference in sheet.named(column):
-        index, over = reference.index, reference.over
-        yield name_of(reference.cell), None if index is None else str(index), over.name if over else None
+        yield reference.name, reference.index, None if reference.over is None else reference.over.name
 
 
 def _axis(axis: Axis) -> str:

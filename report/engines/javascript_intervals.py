@@ -37,7 +37,7 @@ from sympy import (
 )  # fmt: skip
 from sympy.logic.boolalg import Boolean
 
-from ..plan import RowSum
+from ..plan.nodes import RowSum
 
 __all__ = ["enclose", "interval", "needed"]
 

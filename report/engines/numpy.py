@@ -18,16 +18,14 @@ from numpy.typing import NDArray
 
 from ..cells.layout import Layout, lay_out, precedents
 from ..cells.values import Status, Values, how_many, inherited, rows_kept
-from ..plan import Map, Plan, RootNode, lowered
-from ..plan.domain import SMALLEST
 from ..plan.kept import of_sheet
+from ..quantity import SMALLEST
 from ..sheet import Column, Sheet
-from .numpy_code import SAME, Array, Function, Kernel, compiled, kernel
-from .numpy_root import RootProgram, root_texts
+from .kernels import SAME, Array, Function, Kernel, compiled
+from .numpy_root import RootProgram
 from .numpy_rows import Kept, chosen
-from .numpy_sheet import sheet_function
 
-__all__ = ["Kernel", "Laid", "Program", "evaluate", "extend", "kernel", "parts", "program_texts"]
+__all__ = ["Laid", "Program", "evaluate", "extend", "parts"]
 
 Codes = NDArray[np.uint8]
 Masks = Mapping[str, NDArray[np.bool_]]
@@ -36,26 +34,6 @@ BLOCK = 1 << 13
 """How many roots are sought at a time: their intermediate results then stay in the processor's cache."""
 WIDEST = 1 << 16
 """How many cells the widest column has, at most, of what is computed of a batch at a time."""
-
-
-def program_texts(sheet: Sheet, plan: Plan) -> dict[str, Any]:
-    """The functions of a plan, printed: data of which :class:`Program` is made.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    plan : Plan
-        What computes something of it.
-
-    Raises
-    ------
-    SheetError
-        A formula has a part that NumPy cannot compute.
-    """
-    nodes = {node.column.name: node for node in plan.nodes if isinstance(node, RootNode)}
-    roots = {name: root_texts(sheet, plan, node) for name, node in nodes.items()}
-    asked = {name: texts["arguments"] for name, texts in roots.items()}
-    return {"sheet": sheet_function(plan, asked), "roots": roots}
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +82,9 @@ class Program:
         """
 
         def make() -> dict[str, Any]:
+            from ..plan.lowering import lowered
+            from .numpy_texts import program_texts
+
             return program_texts(sheet, lowered(sheet, known))
 
         texts = of_sheet(sheet, "NumPy program", sorted(known), make)
@@ -123,7 +104,7 @@ class Program:
         ----------
         sheet : Sheet
         texts : mapping
-            From :func:`program_texts`.
+            From :func:`~loopsheet.report.engines.numpy_texts.program_texts`.
         functions, known
             As for :meth:`of`.
         """
@@ -197,9 +178,10 @@ class Program:
         if name not in self._conditions:
 
             def make() -> list[Any]:
-                plan = lowered(self.sheet, self.known)
-                (node,) = (n for n in plan.nodes if isinstance(n, Map) and n.column.name == name)
-                return [_condition_texts(each, plan) for each in (node.positive, node.defined)]
+                from ..plan.lowering import lowered
+                from .numpy_texts import condition_texts
+
+                return condition_texts(lowered(self.sheet, self.known), name)
 
             texts = of_sheet(self.sheet, "conditions of a value", [name, *sorted(self.known)], make)
             positive, defined = (_Condition.of(each, self.functions) for each in texts)
@@ -209,19 +191,6 @@ class Program:
     @cached_property
     def _conditions(self) -> dict[str, tuple[_Condition, _Condition]]:
         return {}
-
-
-def _condition_texts(condition: Any, plan: Plan) -> Any:
-    """A condition on the cells that a column names, printed, as data: what it reads of each leaf, and how."""
-    if condition in (True, False):
-        return bool(condition)
-    asked = kernel([condition])
-    leaves = [plan.named[name] for name in asked.arguments]
-    reads = [
-        (leaf.kind, leaf.name, leaf.axis and leaf.axis.name, leaf.index and leaf.index.name)
-        for leaf in leaves
-    ]
-    return {"kernel": asked.plain, "reads": reads}
 
 
 @dataclass(frozen=True)
@@ -234,7 +203,7 @@ class _Condition:
 
     @classmethod
     def of(cls, texts: Any, functions: Any) -> _Condition:
-        """That of what :func:`_condition_texts` prints."""
+        """That of what :func:`~loopsheet.report.engines.numpy_texts.condition_texts` prints."""
         if isinstance(texts, bool):
             return cls(texts)
         return cls(False, Kernel.of_plain(texts["kernel"], functions), texts["reads"])
@@ -300,13 +269,13 @@ class _Run:
 
     def rows(self, name: str, axis: str, index: str) -> Array:
         """The cells of a column that the rows of an axis name by an index."""
-        rows = self.laid.layouts[axis].named[index]
+        rows = self.laid.layouts[axis].rows[index]
         # take() keeps the rows of each batch element together in memory, indexing does not.
         return self.value[name].take(rows, axis=-1)
 
     def ordinal(self, axis: str, index: str) -> Array:
         """A running number of the rows of an axis."""
-        return self.laid.layouts[axis].numbered[index]
+        return self.laid.layouts[axis].ordinals[index]
 
     def size(self, axis: str) -> Array:
         """How many rows an axis has."""

@@ -2,54 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property, reduce
-from types import MappingProxyType, ModuleType
-from typing import Any, Self
+from collections.abc import Mapping, Sequence
+from functools import reduce
+from types import MappingProxyType
+from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
 from sympy import Basic, Expr, Piecewise, S, Symbol, cse, log, numbered_symbols
 from sympy.printing.codeprinter import PrintMethodNotImplementedError
 from sympy.printing.numpy import NumPyPrinter
 
-from ..plan import RowMedian, RowSum, taken_over
+from ..plan.nodes import RowMedian, RowSum, taken_over
 from ..sheet import SheetError
-from . import elementary
+from .kernels import SAME, Kernel
 
-__all__ = [
-    "SAME",
-    "Array",
-    "ArrayPrinter",
-    "Function",
-    "Kernel",
-    "compiled",
-    "kernel",
-    "printed",
-    "text_of",
-    "write",
-]  # fmt: skip
-
-Array = NDArray[np.float64]
-Function = Callable[..., tuple[Array, ...]]
-
-
-SAME: Any = ModuleType("numpy")
-vars(SAME).update(vars(np), exp=elementary.exp, log=elementary.log, power=elementary.power)
-"""NumPy, but its functions whose last bits hang on the processor are our own: what printed functions call, if
-they are not told to call NumPy itself, which is faster."""
-
-
-def _choose(condition: Any, yes: Callable[[], Any], no: Callable[[], Any]) -> Any:
-    """One thing where a condition holds and another elsewhere; what no row asks for is not computed."""
-    if isinstance(condition, np.ndarray) and (condition.all() or not condition.any()):
-        found = yes() if condition.all() else no()
-        batch = np.ndim(found) < condition.ndim > 1
-        return (
-            np.broadcast_to(found, np.broadcast_shapes(np.shape(found), condition.shape)) if batch else found
-        )
-    return np.where(condition, yes(), no())
+__all__ = ["ArrayPrinter", "kernel", "printed", "text_of", "write"]
 
 
 class ArrayPrinter(NumPyPrinter):
@@ -126,53 +92,6 @@ def printed(printer: ArrayPrinter, expression: Any) -> str:
 def text_of(name: str, arguments: Sequence[str], lines: Sequence[str]) -> str:
     """The text of a function of printed lines."""
     return "\n".join([f"def {name}({', '.join(arguments)}):", *(f"    {line}" for line in lines)])
-
-
-def compiled(source: str, functions: Any) -> Any:
-    """The function that a text is of."""
-    namespace: dict[str, Any] = {"numpy": functions, "choose": _choose}
-    # Printed from our own expressions, never foreign text.
-    exec(compile(source, "<generated>", "exec"), namespace)
-    return namespace[source[len("def ") : source.index("(")]]
-
-
-@dataclass(frozen=True)
-class Kernel:
-    """One printed function.
-
-    Parameters
-    ----------
-    arguments : tuple of str
-        What it is called with, in order.
-    totals : tuple of str
-        The axes it sums over, or takes a median over: after its arguments, it is called with what does
-        that for each, a :class:`~loopsheet.report.engines.numpy_rows.Kept`.
-    source : str
-        Its text.
-    functions : module
-        What it calls: :data:`SAME`, or NumPy.
-    """
-
-    arguments: tuple[str, ...]
-    totals: tuple[str, ...]
-    source: str
-    functions: Any = field(default=SAME, repr=False)
-
-    @cached_property
-    def run(self) -> Function:
-        """The function itself; it returns one array for each expression."""
-        function: Function = compiled(self.source, self.functions)
-        return function
-
-    @property
-    def plain(self) -> dict[str, Any]:
-        """What it is, as data."""
-        return {"arguments": self.arguments, "totals": self.totals, "source": self.source}
-
-    @classmethod
-    def of_plain(cls, plain: Mapping[str, Any], functions: Any = SAME) -> Self:
-        """That of such data."""
-        return cls(tuple(plain["arguments"]), tuple(plain["totals"]), plain["source"], functions)
 
 
 def write(

@@ -15,10 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .certified import Enclosing
 from .intervals import Intervals, whole
 from .isolation import Isolated, isolate
-from .numpy_code import Array
+from .kernels import Array, Enclosing
 from .numpy_rows import KeptBetween, KeptIntervals
 
 __all__ = ["EnclosedRows"]

@@ -8,26 +8,21 @@ is certified to change sign once between them, else for each row by intervals. T
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Expr, Integer, Symbol, diff
 
 from ..cells.values import Status
-from ..plan import Plan, RootNode, RowSum, taken_over
-from ..sheet import Sheet
-from .certified import Enclosing, certified, enclosing
 from .intervals import Intervals
-from .numpy_code import SAME, Array, Function, Kernel, compiled, kernel, write
+from .kernels import SAME, Array, Enclosing, Function, Kernel, compiled
 from .numpy_enclosed import EnclosedRows
 from .numpy_rows import Kept, chosen
 from .numpy_steps import RootRows, Stretch
-from .roots import hoist, magnitude, step
 
-__all__ = ["FoundRoots", "RootProgram", "root_texts", "terms_of"]
+__all__ = ["FoundRoots", "RootProgram"]
 
 Mask = NDArray[np.bool_]
 
@@ -55,59 +50,8 @@ class FoundRoots:
     bisected: int
 
 
-def terms_of(node: RootNode) -> frozenset[str]:
-    """The names of what stands in the sums of a root's equation: its rows are their terms."""
-    return frozenset(symbol.name for total in node.form.atoms(RowSum) for symbol in total.free_symbols)
-
-
 _BODIES = ("at", "newton", "step", "check", "value")
 """The functions of a root's unknown."""
-
-
-def root_texts(sheet: Sheet, plan: Plan, node: RootNode) -> dict[str, Any]:
-    """The functions of one root, printed: data of which :class:`RootProgram` is made.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    plan : Plan
-        Of the sheet.
-    node : RootNode
-        Of the plan.
-    """
-    enclosed = None if certified(sheet, node.column) else enclosing(sheet, plan, node)
-    if enclosed is not None:
-        node = replace(node, turning=())  # what nobody proved is not used
-    unknown, constants = node.unknown, dict[Expr, Symbol]()
-    f, value = (hoist(each, unknown, constants) for each in (node.form, node.value))
-    ends = [
-        Integer(0) if end is None else end  # no sign is given: the equation is evaluated
-        for end in (node.low, node.high, node.start, node.sign_low, node.sign_high, *node.turning)
-    ]
-    # Cells that need no computation are constants too.
-    axes = {Symbol(axis) for axis in taken_over([f, value])}
-    cells = sorted((f.free_symbols | value.free_symbols) - {unknown, *constants.values(), *axes}, key=str)
-    fixed = kernel([*ends, *constants, *cells])
-    arguments = [unknown, *constants.values(), *cells]
-    totals = taken_over([f, value])
-    parts, back = step(f, unknown)
-    asked = {*fixed.arguments, *(() if enclosed is None else enclosed.arguments)} - {unknown.name}
-    named = plan.named
-    return {
-        "arguments": {name: (axis := named[name].axis) and axis.name for name in sorted(asked)},
-        "terms_of": sorted(terms_of(node)),
-        "told": [node.sign_low is not None, node.sign_high is not None],
-        "turning": len(node.turning),
-        "steps": node.steps,
-        "fixed": fixed.plain,
-        "totals": totals,
-        "at": write(arguments, totals, [f]),
-        "newton": write(arguments, totals, [f, f / diff(f, unknown)]),
-        "step": write(arguments, totals, [f, back], parts),
-        "check": write(arguments, totals, [f, magnitude(f)]),
-        "value": write(arguments, totals, [value]),
-        "enclosing": enclosed and enclosed.plain,
-    }
 
 
 @dataclass(frozen=True)
@@ -169,7 +113,7 @@ class RootProgram:
 
     @classmethod
     def of(cls, texts: Mapping[str, Any], functions: Any = SAME) -> RootProgram:
-        """The functions of the texts that :func:`root_texts` prints."""
+        """The functions of the texts that :func:`~loopsheet.report.engines.numpy_texts.root_texts` prints."""
         fixed = Kernel.of_plain(texts["fixed"], functions)
         low, high = texts["told"]
         bodies = [texts[name] for name in _BODIES]

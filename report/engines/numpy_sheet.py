@@ -13,7 +13,7 @@ from typing import Any
 from sympy import Expr, Symbol
 from sympy.logic.boolalg import Boolean
 
-from ..plan import GivenNode, Leaf, Map, Node, Part, Plan, RootNode, Total, free_name
+from ..plan.nodes import GivenNode, Leaf, Map, Node, Part, Plan, RootNode, Total, free_name
 from .numpy_code import ArrayPrinter, printed, text_of
 
 __all__ = ["sheet_function"]

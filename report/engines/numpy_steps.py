@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from .numpy_code import Array, Function
+from .kernels import Array, Function
 from .numpy_rows import Kept
 
 __all__ = ["RootRows", "Stretch"]

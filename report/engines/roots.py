@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from sympy import Abs, Add, Basic, Expr, Mul, Pow, Sum, Symbol, diff, exp, factor_terms, log
 
-from ..plan import RowSum
+from ..plan.nodes import RowSum
 
 __all__ = ["derivatives", "hoist", "householder", "magnitude", "step"]
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..cells.layout import Layout
 from ..cells.values import Status, Values
-from ..plan.derivatives import Local, Slope
+from ..plan.slopes import Local, Slope
 from ..result.agreement import LIMIT
 from ..sheet import Sheet
 from .chain import Chain, Made

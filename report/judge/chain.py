@@ -20,9 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cells.layout import Layout
-from ..engines.numpy import Laid, Program, program_texts
-from ..plan.derivatives import Local, Slope, derivatives, with_unknowns
+from ..engines.numpy import Laid, Program
 from ..plan.kept import as_data, of_data, of_sheet
+from ..plan.slopes import Local, Slope, with_unknowns
 from ..sheet import Sheet
 
 __all__ = ["Chain", "Level", "Made", "Pattern"]
@@ -43,6 +43,9 @@ class Made:
         """Make them, what rounding does only if it is asked for; or take them as they were made before."""
 
         def make() -> dict[str, Any]:
+            from ..engines.numpy_texts import program_texts
+            from ..plan.derivatives import derivatives
+
             found = derivatives(sheet, roundings)
             texts = program_texts(with_unknowns(sheet, found.again), found.plan)
             return {"nodes": as_data(found.nodes), "again": found.again, "program": texts}
@@ -159,7 +162,7 @@ class Chain:
         number = self.terms(node)
         if slope.axis is None:
             return np.zeros(number, dtype=np.intp)
-        return np.arange(number) if slope.index is None else self.layouts[slope.axis].named[slope.index]
+        return np.arange(number) if slope.index is None else self.layouts[slope.axis].rows[slope.index]
 
     def cells(self, places: Sequence[tuple[str, int]]) -> Pattern:
         """The entries of some cells, by column and row; each cell is a row."""

@@ -24,8 +24,8 @@ from ..engines.numpy import Program
 from ..engines.numpy_enclosed import EnclosedRows
 from ..engines.numpy_root import RootProgram
 from ..engines.numpy_rows import KeptIntervals
-from ..plan.derivatives import Local, Slope
-from ..sheet import Column, Reference, Sheet, name_of
+from ..plan.slopes import Local, Slope
+from ..sheet import Column, Reference, Sheet
 from .chain import Chain, Made
 from .sensitivity import Along
 
@@ -62,11 +62,11 @@ class _Rows:
 
     def rows(self, name: str, axis: str, index: str) -> Intervals:
         """The cells of a column that the rows of an axis name by an index."""
-        return self.value[name].take(self.layouts[axis].named[index])
+        return self.value[name].take(self.layouts[axis].rows[index])
 
     def ordinal(self, axis: str, index: str) -> Intervals:
         """A running number of the rows of an axis."""
-        return Intervals.of(self.layouts[axis].numbered[index])
+        return Intervals.of(self.layouts[axis].ordinals[index])
 
     def size(self, axis: str) -> Intervals:
         """How many rows an axis has."""
@@ -82,8 +82,8 @@ class _Rows:
 
     def known(self, reference: Reference, column: Column) -> Mask:
         """Which of the cells that a column names are sure to have a value."""
-        theirs = self.sure[name_of(reference.cell)]
-        rows = rows_of(reference.cell, reference.over or column.axis, self.layouts)
+        theirs = self.sure[reference.name]
+        rows = rows_of(reference.index, reference.over or column.axis, self.layouts)
         return theirs if rows is None else theirs.take(rows, axis=-1)
 
     def number(self, column: Column) -> int:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..cells.values import Status, Values, rows_kept
 from ..engines.numpy import parts
-from ..plan.derivatives import Local, Slope
+from ..plan.slopes import Local, Slope
 from .chain import Chain, Numbered, Pattern
 
 __all__ = ["Along", "Numbers"]

@@ -50,65 +50,15 @@ from sympy import (
 )
 from sympy.core.function import ArgumentIndexError
 
-from ..column import Axis, Column, Root
+from ..column import Axis, Column
 from ..sheet import Sheet
 from .lowering import RESERVED, lowered
 from .nodes import GivenNode, Leaf, Map, Node, Part, Plan, RootNode, RowSum, Total, free_name
+from .slopes import Local, Slope, unknown_of
 
-__all__ = ["Derivatives", "Local", "Slope", "derivatives", "rounding", "with_unknowns"]
+__all__ = ["Derivatives", "derivatives", "rounding"]
 
 _NO_FUNCTIONS = (Derivative, Subs, DiracDelta, Heaviside)
-
-
-@dataclass(frozen=True)
-class Slope:
-    """The derivative of a node by what it names.
-
-    Parameters
-    ----------
-    by : str
-        A column or a total.
-    axis, index : str or None
-        For cells of a column with rows, the axis whose rows name them, and the index by which they do; no
-        index if they stand on the same rows.
-    value : str
-        The part that holds it, on the rows of the node; for a total, on those that it runs over.
-    """
-
-    by: str
-    axis: str | None
-    index: str | None
-    value: str
-
-
-@dataclass(frozen=True)
-class Local:
-    """A node with its derivatives by what it names itself.
-
-    Parameters
-    ----------
-    name : str
-        Of the column; for a total, of its symbol.
-    axis : str or None
-        None for a scalar and for every total.
-    over : str or None
-        The axis that a total runs over.
-    of : str
-        The column in whose rule it stands.
-    rounding : str
-        The part that holds its rounding in SI, in units of eps; empty if it was not asked for.
-    slopes : tuple of Slope
-    median : bool
-        Whether it is a median: of its slopes only those of the rows in the middle count.
-    """
-
-    name: str
-    axis: str | None
-    over: str | None
-    of: str
-    rounding: str
-    slopes: tuple[Slope, ...]
-    median: bool = False
 
 
 @dataclass(frozen=True)
@@ -143,18 +93,6 @@ def derivatives(sheet: Sheet, roundings: bool = True) -> Derivatives:
     making = _Making(plan, roundings)
     locals_ = tuple(local for node in plan.nodes for local in making.node(node))
     return Derivatives(making.again, Plan(tuple(making.nodes), making.leaves), locals_)
-
-
-def with_unknowns(sheet: Sheet, again: Mapping[str, str]) -> Sheet:
-    """The sheet, and the unknowns that are sought again (:attr:`Derivatives.again`)."""
-    return Sheet((*sheet.columns, *(_unknown(sheet[root], name) for root, name in again.items())))
-
-
-def _unknown(column: Column, name: str) -> Column:
-    """The unknown of a root as a root of its own."""
-    assert isinstance(column.rule, Root)
-    rule = replace(column.rule, value=column.rule.unknown)
-    return replace(column, name=name, rule=rule, positive=False, requires=(), limits=())
 
 
 class _Making:
@@ -221,7 +159,7 @@ class _Making:
         leaf = self.leaves[by]
         if leaf.kind == "total":
             return Slope(by.name, None, None, value)
-        return Slope(leaf.name, leaf.axis and leaf.axis.name, leaf.index and leaf.index.name, value)
+        return Slope(leaf.name, leaf.axis and leaf.axis.name, leaf.index, value)
 
     def slopes(self, expression: Expr) -> dict[Symbol, Expr]:
         """The derivatives of an expression by what it names."""
@@ -335,7 +273,7 @@ class _RootMaking:
         """The unknown as a root of its own."""
         making, column = self.making, self.column
         symbol = making.symbol(f"{column.name}_unknown", None)
-        again = _unknown(column, symbol.name)
+        again = unknown_of(column, symbol.name)
         making.leaves[symbol] = Leaf("cells", again.name, column.axis)
         making.again[column.name] = again.name
         making.nodes.append(replace(self.root, column=again, value=self.unknown, requires=()))

@@ -51,12 +51,7 @@ from ..quantity import Bounds
 from ..sheet import Sheet
 from .nodes import Leaf, RowMedian, RowSum
 
-__all__ = ["LARGEST", "SMALLEST", "assumed", "defined", "is_positive", "positive", "typed", "typed_symbols"]
-
-LARGEST = 2**1024 - 2**970
-"""What is no smaller than this rounds to no finite double."""
-SMALLEST = 2.0**-1022
-"""Below, doubles lose digits, and some programs hold zero: a positive quantity has no value there."""
+__all__ = ["assumed", "defined", "is_positive", "positive", "typed", "typed_symbols"]
 
 _EVERYWHERE = (
     Abs, Add, And, ExprCondPair, Max, Min, Mul, Not, Or, Relational,

@@ -9,7 +9,8 @@ from typing import Any
 from sympy import Expr, Indexed, Integer, Max, Min, Symbol, false
 
 from ...derivations.reductions import REDUCTIONS, Median
-from ..sheet import Axis, Column, Formula, Given, Root, Sheet, name_of
+from ..named import name_of
+from ..sheet import Axis, Column, Formula, Given, Root, Sheet
 from .domain import defined, is_positive, positive, typed_symbols
 from .nodes import GivenNode, Leaf, Map, Node, Plan, RootNode, RowMedian, RowSum, Total
 
@@ -87,20 +88,21 @@ class Lowering:
         if axis is None or index is None or column.axis is None or index == axis.index:
             return self.symbol(Leaf("cells", name, column.axis), column.symbol, name)
         longer = (f"{name}_{index}", f"{name}_{index}_of_{axis.name}")
-        return self.symbol(Leaf("cells", name, axis, index), column.symbol, *longer)
+        return self.symbol(Leaf("cells", name, axis, index.name), column.symbol, *longer)
 
     def leaf(self, cell: Expr, column: Column, axis: Axis | None) -> Symbol:
         """What an expression on the rows of an axis, in the rule of a column, names."""
         sheet = self.sheet
-        if cell in sheet.sizes:
-            counted = sheet.sizes[cell]
+        if cell in sheet.algebra.sizes:
+            counted = sheet.algebra.sizes[cell]
             if counted in sheet.summed_axes(column):
                 return self.symbol(Leaf("kept", column.name, counted), cell, f"{cell}_of_{column.name}")
             return self.symbol(Leaf("size", "", counted), cell, str(cell))
         if isinstance(cell, Indexed):
             return self.cells(sheet[name_of(cell)], axis, cell.indices[0])
         if axis is not None and cell in axis.ordinals:
-            return self.symbol(Leaf("ordinal", "", axis, cell), cell, str(cell), f"{cell}_of_{axis.name}")
+            names = str(cell), f"{cell}_of_{axis.name}"
+            return self.symbol(Leaf("ordinal", "", axis, cell.name), cell, *names)
         return self.cells(sheet[cell.name]) if cell.name in sheet else cell
 
     # --- expressions
@@ -121,7 +123,7 @@ class Lowering:
         if expression == unknown:
             return expression
         if isinstance(expression, REDUCTIONS):
-            over = self.sheet.indices[expression.limits[0][0]]
+            over = self.sheet.algebra.indices[expression.limits[0][0]]
             number, terms = expression.function.as_coeff_Mul()
             if isinstance(expression, Median):
                 taken, number, terms = RowMedian, Integer(1), expression.function

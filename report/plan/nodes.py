@@ -43,7 +43,7 @@ class Leaf:
         Of the column, the total or the part.
     axis : Axis or None
         On whose rows it is read, or whose rows are counted; None for one number.
-    index : Symbol or None
+    index : str or None
         For cells, the index that names them from there; None if they stand on the same rows. For an ordinal,
         the running number.
     """
@@ -51,12 +51,12 @@ class Leaf:
     kind: Kind
     name: str = ""
     axis: Axis | None = None
-    index: Symbol | None = None
+    index: str | None = None
 
     @property
     def written(self) -> str:
         """Cells as the sheet writes them: ``x_p[j]``, ``beta``."""
-        return self.name if self.axis is None else f"{self.name}[{self.index or self.axis.index}]"
+        return self.name if self.axis is None else f"{self.name}[{self.index or self.axis.index_name}]"
 
 
 # --- what is taken over rows ------------------------------------------------------------------------------

@@ -33,7 +33,7 @@ from .campaign import Campaign
 from .certificate import Certificate
 from .comparison import prints_same
 from .explain import Explained, explanations
-from .labels import fits, labels
+from .labels import Numbers, fits, labels
 from .minimax import Best, counted, meet
 from .problem import Problem
 from .values import verdicts
@@ -50,6 +50,7 @@ def referee(
     values: Values,
     data: Mapping[str, Any],
     step: Callable[[str], None] = lambda _: None,
+    numbers: Callable[[], Numbers] | None = None,
 ) -> Referee:
     """Judge all published values of a report.
 
@@ -63,6 +64,8 @@ def referee(
         The given columns in SI.
     step : callable
         Told what is begun.
+    numbers : callable, optional
+        Returns the source's numbers of the columns' equations, if they are known.
     """
     published = inputs.published
     if not published:
@@ -104,13 +107,19 @@ def referee(
     named: tuple[Relabelled, ...] = ()
     if first is not None or found.mismatch <= 1:
         step("refereeing names of rows and fits")
-        named = labels(whole, workbook.ledger(), first)
+        named = labels(whole, numbers() if numbers is not None else _numbers(sheet, inputs), first)
         fit = fits(whole, workbook.fits, first)
     amended, misprints = _amended(campaign, step) if inputs.errata else (None, ())
     return Referee(
         alone, tuple(tables), joint, tuple(each.explanation for each in explained), tried, named, fit,
         inputs.free, _known(inputs), amended, misprints,
     )  # fmt: skip
+
+
+def _numbers(sheet: Sheet, inputs: Inputs) -> Numbers:
+    from .numbers import numbers_of
+
+    return numbers_of(sheet, inputs.workbook.ledger())
 
 
 def _known(inputs: Inputs) -> tuple[Change, ...]:

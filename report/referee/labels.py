@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from ...derivations.equation import Derivation, Ledger
 from ..result.verdict import Fit, Relabelled
 from ..result.verdict_words import mismatch as in_words
 from ..sheet import Column
@@ -14,7 +13,9 @@ from .explain import Explained
 from .minimax import best, counted
 from .problem import Box, Problem
 
-__all__ = ["fits", "labels", "numbers_of"]
+__all__ = ["fits", "labels"]
+
+Numbers = Mapping[str, Collection[str]]
 
 PLENTY = 0.5
 """A fit that comes out within so many half units goes with the print; no better input is looked for."""
@@ -22,41 +23,22 @@ PLENTY = 0.5
 _NUMBER = re.compile(r"(?:eqs?\.?\s*\(?|\()([0-9]+[a-z]?)\)?", re.IGNORECASE)
 
 
-def numbers_of(column: Column, ledger: Ledger) -> set[str]:
-    """The source's own numbers of the equations that a column is computed by, ``(7)``.
-
-    An equation of this project's stands for those of the source that it is a form of.
-    """
-    if column.equation is None:
-        return set()
-    if not column.equation.own:
-        return {column.equation.number, column.equation.label}
-    premises = [
-        premise
-        for entry in ledger.entries
-        if isinstance(entry, Derivation)
-        for step in entry.steps
-        if step.claim.label == column.equation.label
-        for premise in step.premises
-    ]
-    return {number for p in premises if not p.own for number in (p.number, p.label)}
-
-
-def labels(problem: Problem, ledger: Ledger, first: Explained | None) -> tuple[Relabelled, ...]:
+def labels(problem: Problem, numbers: Numbers, first: Explained | None) -> tuple[Relabelled, ...]:
     """Find rows that are printed under the number of an equation they cannot come from.
 
     Parameters
     ----------
     problem : Problem
         All published values.
-    ledger : Ledger
+    numbers : mapping of column name to collection of str
+        From :func:`~loopsheet.report.referee.numbers.numbers_of`.
     first : Explained or None
         The change with which all values come out, if they need one.
     """
-    return tuple(_labels(problem, ledger, first))
+    return tuple(_labels(problem, numbers, first))
 
 
-def _labels(problem: Problem, ledger: Ledger, first: Explained | None) -> Iterator[Relabelled]:
+def _labels(problem: Problem, numbers: Numbers, first: Explained | None) -> Iterator[Relabelled]:
     sheet = problem.campaign.sheet
     groups: dict[tuple[str, str, str], list[int]] = {}
     for n, value in enumerate(problem.published):
@@ -65,21 +47,21 @@ def _labels(problem: Problem, ledger: Ledger, first: Explained | None) -> Iterat
             groups.setdefault((value.source, value.cell, f"({found[1]})"), []).append(n)
     for (source, cell, number), members in groups.items():
         column = sheet[cell]
-        own = numbers_of(column, ledger)
+        own = numbers[column.name]
         if number in own or not own:
             continue
-        named = [other for other in sheet.columns if number in numbers_of(other, ledger)]
+        named = [other for other in sheet.columns if number in numbers[other.name]]
         fitting = [other for other in named if _alike(other, column)]
         mismatch = {cell: _as(problem, members, cell, first)}
         rivals = [
             other.name for other in sheet.columns
-            if other.name != cell and _alike(other, column) and numbers_of(other, ledger)
+            if other.name != cell and _alike(other, column) and numbers[other.name]
         ]  # fmt: skip
         mismatch |= {name: _as(problem, members, name, first) for name in rivals}
         would = min(mismatch, key=lambda name: mismatch[name])
         if mismatch[would] > 1 or (would in {f.name for f in fitting}):
             continue
-        right = next(iter(sorted(numbers_of(sheet[would], ledger))))
+        right = next(iter(sorted(numbers[would])))
         gives = tuple((other.name, other.unit) for other in named if not fitting)
         wanted = column.meaning.split(",")[0], column.unit
         others = {name: off for name, off in mismatch.items() if name != would}

@@ -81,9 +81,8 @@ def over_rows(column: Column, axis: Axis, every: Sequence[NDArray[np.intp]], she
         Rows, of which one may come twice: a way for each.
     sheet : Sheet
     """
-    alone = Axis(axis.name, axis.index, axis.size)
     given = [
-        Column(c.name, alone if c.axis == axis else None, Given(), c.unit, positive=c.positive)
+        Column(c.name, axis.alone if c.axis == axis else None, Given(), c.unit, positive=c.positive)
         for c in sheet.precedents(column)
     ]
     program = Program.of(Sheet((*given, column)))

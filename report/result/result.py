@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from ...derivations.equation import Erratum, Ledger
-from ...derivations.proof import Proof
 from ..cells.marks import Marks
 from ..cells.values import Cell, Values
-from ..engines.exact import ExactValues
 from ..inputs.inputs import Inputs, PublishedValue
 from ..messages.diagnostics import Check
 from ..sheet import Sheet
@@ -26,6 +24,11 @@ from .verdict import (
     Referee,
     Verdict,
 )
+
+if TYPE_CHECKING:
+    from ...derivations.equation import Erratum, Ledger
+    from ...derivations.proof import Proof
+    from ..engines.exact import ExactValues
 
 __all__ = ["Comparison", "Plotted", "Report", "Shown"]
 
@@ -144,7 +147,8 @@ class Report:
         Every cell at 50 digits, for the judge of the engines; then `values` and `marks` are these, rounded
         to the nearest doubles. None where the sheet is too large for that: then they are NumPy's.
     shown : mapping of column name to Shown
-    ledger : Ledger
+    algebra : callable
+        Returns the ledger.
     proofs : tuple of Proof
         One for each equation of the ledger, in its order.
     errata : tuple of Erratum
@@ -173,7 +177,7 @@ class Report:
     marks: Marks
     exactly: ExactValues | None
     shown: Mapping[str, Shown]
-    ledger: Ledger
+    algebra: Callable[[], Ledger]
     proofs: tuple[Proof, ...]
     errata: tuple[Erratum, ...]
     comparisons: tuple[Comparison, ...]
@@ -183,6 +187,11 @@ class Report:
     oddities: tuple[Check, ...] = ()
     referee: Referee = field(default_factory=Referee)
     versions: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def ledger(self) -> Ledger:
+        """The equations of its workbook."""
+        return self.algebra()
 
     def proof(self, label: str) -> Proof:
         """The proof of an equation by its label, ``(12a)``."""

@@ -37,7 +37,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _plan(report: Report, address: str) -> str:
-    from ..plan import lowered
+    from ..plan.lowering import lowered
     from ..plan.text import text
 
     plan = lowered(report.sheet)

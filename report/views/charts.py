@@ -79,7 +79,7 @@ def traces(words: Words, chart: Chart, series: Series, sizes: Sequence[float]) -
     for letter in chart.log:
         ok &= at["xy".index(letter)] > 0
     layout, labels = values.layouts[axis.name], values.layouts[of.name].labels
-    which = layout.rows[axis.index] * 0 if of is axis else layout.rows[of.index]
+    which = layout.rows[axis.index_name] * 0 if of is axis else layout.rows[of.index_name]
     for row in np.unique(which[ok]):
         here = np.flatnonzero(ok & (which == row))
         named = labels[here] if of is axis else labels[[row]]

@@ -26,10 +26,11 @@ from ..document.parts import slug
 from ..document.tree import Inlines, Math, Unit
 from ..inputs.unit_text import parse_unit
 from ..machine.kept import kept
+from ..named import name_of
 from ..quantity import Bounds, Printed
 from ..result.result import Report
 from ..result.verdict import OTHERWISE, UNEXPECTED
-from ..sheet import Column, Formula, Given, Root, name_of
+from ..sheet import Column, Formula, Given, Root
 from .compact import short_script
 from .live_files import given
 from .writer import TEMPLATES
@@ -316,8 +317,8 @@ class Put(MathPrinter):
 
     def _print_Symbol(self, expr: Symbol, style: str = "plain") -> str:
         axis = self.column.axis
-        if expr in self.sheet.sizes:
-            return self._place("", self.sheet.sizes[expr].name)
+        if expr in self.sheet.algebra.sizes:
+            return self._place("", self.sheet.algebra.sizes[expr].name)
         if axis is not None and expr in axis.ordinals:
             return self._place("#", expr.name)
         if isinstance(self.column.rule, Root) and expr == self.column.rule.unknown:

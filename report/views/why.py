@@ -12,7 +12,7 @@ from ...derivations.text import Wording, text_of_equation
 from ..cells.trace import Group, dependents_of, precedents_of
 from ..cells.values import Cell
 from ..result.result import Report
-from ..sheet import Column, Formula, Given, Root, name_of
+from ..sheet import Column, Formula, Given, Root
 
 __all__ = ["equations_of", "why"]
 
@@ -160,12 +160,12 @@ def _numbers(report: Report, column: Column, row: int) -> dict[Expr, Symbol]:
     own = column.symbol if axis is None else column[axis.index]
     put: dict[Expr, Symbol] = {own: _stand_in(values.value[column.name][row])}
     for reference, group in zip(report.sheet.named(column), precedents_of(values, column, row), strict=True):
-        put[reference.cell] = _stand_in(values.value[name_of(reference.cell)][group.rows[0]])
-    for size, its_axis in report.sheet.sizes.items():
+        put[reference.cell] = _stand_in(values.value[reference.name][group.rows[0]])
+    for size, its_axis in report.sheet.algebra.sizes.items():
         put[size] = _stand_in(values.layouts[its_axis.name].size)
     if axis is not None:
-        for ordinal, numbers in values.layouts[axis.name].ordinals.items():
-            put[ordinal] = _stand_in(numbers[row])
+        for ordinal in axis.ordinals:
+            put[ordinal] = _stand_in(values.layouts[axis.name].ordinals[ordinal.name][row])
     return put
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...derivations import soft_impact as model
 from ...derivations.equation import evaluated
-from ..engines.numpy import kernel
+from ..engines.numpy_code import kernel
 from ..result.result import Report
 from ..views import drawing
 from ..views.drawing import GREY, INK, LOADING, PALE, UNLOADING, Array, Place

@@ -1,0 +1,186 @@
+"""What the rules of a sheet name, read from their algebra, and what may not stand in them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+
+from sympy import And, Basic, Eq, Expr, Indexed, Rational, Symbol, floor
+from sympy.logic.boolalg import Boolean
+
+from ..derivations.reductions import REDUCTIONS, Median
+from .column import Axis, Column, Reference, Root, SheetError
+from .messages.errors import close
+from .quantity import Bounds
+
+__all__ = ["Named", "name_of", "references", "within"]
+
+
+class Named:
+    """What symbols mean in a sheet.
+
+    Parameters
+    ----------
+    by_name : mapping of str to Column
+        Its columns.
+    axes : sequence of Axis
+        Its index sets.
+    """
+
+    def __init__(self, by_name: Mapping[str, Column], axes: Sequence[Axis]) -> None:
+        self.by_name, self.axes = by_name, axes
+
+    @cached_property
+    def sizes(self) -> dict[Symbol, Axis]:
+        """The axis whose number of rows a symbol stands for."""
+        return {axis.size: axis for axis in self.axes}
+
+    @cached_property
+    def indices(self) -> dict[Symbol, Axis]:
+        """The axis that a sum over a running number runs over."""
+        return {axis.index: axis for axis in self.axes}
+
+    def summed(self, column: Column) -> tuple[Axis, ...]:
+        """The axes that its rule sums over, or takes a median over."""
+        over = {
+            total.limits[0][0] for expression in column.expressions for total in expression.atoms(*REDUCTIONS)
+        }
+        return tuple(axis for axis in self.axes if axis.index in over)
+
+    def of(self, column: Column) -> Iterator[Reference]:
+        """The cells that a column names."""
+        unknown = column.rule.unknown if isinstance(column.rule, Root) else None
+        for expression in column.expressions:
+            for reference in references(expression, self.indices):
+                if reference.cell == unknown or reference.cell in self.sizes:
+                    continue
+                if isinstance(reference.cell, Indexed):
+                    yield reference
+                elif name_of(reference.cell) in self.by_name:
+                    yield Reference(reference.cell)  # a scalar is the same inside and outside of sums
+
+    def check(self, column: Column) -> None:
+        """Every symbol is a column, a size, or a running number that means something on this axis."""
+        for expression in column.expressions:
+            self._check_scope(column, expression, column.axis)
+        if isinstance(column.rule, Root) and column.axis is not None:
+            for total in column.rule.expression.atoms(*REDUCTIONS):
+                if total.has(column.rule.unknown):
+                    raise SheetError(
+                        f"{column.name}: {total} names the unknown of a row; a root whose equation sums over "
+                        f"its unknown is one number, not one for each of {column.axis.name}",
+                        column.name,
+                    )
+
+    def _check_scope(self, column: Column, expression: Basic, axis: Axis | None) -> None:
+        if isinstance(expression, REDUCTIONS):
+            limits = expression.limits
+            over = self.indices.get(limits[0][0])
+            if over is None or len(limits) != 1 or limits[0][1:] != (1, over.size):
+                known = ", ".join(f"({a.index}, 1, {a.size})" for a in self.axes) or "none"
+                shown = ", ".join(map(str, limits))
+                raise SheetError(
+                    f"{column.name}: a sum runs over all rows of one index set ({known}), not over {shown}",
+                    column.name,
+                )
+            if isinstance(expression, Median) and not isinstance(expression.function, Indexed):
+                raise SheetError(
+                    f"{column.name}: a median is of the cells of a column, not of {expression.function}; "
+                    "give that a column of its own",
+                    column.name,
+                )
+            if isinstance(expression, Median) and isinstance(column.rule, Root):
+                raise SheetError(
+                    f"{column.name}: a median in a root has to be a column of its own", column.name
+                )
+            self._check_scope(column, expression.function, over)
+        elif isinstance(expression, Indexed):
+            self._check_cell(column, expression, axis)
+        elif isinstance(expression, Symbol):
+            self._check_symbol(column, expression, axis)
+        else:
+            for argument in expression.args:
+                self._check_scope(column, argument, axis)
+
+    def _check_symbol(self, column: Column, symbol: Symbol, axis: Axis | None) -> None:
+        own = column.rule.unknown if isinstance(column.rule, Root) else None
+        if symbol == own or symbol in self.sizes or (axis is not None and symbol in axis.ordinals):
+            return
+        other = self._find(column, symbol.name)
+        if other.axis is not None:
+            raise SheetError(
+                f"{column.name}: {symbol.name} has one value for each of {other.axis.name}; say which",
+                column.name,
+            )
+
+    def _check_cell(self, column: Column, cell: Indexed, axis: Axis | None) -> None:
+        other = self._find(column, name_of(cell))
+        maps = {} if axis is None else axis.maps
+        where = maps.get(cell.indices[0])
+        if where is None or other.axis != where or len(cell.indices) != 1:
+            place = "a scalar" if other.axis is None else f"on {other.axis.name}"
+            allowed = ", ".join(f"{i} ({a.name})" for i, a in maps.items()) or "none"
+            raise SheetError(
+                f"{column.name}: {cell} names a row of nothing: {other.name} is {place}; indices here: "
+                f"{allowed}",
+                column.name,
+            )
+
+    def _find(self, column: Column, name: str) -> Column:
+        other = self.by_name.get(name)
+        if other is None:
+            near = close(name, self.by_name)
+            hint = f"; did you mean {near!r}?" if near else ""
+            raise SheetError(f"{column.name}: no column is called {name!r}{hint}", name, column.name)
+        return other
+
+
+def within(value: Expr, bounds: Bounds) -> Boolean:
+    """That a number is allowed, for every engine to print.
+
+    Parameters
+    ----------
+    value : Expr
+        A real symbol that assumes nothing, or all of it would be true already.
+    bounds : Bounds
+
+    Examples
+    --------
+    >>> within(Symbol("e", real=True), Bounds(low=0, high=1))
+    (e >= 0) & (e <= 1)
+    """
+    low, high = (None if end is None else Rational(repr(end)) for end in (bounds.low, bounds.high))
+    tests: list[Boolean] = [Eq(value, floor(value))] if bounds.integer else []
+    if low is not None:
+        tests.append(value > low if bounds.low_open else value >= low)
+    if high is not None:
+        tests.append(value < high if bounds.high_open else value <= high)
+    return And(*tests)
+
+
+def references(
+    expression: Basic, sums: Mapping[Symbol, Axis], over: Axis | None = None
+) -> Iterator[Reference]:
+    """Everything that an expression names, in the order it stands there; the same may come twice.
+
+    Parameters
+    ----------
+    expression : Basic
+    sums : mapping of Symbol to Axis
+        The axis that a sum over a running number runs over.
+    over : Axis or None
+        The axis of the sum that the expression stands in.
+    """
+    if isinstance(expression, REDUCTIONS):
+        index = expression.limits[0][0]
+        yield from references(expression.function, sums, sums[index])
+    elif isinstance(expression, (Indexed, Symbol)):
+        yield Reference(expression, over)
+    else:
+        for argument in expression.args:
+            yield from references(argument, sums, over)
+
+
+def name_of(cell: Expr) -> str:
+    """The column's name in a cell, plain or indexed."""
+    return Reference(cell).name

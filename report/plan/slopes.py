@@ -1,0 +1,74 @@
+"""What is told of the derivatives of a plan once they are made: which node has which, and what holds them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from ..column import Column, Root
+from ..sheet import Sheet
+
+__all__ = ["Local", "Slope", "unknown_of", "with_unknowns"]
+
+
+@dataclass(frozen=True)
+class Slope:
+    """The derivative of a node by what it names.
+
+    Parameters
+    ----------
+    by : str
+        A column or a total.
+    axis, index : str or None
+        For cells of a column with rows, the axis whose rows name them, and the index by which they do; no
+        index if they stand on the same rows.
+    value : str
+        The part that holds it, on the rows of the node; for a total, on those that it runs over.
+    """
+
+    by: str
+    axis: str | None
+    index: str | None
+    value: str
+
+
+@dataclass(frozen=True)
+class Local:
+    """A node with its derivatives by what it names itself.
+
+    Parameters
+    ----------
+    name : str
+        Of the column; for a total, of its symbol.
+    axis : str or None
+        None for a scalar and for every total.
+    over : str or None
+        The axis that a total runs over.
+    of : str
+        The column in whose rule it stands.
+    rounding : str
+        The part that holds its rounding in SI, in units of eps; empty if it was not asked for.
+    slopes : tuple of Slope
+    median : bool
+        Whether it is a median: of its slopes only those of the rows in the middle count.
+    """
+
+    name: str
+    axis: str | None
+    over: str | None
+    of: str
+    rounding: str
+    slopes: tuple[Slope, ...]
+    median: bool = False
+
+
+def with_unknowns(sheet: Sheet, again: Mapping[str, str]) -> Sheet:
+    """The sheet, and the unknowns that are sought again (:attr:`Derivatives.again`)."""
+    return Sheet((*sheet.columns, *(unknown_of(sheet[root], name) for root, name in again.items())))
+
+
+def unknown_of(column: Column, name: str) -> Column:
+    """The unknown of a root as a root of its own."""
+    assert isinstance(column.rule, Root)
+    rule = replace(column.rule, value=column.rule.unknown)
+    return replace(column, name=name, rule=rule, positive=False, requires=(), limits=())

@@ -1,0 +1,113 @@
+"""The sheet of a shipped workbook as data: the same sheet, and no algebra is loaded for what runs of it."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report.cells.marks import margins
+from loopsheet.report.column import Column, Given, Root
+from loopsheet.report.engines.numpy import Program
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.kept_sheet import sheet_of
+from loopsheet.report.machine.kept import SETTING
+from loopsheet.report.partly import is_partly
+from loopsheet.report.sheet import Sheet
+from loopsheet.report.workbooks.soft_impact import WORKBOOK
+
+GIVEN = [
+    frozenset({"ball_mass", "beta", "points_per_pair"}),
+    frozenset({"ball_diameter", "ball_density", "target_mass", "beta", "points_per_pair"}),
+]
+
+
+@pytest.fixture(params=GIVEN, ids=["mass", "diameter"])
+def both(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[Sheet]:
+    """A sheet as it is declared, and as it is known."""
+    monkeypatch.setenv(SETTING, str(tmp_path / "kept"))
+    checked: list[Sheet] = []
+    known = [sheet_of(WORKBOOK, request.param, checked.append) for _ in range(2)]
+    assert len(checked) == 1, "what is kept was checked before"
+    return [checked[0], *known]
+
+
+def plainly(sheet: Sheet, column: Column) -> list[object]:
+    """What a column says without its algebra."""
+    names = ("name", "unit", "meaning", "latex", "display", "positive", "exact", "source", "content")
+    rule = column.rule
+    return [
+        *(getattr(column, name) for name in names),
+        rule if isinstance(rule, Given) else type(rule).__name__,
+        (rule.none, rule.two, rule.unknown_name) if isinstance(rule, Root) else None,
+        column.axis and (column.axis.words, column.axis.parts, column.axis.described),
+        column.axis and column.axis.alone.content,
+        [(r.name, r.index, r.over and r.over.name) for r in sheet.named(column)],
+        [axis.name for axis in sheet.summed_axes(column)],
+        [(limit.mark, limit.told, limit.silent) for limit in column.limits],
+    ]
+
+
+def test_a_known_sheet_says_what_the_declared_one_says(both: list[Sheet]) -> None:
+    declared, *known = both
+    for sheet in known:
+        assert [c.name for c in sheet.order] == [c.name for c in declared.order]
+        assert sheet.bounds == declared.bounds
+        for own, column in zip(sheet.columns, declared.columns, strict=True):
+            assert plainly(sheet, own) == plainly(declared, column)
+        assert [m.column.content for m in margins(sheet)] == [m.column.content for m in margins(declared)]
+
+
+def test_what_is_not_known_is_declared_again(both: list[Sheet]) -> None:
+    declared, _, sheet = both
+    for own, column in zip(sheet.columns, declared.columns, strict=True):
+        assert is_partly(own)
+        assert own.expressions == column.expressions
+        assert own == column
+        assert column == own
+        assert own.requires == column.requires
+        assert [r.cell for r in sheet.named(own)] == [r.cell for r in declared.named(column)]
+    assert [axis.maps for axis in sheet.axes] == [axis.maps for axis in declared.axes]
+    assert Program.of(sheet).source == Program.of(declared).source
+    assert sheet["x_p"] != sheet["v"]
+    given = replace(sheet["alpha"], rule=Given("free"), requires=())
+    assert not is_partly(given)
+    assert given.expressions == ()
+    assert hash(given.axis) == hash(declared["alpha"].axis)
+
+
+EDITED = """\
+import sys
+from pathlib import Path
+from loopsheet.report.build import _refereed
+from loopsheet.report.machine.background import Later
+from loopsheet.report.study import Study
+study, plain = Study(Path(sys.argv[1])), Later()
+plain.told.append(study.computed.values.plain)
+print(study.computed.values.cell("alpha_mean").value, "sympy" in sys.modules)
+referee, _ = _refereed(study.recipe, plain)
+print(referee.joint.verdict, len(referee.labels), "sympy" in sys.modules)
+"""
+
+
+def test_values_and_referee_of_edited_data_load_no_algebra(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(SETTING, str(tmp_path / "kept"))
+    campaign = tmp_path / "campaign"
+    shutil.copytree(PAPER, campaign)
+    table, runs = campaign / "measurements.csv", []
+    for edited in ("29.7", "29.71"):
+        table.write_text(table.read_text().replace("29.7", edited))
+        run = subprocess.run(
+            [sys.executable, "-c", EDITED, str(campaign)], capture_output=True, text=True, check=True
+        )
+        runs.append(run.stdout.split())
+    (first, before, *_), (second, values, *_, referee) = runs
+    assert first != second
+    assert before == "True", "nothing was kept yet"
+    assert (values, referee) == ("False", "False")
