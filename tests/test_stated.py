@@ -167,6 +167,7 @@ def read(tmp_path: Path) -> Read:
         ("8.366 +-0.006 g normal, k = 2", 3e-6),
         ("8.366 g ±0.003 rect", 3e-6 / 3**0.5),
         ("8.366 g; exact", 0),
+        ("8.366+-0.006 g rect", 6e-6 / 3**0.5),
         ("8.366 g", 5e-7 / 3**0.5),
     ],
 )
@@ -182,6 +183,20 @@ def test_a_cell_says_it_in_parentheses_and_a_column_in_the_section(read: Read) -
     *digits, stated = inputs.measured["x_p"]
     assert [number.stated for number in digits] == [None, None]
     assert (stated.text, stated.u) == ("41.6", pytest.approx(2e-7))
+
+
+@pytest.mark.parametrize(
+    "said", ["1.5, u = 0.1", "1.5; u = 0.1", "1.5 , u = 0.1", "1.5(1)", "1.5+-0.1 normal, k = 1"]
+)
+def test_a_pure_number_needs_no_unit_in_between(read: Read, said: str) -> None:
+    inputs = read(mass=f'8 g"\nbeta = "{said}')
+    assert (inputs.parameters["beta"].text, inputs.parameters["beta"].u) == ("1.5", pytest.approx(0.1))
+
+
+def test_a_decimal_comma_is_still_told(read: Read) -> None:
+    with pytest.raises(InputError) as refused:
+        read(mass="8,366 g, exact")
+    assert [found.code for found in refused.value.diagnostics] == ["LS402"]
 
 
 def test_what_bare_limits_mean_holds_for_parameters_too(read: Read) -> None:

@@ -25,6 +25,8 @@ __all__ = ["read_parameters", "wrong_type"]
 _SPACELESS = re.compile(
     r"(?P<number>[+-]?[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?+)(?P<unit>[^\W\d_].*|[°%].*)", re.DOTALL
 )
+_ENDS = re.compile(r"\s|[;±]|,\s|(?<=.)\+/?-")
+"""A number ends at a space, and where something is stated of it. A comma with a digit behind it is decimal."""
 _BEHIND = re.compile(r"[,;]\s*|(?=±|\+-|\+/-)")
 _LIMITS = re.compile(r"(?:±|\+-|\+/-)\s*[0-9.]+(?:[eE][+-]?[0-9]+)?(?P<behind>[^,;]*)")
 _TYPES = {
@@ -109,7 +111,10 @@ class _Reader:
             example = f"{joined['number']} {joined['unit']}"
             self.findings.add("LS210", at, text=value.strip(), example=example)
             return None
-        digits, _, rest = value.strip().partition(" ")
+        text = value.strip()
+        found = _ENDS.search(text)
+        end = found.start() if found else len(text)
+        digits, rest = text[:end], text[end:]
         start = value.find(digits)
         unit, said, begins = _apart(rest, value.find(rest, start + len(digits)) if rest else 0)
         size = self.unit(unit, value.find(unit, start + len(digits)), digits)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..distribution import Shape
 
-__all__ = ["Budget", "Contribution", "ErrorSource", "Uncertainties"]
+__all__ = ["Budget", "Contribution", "Distributed", "ErrorSource", "Uncertainties"]
 
 
 @dataclass(frozen=True)
@@ -125,6 +125,47 @@ class Budget:
     def is_known(self) -> bool:
         """Whether there is a standard uncertainty, even if it is 0."""
         return math.isfinite(self.u)
+
+
+@dataclass(frozen=True)
+class Distributed:
+    """The distribution of one cell by Monte Carlo (JCGM 101), and how the law of propagation fits it.
+
+    Parameters
+    ----------
+    number, lost : int
+        Draws, and those of them without a value: all else is of the others.
+    median, mean, u : float
+        In SI; mean and standard uncertainty are NaN where the tails are too heavy.
+    symmetric, shortest : tuple of float
+        The ends of the intervals with equal tails and of least width, at the level of the budget; NaN where
+        too many draws have no value.
+    tail : float
+        The tail index; infinite where the tails end or fall faster than any power.
+    tolerance : float
+        To which the interval was asked for: half a unit of the second digit of the standard uncertainty.
+    stable : bool
+        Whether it is known to that.
+    differences : tuple of float
+        Of both ends of the interval with equal tails from those by the law of propagation.
+    """
+
+    number: int
+    lost: int
+    median: float
+    mean: float
+    u: float
+    symmetric: tuple[float, float]
+    shortest: tuple[float, float]
+    tail: float
+    tolerance: float
+    stable: bool
+    differences: tuple[float, float]
+
+    @property
+    def validates(self) -> bool:
+        """Whether the law of propagation gives the same interval within the tolerance (JCGM 101, 8)."""
+        return max(self.differences) <= self.tolerance
 
 
 @dataclass(frozen=True)

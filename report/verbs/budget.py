@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import TYPE_CHECKING
 
-from .common import OK, Progress, find_one, folder_argument, format_argument, keeping_arguments
+from .common import OK, Progress, count, find_one, folder_argument, format_argument, keeping_arguments
 
 if TYPE_CHECKING:
     from ..study import Study
@@ -21,6 +21,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     folder_argument(parser)
     said = "coverage probability of the expanded uncertainty in percent (default: 95)"
     parser.add_argument("--level", metavar="P", type=_level, default=LEVEL, help=said)
+    said = "draw the inputs so many times at most, and tell what the results are spread over (JCGM 101)"
+    parser.add_argument("--draws", metavar="N", type=count, default=0, help=said)
+    parser.add_argument("--seed", metavar="N", type=count, default=1, help="of the draws (default: 1)")
     format_argument(parser, "text", "markdown", "json")
     keeping_arguments(parser)
 
@@ -43,17 +46,22 @@ def run(options: argparse.Namespace) -> int:
 
     with Progress(sys.stderr) as progress:
         study = Study(report_folder(options.folder), step=progress)
-        parts = options.cell, options.format, repr(options.level)
+        draws = str(options.draws), str(options.seed)
+        parts = options.cell, options.format, repr(options.level), *draws
         told = study.kept("budget", lambda: _told(study, *parts), *parts)
     print(told)
     return OK
 
 
-def _told(study: Study, address: str, form: str, level: str) -> str:
+def _told(study: Study, address: str, form: str, level: str, draws: str, seed: str) -> str:
+    from ..uncertainty.monte_carlo import draw
     from ..uncertainty.propagation import Spread
     from ..views.budget import FORMATS
 
     column, label = find_one(report := study.computed, address)
     spread = Spread(report.inputs, report.values)
     row = report.values.row(column, label)
-    return FORMATS[form](report, spread.budget(column.name, row, float(level)))
+    budget, drawn = spread.budget(column.name, row, float(level)), None
+    if int(draws) and budget.u > 0:
+        drawn = draw(report.inputs, report.values, budget, int(draws), int(seed), study.step)
+    return FORMATS[form](report, budget, drawn)

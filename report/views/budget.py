@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 from ..document.numbers import decimals, rounded, stated
 from ..result.result import Report
-from ..result.uncertain import Budget, Contribution
+from ..result.uncertain import Budget, Contribution, Distributed
 from . import markdown as md
 
 __all__ = ["FORMATS", "as_json", "as_markdown", "as_text", "sentence"]
@@ -35,8 +35,8 @@ def sentence(report: Report, budget: Budget) -> str:
     return f"{told}, U = {expanded.text}{unit} with k = {rounded(budget.factor, 3).text} for {level}"
 
 
-def as_text(report: Report, budget: Budget) -> str:
-    """The sentence, and a table of the sources."""
+def as_text(report: Report, budget: Budget, drawn: Distributed | None = None) -> str:
+    """The sentence, a table of the sources, and what draws told."""
     lines = [sentence(report, budget)]
     rows = [HEADER, *(_row(report, budget, each) for each in budget.contributions)]
     if len(rows) > 1:
@@ -46,18 +46,21 @@ def as_text(report: Report, budget: Budget) -> str:
             *("  ".join(f"{text:{w}}" for text, w in zip(row, widths, strict=True)).rstrip() for row in rows),
         ]
         lines.append("")
-    return "\n".join([*lines, *_notes(report, budget)])
+    return "\n".join([*lines, *_notes(report, budget), *_of_draws(report, budget, drawn)])
 
 
-def as_markdown(report: Report, budget: Budget) -> str:
+def as_markdown(report: Report, budget: Budget, drawn: Distributed | None = None) -> str:
     """The same for a pull request."""
     rows = [[md.cell(text) for text in _row(report, budget, each)] for each in budget.contributions]
-    notes = "".join(f"\n{md.cell(note)}\n" for note in _notes(report, budget))
+    notes = "".join(
+        f"\n{md.cell(note)}\n" for note in (*_notes(report, budget), *_of_draws(report, budget, drawn))
+    )
     return f"{md.cell(sentence(report, budget))}\n\n{md.table(HEADER, rows) if rows else ''}{notes}".rstrip()
 
 
-def as_json(report: Report, budget: Budget) -> str:
+def as_json(report: Report, budget: Budget, drawn: Distributed | None = None) -> str:
     """All digits, in SI."""
+    monte_carlo = {} if drawn is None else {"monte_carlo": _drawn(drawn)}
     return json.dumps(
         {
             "schema": 1,
@@ -73,13 +76,14 @@ def as_json(report: Report, budget: Budget) -> str:
             "second_order_share": _number(budget.second / budget.u**2) if budget.u else 0.0,
             "sources": [_source(each) for each in budget.contributions],
             "correlations": [[*pair, r] for pair, r in budget.correlations.items()],
+            **monte_carlo,
         },
         indent=1,
         ensure_ascii=False,
     )
 
 
-FORMATS: Mapping[str, Callable[[Report, Budget], str]] = {
+FORMATS: Mapping[str, Callable[[Report, Budget, Distributed | None], str]] = {
     "text": as_text,
     "markdown": as_markdown,
     "json": as_json,
@@ -129,6 +133,64 @@ def _notes(report: Report, budget: Budget) -> Iterator[str]:
         if not math.isinf(budget.dof) and not math.isnan(budget.dof):
             yield f"{budget.dof:.0f} effective degrees of freedom"
         yield f"k comes from {budget.because}"
+
+
+def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iterator[str]:
+    """What Monte Carlo told."""
+    if drawn is None:
+        return
+    unit, scale = _unit(report, budget.name)
+
+    def told(value: float) -> str:
+        return stated(value / scale, (drawn.u if math.isfinite(drawn.u) else budget.u) / scale)[0].text
+
+    yield f"Monte Carlo, {drawn.number} draws: median {told(drawn.median)}{unit}" + (
+        f", u = {rounded(drawn.u / scale, 2).text}{unit}" if math.isfinite(drawn.u) else ""
+    )
+    if drawn.lost:
+        share = _percent(drawn.lost / drawn.number)
+        yield f"{drawn.lost} of them ({share}) have no value: all this is of the others"
+    if math.isnan(drawn.u):
+        what = "standard deviation" if math.isfinite(drawn.mean) else "mean and no standard deviation"
+        yield f"there is no {what}: the tails fall as the power {drawn.tail:.2g} of the distance"
+    if math.isnan(drawn.symmetric[0]):
+        yield "no interval is told: too many draws have no value"
+        return
+    level = f"{100 * budget.level:.12g} %"
+    for name, (low, high) in (("equal tails", drawn.symmetric), ("the shortest", drawn.shortest)):
+        around = (
+            f"{told(budget.value)} +{_width(high - budget.value, scale)}/-{_width(budget.value - low, scale)}"
+        )
+        yield f"{level} between {told(low)} and {told(high)}{unit} ({name}; {around})"
+    if not drawn.stable:
+        yield "its ends are not known to the second digit of u: more draws would tell"
+    far = rounded(max(drawn.differences) / scale, 2).text
+    yield (
+        f"the law of propagation gives the same interval within {far}{unit}"
+        if drawn.validates
+        else f"the law of propagation is off by {far}{unit} at an end: the interval of the draws holds"
+    )
+
+
+def _width(width: float, scale: float) -> str:
+    return rounded(max(width, 0.0) / scale, 2).text
+
+
+def _drawn(drawn: Distributed) -> dict[str, object]:
+    return {
+        "draws": drawn.number,
+        "without_value": drawn.lost,
+        "median": _number(drawn.median),
+        "mean": _number(drawn.mean),
+        "u": _number(drawn.u),
+        "interval": list(map(_number, drawn.symmetric)),
+        "shortest": list(map(_number, drawn.shortest)),
+        "tail_index": _number(drawn.tail),
+        "stable": drawn.stable,
+        "tolerance": drawn.tolerance,
+        "differences": list(map(_number, drawn.differences)),
+        "validates": drawn.validates,
+    }
 
 
 def _percent(share: float) -> str:

@@ -1,0 +1,232 @@
+"""The distribution of a cell by Monte Carlo (JCGM 101), with the engine's batch axes.
+
+All errors of what was given are drawn from their distributions and go through the sheet, batch after batch.
+Quantiles come first: they exist for any distribution. A mean and a standard deviation are told only where the
+tails let them exist, and an interval only if nearly all draws have a value.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cells.values import Status, Values
+from ..distribution import DIVISORS, Shape
+from ..engines.numpy import Program, evaluate
+from ..inputs.inputs import Inputs
+from ..result.uncertain import Budget, Distributed, ErrorSource
+from ..sheet import Sheet
+from .sources import correlations, given, sources
+
+__all__ = ["MOST", "draw"]
+
+Array = NDArray[np.float64]
+
+MOST = 1_000_000
+"""Draws, at most, where nobody asks for another number."""
+FEWEST = 10
+"""Batches before it is asked whether they are enough."""
+WITHOUT = 0.025
+"""Of so many draws without a value no interval of 95 % is told: it might as well lie there."""
+NO_MEAN, NO_DEVIATION = 1.1, 2.2
+"""Up to which tail index, with what its estimate may be off, there is no mean and no standard deviation."""
+
+
+def draw(
+    inputs: Inputs,
+    values: Values,
+    budget: Budget,
+    most: int = MOST,
+    seed: int = 1,
+    step: Callable[[str], None] = lambda _: None,
+) -> Distributed:
+    """Draw until the interval is known to a digit of the uncertainty, or `most` times.
+
+    Parameters
+    ----------
+    inputs : Inputs
+    values : Values
+        All columns, without a batch.
+    budget : Budget
+        Of the cell, by the law of propagation, which is compared.
+    most, seed : int
+        The same seed draws the same.
+    step : callable
+        Told what is begun.
+
+    Returns
+    -------
+    Distributed
+
+    Notes
+    -----
+    It is enough when twice the standard deviations of mean, standard uncertainty and both ends, averaged over
+    the batches, are below half a unit of the second digit of the standard uncertainty (JCGM 101, 7.9.4).
+    """
+    drawn = _Draws(inputs, values, budget.name, seed)
+    row = values.row(values.sheet[budget.name], budget.label)
+    size = min(most, max(10_000, math.ceil(100 / (1 - budget.level))))
+    found: list[Array] = []
+    told: list[tuple[float, ...]] = []
+    lost, tolerance = 0, _tolerance(budget.u)
+    for number, batch in enumerate(drawn.batches(size, most), start=1):
+        step(f"drawing {number * size} times")
+        own, status = drawn.of(batch, row)
+        lost += int(np.count_nonzero(status != Status.OK))
+        found.append(own[status == Status.OK])
+        if found[-1].size:
+            told.append(_told(np.sort(found[-1]), budget.level))
+        if number >= FEWEST and len(told) == number and _is_enough(told, tolerance):
+            break
+    return _distributed(np.sort(np.concatenate(found)), lost, budget, tolerance, told)
+
+
+class _Draws:
+    """Draws of what a column rests on."""
+
+    def __init__(self, inputs: Inputs, values: Values, name: str, seed: int) -> None:
+        column = values.sheet[name]
+        self.sheet = Sheet((*values.sheet.ancestors(column), column))
+        self.labels = {axis.name: inputs.tests for axis in self.sheet.axes if not axis.parents}
+        self.program, self.name = Program.of(self.sheet), name
+        self.generator = np.random.Generator(np.random.PCG64(seed))
+        self.base = {
+            own.name: values.value[own.name] for own in self.sheet.columns if own.name in self.sheet.bounds
+        }
+        for own in given(values):
+            if own.name in self.base:
+                self.base[own.name] = self.base[own.name] + [float(p.shift) for p in inputs.printed(own.name)]
+        self.sources = [
+            source for source in sources(inputs, values) if any(move[0] in self.base for move in source.moves)
+        ]
+        self.root = self._root(correlations(inputs, values))
+
+    def _root(self, stated: Mapping[tuple[str, str], float]) -> Array | None:
+        """What makes independent normal errors correlated; None where none are."""
+        number = {source.name: n for n, source in enumerate(self.sources)}
+        pairs = [(number[a], number[b], r) for (a, b), r in stated.items() if a in number and b in number]
+        if not pairs:
+            return None
+        matrix = np.eye(len(self.sources))
+        for a, b, r in pairs:
+            matrix[a, b] = matrix[b, a] = r
+        values, vectors = np.linalg.eigh(matrix)
+        root: Array = vectors * np.sqrt(np.maximum(values, 0.0))
+        return root
+
+    def batches(self, size: int, most: int) -> Iterator[dict[str, Array]]:
+        """What was given, one batch after another (size, rows)."""
+        for first in range(0, most, size):
+            yield self._batch(min(size, most - first))
+
+    def _batch(self, size: int) -> dict[str, Array]:
+        moved: dict[str, Array] = {}
+        for source, errors in zip(self.sources, self._errors(size), strict=True):
+            for name, row, u in source.moves:
+                if name in self.base:
+                    if name not in moved:
+                        moved[name] = np.tile(self.base[name], (size, 1))
+                    moved[name][:, row] += u * errors
+        return moved
+
+    def _errors(self, size: int) -> Iterator[Array]:
+        """Errors in units of their standard uncertainty; correlated ones are normal."""
+        if self.root is not None:
+            together = self.generator.standard_normal((size, len(self.sources))) @ self.root.T
+            correlated = np.count_nonzero(np.abs(self.root @ self.root.T) > 0, axis=1) > 1
+        for n, source in enumerate(self.sources):
+            if self.root is not None and correlated[n]:
+                yield together[:, n]
+            else:
+                yield self._error(source, size)
+
+    def _error(self, source: ErrorSource, size: int) -> Array:
+        draws, shape = self.generator, source.shape
+        if shape is Shape.NORMAL:
+            return draws.standard_normal(size)
+        if shape is Shape.STUDENT:
+            return draws.standard_t(source.dof, size)
+        if shape is Shape.TRIANGULAR:
+            return DIVISORS[shape] * (draws.random(size) - draws.random(size))
+        if shape is Shape.ARCSINE:
+            return DIVISORS[shape] * np.sin(2 * np.pi * draws.random(size))
+        return DIVISORS[shape] * draws.uniform(-1, 1, size)
+
+    def of(self, batch: dict[str, Array], row: int) -> tuple[Array, NDArray[np.uint8]]:
+        """The values and statuses of a row of the column (size,)."""
+        values = evaluate(self.sheet, self.labels, self.base | batch, self.program)
+        size = max((len(own) for own in batch.values()), default=1)
+        own, status = values.value[self.name], values.status[self.name]
+        return np.broadcast_to(own[..., row], size), np.broadcast_to(status[..., row], size)
+
+
+# --- what draws tell ---------------------------------------------------------------------------------------
+
+
+def _tolerance(u: float) -> float:
+    """Half a unit of the second digit of a standard uncertainty."""
+    return 0.5 * 10.0 ** (math.floor(math.log10(u)) - 1) if u > 0 and math.isfinite(u) else 0.0
+
+
+def _told(ordered: Array, level: float) -> tuple[float, float, float, float]:
+    """Mean, standard deviation and the ends of the interval with equal tails."""
+    low, high = np.quantile(ordered, [(1 - level) / 2, (1 + level) / 2])
+    return (
+        float(ordered.mean()),
+        float(ordered.std(ddof=1)) if ordered.size > 1 else 0.0,
+        float(low),
+        float(high),
+    )
+
+
+def _is_enough(told: Sequence[tuple[float, ...]], tolerance: float) -> bool:
+    spread = np.std(np.array(told), axis=0, ddof=1) / math.sqrt(len(told))
+    return bool(np.all(2 * spread < tolerance))
+
+
+def _shortest(ordered: Array, level: float) -> tuple[float, float]:
+    """The shortest interval that holds so many of the draws (JCGM 101, 7.7)."""
+    inside = min(ordered.size - 1, math.ceil(level * ordered.size))
+    widths = ordered[inside:] - ordered[: ordered.size - inside]
+    first = int(np.argmin(widths))
+    return float(ordered[first]), float(ordered[first + inside])
+
+
+def _tail(ordered: Array) -> float:
+    """The tail index by Hill: the chance to be further out than t falls as t to minus this power."""
+    number = math.isqrt(ordered.size)
+    if number < 10:
+        return math.inf
+    out = np.sort(np.abs(ordered - np.median(ordered)))[-number - 1 :]
+    slope = float(np.mean(np.log(out[1:] / out[0]))) if out[0] > 0 else 0.0
+    return 1 / slope if slope > 0 else math.inf
+
+
+def _distributed(
+    ordered: Array, lost: int, budget: Budget, tolerance: float, told: Sequence[tuple[float, ...]]
+) -> Distributed:
+    number, nothing = ordered.size + lost, math.nan
+    tail = _tail(ordered)
+    median = float(np.median(ordered)) if ordered.size else nothing
+    mean, u, low, high = _told(ordered, budget.level) if ordered.size else (nothing,) * 4
+    stated = ordered.size > 1 and lost <= WITHOUT * number
+    ends = (low, high) if stated else (nothing, nothing)
+    return Distributed(
+        number,
+        lost,
+        median,
+        mean if tail > NO_MEAN else nothing,
+        u if tail > NO_DEVIATION else nothing,
+        ends,
+        _shortest(ordered, budget.level) if stated else ends,
+        tail,
+        tolerance,
+        len(told) >= FEWEST and _is_enough(told, tolerance),
+        (
+            abs(budget.value - budget.expanded - ends[0]),
+            abs(budget.value + budget.expanded - ends[1]),
+        ),
+    )

@@ -1,0 +1,160 @@
+"""Draws through the sheet: the additive models of JCGM 101, the paper, and what has no moments."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report.cli import main
+from loopsheet.report.result.uncertain import Distributed
+from loopsheet.report.study import Study
+from loopsheet.report.uncertainty.monte_carlo import draw
+from loopsheet.report.uncertainty.propagation import Spread
+
+PAPER = Path(__file__).parent.parent / "data" / "soft_steel"
+SUM = """\
+from sympy import Symbol
+from loopsheet.derivations.equation import Equation, Kind, Ledger
+from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
+from loopsheet.report.workbook import Measured, Parameter, Workbook
+
+k, n = (Symbol(s, integer=True, positive=True) for s in ("k", "n"))
+r = Column("r", Axis("readings", k, n), Given("measured"), "1", "a reading", positive=False)
+names = ("x_1", "x_2", "x_3", "x_4")
+x = [Column(name, None, Given("parameter"), "1", name, positive=False) for name in names]
+eq = Equation("(1)", (Symbol("y"), sum(c.symbol for c in x)), "definition", Kind.DEFINITION, "a sum")
+y = Column("y", None, Formula(eq), "1", "a sum", positive=False)
+WORKBOOK = Workbook(
+    name="sum", title="A sum", source="JCGM 101:2008, 9.2", ledger=lambda: Ledger((eq,)),
+    measured=(Measured("r", "1", "a reading"),),
+    parameters=tuple(Parameter(name, "1", name) for name in names),
+    sheet=lambda given: Sheet((r, *x, y)), headline=("y",),
+)
+"""
+
+
+def of_a_sum(
+    folder: Path, *stated: str, correlation: str = "", most: int = 200_000
+) -> tuple[Distributed, float]:
+    """Four terms of estimate 0, of which this is stated; and the expanded uncertainty by propagation."""
+    (folder / "workbook.py").write_text(SUM, encoding="utf-8")
+    (folder / "measurements.csv").write_text("test,r [1]\n1,1\n2,2\n", encoding="utf-8")
+    given = "".join(f'x_{n} = "0.0, {text}"\n' for n, text in enumerate(stated, start=1))
+    more = f"[uncertainty.correlation]\n{correlation}\n" if correlation else ""
+    toml = f'workbook = "workbook.py"\n[parameters]\n{given}[measurements]\nfile = "measurements.csv"\n{more}'
+    (folder / "report.toml").write_text(toml, encoding="utf-8")
+    report = Study(folder).computed
+    budget = Spread(report.inputs, report.values).budget("y", 0)
+    return draw(report.inputs, report.values, budget, most), budget.expanded
+
+
+NORMAL, RECTANGULAR = "u = 1", f"+-{3**0.5!r} rect"
+
+
+def test_four_normal_terms(tmp_path: Path) -> None:
+    """JCGM 101:2008, 9.2.2: u 2.0, 95 % in +-3.92, and both methods agree."""
+    found, expanded = of_a_sum(tmp_path, *[NORMAL] * 4)
+    assert found.u == pytest.approx(2, abs=0.02)
+    assert found.symmetric == pytest.approx((-3.92, 3.92), abs=0.05)
+    assert expanded == pytest.approx(3.92, abs=5e-3)
+    assert found.stable
+    assert found.validates
+
+
+def test_four_rectangular_terms(tmp_path: Path) -> None:
+    """JCGM 101:2008, 9.2.3: 95 % in +-3.88."""
+    found, expanded = of_a_sum(tmp_path, *[RECTANGULAR] * 4, most=1_000_000)
+    assert found.u == pytest.approx(2, abs=0.02)
+    assert found.symmetric == pytest.approx((-3.88, 3.88), abs=0.02)
+    assert found.shortest[1] - found.shortest[0] == pytest.approx(2 * 3.88, abs=0.04)
+    assert expanded == pytest.approx(3.92, abs=5e-3)
+
+
+def test_a_rectangular_term_that_dominates(tmp_path: Path) -> None:
+    """JCGM 101:2008, 9.2.4: u 10.1, 95 % in +-17.0 where a normal distribution would give +-19.9."""
+    found, expanded = of_a_sum(tmp_path, *[RECTANGULAR] * 3, f"+-{10 * 3**0.5!r} rect", most=1_000_000)
+    assert found.u == pytest.approx(10.1, abs=0.1)
+    assert found.symmetric == pytest.approx((-17.0, 17.0), abs=0.1)
+    # the coverage factor of the rectangular term comes near to it
+    assert expanded == pytest.approx(0.95 * 3**0.5 * math.sqrt(103), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("stated", "u", "outermost"),
+    [
+        ("+-1 tri", 1 / 6**0.5, 1.0),
+        ("+-1 arcsine", 1 / 2**0.5, 1.0),
+        ("+-1 rect", 1 / 3**0.5, 1.0),
+        ("t scale = 1, dof = 10", math.sqrt(10 / 8), math.inf),
+        ("t sd = 1, dof = 10", 1.0, math.inf),
+    ],
+)
+def test_shapes(tmp_path: Path, stated: str, u: float, outermost: float) -> None:
+    found, _ = of_a_sum(tmp_path, stated, *["exact"] * 3)
+    assert found.u == pytest.approx(u, rel=0.02)
+    assert max(map(abs, found.symmetric)) <= outermost
+
+
+@pytest.mark.parametrize(("r", "u"), [("1", 4.0), ("-1", 2.0), ("0", math.sqrt(10))])
+def test_correlated_errors(tmp_path: Path, r: str, u: float) -> None:
+    found, _ = of_a_sum(tmp_path, "u = 3", "u = 1", "exact", "exact", correlation=f'"x_1, x_2" = "{r}"')
+    assert found.u == pytest.approx(u, rel=0.02)
+
+
+def test_what_was_truncated_is_shifted(tmp_path: Path) -> None:
+    text = (PAPER / "report.toml").read_text(encoding="utf-8")
+    assert "[measurements.printed]" not in text
+    (tmp_path / "report.toml").write_text(
+        text + '\n[measurements.printed]\nx_p = "truncated"\n', encoding="utf-8"
+    )
+    for name in ("measurements.csv", "published.csv"):
+        (tmp_path / name).write_bytes((PAPER / name).read_bytes())
+    report = Study(tmp_path).computed
+    budget = Spread(report.inputs, report.values).budget("x_p", 1)
+    found = draw(report.inputs, report.values, budget, 100_000)
+    assert found.mean * 1e6 == pytest.approx(29.75, abs=1e-3)
+    assert found.symmetric[0] >= 29.7e-6
+
+
+def test_the_mean_of_the_paper() -> None:
+    """95 % in [1.2959, 1.3094]: a little less than by propagation, for errors of digits end."""
+    report = Study(PAPER).computed
+    spread = Spread(report.inputs, report.values)
+    budget = spread.budget("alpha_mean", 0)
+    found = draw(report.inputs, report.values, budget, 100_000)
+    assert found.symmetric == pytest.approx((1.2959, 1.3094), abs=1e-4)
+    assert found.u == pytest.approx(budget.u, rel=0.02)
+    assert (found.lost, found.stable) == (0, True)
+    again = draw(report.inputs, report.values, budget, 100_000)
+    assert again == found
+    assert draw(report.inputs, report.values, budget, 100_000, seed=2) != found
+
+
+NEAR = "test,v [m/s],e [1],x_p [um]\n1,2.2,0.535,22.5(4)\n2,2.4,0.525,23.5(4)\n3,4.3,0.47,44.61\n"
+
+
+def test_two_depths_that_may_be_the_same(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """1 over their difference has no mean; and where there is no root there is no exponent."""
+    (tmp_path / "measurements.csv").write_text(NEAR, encoding="utf-8")
+    toml = 'workbook = "soft_impact"\n[parameters]\nball_mass = "8 g"\n[measurements]\n'
+    toml += 'file = "measurements.csv"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    report = Study(tmp_path).computed
+    budget = Spread(report.inputs, report.values).budget("alpha", 0)
+    found = draw(report.inputs, report.values, budget, 300_000)
+    assert found.tail == pytest.approx(1, abs=0.1)
+    assert math.isnan(found.mean)
+    assert math.isnan(found.u)
+    assert found.median > 3
+    assert found.lost > 0.025 * found.number
+    assert all(map(math.isnan, (*found.symmetric, *found.shortest)))
+    assert not found.validates
+    assert main(["budget", "alpha[1-2]", str(tmp_path), "--draws", "50000"]) == 0
+    told = capsys.readouterr().out
+    assert "there is no mean and no standard deviation: the tails fall as the power" in told
+    assert "no interval is told: too many draws have no value" in told
+
+
+def test_a_number_that_is_exact_is_not_drawn(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["budget", "beta", "paper", "--draws", "1000"]) == 0
+    assert capsys.readouterr().out == "beta = 1.5, exactly\n"
