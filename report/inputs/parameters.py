@@ -26,7 +26,7 @@ _SPACELESS = re.compile(
     r"(?P<number>[+-]?[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?+)(?P<unit>[^\W\d_].*|[°%].*)", re.DOTALL
 )
 _ENDS = re.compile(r"\s|[;±]|,\s|(?<=.)\+/?-")
-"""A number ends at a space, and where something is stated of it. A comma with a digit behind it is decimal."""
+"""Where a number ends: at a space, or where something is stated of it. A comma before a digit is decimal."""
 _BEHIND = re.compile(r"[,;]\s*|(?=±|\+-|\+/-)")
 _LIMITS = re.compile(r"(?:±|\+-|\+/-)\s*[0-9.]+(?:[eE][+-]?[0-9]+)?(?P<behind>[^,;]*)")
 _TYPES = {

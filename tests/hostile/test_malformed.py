@@ -48,7 +48,7 @@ def ends(folder: Path, further: bool) -> str:
     try:
         prepared = Study(folder).prepared
         stage = "the sheet"
-        report = stages.evaluated(prepared, prepared.inputs.workbook.ledger(), lambda _: None)
+        report = stages.evaluated(prepared, prepared.inputs.workbook.ledger, lambda _: None)
         if further:
             stage = "the referee"
             report = stages.refereed(report)
