@@ -146,6 +146,11 @@ class Printed:
             return min(self.value, self.value + away), max(self.value, self.value + away)
         return self.value - self.half_unit, self.value + self.half_unit
 
+    @cached_property
+    def spread(self) -> tuple[float, float]:
+        """The middle of what prints so, and half of its width, as doubles in SI."""
+        return float(sum(self.interval) / 2), float(self.half_unit)
+
     @property
     def errors(self) -> tuple[Error, ...]:
         """Its errors: the stated ones, else that of the digits.

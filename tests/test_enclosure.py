@@ -20,6 +20,7 @@ from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.judge.chain import Made
 from loopsheet.report.judge.enclosure import Enclosure
 from loopsheet.report.quantity import Bounds
+from loopsheet.report.referee import certificate
 from loopsheet.report.referee.campaign import Campaign
 from loopsheet.report.referee.certificate import Certificate
 from loopsheet.report.referee.minimax import best
@@ -121,6 +122,27 @@ def test_what_is_printed_is_computed_once(campaign: Campaign, monkeypatch: pytes
     box = problem.box
     assert (problem.only([3]).slopes(again, box) == problem.slopes(first, box)[[3]]).all()
     assert (problem.slopes(elsewhere, box) != problem.slopes(first, box)).any()
+
+
+def test_boxes_that_differ_in_one_cell_are_enclosed_as_each_alone(
+    campaign: Campaign, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of ten pairs, six do not rest on the cell of one test: they are enclosed once for all boxes."""
+    problem, solved = table(campaign, "Table 2"), []
+    of_rows = Enclosure._root
+    monkeypatch.setattr(Enclosure, "_root", lambda *given: solved.append(given[-1]) or of_rows(*given))
+    (n,) = (n for n, u in enumerate(problem.unknowns) if (u.column, u.row) == ("x_p", 1))
+    boxes = [problem.box.moved([n], [end], [end * 1.001], [end]) for end in np.array([29.6, 29.8, 30]) * 1e-6]
+    low, high = (np.stack([getattr(box, end) for box in boxes]) for end in ("low", "high"))
+    together = certificate._enclosure(problem, low, high)
+    assert solved == [6 + 3 * 4]
+    for number, box in enumerate(boxes):
+        alone = certificate._enclosure(problem, box.low, box.high)
+        every, own = together.value["alpha"][number], alone.value["alpha"]
+        assert every.low == pytest.approx(own.low, rel=1e-9)
+        assert every.high == pytest.approx(own.high, rel=1e-9)
+        assert (together.sure["alpha"][number] == alone.sure["alpha"]).all()
+    assert len(set(together.value["alpha"].low[:, 0])) == len(boxes)
 
 
 def test_no_sample_beats_the_certified_mismatch(campaign: Campaign) -> None:

@@ -145,7 +145,16 @@ class Enclosure(_Rows):
             over = axis if argument in program.terms_of else None
             own = Intervals.of(each)
             cells[argument] = own if over is None else self.kept(name, over).every(own)
-        return self._hold(column, *self._root(program, column, cells), requires)
+        number = self.number(column)
+        shape = np.broadcast_shapes((number,), *(own.shape for own in cells.values()))
+        if len(shape) < 2 or program.terms_of:
+            return self._hold(column, *self._root(program, column, cells, number), requires)
+        # Boxes of a search differ in one cell, and most rows do not rest on it.
+        cells = {argument: own.broadcast(shape) for argument, own in cells.items()}
+        first, again = _distinct(list(cells.values()))
+        cells = {argument: own[first] for argument, own in cells.items()}
+        found, one = self._root(program, column, cells, first[0].size)
+        return self._hold(column, found[again], one[again], requires)
 
     def _hold(self, column: Column, found: Intervals, sure: Mask, requires: Sequence[Any] = ()) -> Intervals:
         for held in requires:
@@ -161,7 +170,7 @@ class Enclosure(_Rows):
     # --- roots ----------------------------------------------------------------------------------------
 
     def _root(
-        self, program: RootProgram, column: Column, cells: Mapping[str, Intervals]
+        self, program: RootProgram, column: Column, cells: Mapping[str, Intervals], number: int
     ) -> tuple[Intervals, Mask]:
         # Generated functions are typed for arrays; intervals are as good.
         run_fixed: Any = program.fixed.run
@@ -172,7 +181,7 @@ class Enclosure(_Rows):
         ends, rest = fixed[: 5 + program.turning], fixed[5 + program.turning :]
         # What a sum runs over are its terms: such a root is one, and not one a term.
         rows = [(*each.shape[:-1], 1) if totals else each.shape for each in rest]
-        shape = np.broadcast_shapes(*(each.shape for each in ends), *rows, (self.number(column),))
+        shape = np.broadcast_shapes(*(each.shape for each in ends), *rows, (number,))
         low, high, _, at_low, at_high, *turning = (each.broadcast(shape) for each in ends)
 
         def at(point: NDArray[np.float64]) -> Intervals:
@@ -311,6 +320,16 @@ def _shares(terms: Intervals) -> Intervals:
         certain = may_be & (np.count_nonzero(may_be) == 1)
         total = total + Intervals(np.where(certain, 0.5, 0.0), np.where(may_be, 0.5, 0.0))
     return total
+
+
+def _distinct(cells: Sequence[Intervals]) -> tuple[tuple[NDArray[np.intp], ...], NDArray[np.intp]]:
+    """Where rows of a batch stand, without those that are as in its first element; which each is."""
+    shape = cells[0].shape
+    own = np.arange(np.prod(shape)).reshape(-1, shape[-1])
+    ends = (end.reshape(own.shape) for each in cells for end in (each.low, each.high))
+    moving = np.any([(end != end[0]).any(axis=0) for end in ends], axis=0)
+    places, again = np.unique(np.where(moving, own, own[0]), return_inverse=True)
+    return np.unravel_index(places, shape), again.reshape(shape)
 
 
 def _middle(found: Intervals) -> Any:

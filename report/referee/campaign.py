@@ -60,10 +60,14 @@ class Unknown:
         low, high = printed.interval
         return self.allowed.clip(float(low), float(high))
 
+    @cached_property
+    def scale(self) -> float:
+        """The unit that it is printed in, in SI."""
+        return float(self.printed.scale) if self.printed is not None else 1.0
+
     def witness(self, value: float) -> Witness:
-        """A value of it, in the unit that it is printed in."""
-        scale = float(self.printed.scale) if self.printed is not None else 1.0
-        return Witness(self.column, self.index, value / scale, self.printed)
+        """A value of it, in that unit."""
+        return Witness(self.column, self.index, value / self.scale, self.printed)
 
 
 @dataclass(frozen=True, eq=False)

@@ -157,13 +157,12 @@ class Problem:
     @cached_property
     def centre(self) -> Array:
         """The middle of what prints as published, in SI."""
-        ends = [value.printed.interval for value in self.published]
-        return np.array([float((low + high) / 2) for low, high in ends], dtype=np.float64)
+        return np.array([value.printed.spread[0] for value in self.published], dtype=np.float64)
 
     @cached_property
     def half(self) -> Array:
         """Half of its width, in SI."""
-        return np.array([float(value.printed.half_unit) for value in self.published])
+        return np.array([value.printed.spread[1] for value in self.published])
 
     @cached_property
     def places(self) -> list[tuple[str, int]]:
