@@ -82,6 +82,24 @@ def test_another_status_without_a_number_has_moved() -> None:
     assert len(compare(none, other).moved) == 1
 
 
+def test_another_uncertainty_of_the_same_number_is_told_last() -> None:
+    sure = replace(V, u=[0.1, 0.2])
+    before = with_column("v", sure)
+    found = compare(before, with_column("v", replace(sure, u=[0.1, 0.2 * (1 + 1e-7)])))
+    assert (found.same, found.any) == (6, False)
+    surer = replace(
+        before, cells={**before.cells, "v": replace(sure, u=[0.1, 0.3]), "m": replace(M, value=2.0)}
+    )
+    found = compare(before, surer)
+    assert [(move.address, move.before, move.after) for move in found.moved] == [
+        ("m", 1.25, 2.0),
+        ("u(v[2])", 0.2, 0.3),
+    ]
+    unknown = compare(before, with_column("v", replace(sure, u=[None, 0.2])))
+    assert [(move.address, moved(move)) for move in unknown.moved] == [("u(v[1])", ("0.1", "not known", ""))]
+    assert compare(before, RESULT).same == 4  # a file of before does not tell them
+
+
 def test_what_the_user_gave_comes_first_then_scalars() -> None:
     after = replace(
         RESULT,

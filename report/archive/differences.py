@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,6 +14,8 @@ from ..result.agreement import LIMIT
 
 __all__ = ["Differences", "Move", "OtherChange", "compare"]
 
+SURELY = 1e-6
+"""Relative: what an uncertainty may differ by, of which nobody reads the third digit."""
 EPS = sys.float_info.epsilon
 
 
@@ -67,11 +70,12 @@ class Differences:
     before, after : str
         Their names.
     same : int
-        How many numbers are the same double, or have the same error.
+        How many numbers are the same double, or have the same error; uncertainties are numbers too.
     noise : int
         How many differ by what rounding may do.
     moved : tuple of Move
-        The others: what the user gives first, then scalars, then the rest in the order of the sheet.
+        The others: what the user gives first, then scalars, then the rest in the order of the sheet; then
+        ``u(alpha_mean)``, the standard uncertainty of a number that is the same.
     method : tuple of OtherChange
         Columns that follow another equation, or have another unit or index set, and equations whose proof
         came out otherwise.
@@ -128,15 +132,23 @@ def compare(
             if index not in there:
                 continue
             now = there[index]
+            given = old.rule == new.rule == "given"
             if was == now:
                 same += 1
             elif _within(was, now, (allowed or {}).get(name, {}).get(index, 0.0)):
                 noise += 1
             else:
-                given = old.rule == new.rule == "given"
                 rank = 0 if given else 1 if not old.axis else 2
                 named = address(name, index)
                 moved.append((rank, Move(named, new.unit, given, was[0], now[0], (was[1], now[1]))))
+                continue
+            if index in old.uncertainties and index in new.uncertainties:
+                surer = old.uncertainties[index], new.uncertainties[index]
+                if _as_sure(*surer):
+                    same += 1
+                else:
+                    named = f"u({address(name, index)})"
+                    moved.append((3, Move(named, new.unit, given, *surer, ("not known", "not known"))))
     return Differences(
         *names,
         same,
@@ -153,6 +165,11 @@ def _within(was: tuple[float | None, str], now: tuple[float | None, str], allowe
     if was[0] is None or now[0] is None or was[1] != now[1]:
         return False
     return abs(now[0] - was[0]) <= max(LIMIT * EPS * max(abs(was[0]), abs(now[0])), allowed)
+
+
+def _as_sure(was: float | None, now: float | None) -> bool:
+    """Whether two standard uncertainties are the same."""
+    return was == now if was is None or now is None else math.isclose(was, now, rel_tol=SURELY)
 
 
 def _rules(before: Result, after: Result) -> list[OtherChange]:

@@ -114,6 +114,14 @@ class Column(Form, frozen=True, kw_only=True):
         labels = (label if isinstance(label, tuple) else (label,) for label in self.index)
         return dict(zip(labels, zip(self.value, self.status, strict=True), strict=True))  # type: ignore[arg-type]
 
+    @property
+    def uncertainties(self) -> dict[Index, Number]:
+        """The standard uncertainty of every row that is listed; none where the file tells nothing of them."""
+        if self.u is UNSET or isinstance(self.status, dict):
+            return {}
+        every = self.u if isinstance(self.u, list) else [self.u]
+        return dict(zip(self.cells, every, strict=False))
+
 
 class Oddity(Form, frozen=True, kw_only=True):
     """What is odd about the data themselves."""
