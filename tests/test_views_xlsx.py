@@ -71,7 +71,8 @@ def named(book: Any, name: str) -> list[Any]:
 
 def test_worksheets(book: Any) -> None:
     assert book.sheetnames == [
-        "report", "figures", "tests", "pairs", "points", "loops", "steps", "published", "equations",
+        "report", "figures", "tests", "pairs", "points", "loops", "steps", "published", "uncertainty",
+        "equations",
     ]  # fmt: skip
 
 
@@ -416,4 +417,4 @@ def test_a_report_without_anything_to_draw_or_to_compare(report: Report) -> None
     plain = excel_grid.grid(report.sheet, report.values, units)
     content = xlsx.render(replace(report, comparisons=()), plain)
     names = openpyxl.load_workbook(io.BytesIO(content)).sheetnames
-    assert names == ["report", "tests", "pairs", "points", "steps", "equations"]
+    assert names == ["report", "tests", "pairs", "points", "steps", "uncertainty", "equations"]

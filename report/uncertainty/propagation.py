@@ -33,6 +33,8 @@ LARGEST = 300_000
 """Cells; beyond, nothing is told of what rests on generated rows: the way to each would have to be held."""
 AT_ONCE = 1 << 22
 """So many derivatives are held at the same time."""
+MOST_BUDGETS = 20
+"""Budgets of a report."""
 NOTHING = 1e-12
 """A contribution that is less than this share of the largest is left out of a budget."""
 
@@ -215,11 +217,14 @@ def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Un
     values : Values
         All columns, without a batch.
     headline : sequence of str
-        The columns whose cells get a budget each.
+        The columns whose cells get a budget each; none: those of which nothing else is computed.
     """
     spread, sheet = Spread(inputs, values), values.sheet
+    used = {precedent.name for column in sheet.columns for precedent in sheet.precedents(column)}
+    last = [c.name for c in sheet.columns if c.name not in used and not isinstance(c.rule, Given)]
+    cells = [(name, row) for name in headline or last for row in range(len(values.status[name]))]
     listed = [
         c.name for c in sheet.columns if not isinstance(c.axis, RepeatAxis) or isinstance(c.rule, Given)
     ]
-    budgets = (spread.budget(name, row) for name in headline for row in range(len(values.status[name])))
+    budgets = (spread.budget(name, row) for name, row in cells[:MOST_BUDGETS])
     return Uncertainties({name: spread.u(name) for name in listed}, tuple(budgets))

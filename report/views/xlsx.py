@@ -18,6 +18,7 @@ from ..cells.grid import SCALARS, STEPS, Grid
 from ..machine.staging import put
 from ..result.result import Report
 from .issued import Issued
+from .xlsx_budget import write_budgets
 from .xlsx_charts import write_charts
 from .xlsx_columns import ColumnwiseSheet
 from .xlsx_inputs import GivenCells
@@ -30,7 +31,7 @@ __all__ = ["render", "write"]
 
 _CREATED = datetime(2000, 1, 1)
 """No clock: the same bytes for the same report."""
-_FIGURES, _PUBLISHED, _EQUATIONS = "figures", "published", "equations"
+_FIGURES, _PUBLISHED, _EQUATIONS, _UNCERTAINTY = "figures", "published", "equations", "uncertainty"
 
 
 def write(made: Issued, stage: Path) -> None:
@@ -67,6 +68,7 @@ def _write(book: Any, report: Report, grid: Grid) -> None:
     names = [SCALARS, *([_FIGURES] if grid.drawn and report.workbook.charts else []), *grid.axes]
     names += [STEPS] if grid.on(STEPS) else []
     names += [_PUBLISHED] if report.comparisons else []
+    names += [_UNCERTAINTY] if any(budget.u > 0 for budget in report.uncertain().budgets) else []
     sheets = {name: book.add_worksheet(name, ColumnwiseSheet) for name in [*names, _EQUATIONS]}
     write_report(sheets[SCALARS], style, report, grid, inputs)
     for name in grid.axes:
@@ -75,6 +77,8 @@ def _write(book: Any, report: Report, grid: Grid) -> None:
         write_steps(sheets[STEPS], style, report, grid)
     if _PUBLISHED in sheets:
         write_published(sheets[_PUBLISHED], style, report, grid)
+    if _UNCERTAINTY in sheets:
+        write_budgets(sheets[_UNCERTAINTY], style, report, grid)
     write_equations(sheets[_EQUATIONS], style, report)
     if _FIGURES in sheets:
         write_charts(book, sheets[_FIGURES], style, report, grid)

@@ -1,0 +1,236 @@
+"""The worksheet of uncertainty budgets: of every result, as EA-4/02 lays them out, in live formulas.
+
+Estimates are cells of the sheet; standard uncertainties, degrees of freedom and distributions may be changed.
+Only sensitivities are numbers as issued: a spreadsheet has no derivatives.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from ..cells.grid import CellBlock, Grid, checked
+from ..document.numbers import stated
+from ..result.result import Report
+from ..result.uncertain import Budget, Contribution
+from .xlsx_style import Style, height, number_format
+
+__all__ = ["write_budgets"]
+
+_COLUMNS = (
+    ("source", 26),
+    ("estimate", 15),
+    ("unit", 12),
+    ("standard uncertainty u", 15),
+    ("distribution", 14),
+    ("degrees of freedom", 12),
+    ("sensitivity, as issued", 15),
+    ("contribution", 15),
+    ("share of the variance", 12),
+)
+_UNLIMITED = 10.0**15
+"""Stands for infinitely many degrees of freedom."""
+_DOF = '[>=1000000000]"∞";General'
+_MOST = 10**9
+"""Degrees of freedom that every spreadsheet's t distribution takes."""
+_FACTORS = {
+    "rectangular": "{p}*SQRT(3)",
+    "triangular": "(1-SQRT(1-{p}))*SQRT(6)",
+    "arcsine": "SIN({p}*PI()/2)*SQRT(2)",
+}
+"""The coverage factor for a probability, of the shapes that have ends."""
+
+
+def write_budgets(sheet: Any, style: Style, report: Report, grid: Grid) -> None:
+    """Write the budgets of the results, one below the other."""
+    style.text(sheet, 0, 0, "uncertainty: where that of the results comes from", "title")
+    said = "Estimates follow the sheet; yellow cells may be changed. Sensitivities stay as issued."
+    style.text(sheet, 1, 0, said, "subtitle")
+    for at, (_, width) in enumerate(_COLUMNS):
+        sheet.set_column(at, at, width)
+    row = 3
+    for budget in report.uncertain().budgets:
+        if budget.is_known and budget.u > 0:
+            row = _Written(sheet, style, report, grid, budget, row).write() + 2
+    sheet.freeze_panes(3, 1)
+    sheet.set_landscape()
+    sheet.set_paper(9)
+    sheet.fit_to_pages(1, 0)
+
+
+class _Written:
+    """One budget."""
+
+    def __init__(
+        self, sheet: Any, style: Style, report: Report, grid: Grid, budget: Budget, row: int
+    ) -> None:
+        self.sheet, self.style, self.report, self.grid, self.budget = sheet, style, report, grid, budget
+        self.block: CellBlock = grid[budget.name]
+        self.scale = float(self.block.place.scale)
+        self.top = row
+        self.first = row + 2
+        self.last = self.first + len(budget.contributions) - 1
+
+    def write(self) -> int:
+        """Write it; return the row behind it."""
+        column = self.report.sheet[self.budget.name]
+        unit = "" if self.block.unit == "1" else f" [{self.block.unit}]"
+        for at, (head, _) in enumerate(_COLUMNS):
+            title = f"{self.budget.cell}{unit}: {column.meaning}" if not at else ""
+            self.style.text(self.sheet, self.top, at, title, "section")
+            self.style.text(self.sheet, self.top + 1, at, head, "head")
+        self.sheet.set_row(self.top + 1, height([(head, width) for head, width in _COLUMNS], 2))
+        for row, each in enumerate(self.budget.contributions, start=self.first):
+            self.source(row, each)
+        return self.result(self.last + 1)
+
+    def source(self, row: int, each: Contribution) -> None:
+        """A line: what it is, and what it does."""
+        source, style, sheet = each.source, self.style, self.sheet
+        name, cell, _ = source.moves[0]
+        block = self.grid[name]
+        scale = float(block.place.scale)
+        style.text(sheet, row, 0, source.name, "name")
+        if each.estimate is not None:
+            allowed = self.grid[checked(name)].place.cell(cell)
+            style.formula(sheet, row, 1, f"={allowed}", each.estimate / scale, style("number"))
+        style.text(sheet, row, 2, block.unit, "unit")
+        style.text(sheet, row, 4, source.shape.value, "input")
+        dof = min(source.dof, _UNLIMITED)
+        sheet.write_number(row, 5, dof, style("input", _DOF))
+        contribution = each.u / self.scale
+        if source.u:
+            u = source.u / scale
+            sheet.write_number(row, 3, u, style("input", number_format([u], 3)))
+            sheet.write_number(
+                row, 6, contribution / u, style("number", number_format([contribution / u], 4))
+            )
+            form = number_format([contribution], 3)
+            style.formula(sheet, row, 7, f"=D{row + 1}*G{row + 1}", contribution, style("number", form))
+        else:  # larger in one cell than in another: there is no one sensitivity
+            sheet.write_number(row, 7, contribution, style("input", number_format([contribution], 3)))
+        share, u_cell = each.u**2 / self.budget.u**2, f"$B${self.last + 3}"
+        correlated = self.correlated(row)
+        if correlated:
+            share = each.share
+        formula = f"=H{row + 1}*(H{row + 1}{correlated})/{u_cell}^2"
+        style.formula(sheet, row, 8, formula, share, style("number", "0.0%"))
+
+    def correlated(self, row: int) -> str:
+        """What correlated sources add to a contribution."""
+        rows = self.rows
+        told = ""
+        for pair, r in self.budget.correlations.items():
+            first, second = (rows[name] for name in pair)
+            if row in (first, second):
+                told += f"+({r:.15f})*H{(second if row == first else first) + 1}"
+        return told
+
+    @property
+    def rows(self) -> Mapping[str, int]:
+        """The line of each source."""
+        return {each.source.name: self.first + n for n, each in enumerate(self.budget.contributions)}
+
+    def result(self, row: int) -> int:
+        """What follows from the lines; the row behind it."""
+        budget, scale = self.budget, self.scale
+        own, dof = (f"${c}${self.first + 1}:${c}${self.last + 1}" for c in "HF")
+        names = ("value", "u", "second", "largest", "others", "dof", "p", "k", "U")
+        at = {name: f"$B${row + n + 1}" for n, name in enumerate(names)}
+        sizes = sorted(abs(each.u) / scale for each in budget.contributions) or [0.0]
+        first = f"SUMSQ({own}){self.pairs}"
+        lines: tuple[tuple[str, str, float, str], ...] = (
+            ("value", f"={self.block.place.cell(self.row_of_cell)}", budget.value / scale, "General"),
+            (
+                "standard uncertainty u",
+                f"=SQRT(MAX(0,{first}+{at['second']}))",
+                budget.u / scale,
+                number_format([budget.u / scale], 4),
+            ),
+            (
+                "variance of second order",
+                "",
+                budget.second / scale**2,
+                number_format([budget.second / scale**2], 3),
+            ),
+            (
+                "largest contribution",
+                f"=MAX(MAX({own}),-MIN({own}))",
+                sizes[-1],
+                number_format(sizes[-1:], 4),
+            ),
+            (
+                "all others together",
+                f"=SQRT(MAX(0,SUMSQ({own})-{at['largest']}^2))",
+                math.hypot(*sizes[:-1]),
+                number_format(sizes[-1:], 4),
+            ),
+            (
+                "effective degrees of freedom",
+                f"=MIN({_UNLIMITED:.0f},MAX(1,INT(ROUND(({first})^2/SUMPRODUCT(({own})^4/({dof})),2))))",
+                min(budget.dof, _UNLIMITED),
+                _DOF,
+            ),
+            ("coverage probability", "", budget.level, "0.##%"),
+            ("coverage factor k", f"={self.factor(own, at)}", budget.factor, "0.000"),
+            (
+                "expanded uncertainty U",
+                f"={at['k']}*{at['u']}",
+                budget.expanded / scale,
+                number_format([budget.expanded / scale], 4),
+            ),
+        )
+        for line, (name, formula, value, form) in enumerate(lines, start=row):
+            self.style.text(self.sheet, line, 0, name, "name")
+            if math.isnan(value):
+                self.style.text(self.sheet, line, 1, "not known: correlated sources have degrees of freedom")
+            elif formula:
+                self.style.formula(self.sheet, line, 1, formula, value, self.style("number", form))
+            else:
+                self.sheet.write_number(line, 1, value, self.style("input", form))
+        return self.statement(row + len(lines), at)
+
+    @property
+    def pairs(self) -> str:
+        """What correlated pairs of sources add to the variance."""
+        rows = self.rows
+        return "".join(
+            f"+2*({r:.15f})*H{rows[one] + 1}*H{rows[other] + 1}"
+            for (one, other), r in self.budget.correlations.items()
+        )
+
+    def factor(self, own: str, at: Mapping[str, str]) -> str:
+        """The coverage factor: of the shape of a source that dominates, else of t or normal."""
+        p, dof = at["p"], at["dof"]
+        otherwise = f"IF({dof}>{_MOST},NORMSINV((1+{p})/2),TINV(1-{p},MIN({dof},{_MOST})))"
+        place = f"IF(MAX({own})>=-MIN({own}),MATCH(MAX({own}),{own},0),MATCH(MIN({own}),{own},0))"
+        shape = f"INDEX({own.replace('H', 'E')},{place})"
+        told = otherwise
+        for name, factor in _FACTORS.items():
+            told = f'IF({shape}="{name}",{factor.format(p=p)},{told})'
+        return f"IF({at['others']}<=0.3*{at['largest']},{told},{otherwise})"
+
+    @property
+    def row_of_cell(self) -> int:
+        return self.report.values.row(self.report.sheet[self.budget.name], self.budget.label)
+
+    def statement(self, row: int, at: Mapping[str, str]) -> int:
+        """The result as it is written, to the digits of its uncertainty as issued."""
+        budget, scale = self.budget, self.scale
+        if math.isnan(budget.factor):
+            return row
+        value, expanded = stated(budget.value / scale, budget.expanded / scale)
+        form = f"0.{'0' * len(value.fraction)}" if value.fraction else "0"
+        unit = "" if self.block.unit == "1" else f" {self.block.unit}"
+        power, over = (f"E{value.exponent}", f"/10^{value.exponent}") if value.exponent else ("", "")
+        if value.exponent and value.exponent < 0:
+            over = f"*10^{-value.exponent}"
+        parts = [f'TEXT({at[name]}{over},"{form}")' for name in ("value", "U")]
+        text = f'="("&{parts[0]}&" ± "&{parts[1]}&"){power}{unit}, k = "&TEXT({at["k"]},"0.00")'
+        plain = [replace(number, exponent=None).plain for number in (value, expanded)]
+        now = f"({plain[0]} ± {plain[1]}){power}{unit}, k = {budget.factor:.2f}"
+        self.style.text(self.sheet, row, 0, "statement", "name")
+        self.style.formula(self.sheet, row, 1, text, now, self.style("text"))
+        return row + 1
