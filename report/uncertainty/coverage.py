@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from statistics import NormalDist
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,10 +83,8 @@ def coverage(
         if shapes[largest] in _QUANTILES and rest <= DOMINANT * sizes[largest]:
             shape = shapes[largest]
             return DIVISORS[shape] * _QUANTILES[shape](level), f"the {shape} source that dominates"
-    from scipy.special import stdtrit
-
     if math.isinf(dof):
-        from statistics import NormalDist
-
         return NormalDist().inv_cdf((1 + level) / 2), "a normal distribution"
+    from scipy.special import stdtrit  # a quarter of a second, for those who have degrees of freedom
+
     return float(stdtrit(dof, (1 + level) / 2)), f"a t distribution with {dof:.0f} degrees of freedom"
