@@ -310,6 +310,13 @@ def test_show_prints_what_is_given_as_it_was_given(capsys: pytest.CaptureFixture
     assert main(["show", "x_p", "paper"]) == 0
     told = [line.split() for line in capsys.readouterr().out.splitlines() if line.startswith("  x_p[")]
     assert told == [
-        [f"x_p[{test}]", text]
+        [f"x_p[{test}]", text, "u", "0.029" if test < 4 else "0.0029"]
         for test, text in enumerate(("23.5", "29.7", "41.6", "45.97", "51.03"), start=1)
     ]
+
+
+def test_why_tells_how_sure_a_number_is(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["why", "alpha[1-2]", "paper"]) == 0
+    assert "  uncertain u = 0.016, of 1.258; 'loopsheet budget'" in capsys.readouterr().out
+    assert main(["why", "beta", "paper"]) == 0
+    assert "uncertain" not in capsys.readouterr().out

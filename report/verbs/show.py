@@ -49,6 +49,7 @@ def _plan(report: Report, address: str) -> str:
 
 def _lines(report: Report, address: str) -> Iterator[str]:
     from ...derivations.text import text_of_equation
+    from ..document.numbers import rounded
 
     column, labels = find(report, address)
     name = column.name
@@ -62,11 +63,14 @@ def _lines(report: Report, address: str) -> Iterator[str]:
     every = report.values.labels(column)
     texts = [printed.text for printed in report.inputs.printed(name)]
     given = dict(zip(every, texts, strict=True)) if len(texts) == len(every) else {}
-    for cell, mark in zip(report.values.cells(name), marks, strict=True):
+    nothing = [0.0] * len(every)
+    uncertain = report.uncertain().u.get(name, nothing)
+    for row, (cell, mark) in enumerate(zip(report.values.cells(name), marks, strict=True)):
         if cell.label in wanted_labels:
             scale = report.shown[name].scale
             value = cell.reason if cell.value is None else given.get(cell.label) or repr(cell.value / scale)
-            yield f"  {cell.address:16} {value}{mark and f'  {mark}'}"
+            u = f"  u {rounded(uncertain[row] / scale, 2).plain}" if uncertain[row] > 0 else ""
+            yield f"  {cell.address:16} {value}{u}{mark and f'  {mark}'}"
     for count in report.marks.behind(column):
         if count.number or count.margin.limit.source:
             yield f"  {count.said}"

@@ -11,6 +11,7 @@ from ...derivations.reductions import REDUCTIONS
 from ...derivations.text import Wording, text_of_equation
 from ..cells.trace import Group, dependents_of, precedents_of
 from ..cells.values import Cell
+from ..document.numbers import stated
 from ..result.result import Report
 from ..sheet import Column, Formula, Given, Root
 
@@ -47,6 +48,8 @@ def why(report: Report, name: str, label: tuple[int, ...] = ()) -> str:
     lines = [f"{cell.address} = {value}  {column.meaning}".rstrip()]
     if cell.reason:
         lines.append(_line("reason", cell.reason))
+    if sure := _sure(report, name, row):
+        lines.append(_line("uncertain", sure))
     if mark := report.marks.of(name)[row]:
         lines.append(_line("marked", mark))
     if _is_given(column):
@@ -79,6 +82,17 @@ def _full(report: Report, cell: Cell) -> str:
     if cell.value is None:
         return cell.status.code
     return f"{cell.value / report.shown[cell.name].scale!r}{_unit(report, cell.name)}"
+
+
+def _sure(report: Report, name: str, row: int) -> str:
+    """The standard uncertainty of a cell that has one; empty of others."""
+    known = report.uncertain().u
+    u = float(known[name][row]) if name in known else 0.0
+    if not u > 0:
+        return ""
+    scale, unit = report.shown[name].scale, _unit(report, name)
+    value, short = stated(float(report.values.value[name][row]) / scale, u / scale)
+    return f"u = {short.plain}{unit}, of {value.plain}{unit}; 'loopsheet budget' tells where it comes from"
 
 
 def _brief(report: Report, cell: Cell) -> str:
