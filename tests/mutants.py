@@ -1,8 +1,9 @@
 """How much of the sources is held by tests: one operator, number or truth is changed at a time.
 
 Run it by ``make mutants`` (SEED=7: others, EACH=40: more of them, PART=plan: of one part). The tests that
-belong to a part run on a copy in which one spot of the part is changed; a change that no test notices is
-printed with its line. Some mean the same as what they replace: read them before a test is written.
+belong to a part, and the examples of the module, run on a copy in which one spot of the part is changed; a
+change that no test notices is printed with its line. Some mean the same as what they replace: read them
+before a test is written.
 """
 
 from __future__ import annotations
@@ -34,7 +35,10 @@ PARTS = {
         ("report/judge/*.py",),
         ("test_conditions", "test_enclosure", "test_analysis_engines", "test_oddities"),
     ),
-    "referee": (("report/referee/*.py",), ("test_referee", "test_referee_explanations")),
+    "referee": (
+        ("report/referee/*.py",),
+        ("test_referee_parts", "test_referee_explanations", "test_referee"),
+    ),
     "views": (
         ("report/views/*.py", "report/document/*.py"),
         ("paper/test_paper_issued", "test_views_html", "test_views_latex", "test_views_generic",
@@ -116,6 +120,8 @@ def is_noticed(copy: Path, mutant: Mutant, tests: tuple[str, ...]) -> bool:
     original = place.read_text(encoding="utf-8")
     place.write_text(mutant.source, encoding="utf-8")
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--maxfail=1"]
+    module = ".".join(mutant.path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+    command += [f"{copy / 'tests' / 'test_house.py'}::test_doctests[{module}]"]
     command += [str(copy / "tests" / f"{test}.py") for test in tests]
     environment = {**os.environ, "PYTHONPATH": str(copy.parent), "LOOPSHEET_CACHE": ""}
     try:

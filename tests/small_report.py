@@ -14,7 +14,9 @@ from loopsheet.report.inputs.inputs import Inputs
 from loopsheet.report.inputs.published import PublishedValue
 from loopsheet.report.quantity import Printed
 from loopsheet.report.referee import compare, refereed
+from loopsheet.report.referee.campaign import Campaign
 from loopsheet.report.referee.judging import referee
+from loopsheet.report.referee.problem import Problem
 from loopsheet.report.result.result import Comparison
 from loopsheet.report.result.verdict import Referee
 from loopsheet.report.sheet import Sheet
@@ -115,21 +117,41 @@ def found(
     return _asked(sheet, measured, {}, lambda _: published)[2]
 
 
+def problem(
+    sheet: Sheet, measured: Mapping[str, Sequence[Printed]], published: Sequence[PublishedValue]
+) -> Problem:
+    """All that is published of such a sheet, to come out of one input."""
+    inputs, values, data = _computed(sheet, measured, {}, lambda _: published)
+    return Problem.of(Campaign(sheet, inputs, values, data), published)
+
+
+Publish = Callable[[Values], Sequence[PublishedValue]]
+
+
 def _asked(
     sheet: Sheet,
     measured: Mapping[str, Sequence[Printed]],
     parameters: Mapping[str, Printed],
-    publish: Callable[[Values], Sequence[PublishedValue]],
+    publish: Publish,
 ) -> tuple[Values, tuple[PublishedValue, ...], Referee]:
+    inputs, values, data = _computed(sheet, measured, parameters, publish)
+    return values, inputs.published, referee(sheet, inputs, values, data)
+
+
+def _computed(
+    sheet: Sheet,
+    measured: Mapping[str, Sequence[Printed]],
+    parameters: Mapping[str, Printed],
+    publish: Publish,
+) -> tuple[Inputs, Values, dict[str, Any]]:
     rows = tuple(range(1, 1 + len(next(iter(measured.values())))))
     data: dict[str, Any] = {name: [float(p.value) for p in column] for name, column in measured.items()}
     data |= {name: float(p.value) for name, p in parameters.items()}
     (axis,) = sheet.axes
     values = engine.evaluate(sheet, {axis.name: rows}, data)
-    published = tuple(publish(values))
     inputs = Inputs(
         Path(), "", Workbook("made", "", "", lambda: Ledger(()), (), (), lambda given: sheet),
         dict(parameters), frozenset(parameters), rows,
-        {name: tuple(column) for name, column in measured.items()}, {}, published, {},
+        {name: tuple(column) for name, column in measured.items()}, {}, tuple(publish(values)), {},
     )  # fmt: skip
-    return values, published, referee(sheet, inputs, values, data)
+    return inputs, values, data

@@ -35,11 +35,13 @@ def formula(name: str, value: Expr, axis: Axis | None = None) -> Column:
     )
 
 
-def root(name: str, form: Expr, value: Expr, low: float = 0.01, high: float = 10.0) -> Column:
+def root(
+    name: str, form: Expr, value: Expr, low: float = 0.01, high: float = 10.0, unknown: Symbol = u
+) -> Column:
     equation = Equation("", (form, Integer(0)), "", Kind.DEFINITION)
     start = (low + high) / 2
     rule = Root(
-        equation, equation, u, value, Integer(0) + low, Integer(0) + high, Integer(0) + start, steps=8
+        equation, equation, unknown, value, Integer(0) + low, Integer(0) + high, Integer(0) + start, steps=8
     )
     return Column(name, None, rule, positive=False)
 
@@ -112,6 +114,12 @@ def test_a_root(value: Expr, slope: float) -> None:
     here = 1.5 + (3 + 3 + 3) / 2 + 3 / 2 + 1.5 * 2 / 2
     own = {0: 0.0, 1: 1 / 1.5 + 1 / 1.5 + 1, 2: 1.5**3 + 1.5**3 + 1.5}[(u, 1 / u - 1, u**3 - u).index(value)]
     assert found["c"] == pytest.approx([own + abs(slope) * here])
+
+
+def test_a_root_below_zero_that_its_cell_does_not_tell() -> None:
+    below = Symbol("below", real=True)
+    found = bounded(root("c", B * below + A, below**3 - below, -10.0, -0.01, below))
+    assert found["c"] == pytest.approx(bounded(root("c", B * u - A, u**3 - u))["c"])
 
 
 def test_a_root_of_sums() -> None:

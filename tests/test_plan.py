@@ -6,15 +6,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sympy import Expr, Integer, Rational, Sum, Symbol, exp, log, simplify
+from sympy import Eq, Expr, Integer, Piecewise, Rational, Sum, Symbol, exp, log, simplify, true
 
 from loopsheet.derivations.equation import Equation
 from loopsheet.derivations.reductions import Median
 from loopsheet.report.cli import main
 from loopsheet.report.engines.numpy import Program, evaluate
 from loopsheet.report.plan.derivatives import derivatives, rounding
+from loopsheet.report.plan.domain import defined
 from loopsheet.report.plan.lowering import lowered
-from loopsheet.report.plan.nodes import Leaf, Map, Part, RowSum, Total
+from loopsheet.report.plan.nodes import Leaf, Map, Part, RowMedian, RowSum, Total
 from loopsheet.report.plan.text import text
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, Root, Sheet
@@ -73,6 +74,7 @@ def test_a_part_of_a_plan_tells_its_own_symbols() -> None:
         == "gap on pairs = -a_i + a_j\n\na_i = a[i] on pairs\na_j = a[j] on pairs\n"
     )
     assert text(lowered(SHEET), ["a"]) == "a on rows: given\n    allowed: a > 0\n"
+    assert text(lowered(Sheet((Column("free", None, Given()),)))) == "free: given\n"
 
 
 def test_every_node_finds_what_it_names() -> None:
@@ -148,6 +150,28 @@ def test_the_derivatives_are_a_plan_that_can_be_read() -> None:
     assert "gap_slope_0 on pairs = -1" in lines
     assert "mean_slope_0 = 2/(3*n_pairs_of_mean)" in lines
     assert "mean_sum_1_slope_0 on pairs = 1" in lines
+
+
+def test_so_is_what_rounding_does() -> None:
+    """Of a sum its terms and their own; of a root its equation's, by what it does to the unknown."""
+    lines = text(derivatives(SHEET).plan).splitlines()
+    assert "gap_rounding on pairs = a_i + a_j" in lines
+    assert "mean_rounding = 4*Abs(mean_sum_1)/(3*n_pairs_of_mean)" in lines
+    assert "middle_rounding = 0" in lines
+    # Of a exp(u a): the exponent's product, the function, the product and the sum.
+    assert "rate_more_2: sum over rows of a*(a*exp(a/rate)/rate + exp(a/rate)) + 2*a*exp(a/rate)" in lines
+    assert "rate_more_3: sum over rows of a**2*exp(a/rate)" in lines
+    form = "rate**2*(Abs(rate_sum_0) + 4*Abs(rate_sum_1))/Abs(rate_more_3)"
+    assert f"rate_rounding = {form} + 2*rate" in lines
+
+
+def test_a_sum_is_defined_where_no_row_lies_outside() -> None:
+    x, rows = Symbol("x", real=True), Symbol("rows")
+    outside = Piecewise((0, x > 0), (1, True))
+    for reduced in (RowSum, RowMedian):
+        assert defined(reduced(log(x), rows)) == Eq(RowSum(outside, rows), 0)
+        assert defined(reduced(exp(x), rows)) is true
+    assert defined(Sum(log(k - 2), (k, 1, n))) == Eq(Sum(Piecewise((0, k - 2 > 0), (1, True)), (k, 1, n)), 0)
 
 
 def test_of_a_root_they_follow_from_its_equation() -> None:

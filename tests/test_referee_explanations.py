@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import pytest
 from small_report import found, pure
 from sympy import Sum, Symbol
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.report.inputs.published import PublishedValue
-from loopsheet.report.referee import certificate, search
+from loopsheet.report.referee import certificate, misprints, search
+from loopsheet.report.referee.scales import shifted
 from loopsheet.report.result import verdict_words as words
 from loopsheet.report.result.verdict import REACHABLE, Change, Referee
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
@@ -86,12 +89,35 @@ def test_a_unit_off_by_a_power_of_ten(x: str, square: str, cell: str) -> None:
     assert first(of).power == -3
 
 
+@pytest.mark.parametrize(
+    ("text", "power", "would"),
+    [
+        ("29.7", -1, "2.97"), ("29.7", 1, "297"), ("29.7", 3, "297e2"), ("29.7", -3, "0.0297"),
+        ("-0.50", 1, "-5.0"), ("1.25e-3", 2, "0.125"), ("0.00", 1, "0.0"), ("100", -2, "1.00"),
+    ],
+)  # fmt: skip
+def test_a_point_that_stands_elsewhere(text: str, power: int, would: str) -> None:
+    found = shifted(pure(text), power)
+    assert (found.text, found.value) == (would, Fraction(would))
+
+
 def test_transposed_digits_come_first_and_all_that_are_possible_are_listed() -> None:
     """What prints as 1.77 has a square from 3.115 to 3.151."""
     of = said("1.31 1.77 2.83", square="1.72 3.41 8.01")
     assert changes(of)[0] == [("misprint", "square", (2,), "3.14")]
     assert sorted(first(of).also) == ["3.12", "3.13", "3.15"]
     assert any(one[0][:3] == ("misprint", "x", (2,)) for one in changes(of)[1:])
+
+
+@pytest.mark.parametrize(("listed", "span"), [(3, ()), (2, ("3.12", "3.15"))])
+def test_where_not_all_are_listed_the_ends_are(
+    listed: int, span: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Beside the likeliest three more are possible."""
+    monkeypatch.setattr(misprints, "LISTED", listed)
+    of = said("1.31 1.77 2.83", square="1.72 3.41 8.01")
+    assert first(of).span == span
+    assert len(first(of).also) == listed
 
 
 def test_transposed_digits_of_an_input_come_first() -> None:

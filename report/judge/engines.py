@@ -102,7 +102,7 @@ class Judge:
             for column in self.sheet.order:
                 self._column(column, reading, tally)
         more = len(tally.findings) - MOST_FINDINGS
-        findings = tally.findings[:MOST_FINDINGS] if more > 0 else tally.findings
+        findings = tally.findings[:MOST_FINDINGS]
         if more > 0:
             findings.append(f"{engine}: {more} more cells differ")
         return Agreement(

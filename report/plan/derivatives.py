@@ -339,7 +339,7 @@ def rounding(expression: Expr) -> Expr:
 
 def _of_product(product: Expr) -> Expr:
     """A product: a sign rounds nothing, and a quotient is rounded once."""
-    factors = [factor for factor in product.args if factor not in (1, -1)]
+    factors = [factor for factor in product.args if factor != -1]
     found = _size(product) if len(factors) > 1 else Integer(0)
     for factor in factors:
         inside = rounding(factor)

@@ -59,7 +59,7 @@ class Local:
     of: str
     rounding: str
     slopes: tuple[Slope, ...]
-    median: bool = False
+    median: bool
 
 
 def with_unknowns(sheet: Sheet, again: Mapping[str, str]) -> Sheet:

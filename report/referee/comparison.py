@@ -56,7 +56,7 @@ def print_as(value: float, like: Printed) -> str:
     else:
         digits = round(abs(in_unit) * Fraction(10) ** places)
     text = str(digits * 10 ** max(0, -places)).zfill(places + 1)
-    point = len(text) - max(0, places)
+    point = len(text) - places
     return f"{'-' if value < 0 else ''}{text[:point]}{'.' if places > 0 else ''}{text[point:]}"
 
 
