@@ -168,6 +168,66 @@ def _uncertainty(folder: Folder) -> None:
     folder.table[0][-1] = f"u({name}) [{folder.unit(name)}]"
 
 
+STATED = (
+    *(
+        "exact",
+        "u = {0}",
+        "u = {0} {1}",
+        "U = {0} {1}, k = 2",
+        "U = {0}, p = 95 %",
+        "+-{0} rect",
+        "± {0} {1} tri",
+    ),
+    *(
+        "+-{0} arcsine, dof = 3",
+        "+-{0}",
+        "{0} % of reading + 2 digits",
+        "s = {0} {1}, n = 5",
+        "t sd = {0}, dof = 3",
+    ),
+    *("u = {0}, dof = 1; +-{0} rect", "u = 200 %", "t scale = {0}, dof = 0.5", "u = {0} %", "U = {0}", "{0}"),
+)
+
+
+def _statement(folder: Folder, name: str) -> str:
+    units = folder.base.cells[name]
+    return folder.dice.choice(STATED).format(folder.number(), folder.dice.choice(units))
+
+
+def _behind(folder: Folder) -> None:
+    name = folder.dice.choice(folder.base.parameters)
+    place = [n for n, line in enumerate(folder.toml) if line.startswith(f"{name} =")][0]  # noqa: RUF015
+    before, quote, behind = folder.toml[place].rpartition('"')
+    said = folder.dice.choice((f", {_statement(folder, name)}", f"; {_statement(folder, name)}", "(3)"))
+    folder.toml[place] = f"{before}{said}{quote}{behind}"
+
+
+def _concise(folder: Folder) -> None:
+    row = folder.dice.choice(folder.table[1:])
+    row[folder.dice.randrange(1, len(row))] += folder.dice.choice(("(1)", "(25)", "(0)", "()", "(1.5)"))
+
+
+def _section(folder: Folder) -> None:
+    dice, names = folder.dice, (*folder.base.given, *folder.base.parameters)
+    lines = ["[uncertainty]"]
+    lines += [f'{name} = "{_statement(folder, name)}"' for name in dice.sample(names, dice.choice((0, 1, 2)))]
+    if dice.random() < 0.2:
+        lines.append('plus_minus = "rect"')
+    for name in dice.sample(names, dice.choice((0, 0, 1, 2))):
+        groups = dice.choice(("", "groups = [[1], [2]]", "groups = [[1, 2]]", "groups = [[9]]"))
+        lines += [
+            "[uncertainty.shared." + name + "]",
+            f'of = "{name}"',
+            f'stated = "{_statement(folder, name)}"',
+            groups,
+        ]
+    if dice.random() < 0.5:
+        one, other = dice.sample(names, 2)
+        r = dice.choice(("0.3", "1", "-1", "0", "1.1", "x"))
+        lines += ["[uncertainty.correlation]", f'"{one}, {other}" = "{r}"']
+    folder.toml += lines
+
+
 def _columns(folder: Folder) -> None:
     order = folder.dice.sample(range(len(folder.table[0])), len(folder.table[0]))
     folder.table = [[row[place] for place in order] for row in folder.table]
@@ -280,6 +340,10 @@ CHANGES: tuple[Change, ...] = (
         _unpublished,
         _title,
         _uncertainty,
+        _behind,
+        _concise,
+        _section,
+        _section,
         _ending,
         _line,
     ),

@@ -230,6 +230,11 @@ def test_what_is_shared(read: Read) -> None:
         ('[uncertainty.shared.a]\nof = "v"\nstated = "exact"', "LS431", '"exact"'),
         ('[uncertainty.shared.a]\nof = "v"\nstated = "u = 1"\ngroups = [[1], [1]]', "LS506", "[[1], [1]]"),
         ('[uncertainty.shared.a]\nof = "v"\nstated = "u = 1"\ngroups = [1]', "LS205", "[1]"),
+        (
+            '[uncertainty.shared.a]\nof = "ball_mass"\nstated = "u = 1 g"\ngroups = [[1]]',
+            "LS506",
+            "groups",
+        ),
         ('[uncertainty.correlation]\n"v, w" = "0.1"', "LS505", '"v, w"'),
         ('[uncertainty.correlation]\n"v, e" = "1.1"', "LS434", '"1.1"'),
         ('[uncertainty.correlation]\n"v, ball_mass" = "0.1"', "LS434", '"0.1"'),

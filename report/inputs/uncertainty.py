@@ -192,7 +192,13 @@ class _Reader:
                 self.findings.add("LS505", at, text=of, known=known, suggestion=suggestion)
             return None
         statement = self.statement((*path, "stated"), of, bare)
-        groups = self.groups((*path, "groups")) if "groups" in written else ()
+        groups: tuple[tuple[int, ...], ...] | None = ()
+        if "groups" in written and len(self.numbers[of]) == 1:
+            known = f"no groups: {of} is one number"
+            self.findings.add("LS506", self.toml.key(*path, "groups"), name=of, text="groups", known=known)
+            groups = None
+        elif "groups" in written:
+            groups = self.groups((*path, "groups"))
         if statement is None or groups is None:
             return None
         if len(statement.parts) != 1:

@@ -177,8 +177,10 @@ class Spread:
         own, second = found[0, : len(self.sources)], float(self._more(cell, found)[0])
         first = float(self._variance(found)[0])
         u = math.sqrt(first + second)
+        if not math.isfinite(u):
+            return Budget(address(name, label), name, label, value, level=level)
         together = self._with_correlated(found)[0, : len(self.sources)]
-        shares = own * together / u**2 if u > 0 else np.zeros(len(own))
+        shares = own / u * (together / u) if u > 0 else np.zeros(len(own))
         dof = self._effective(math.sqrt(first), own)
         shapes = [source.shape for source in self.sources]
         factor, because = coverage(shapes, own, dof, level)

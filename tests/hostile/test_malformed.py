@@ -25,8 +25,10 @@ from loopsheet.report.messages.errors import LoopsheetError
 from loopsheet.report.result.findings import checks
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
+from loopsheet.report.uncertainty.monte_carlo import draw
 from loopsheet.report.views import html, latex
 from loopsheet.report.views import json as data
+from loopsheet.report.views.budget import FORMATS as BUDGETS
 from loopsheet.report.views.checks import FORMATS
 
 
@@ -49,7 +51,18 @@ def ends(folder: Path, further: bool) -> str:
         prepared = Study(folder).prepared
         stage = "the sheet"
         report = stages.evaluated(prepared, prepared.inputs.workbook.ledger, lambda _: None)
+        stage = "the uncertainties"
+        uncertain = report.uncertain()
+        for budget in uncertain.budgets:
+            for render in BUDGETS.values():
+                render(report, budget, None)
         if further:
+            stage = "the draws"
+            for budget in uncertain.budgets[:1]:
+                if budget.u > 0:
+                    drawn = draw(report.inputs, report.values, budget, 2000)
+                    for render in BUDGETS.values():
+                        render(report, budget, drawn)
             stage = "the referee"
             report = stages.refereed(report)
             stage = "the views"
