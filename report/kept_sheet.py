@@ -18,8 +18,8 @@ from .partly import partly
 from .plan.kept import as_data, of_data
 from .quantity import Bounds
 from .sheet import Sheet
+from .which_workbook import is_shipped
 from .workbook import Workbook
-from .workbooks import SHIPPED
 
 __all__ = ["of_shipped", "sheet_of"]
 
@@ -99,7 +99,7 @@ def sheet_of(workbook: Workbook, given: frozenset[str], check: Callable[[Sheet],
         own = all(type(axis) in _KINDS.values() for axis in declared().axes)
         return as_data(_told(declared())) if own else None
 
-    if workbook.name not in SHIPPED:  # a user's own code has loaded all that it wants
+    if not is_shipped(workbook):  # a user's own code has loaded all that it wants
         check(declared())
         return declared()
     data = of_shipped(workbook, given, "sheet", make)
@@ -110,7 +110,7 @@ def sheet_of(workbook: Workbook, given: frozenset[str], check: Callable[[Sheet],
 
 def of_shipped(workbook: Workbook, given: frozenset[str], what: str, make: Callable[[], Any]) -> Any:
     """What is made of a shipped workbook for some given parameters, now or before; of another it is made."""
-    return kept(what, [workbook.name, *sorted(given)], make) if workbook.name in SHIPPED else make()
+    return kept(what, [workbook.name, *sorted(given)], make) if is_shipped(workbook) else make()
 
 
 # --- telling ---------------------------------------------------------------------------------------------

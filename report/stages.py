@@ -14,8 +14,7 @@ from .machine.provenance import versions
 from .machine.timing import timed
 from .messages.errors import LoopsheetError, UsageError, diagnose
 from .prepared import Prepared
-from .which_workbook import find_workbook
-from .workbooks import SHIPPED
+from .which_workbook import find_workbook, is_shipped
 
 if TYPE_CHECKING:
     from ..derivations.equation import Ledger
@@ -74,7 +73,7 @@ def prepared(inputs: Inputs, ledger: Callable[[], Ledger]) -> Prepared:
 
         refuse_what_is_not_stated(sheet, ledger())
 
-    own = inputs.workbook.name not in SHIPPED
+    own = not is_shipped(inputs.workbook)
     try:
         sheet = sheet_of(inputs.workbook, inputs.given, check)
     except SheetError as error:

@@ -13,7 +13,7 @@ from .workbooks import SHIPPED
 if TYPE_CHECKING:
     from .workbook import Workbook
 
-__all__ = ["find_workbook", "shipped_workbook"]
+__all__ = ["find_workbook", "is_shipped", "shipped_workbook"]
 
 
 def find_workbook(name: str, folder: Path, code: bytes | None = None) -> Workbook:
@@ -39,6 +39,12 @@ def find_workbook(name: str, folder: Path, code: bytes | None = None) -> Workboo
     if code is None:
         raise UnknownWorkbook([*SHIPPED, *sorted(p.name for p in folder.glob("*.py"))])
     return own_workbook(folder / name, code)
+
+
+def is_shipped(workbook: Workbook) -> bool:
+    """Whether a workbook is a shipped one, and not somebody's own that is called as one is."""
+    name = workbook.name
+    return name in SHIPPED and find_workbook(name, Path()) is workbook
 
 
 def shipped_workbook(name: str, folder: Path, code: bytes | None = None) -> Workbook:

@@ -18,6 +18,7 @@ from loopsheet.report.kept_sheet import sheet_of
 from loopsheet.report.machine.kept import SETTING
 from loopsheet.report.partly import is_partly
 from loopsheet.report.sheet import Sheet
+from loopsheet.report.study import Study
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 GIVEN = [
@@ -111,3 +112,33 @@ def test_values_and_referee_of_edited_data_load_no_algebra(
     assert first != second
     assert before == "True", "nothing was kept yet"
     assert (values, referee) == ("False", "False")
+
+
+OWN = """\
+from dataclasses import replace
+from loopsheet.report.sheet import Sheet
+from loopsheet.report.study import Study
+from loopsheet.report.study import Study
+from loopsheet.report.workbooks.soft_impact import WORKBOOK as paper
+
+def sheet(given):
+    return Sheet(tuple(
+        replace(c, meaning="mean of them all") if c.name == "alpha_mean" else c
+        for c in paper.sheet(given).columns
+    ))
+
+WORKBOOK = replace(paper, sheet=sheet)
+"""
+
+
+def test_a_workbook_that_is_called_as_a_shipped_one_is_taken_for_itself(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(SETTING, str(tmp_path / "kept"))
+    campaign = tmp_path / "campaign"
+    shutil.copytree(PAPER, campaign)
+    assert Study(campaign).prepared.sheet["alpha_mean"].meaning == "mean exponent"
+    (campaign / "workbook.py").write_text(OWN)
+    toml = campaign / "report.toml"
+    toml.write_text(toml.read_text().replace('"soft_impact"', '"workbook.py"'))
+    assert Study(campaign).prepared.sheet["alpha_mean"].meaning == "mean of them all"
