@@ -229,6 +229,37 @@ def _shared(folder: Path) -> object:
     return Study(folder).inputs.uncertainty
 
 
+CAMPAIGN = """\
+workbook = "soft_impact"
+[parameters]
+ball_mass = "8.366 g, exact"
+[measurements]
+file = "measurements.csv"
+[uncertainty]
+v = "exact"
+e = "exact"
+x_p = "exact"
+[uncertainty.shared.gain]
+of = "x_p"
+stated = "u = 1 % of reading"
+groups = [[1, 3], [2]]
+"""
+
+
+def test_a_group_may_hold_a_test_that_is_left_out(tmp_path: Path) -> None:
+    (tmp_path / "report.toml").write_text(CAMPAIGN, encoding="utf-8")
+    rows = "1,2.2,0.535,22.58,\n2,3.1,0.505,31.92,it bounced\n3,4.3,0.47,44.61,\n4,4.9,0.45,50.9,\n"
+    table = f"test,v [m/s],e [1],x_p [um],left out\n{rows}"
+    (tmp_path / "measurements.csv").write_text(table, encoding="utf-8")
+    report = Study(tmp_path).computed
+    spread = Spread(report.inputs, report.values)
+    assert [source.name for source in spread.sources] == ["gain (tests 1, 3)"]
+    assert spread.u("x_p") == pytest.approx([22.58e-8, 44.61e-8, 0])
+    # a common scale factor of both depths cancels in the exponent of their pair, to first order and beyond
+    assert spread.u("alpha")[0] == pytest.approx(0, abs=1e-12)
+    assert spread.u("alpha")[1] > 0.01
+
+
 # --- coverage ---------------------------------------------------------------------------------------------
 
 

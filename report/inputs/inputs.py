@@ -390,7 +390,8 @@ class _Reader:
         counted = {name for name, each in declared if each.bounds.integer}
         single = {name: (printed,) for name, printed in parameters.items()}
         numbers = {name: column for name, column in measurements.measured.items() if column}
-        stated = read_uncertainty(self.tables, numbers | single, counted, measurements.tests, self.bare)
+        tests = (*measurements.tests, *(each.test for each in measurements.left_out))
+        stated = read_uncertainty(self.tables, numbers | single, counted, tests, self.bare)
         parameters = {name: printed for name, (printed,) in stated.of(single).items()}
         return stated, parameters, replace(measurements, measured=stated.of(measurements.measured))
 

@@ -50,7 +50,8 @@ class SharedError:
     statement : StatedErrors
         Of one error; what is a share of the value is a scale error, and larger for a larger value.
     groups : tuple of tuple of int
-        The tests of each group; none: all tests are one. A test of no group has no such error.
+        The tests of each group; none: all tests are one. A test of no group has no such error, and one that
+        is left out counts for nothing.
     """
 
     name: str
@@ -212,8 +213,8 @@ class _Reader:
         written: Any = self.toml.data
         for key in path:
             written = written[key]
-        lists = isinstance(written, list) and all(isinstance(group, list) for group in written)
-        if not lists or not all(type(test) is int for group in written for test in group):
+        lists = isinstance(written, list) and all(isinstance(group, list) and group for group in written)
+        if not written or not lists or not all(type(test) is int for group in written for test in group):
             example = "groups = [[1, 2], [3, 4]]"
             wrong_type(self.toml, self.findings, path, "a list of lists of tests", example)
             return None

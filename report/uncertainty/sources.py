@@ -48,12 +48,13 @@ def _shared(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
         printed = inputs.printed(each.of)
         rows = {label: row for row, label in enumerate(values.labels(column))}
         for group in each.groups or (tuple(label[0] if label else 0 for label in rows),):
-            errors = [(rows[(test,) if test else ()], test) for test in group]
-            first = each.error(printed[errors[0][0]])
-            moves = tuple((column.name, row, each.error(printed[row]).u) for row, _ in errors)
+            there = [rows[label] for label in ((test,) if test else () for test in group) if label in rows]
+            errors = {row: each.error(printed[row]) for row in there}
+            moves = tuple((column.name, row, error.u) for row, error in errors.items())
             named = f" (test{'s' * (len(group) > 1)} {', '.join(map(str, group))})" if each.groups else ""
-            if first.width:
-                yield ErrorSource(f"{each.name}{named}", first.shape, first.dof, moves, first.said)
+            if any(u for _, _, u in moves):
+                one = next(iter(errors.values()))
+                yield ErrorSource(f"{each.name}{named}", one.shape, one.dof, moves, one.said)
 
 
 def given(values: Values) -> tuple[Column, ...]:
