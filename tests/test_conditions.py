@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sympy import Expr, IndexedBase, Integer, Max, Piecewise, Sum, Symbol, floor, log, sqrt
+from sympy import Expr, IndexedBase, Integer, Max, Min, Piecewise, Sum, Symbol, floor, log, sqrt
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.derivations.reductions import Median
@@ -67,6 +67,9 @@ A, B = a.symbol, b.symbol
         (A**B, 9 + 6 * 3 + 9 * np.log(3) * 2),
         (sqrt(A - B), 1 + 5 / 2 + (3 + 2) / 2),
         (Max(A, B), 3),
+        (Min(A, B), 2),
+        (abs(A - B), (3 + 2) + 3 + 2),
+        (abs(B - A), (3 + 2) + 3 + 2),
         (Piecewise((A * B, A < B), (A + B, True)), 5 + 5),
         (A * B / A, 2),
     ],

@@ -8,7 +8,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from small_report import problem, pure
+from small_report import found, problem, pure
+from sympy import sqrt
 from test_referee_explanations import ROWS, SHEET, X, formula, k
 
 from loopsheet.report.inputs.published import PublishedValue
@@ -19,7 +20,7 @@ from loopsheet.report.referee.explain import _digits_moved, _likelihood
 from loopsheet.report.referee.minimax import Best, _Counted
 from loopsheet.report.referee.problem import Box, Problem
 from loopsheet.report.referee.search import Explained, Search
-from loopsheet.report.result.verdict import Change, Explanation
+from loopsheet.report.result.verdict import EXACT, NOT_CHECKABLE, Change, Explanation, TableVerdict
 from loopsheet.report.sheet import Column, Sheet
 
 Ways = Callable[[int], object]
@@ -125,6 +126,20 @@ def test_digits_that_move_are_counted_in_units_of_the_last(printed: str, would: 
 
 
 # --- what is certain, and what was found ---
+
+
+def test_a_table_without_any_value_is_told_and_the_others_are_judged() -> None:
+    half = Column("half", ROWS, formula("half", sqrt(X[k])), positive=False)
+    square = Column("square", ROWS, formula("square", X[k] ** 2), positive=False)
+    cells = [
+        PublishedValue("Squares", "square", (1,), pure("1.72")),
+        PublishedValue("Roots", "half", (1,), pure("1.15")),
+    ]
+    of = found(Sheet((X, half, square)), {"x": [pure("-1.31")]}, cells)
+    assert [verdict.verdict for verdict in of.values] == [EXACT, NOT_CHECKABLE]
+    squares, roots = of.tables
+    assert (squares.source, squares.values, squares.verdict) == ("Squares", 1, EXACT)
+    assert roots == TableVerdict("Roots", 0, NOT_CHECKABLE)
 
 
 def test_a_box_is_excluded_if_a_value_certainly_does_not_come_out() -> None:
