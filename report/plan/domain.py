@@ -90,6 +90,8 @@ def assumed(bounds: Bounds) -> dict[str, bool]:
     --------
     >>> assumed(Bounds(low=0)), assumed(Bounds(low=0, low_open=True)), assumed(Bounds())
     ({'nonnegative': True}, {'positive': True}, {'real': True})
+    >>> assumed(Bounds(low=0.5)), assumed(Bounds(low=-0.5, low_open=True))
+    ({'positive': True}, {'real': True})
     """
     least = -1 if bounds.low is None else bounds.low
     if least < 0:
