@@ -1,6 +1,7 @@
 """Builds of the shipped paper against a marimo export of comparable content, and answers against Python.
 
-A build from nothing, after one number was edited, and of what was built before. Prints ratios of medians from
+A build from nothing, after one number was edited, and of what was built before; and what of these cannot be
+done without, by itself: matplotlib with the figures that show data, the proofs. Prints ratios of medians from
 interleaved runs. Nothing here is a test.
 """
 
@@ -68,6 +69,48 @@ def builds(cwd: Path) -> dict[str, Callable[[], float]]:
     return runs
 
 
+DRAWING = """
+import sys, time
+from pathlib import Path
+from loopsheet.report.study import Study
+from loopsheet.report.views import figures
+report = Study(Path("campaign")).refereed
+drawn = [figure.drawing for figure in figures.of(report) if not figure.fixed]
+report.plotted()
+begun = time.perf_counter()
+for name in drawn[int(sys.argv[1])::int(sys.argv[2])]:
+    figures.files(report, name, ["svg", "pdf"])
+print(time.perf_counter() - begun)
+"""
+PROVING = """
+import sys
+from loopsheet.derivations.proof import prove
+from loopsheet.derivations.soft_impact import LEDGER
+labels = [equation.label for equation in LEDGER.equations()]
+prove(LEDGER, only=set(labels[int(sys.argv[1])::int(sys.argv[2])]))
+"""
+
+
+def shared(code: str, cwd: Path, parts: int, told: bool = False) -> float:
+    """Wall time of processes that do a part each, side by side; or the longest time that they tell."""
+    begun = time.perf_counter()
+    commands = [[sys.executable, "-c", code, str(part), str(parts)] for part in range(parts)]
+    running = [subprocess.Popen(command, cwd=cwd, stdout=subprocess.PIPE, text=True) for command in commands]
+    answers = [process.communicate()[0] for process in running]
+    return max(map(float, answers)) if told else time.perf_counter() - begun
+
+
+def floors(cwd: Path) -> dict[str, Callable[[], float]]:
+    """What no build does without, by itself: below that, only less can be drawn or proved."""
+    return {
+        "  Python and NumPy": lambda: seconds([sys.executable, "-c", "import numpy"], cwd),
+        "  drawing, one process": lambda: shared(DRAWING, cwd, 1, True),
+        "  drawing, two": lambda: shared(DRAWING, cwd, 2, True),
+        "  proving, one process": lambda: shared(PROVING, cwd, 1),
+        "  proving, two": lambda: shared(PROVING, cwd, 2),
+    }
+
+
 def answers(cwd: Path) -> dict[str, Callable[[], float]]:
     """What is asked of a report, and the interpreter alone."""
     loopsheet = str(BINARIES / "loopsheet")
@@ -86,7 +129,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         cwd = Path(folder)
         os.environ["LOOPSHEET_CACHE"] = str(cwd / "cache")
-        medians = interleaved(builds(cwd))
+        medians = interleaved({**builds(cwd), **floors(cwd)})
         marimo = medians.get("marimo export")
         for name, taken in medians.items():
             print(

@@ -11,7 +11,8 @@ from __future__ import annotations
 from sympy import Expr, Integer, exp, log, sqrt
 from sympy.core.parameters import evaluate
 
-from .equation import Derivation, Equation, Kind, Step, evaluated
+from .equation import Derivation, Equation, Kind, Step
+from .rebuilt import evaluated
 from .symbols import VOCABULARY
 
 __all__ = [

@@ -12,14 +12,14 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from sympy import Add, Basic, Expr, Integral, Mul, Piecewise, Pow, Rel, Symbol
-
-from .reductions import REDUCTIONS
 from .vocabulary import NO_WORDS, Vocabulary
 
-__all__ = ["Derivation", "Equation", "Erratum", "Kind", "Ledger", "Step", "evaluated"]
+if TYPE_CHECKING:
+    from sympy import Expr, Rel
+
+__all__ = ["Derivation", "Equation", "Erratum", "Kind", "Ledger", "Step"]
 
 
 class Kind(Enum):
@@ -30,33 +30,6 @@ class Kind(Enum):
     LIMIT = "limit"
     """An assumption that is approached from above and never reached: a quantity is zero."""
     CLAIM = "claim"
-
-
-def evaluated(expression: Any) -> Any:
-    """The expression that is computed: the author's, rebuilt with sympy's own evaluation.
-
-    Integrals, sums and medians stay unevaluated; only the order of terms and trivial factors are normalised.
-    """
-    if not isinstance(expression, Basic) or not expression.args or isinstance(expression, Symbol):
-        return expression
-    arguments = [evaluated(argument) for argument in expression.args]
-    if isinstance(expression, (Integral, *REDUCTIONS)):
-        return expression.func(arguments[0], *expression.limits)
-    return expression.func(*arguments)
-
-
-def _replaced(expression: Any, where: Mapping[Any, Any]) -> Any:
-    """Put symbols in without evaluating: the author's order of terms stays."""
-    if expression in where:
-        return where[expression]
-    if not isinstance(expression, Basic) or not expression.args:
-        return expression
-    arguments = [_replaced(argument, where) for argument in expression.args]
-    if all(new is old for new, old in zip(arguments, expression.args, strict=True)):
-        return expression
-    if isinstance(expression, (Add, Mul, Pow)):
-        return expression.func(*arguments, evaluate=False)
-    return expression.func(*arguments)
 
 
 @dataclass(frozen=True)
@@ -114,6 +87,8 @@ class Equation:
     @cached_property
     def sides(self) -> tuple[Expr, ...]:
         """The members as they are computed."""
+        from .rebuilt import evaluated
+
         return tuple(evaluated(member) for member in self.members)
 
     @property
@@ -139,9 +114,11 @@ class Equation:
 
     def at(self, where: Mapping[Any, Any]) -> Equation:
         """The same equation for other symbols: one test of all, or the rows of a sheet."""
+        from .rebuilt import replaced
+
         return replace(
             self,
-            members=tuple(_replaced(member, where) for member in self.members),
+            members=tuple(replaced(member, where) for member in self.members),
             defines=None if self.defines is None else self.defines.xreplace(dict(where)),
             conditions=tuple(condition.xreplace(dict(where)) for condition in self.conditions),
             printed=None,
@@ -165,6 +142,8 @@ class Equation:
 
         A branch of a law by cases is what the law says in that case.
         """
+        from sympy import Piecewise
+
         laws = (member for member in self.origin.members if isinstance(member, Piecewise))
         cases = (case.expr for law in laws for case in law.args)
         made = replace(self.origin, members=(*self.origin.members, *cases))

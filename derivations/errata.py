@@ -17,8 +17,9 @@ from .cells import Cells
 from .dimensions import Dimensions, dimension_of_unit, power, product
 from .equation import Equation, Erratum, Kind, Ledger
 from .evaluation import UNDEFINED, Tape, is_real
-from .sampling import AGREES, DIGITS
-from .space import Space, said, short
+from .proved import DIGITS, said
+from .sampling import AGREES
+from .space import Space, short
 from .text import Wording
 from .vocabulary import Quantity, Vocabulary
 

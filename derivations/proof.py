@@ -11,8 +11,7 @@ different dimension, or that cannot hold together with the others is refused.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field, replace
-from enum import Enum
+from dataclasses import replace
 from functools import lru_cache
 
 from sympy import Expr, Indexed, Symbol
@@ -21,84 +20,19 @@ from .dimensions import mixed
 from .equation import Derivation, Equation, Kind, Ledger, Step
 from .evaluation import NotEvaluable
 from .grounds import behind, circle, is_assumed
-from .sampling import DIGITS, POINTS, examine
-from .space import said
+from .proved import Proof, ProofStatus, StepProof
+from .sampling import POINTS, examine
 from .system import Refused, prepare
 from .text import text
 from .together import conflict
 from .vocabulary import NO_WORDS, Vocabulary
 
 __all__ = [
-    "DIGITS",
-    "IDENTITY",
     "POINTS",
-    "Proof",
-    "ProofStatus",
-    "StepProof",
     "check_step",
     "prove",
     "prove_equation",
 ]
-
-IDENTITY = "nothing, it is an identity"
-"""What is said of a claim that needs no premise."""
-
-
-class ProofStatus(Enum):
-    """What is known of an equation."""
-
-    DEFINITION = "definition"
-    ASSUMPTION = "assumption"
-    LIMIT = "limit"
-    PROVED = "proved"
-    CORRECTED = "proved with a correction of the print"
-    REFUTED = "refuted"
-    UNDECIDED = "undecided"
-    REFUSED = "refused"
-
-    @property
-    def passes(self) -> bool:
-        """Whether a report may rest on it."""
-        return self not in (ProofStatus.REFUTED, ProofStatus.UNDECIDED, ProofStatus.REFUSED)
-
-
-@dataclass(frozen=True)
-class StepProof:
-    """What was found of one step."""
-
-    step: Step
-    status: ProofStatus
-    points: int
-    worst: float
-    """Largest relative residual over the points."""
-    symbolic: bool
-    counterexample: Mapping[str, str] = field(default_factory=dict)
-    sides: tuple[str, str] = ("", "")
-    """Both sides of the claim at the counterexample."""
-    why: str = ""
-
-    @property
-    def sentence(self) -> str:
-        """The finding, in words."""
-        if self.status is ProofStatus.REFUTED:
-            return f"at {said(self.counterexample)} the sides are {self.sides[0]} and {self.sides[1]}"
-        if self.status is ProofStatus.UNDECIDED:
-            return self.why
-        return f"residual 0; {self.points} points at {DIGITS} digits agree within {self.worst:.0e}"
-
-
-@dataclass(frozen=True)
-class Proof:
-    """What is known of one equation of the ledger."""
-
-    equation: Equation
-    status: ProofStatus
-    steps: tuple[StepProof, ...] = ()
-    remark: str = ""
-    """How the print differs from what was proved, or why an equation is refused."""
-    rests_on: tuple[str, ...] = ()
-    """The labels of what a claim finally rests on: definitions, assumptions and premises of its steps."""
-
 
 # --- verdicts ------------------------------------------------------------------------------------------
 

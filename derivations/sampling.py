@@ -11,13 +11,13 @@ import mpmath
 from sympy import Abs, Add, Expr, Indexed, Integral, Mul, Pow, Sum, Symbol
 
 from .evaluation import UNDEFINED, Tape, is_real
+from .proved import DIGITS, said
 from .reductions import Median
-from .space import SampledRows, Space, said, short
+from .space import SampledRows, Space, short
 from .system import Refused, System
 
-__all__ = ["AGREES", "DIGITS", "POINTS", "Outcome", "examine", "magnitude"]
+__all__ = ["AGREES", "POINTS", "Outcome", "examine", "magnitude"]
 
-DIGITS = 50
 POINTS = 20
 """How many seeded points of the domain every claim is evaluated at; fewer prove nothing."""
 AGREES = mpmath.mpf(10) ** (10 - DIGITS)

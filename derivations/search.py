@@ -17,7 +17,8 @@ from .arranged import Arranged, Sides, symbols_of
 from .equation import Equation
 from .evaluation import UNDEFINED, Tape, is_real
 from .few_rows import Statement
-from .sampling import AGREES, DIGITS, magnitude
+from .proved import DIGITS
+from .sampling import AGREES, magnitude
 from .vocabulary import Vocabulary
 
 __all__ = ["Sought", "are_impossible", "seek"]

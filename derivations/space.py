@@ -14,7 +14,7 @@ from .reductions import REDUCTIONS
 from .text import text
 from .vocabulary import Vocabulary
 
-__all__ = ["SampledRows", "Space", "said", "short"]
+__all__ = ["SampledRows", "Space", "short"]
 
 _FEW, _MANY = 5, 1000
 """Sizes of sums are drawn up to the first number, and about the rows that are named, up to the second."""
@@ -134,8 +134,3 @@ class Space:
 def short(value: Any) -> str:
     """Write a number for a reader."""
     return str(mpmath.nstr(value, 6))
-
-
-def said(point: Mapping[str, str]) -> str:
-    """Write a point as a list of values."""
-    return ", ".join(f"{name} = {value}" for name, value in point.items())

@@ -31,7 +31,7 @@ from sympy.core.function import Application
 
 from .equation import Equation
 from .reductions import Median
-from .vocabulary import Vocabulary
+from .vocabulary import Vocabulary, subscripted
 
 __all__ = ["Wording", "text", "text_of_equation"]
 
@@ -133,12 +133,8 @@ class Wording:
     def _name(self, symbol: Symbol, subscript: str) -> str:
         quantity = self.vocabulary.find(symbol)
         if quantity is not None and quantity.text:
-            return quantity.text.replace("%s", f"_{subscript}" if subscript else "")
-        name = str(symbol)
-        if not subscript:
-            return name
-        join = "_" if "_" not in name else "" if subscript.isdigit() else ","
-        return f"{name}{join}{subscript}"
+            return quantity.called(subscript)
+        return subscripted(str(symbol), subscript)
 
     def _sum(self, expression: Add) -> str:
         written = ""

@@ -9,11 +9,24 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
-from sympy import Expr, Indexed, IndexedBase, Symbol
-from sympy.core.function import AppliedUndef
+if TYPE_CHECKING:
+    from sympy import Expr, Indexed, IndexedBase, Symbol
 
-__all__ = ["NO_WORDS", "Quantity", "Vocabulary"]
+__all__ = ["NO_WORDS", "Quantity", "Vocabulary", "subscripted"]
+
+
+def subscripted(name: str, subscript: str) -> str:
+    """A name with its subscript, for a terminal.
+
+    >>> subscripted("x_m", "2"), subscripted("x_m", "k"), subscripted("e", "k"), subscripted("e", "")
+    ('x_m2', 'x_m,k', 'e_k', 'e')
+    """
+    if not subscript:
+        return name
+    join = "_" if "_" not in name else "" if subscript.isdigit() else ","
+    return f"{name}{join}{subscript}"
 
 
 @dataclass(frozen=True)
@@ -48,14 +61,24 @@ class Quantity:
     positive: bool = True
     text: str = ""
 
+    def called(self, subscript: str = "") -> str:
+        """How a terminal shows it, of a row or of all."""
+        if self.text:
+            return self.text.replace("%s", f"_{subscript}" if subscript else "")
+        return subscripted(self.name, subscript)
+
     @cached_property
     def symbol(self) -> Symbol:
         """The plain symbol, with its assumptions."""
+        from sympy import Symbol
+
         return Symbol(self.name, positive=True) if self.positive else Symbol(self.name, real=True)
 
     @cached_property
     def base(self) -> IndexedBase:
         """The indexed symbol, with the same assumptions."""
+        from sympy import IndexedBase
+
         return IndexedBase(self.symbol)
 
     def __getitem__(self, index: Expr | int) -> Indexed:
@@ -104,6 +127,9 @@ class Vocabulary(Mapping[str, Quantity]):
 
     def find(self, symbol: Expr) -> Quantity | None:
         """What a symbol, plain, indexed or a function of something, stands for; None if nothing says."""
+        from sympy import Indexed
+        from sympy.core.function import AppliedUndef
+
         if isinstance(symbol, AppliedUndef):
             return self.get(symbol.func.__name__)
         return self.get(str(symbol.base.label) if isinstance(symbol, Indexed) else str(symbol))

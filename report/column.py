@@ -336,6 +336,11 @@ class Root:
         """What the unknown is called."""
         return str(self.unknown.name)
 
+    @cached_property
+    def by_proof(self) -> bool:
+        """Whether statements say how often its form changes sign."""
+        return bool(self.turning_by)
+
     @property
     def statements(self) -> tuple[Equation, ...]:
         """What the ledger must say."""
@@ -483,6 +488,11 @@ class Column:
     def cell(self) -> Expr:
         """The column as it stands in formulas on its own axis."""
         return self.symbol if self.axis is None else self[self.axis.index]
+
+    @cached_property
+    def conditions(self) -> tuple[str, ...]:
+        """The sentences of its conditions."""
+        return tuple(sentence for _, sentence in self.requires)
 
     @property
     def equation(self) -> Equation | None:

@@ -6,22 +6,29 @@ declared again when somebody asks for one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass
 from functools import cache
 from typing import Any
 
+from ..derivations.equation import Equation, Ledger
+from ..derivations.vocabulary import Vocabulary
 from .cells.marks import margins
+from .charts import Drawn
 from .column import Axis, Column, Formula, Given, Limit, Mentioned, PairAxis, RepeatAxis, Root, Rule
+from .document.names import latex_names
+from .document.parts import Placed
+from .document.written import placed
+from .kept_ledger import ToldEquation, ToldLedger, known_equation, known_ledger, told_equation, told_ledger
 from .machine.kept import kept
-from .partly import partly
+from .partly import is_partly, partly
 from .plan.kept import as_data, of_data
 from .quantity import Bounds
-from .sheet import Sheet
+from .sheet import Sheet, with_parents
 from .which_workbook import is_shipped
 from .workbook import Workbook
 
-__all__ = ["of_shipped", "sheet_of"]
+__all__ = ["drawn_of", "ledger_of", "of_shipped", "sheet_of"]
 
 _KINDS = {kind.__name__: kind for kind in (Axis, PairAxis, RepeatAxis)}
 
@@ -60,17 +67,53 @@ class _ToldColumn:
     positive: bool
     exact: bool
     source: str
-    conditions: int
+    conditions: tuple[str, ...]
     mentioned: Mentioned
     limits: tuple[_ToldLimit, ...]
     given: dict[str, Any] | None
-    root: tuple[str, str, str] | None
+    equations: tuple[ToldEquation, ...]
+    placed: Placed | None
+    root: tuple[str, str, str, bool] | None
 
 
 @dataclass(frozen=True)
 class _ToldSheet:
     axes: tuple[_ToldAxis, ...]
     columns: tuple[_ToldColumn, ...]
+
+
+def drawn_of(
+    workbook: Workbook, given: frozenset[str], sheet: Sheet, what: str, make: Callable[[], Drawn]
+) -> Drawn:
+    """Columns that only charts ask for.
+
+    Parameters
+    ----------
+    workbook, given
+        As for :func:`sheet_of`.
+    sheet : Sheet
+        That of :func:`sheet_of`.
+    what : str
+        Which columns.
+    make : callable
+        Declares them.
+    """
+    declared = cache(make)
+
+    def told() -> Any:
+        own = declared()
+        whole = Sheet((*sheet.columns, *own.columns))
+        axes = [axis for axis in whole.axes if axis not in sheet.axes]
+        columns = tuple(_column(whole, column, {}, None) for column in own.columns)
+        return {"sheet": as_data(_ToldSheet(tuple(map(_axis, axes)), columns)), "given": dict(own.given)}
+
+    if not any(map(is_partly, sheet.columns)):
+        return declared()
+    data = of_shipped(workbook, given, what, told)
+    columns = _Known(
+        of_data(data["sheet"], _ToldSheet), lambda: {c.name: c for c in declared().columns}, sheet.axes
+    ).columns()
+    return Drawn(columns, data["given"])
 
 
 def sheet_of(workbook: Workbook, given: frozenset[str], check: Callable[[Sheet], None]) -> Sheet:
@@ -97,7 +140,7 @@ def sheet_of(workbook: Workbook, given: frozenset[str], check: Callable[[Sheet],
     def make() -> Any:
         check(declared())
         own = all(type(axis) in _KINDS.values() for axis in declared().axes)
-        return as_data(_told(declared())) if own else None
+        return as_data(_told(declared(), workbook.ledger().vocabulary)) if own else None
 
     if not is_shipped(workbook):  # a user's own code has loaded all that it wants
         check(declared())
@@ -105,7 +148,20 @@ def sheet_of(workbook: Workbook, given: frozenset[str], check: Callable[[Sheet],
     data = of_shipped(workbook, given, "sheet", make)
     if data is None:  # it has index sets of a kind that is not known here
         return declared()
-    return _Known(of_data(data, _ToldSheet), declared).sheet()
+    return Sheet(_Known(of_data(data, _ToldSheet), lambda: declared().by_name).columns())
+
+
+def ledger_of(
+    workbook: Workbook, given: frozenset[str], sheet: Sheet, declared: Callable[[], Ledger]
+) -> Ledger:
+    """The ledger of a workbook; parameters as for :func:`drawn_of`."""
+    if not is_shipped(workbook):
+        return declared()
+
+    def told() -> Any:
+        return as_data(told_ledger(declared(), latex_names(declared().vocabulary, sheet.columns)))
+
+    return known_ledger(of_data(of_shipped(workbook, given, "ledger", told), ToldLedger), declared)
 
 
 def of_shipped(workbook: Workbook, given: frozenset[str], what: str, make: Callable[[], Any]) -> Any:
@@ -116,11 +172,12 @@ def of_shipped(workbook: Workbook, given: frozenset[str], what: str, make: Calla
 # --- telling ---------------------------------------------------------------------------------------------
 
 
-def _told(sheet: Sheet) -> _ToldSheet:
-    found = margins(sheet)
+def _told(sheet: Sheet, vocabulary: Vocabulary) -> _ToldSheet:
+    found, writing = margins(sheet), (latex_names(vocabulary, sheet.columns), vocabulary)
     whole = Sheet((*sheet.columns, *(margin.column for margin in found)))
     limits = {id(margin.limit): _mentioned(whole, margin.column) for margin in found}
-    return _ToldSheet(tuple(map(_axis, sheet.axes)), tuple(_column(sheet, c, limits) for c in sheet.columns))
+    columns = (_column(sheet, column, limits, writing) for column in sheet.columns)
+    return _ToldSheet(tuple(map(_axis, sheet.axes)), tuple(columns))
 
 
 def _axis(axis: Axis) -> _ToldAxis:
@@ -133,8 +190,16 @@ def _mentioned(sheet: Sheet, column: Column) -> Mentioned:
     return Mentioned(named, tuple(axis.name for axis in sheet.summed_axes(column)), column.content)
 
 
-def _column(sheet: Sheet, column: Column, margins: Mapping[int, Mentioned]) -> _ToldColumn:
-    rule = column.rule
+def _column(
+    sheet: Sheet,
+    column: Column,
+    margins: Mapping[int, Mentioned],
+    writing: tuple[Mapping[str, str], Vocabulary] | None,
+) -> _ToldColumn:
+    rule, equations, place = column.rule, list[Equation](), None
+    if writing is not None and not isinstance(rule, Given):
+        equations = [rule.equation, rule.form] if isinstance(rule, Root) else [rule.equation]
+        place = placed(column, sheet, writing[0])
     limits = (
         _ToldLimit(
             own.says,
@@ -147,9 +212,10 @@ def _column(sheet: Sheet, column: Column, margins: Mapping[int, Mentioned]) -> _
     )
     return _ToldColumn(
         column.name, None if column.axis is None else column.axis.name, column.unit, column.meaning,
-        column.latex, column.display, column.positive, column.exact, column.source, len(column.requires),
+        column.latex, column.display, column.positive, column.exact, column.source, column.conditions,
         _mentioned(sheet, column), tuple(limits), asdict(rule) if isinstance(rule, Given) else None,
-        (rule.none, rule.two, rule.unknown_name) if isinstance(rule, Root) else None,
+        tuple(told_equation(each, *writing) for each in equations) if writing else (), place,
+        (rule.none, rule.two, rule.unknown_name, rule.by_proof) if isinstance(rule, Root) else None,
     )  # fmt: skip
 
 
@@ -157,27 +223,32 @@ def _column(sheet: Sheet, column: Column, margins: Mapping[int, Mentioned]) -> _
 
 
 class _Known:
-    """A sheet of what was told.
+    """Columns of what was told.
 
     Parameters
     ----------
     told : _ToldSheet
     declared : callable
-        Returns the sheet that it was told of.
+        Returns the columns that it was told of, by name.
+    axes : iterable of Axis
+        Those that are there already.
     """
 
-    def __init__(self, told: _ToldSheet, declared: Callable[[], Sheet]) -> None:
+    def __init__(
+        self, told: _ToldSheet, declared: Callable[[], Mapping[str, Column]], axes: Iterable[Axis] = ()
+    ) -> None:
         self.told, self.declared = told, declared
-        self.axes: dict[str, Axis] = {}
+        self.axes = {axis.name: axis for axis in axes}
 
-    def sheet(self) -> Sheet:
+    def columns(self) -> tuple[Column, ...]:
         for told in self.told.axes:
             self.axes[told.words["name"]] = self.axis(told)
-        return Sheet(tuple(map(self.column, self.told.columns)))
+        return tuple(map(self.column, self.told.columns))
 
     def axis(self, told: _ToldAxis) -> Axis:
         def whole() -> Axis:
-            return next(axis for axis in self.declared().axes if axis.name == told.words["name"])
+            every = with_parents(column.axis for column in self.declared().values())
+            return next(axis for axis in every if axis.name == told.words["name"])
 
         words = {name: tuple(own) if isinstance(own, list) else own for name, own in told.words.items()}
         alone = partly(Axis, {**words, "content": told.alone}, lambda: whole().alone)
@@ -200,11 +271,13 @@ class _Known:
                 "positive",
                 "exact",
                 "source",
+                "conditions",
                 "mentioned",
             )
         }
         known |= {"axis": self.axes[told.axis] if told.axis else None, "limits": limits}
         known |= {"content": told.mentioned.content, "rule": self.rule(told, whole)}
+        known |= {"placed": told.placed}
         if not told.conditions:
             known["requires"] = ()
         return partly(Column, known, whole)
@@ -212,10 +285,14 @@ class _Known:
     def rule(self, told: _ToldColumn, whole: Callable[[], Column]) -> Rule:
         if told.given is not None:
             return Given(told.given["source"], Bounds(**told.given["bounds"]))
-        if told.root is None:
-            return partly(Formula, {}, lambda: whole().rule)  # type: ignore[arg-type, return-value]
-        known = dict(zip(("none", "two", "unknown_name"), told.root, strict=True))
-        return partly(Root, known, lambda: whole().rule)  # type: ignore[arg-type, return-value]
+        equations = {
+            name: known_equation(own, lambda name=name: getattr(whole().rule, name))  # type: ignore[misc]
+            for name, own in zip(("equation", "form"), told.equations, strict=False)
+        }
+        more = zip(("none", "two", "unknown_name", "by_proof"), told.root or (), strict=False)
+        kind: Any = Formula if told.root is None else Root
+        rule: Rule = partly(kind, {**equations, **dict(more)}, lambda: whole().rule)
+        return rule
 
     def limit(self, told: _ToldLimit, place: int, whole: Callable[[], Column]) -> Limit:
         known: dict[str, Any] = {"says": told.says, "source": told.source, "silent": told.silent}

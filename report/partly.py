@@ -11,7 +11,7 @@ from dataclasses import fields
 from functools import cache, cached_property
 from typing import Any, TypeVar
 
-__all__ = ["is_partly", "partly"]
+__all__ = ["is_partly", "known", "partly"]
 
 T = TypeVar("T")
 
@@ -46,6 +46,11 @@ def partly(kind: type[T], known: Mapping[str, Any], whole: Callable[[], T]) -> T
 def is_partly(thing: Any) -> bool:
     """Whether a thing was made by :func:`partly`."""
     return "_make" in vars(thing)
+
+
+def known(thing: Any, name: str) -> Any:
+    """What is known of a thing besides its fields; None if nothing is."""
+    return vars(thing).get(name)
 
 
 @cache

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from ..derivations.equation import Derivation, Erratum, Ledger
-from ..derivations.proof import Proof, ProofStatus, StepProof, prove
+from ..derivations.proved import Proof, ProofStatus, StepProof
 
 __all__ = ["as_data", "of_data", "proved"]
 
@@ -26,6 +26,8 @@ def proved(ledger: Ledger, errata: bool, step: Callable[[str], None] = lambda _:
     step : callable
         Told what is begun.
     """
+    from ..derivations.proof import prove
+
     proofs = prove(ledger, lambda equation: step(f"proving {equation.label}"))
     found = (check(ledger) for check in ledger.checks) if errata else ()
     return proofs, tuple(erratum for erratum in found if erratum is not None)

@@ -48,6 +48,7 @@ __all__ = [
     "Rule",
     "Sheet",
     "SheetError",
+    "with_parents",
 ]
 
 
@@ -212,7 +213,7 @@ class Sheet:
             yield from (self._known(column, *each) for each in here)
             return
         found = set(self.algebra.of(column)) if column.expressions else set()
-        for axis in _with_parents((column.axis, *self.summed_axes(column))):
+        for axis in with_parents((column.axis, *self.summed_axes(column))):
             if axis.repeats:
                 found.add(Reference(self.by_name[axis.repeats].symbol))
         declared = {c.name: n for n, c in enumerate(self.columns)}
@@ -255,12 +256,12 @@ class Sheet:
             yield from visit(column)
 
 
-def _with_parents(axes: Iterable[Axis | None]) -> Iterator[Axis]:
+def with_parents(axes: Iterable[Axis | None]) -> Iterator[Axis]:
     """Axes and all they are made of."""
     for axis in axes:
         if axis is not None:
             yield axis
-            yield from _with_parents(axis.parents)
+            yield from with_parents(axis.parents)
 
 
 # --- what makes a sheet ----------------------------------------------------------------------------------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 from .inputs.inputs import Inputs, load
@@ -129,7 +129,7 @@ def evaluated(made: Prepared, ledger: Callable[[], Ledger], step: Step) -> Repor
         proofs=(),
         errata=(),
         comparisons=compare(inputs.published, values),
-        plotted=cache(lambda: plotted(workbook, values, inputs)),
+        plotted=cache(lambda: plotted(values, inputs)),
         uncertain=cache(lambda: uncertain(workbook, values, inputs)),
         versions=versions(),
     )
@@ -267,19 +267,23 @@ def refuse_too_many_rows(layouts: Mapping[str, Layout]) -> None:
         raise UsageError(diagnose("LS606", reason=error, known=known)) from error
 
 
-def drawn(workbook: Workbook, sheet: Sheet) -> Drawn:
+def drawn(inputs: Inputs, sheet: Sheet) -> Drawn:
     """The columns that only the charts ask for."""
     from .charts import Drawn
+    from .kept_sheet import drawn_of
 
-    return workbook.drawn(sheet) if workbook.drawn is not None else Drawn()
+    workbook = inputs.workbook
+    if workbook.drawn is None:
+        return Drawn()
+    return drawn_of(workbook, inputs.given, sheet, "curves", partial(workbook.drawn, sheet))
 
 
-def plotted(workbook: Workbook, values: Values, inputs: Inputs) -> Plotted:
+def plotted(values: Values, inputs: Inputs) -> Plotted:
     """What the charts are drawn from."""
     from .engines.numpy import extend
     from .result.result import Plotted
 
-    more = drawn(workbook, values.sheet)
+    more = drawn(inputs, values.sheet)
     every = extend(values, more.columns, more.given)
     return Plotted(every, {c.name: shown(c, every.sheet, inputs) for c in every.sheet.columns})
 
@@ -295,15 +299,21 @@ def uncertain(workbook: Workbook, values: Values, inputs: Inputs) -> Uncertainti
 def for_a_grid(report: Report) -> Drawn:
     """What the charts of a worksheet are drawn from."""
     from .charts import with_copies
+    from .kept_sheet import drawn_of
 
-    return with_copies(drawn(report.workbook, report.sheet), report.sheet, report.workbook.charts)
+    inputs, sheet = report.inputs, report.sheet
+
+    def make() -> Drawn:
+        return with_copies(drawn(inputs, sheet), sheet, inputs.workbook.charts)
+
+    return drawn_of(inputs.workbook, inputs.given, sheet, "curves of a worksheet", make)
 
 
 def book(report: Report) -> tuple[Grid, bytes]:
     """The sheet as a workbook with live formulas: where its cells are, and the file."""
     refuse_too_many_rows(report.values.layouts)
     from .engines import excel_grid
-    from .engines.excel import NotPrintable
+    from .engines.excel_values import NotPrintable
     from .views import xlsx
 
     units = {name: how.unit for name, how in report.shown.items()}
@@ -322,5 +332,5 @@ def program(report: Report) -> str:
     from .engines import javascript
     from .sheet import Sheet
 
-    curves, sheet = drawn(report.workbook, report.sheet), report.marks.values.sheet
+    curves, sheet = drawn(report.inputs, report.sheet), report.marks.values.sheet
     return javascript.program(Sheet((*sheet.columns, *curves.columns)), curves.given)

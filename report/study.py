@@ -23,7 +23,7 @@ from .which_workbook import find_workbook
 
 if TYPE_CHECKING:
     from ..derivations.equation import Equation, Ledger
-    from ..derivations.proof import Proof
+    from ..derivations.proved import Proof
     from .prepared import Prepared
     from .proofs import Algebra
     from .result.agreement import Agreement
@@ -109,14 +109,22 @@ class Study:
         return load(self.folder, self.find, stages.of_cells, self._read)
 
     @_part("ledger")
-    def ledger(self) -> Ledger:
-        """The equations of its workbook."""
+    def declared(self) -> Ledger:
+        """The equations of its workbook, with their algebra."""
         return self.inputs.workbook.ledger()
+
+    @_part("ledger")
+    def ledger(self) -> Ledger:
+        """The same, of a shipped workbook as they were told before."""
+        from .kept_sheet import ledger_of
+
+        inputs = self.inputs
+        return ledger_of(inputs.workbook, inputs.given, self.prepared.sheet, lambda: self.declared)
 
     @_part("sheet")
     def prepared(self) -> Prepared:
         """The inputs with their sheet, dimensions and names checked."""
-        return stages.prepared(self.inputs, lambda: self.ledger)
+        return stages.prepared(self.inputs, lambda: self.declared)
 
     # --- what is computed ---
 
@@ -131,7 +139,7 @@ class Study:
         from .proofs import as_data, proved
 
         about = self.inputs.about_source
-        return self.kept("proofs", lambda: as_data(proved(self.ledger, about, self.step)), by="workbook")
+        return self.kept("proofs", lambda: as_data(proved(self.declared, about, self.step)), by="workbook")
 
     @_part("proofs")
     def algebra(self) -> Algebra:
@@ -151,12 +159,12 @@ class Study:
 
     def proofs(self, equations: Iterable[Equation]) -> tuple[Proof, ...]:
         """The proofs of some equations: of these and what they rest on, if not all are known."""
-        from ..derivations.proof import prove
-
         labels = {equation.label for equation in equations} & {e.label for e in self.ledger.equations()}
         if not self.are_proved():
+            from ..derivations.proof import prove
+
             with timed("proofs"):
-                return prove(self.ledger, only=labels)
+                return prove(self.declared, only=labels)
         return tuple(proof for proof in self.algebra[0] if proof.equation.label in labels)
 
     @cached_property

@@ -41,12 +41,13 @@ from sympy.core.parameters import evaluate
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.report import stages
 from loopsheet.report.cells.grid import CellBlock, Grid, Place, checked, factors, letters, quoted
-from loopsheet.report.engines import excel_grid
+from loopsheet.report.engines import excel_assembly, excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.excel import ExcelPrinter, IfError, IsNumber, NotPrintable
+from loopsheet.report.engines.excel_assembly import auxiliary_texts
 from loopsheet.report.engines.excel_formulas import guard
 from loopsheet.report.engines.excel_roots import Unrolled, unroll
-from loopsheet.report.engines.excel_values import auxiliary_texts, auxiliary_values
+from loopsheet.report.engines.excel_values import auxiliary_values
 from loopsheet.report.machine.kept import SETTING
 from loopsheet.report.plan.lowering import lowered_column
 from loopsheet.report.plan.nodes import RootNode, RowSum
@@ -423,7 +424,7 @@ def test_formulas_are_kept_by_all_that_they_hang_on(tmp_path: Path, monkeypatch:
     monkeypatch.setenv(SETTING, str(tmp_path / "kept"))
     assert every() == expected
     with monkeypatch.context() as patch:
-        patch.setattr(excel_grid, "lowered", lambda *_: pytest.fail("it was lowered again"))
+        patch.setattr(excel_assembly, "lowered", lambda *_: pytest.fail("it was lowered again"))
         assert every() == expected
 
 

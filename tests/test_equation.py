@@ -4,7 +4,8 @@ import pytest
 from sympy import Add, Expr, IndexedBase, Integral, Mul, Piecewise, Sum, Symbol, sqrt
 from sympy.core.parameters import evaluate
 
-from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step, evaluated
+from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step
+from loopsheet.derivations.rebuilt import evaluated
 from loopsheet.derivations.text import text, text_of_equation
 from loopsheet.derivations.vocabulary import NO_WORDS
 

@@ -6,7 +6,7 @@ import pytest
 from small_report import end_gauge
 
 from loopsheet.derivations.equation import Step
-from loopsheet.derivations.proof import Proof, ProofStatus, StepProof
+from loopsheet.derivations.proved import Proof, ProofStatus, StepProof
 from loopsheet.report.engines import ENGINES
 from loopsheet.report.result import verdict_words as words
 from loopsheet.report.result.agreement import Agreement

@@ -36,8 +36,8 @@ PROVER = {
     f"derivations.{name}"
     for name in (
         *("algebra", "arranged", "cells", "dimensions", "equation", "errata", "evaluation", "facts"),
-        *("few_rows", "grounds", "proof", "reductions", "sampling", "search", "space", "sums", "system"),
-        *("text", "together", "vocabulary"),
+        *("few_rows", "grounds", "proof", "proved", "rebuilt", "reductions", "sampling", "search", "space"),
+        *("sums", "system", "text", "together", "vocabulary"),
     )
 }
 ALGEBRA = {"sympy", "mpmath"}

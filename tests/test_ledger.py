@@ -21,7 +21,8 @@ from sympy import (
 
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step
-from loopsheet.derivations.proof import Proof, ProofStatus, prove, prove_equation
+from loopsheet.derivations.proof import prove, prove_equation
+from loopsheet.derivations.proved import Proof, ProofStatus
 from loopsheet.derivations.vocabulary import Quantity, Vocabulary
 
 m = Symbol("m", integer=True, positive=True)

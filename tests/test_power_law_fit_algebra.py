@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from loopsheet.derivations import power_law_fit as fit
-from loopsheet.derivations.equation import Derivation, Equation, evaluated
+from loopsheet.derivations.equation import Derivation, Equation
 from loopsheet.derivations.evaluation import Tape
-from loopsheet.derivations.proof import ProofStatus, check_step
+from loopsheet.derivations.proof import check_step
+from loopsheet.derivations.proved import ProofStatus
+from loopsheet.derivations.rebuilt import evaluated
 from loopsheet.derivations.symbols import VOCABULARY
 
 x, F = (VOCABULARY[name].symbol for name in ("x", "F"))

@@ -34,7 +34,8 @@ from sympy import (
 
 from loopsheet.derivations import proof, sampling, system
 from loopsheet.derivations.equation import Equation, Step
-from loopsheet.derivations.proof import POINTS, ProofStatus, check_step
+from loopsheet.derivations.proof import POINTS, check_step
+from loopsheet.derivations.proved import ProofStatus
 from loopsheet.derivations.reductions import Median
 from loopsheet.derivations.vocabulary import NO_WORDS
 

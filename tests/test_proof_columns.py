@@ -4,7 +4,7 @@ import pytest
 from proving import X, a, b, claim, decide, given, n, q
 from sympy import Eq, Expr, IndexedBase, Piecewise, Sum, Symbol
 
-from loopsheet.derivations.proof import ProofStatus
+from loopsheet.derivations.proved import ProofStatus
 
 Y = IndexedBase(Symbol("Y", real=True))
 Z = IndexedBase(Symbol("Z", positive=True))

@@ -4,7 +4,7 @@ import pytest
 from proving import a, b, c, claim, decide, given, n, w, y
 from sympy import Abs, Eq, Expr, Max, Ne, Or, Rational, log, sqrt
 
-from loopsheet.derivations.proof import ProofStatus
+from loopsheet.derivations.proved import ProofStatus
 
 
 @pytest.mark.parametrize(

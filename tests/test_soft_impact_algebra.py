@@ -15,9 +15,11 @@ from sympy import Add, Basic, Expr, Indexed, Integral, Mul, Pow, Sum, Symbol
 
 from loopsheet.derivations import alpha_root
 from loopsheet.derivations import soft_impact as model
-from loopsheet.derivations.equation import Derivation, Equation, Step, evaluated
+from loopsheet.derivations.equation import Derivation, Equation, Step
 from loopsheet.derivations.evaluation import Tape
-from loopsheet.derivations.proof import Proof, ProofStatus, check_step, prove, prove_equation
+from loopsheet.derivations.proof import check_step, prove, prove_equation
+from loopsheet.derivations.proved import Proof, ProofStatus
+from loopsheet.derivations.rebuilt import evaluated
 from loopsheet.derivations.soft_impact import LEDGER, XM, XP, E, V, alpha, beta
 
 

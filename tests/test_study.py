@@ -32,7 +32,7 @@ def test_nothing_is_made_that_was_not_asked_for(tmp_path: Path) -> None:
     assert study.inputs.title
     assert parts(study) == {"inputs"}
     assert study.computed.proofs == ()
-    assert parts(study) == {"inputs", "ledger", "prepared", "computed"}
+    assert parts(study) == {"inputs", "declared", "prepared", "computed"}
     assert study.algebra is study.algebra
     assert study.proved.proofs == study.algebra[0]
     assert study.report.engines == study.engines

@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from loopsheet.derivations.proof import ProofStatus, prove
+from loopsheet.derivations.proof import prove
+from loopsheet.derivations.proved import ProofStatus
 from loopsheet.report import build
 from loopsheet.report.cells import units
 from loopsheet.report.cli import main

@@ -21,6 +21,7 @@ from hypothesis import strategies as st
 from loopsheet.report.document.material import Material
 from loopsheet.report.document.numbers import decimals, rounded, shown
 from loopsheet.report.document.tree import Math
+from loopsheet.report.document.written import placed
 from loopsheet.report.engines import javascript
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.inputs.number_text import NumberError, read_printed, read_value
@@ -181,10 +182,10 @@ def test_foreign_text_cannot_end_the_element(tmp_path: Path) -> None:
 def test_equations_have_a_place_for_each_cell(report: Report) -> None:
     document = Material(report)
     found = {part.column.name: part for part in live.parts(report, document)}
-    put = live.Put(document)
-    printed = put.equation(report.sheet["x_m1"])
+    put = placed(report.sheet["x_m1"], report.sheet, document.names)
+    printed = put.latex
     assert found["x_m1"].equation == Math(printed)
-    assert put.cells == [["x_m2", "p"], ["alpha", "p"], ["v", "i"], ["v", "j"]]
+    assert put.cells == (("x_m2", "p"), ("alpha", "p"), ("v", "i"), ("v", "j"))
     assert r"\left(\frac{\text{@2@}}{\text{@3@}}\right)^{2/(\text{@1@} + 1)}" in printed
     assert r"\text{@0@} \cdot " in printed  # two numbers side by side would be read as one
     assert found["alpha_mean"].equation is None  # a sum has too many terms

@@ -16,7 +16,7 @@ from openpyxl.worksheet.formula import ArrayFormula
 
 from loopsheet.report import stages
 from loopsheet.report.cells.grid import Grid, letters
-from loopsheet.report.document.math import with_index
+from loopsheet.report.document.names import with_index
 from loopsheet.report.document.notation import fragments
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.inputs.folders import PAPER

@@ -10,7 +10,8 @@ from sympy import Function, IndexedBase, Symbol
 
 from loopsheet.derivations.dimensions import Dimensions, dimension_of_unit
 from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger
-from loopsheet.derivations.proof import ProofStatus, prove
+from loopsheet.derivations.proof import prove
+from loopsheet.derivations.proved import ProofStatus
 from loopsheet.derivations.text import text
 from loopsheet.derivations.vocabulary import NO_WORDS, Quantity, Vocabulary
 from loopsheet.report import build

@@ -315,7 +315,7 @@ class Values:
         outside = f"outside the domain of {column.source}"
         broken = self.broken.get(column.name)
         if broken is not None and broken[row]:
-            return f"{outside}: {column.requires[broken[row] - 1][1]}"
+            return f"{outside}: {column.conditions[broken[row] - 1]}"
         empty = [axis for axis, mask in self._named(column)[1].items() if not mask.size]
         if empty:
             return f"{outside}: {empty[0]} has no rows"

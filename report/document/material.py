@@ -11,7 +11,7 @@ from functools import cached_property
 from itertools import chain, islice
 
 from ...derivations.equation import Equation
-from ...derivations.proof import Proof, ProofStatus
+from ...derivations.proved import Proof, ProofStatus
 from ..cells.marks import MarkCount
 from ..cells.values import Cell
 from ..messages.diagnostics import Check
@@ -19,12 +19,13 @@ from ..result.result import Report
 from ..result.uncertain import Budget
 from ..sheet import Axis, Column, Given, Root
 from ..workbook import FigureSpec, TableSpec
-from .math import MathPrinter, latex_names, name_latex
+from .names import latex_names, name_latex
 from .numbers import Numeral, decimals, read, shown, table_format
-from .parts import MARK, MOST, Head, Item, Pair, Remark, SourceGroup, slug
+from .parts import MARK, MOST, Head, Item, Pair, Remark, SourceGroup, Written, slug
 from .refereed import RefereedPair, figures
 from .rich import Sentences
 from .tree import Badge
+from .written import written
 
 __all__ = ["Material"]
 
@@ -35,7 +36,6 @@ class Material:
     def __init__(self, report: Report) -> None:
         self.report = report
         self.names = latex_names(report.ledger.vocabulary, report.sheet.columns)
-        self.printer = MathPrinter(self.names)
         self.sentences = Sentences(report.ledger.vocabulary, self.names, self.identifiers)
 
     # --- names and numbers
@@ -175,6 +175,10 @@ class Material:
             if equation.number:
                 found.setdefault(equation.number, found[equation.label])
         return found
+
+    def written(self, equation: Equation) -> Written:
+        """How an equation is written."""
+        return written(equation, self.names, self.report.ledger.vocabulary)
 
     def proof(self, equation: Equation) -> Proof | None:
         """What was found of it; None where the algebra was not checked."""

@@ -15,86 +15,17 @@ from typing import Any
 from sympy import Add, And, Basic, Expr, Indexed, Integral, Mul, Number, Piecewise, Pow, Rational, Sum, Symbol
 from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
-from sympy.printing.latex import LatexPrinter, translate
+from sympy.printing.latex import LatexPrinter
 
 from ...derivations.reductions import Median
-from ...derivations.vocabulary import Vocabulary
 from ..named import name_of
-from ..sheet import Column
+from .names import Terms, join, name_latex
 
-__all__ = ["MathPrinter", "latex_names", "name_latex", "with_index"]
+__all__ = ["MathPrinter"]
 
 _RELATIONS = {"<=": r"\le", ">=": r"\ge", "<": "<", ">": ">", "==": "=", "!=": r"\ne"}
 _MIRROR = {">=": "<=", ">": "<"}
 _TALL = re.compile(r"\\(?:frac|sum|int|sqrt|left|begin)")
-
-
-# --- names -----------------------------------------------------------------------------------------------
-
-
-def latex_names(vocabulary: Vocabulary, columns: Iterable[Column] = ()) -> dict[str, str]:
-    """LaTeX of all names of a report: as its columns print them, else as its vocabulary does.
-
-    Parameters
-    ----------
-    vocabulary : Vocabulary
-        Of the ledger.
-    columns : iterable of Column
-        Of the sheet.
-    """
-    names = {name: quantity.latex for name, quantity in vocabulary.items()}
-    for column in columns:
-        names[column.name] = column.latex or names.get(column.name) or _spelt(column.name)
-    return names
-
-
-def name_latex(name: str, names: Mapping[str, str] | None = None, index: str = "") -> str:
-    r"""Print the name of a quantity.
-
-    Parameters
-    ----------
-    name : str
-        The cell name, ``x_m``.
-    names : mapping of str to str
-        LaTeX of those that are printed otherwise than they are called; ``%s`` is where an index goes.
-    index : str
-        LaTeX of the index; empty for none.
-
-    Examples
-    --------
-    >>> name_latex("x_m", index="k"), name_latex("n_pairs"), name_latex("v", {"v": "v'%s"}, "2")
-    ('x_{m_{k}}', 'n_{\\mathrm{pairs}}', "v'_{2}")
-    """
-    return with_index(names[name] if names and name in names else _spelt(name), index)
-
-
-def _spelt(name: str) -> str:
-    """LaTeX of a name that nothing is said of: what follows the first ``_`` is a subscript."""
-    head, _, tail = name.partition("_")
-    return _word(head) + (f"_{{{_word(tail)}%s}}" if tail else "%s")
-
-
-def _word(text: str) -> str:
-    if len(text) == 1 or text.isdigit():
-        return text
-    greek = str(translate(text))
-    plain = text.replace("_", r"\_")
-    return greek if greek.startswith("\\") and "{" not in greek else rf"\mathrm{{{plain}}}"
-
-
-def with_index(template: str, index: str = "") -> str:
-    r"""Put an index where the LaTeX of a quantity has its place for one.
-
-    >>> with_index("m_{red%s}"), with_index("e%s", "1")
-    ('m_{\\mathrm{red}}', 'e_{1}')
-    """
-    # A subscript of several letters is a word, not a product.
-    upright = re.sub(r"_\{([A-Za-z]{2,})(?=[%}])", r"_{\\mathrm{\1}", template)
-    if not index:
-        return upright.replace("%s", "")
-    if "%s" in upright:
-        return upright.replace("%s", f"_{{{index}}}")
-    return f"{{{upright}}}_{{{index}}}" if "_" in upright else f"{upright}_{{{index}}}"
 
 
 # --- expressions -----------------------------------------------------------------------------------------
@@ -134,18 +65,13 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
     # sums and products
 
     def _print_Add(self, expr: Add, order: str | None = None) -> str:
-        return self.join(self.terms(expr))
+        return join(self.terms(expr))
 
-    @staticmethod
-    def join(terms: Iterable[tuple[bool, str]]) -> str:
-        """Join signed terms."""
-        text = ""
-        for negative, term in terms:
-            sign = "-" if negative else "+"
-            text += f" {sign} {term}" if text else ("-" if negative else "") + term
-        return text
+    def sides(self, members: Iterable[Expr]) -> list[Terms]:
+        """The terms of the sides of an equation, or of one relation."""
+        return [self.terms(member) for member in members]
 
-    def terms(self, expr: Expr) -> list[tuple[bool, str]]:
+    def terms(self, expr: Expr) -> Terms:
         """The terms of a sum, each with whether it is subtracted."""
         summands = _summands(expr)
         if len(summands) == 1 and isinstance(expr, Piecewise):

@@ -9,6 +9,7 @@ from ..cells.address import index_text
 from ..cells.values import Cell, Status
 from ..quantity import Printed
 from ..result.result import Comparison
+from .names import Terms
 from .numbers import Numeral, is_pure
 
 __all__ = [
@@ -17,8 +18,10 @@ __all__ = [
     "Head",
     "Item",
     "Pair",
+    "Placed",
     "Remark",
     "SourceGroup",
+    "Written",
     "cell_id",
     "described",
     "slug",
@@ -208,3 +211,44 @@ class SourceGroup:
         """The one that is furthest off, in units of its last digit."""
         known = [pair for pair in self.pairs if pair.comparison.distance is not None]
         return max(known, key=lambda pair: abs(pair.comparison.distance or 0), default=None)
+
+
+@dataclass(frozen=True)
+class Written:
+    """An equation, written.
+
+    Parameters
+    ----------
+    sides : tuple of terms
+        LaTeX of its sides.
+    text : str
+        For a terminal.
+    conditions : tuple of str
+        LaTeX of its conditions.
+    where : tuple of str
+        These for a terminal.
+    speaks_of : str
+        LaTeX that says of which row it speaks, if it is an instance for one.
+    """
+
+    sides: tuple[Terms, ...]
+    text: str
+    conditions: tuple[str, ...]
+    where: tuple[str, ...]
+    speaks_of: str
+
+
+@dataclass(frozen=True)
+class Placed:
+    """An equation of a column with places for the numbers in it.
+
+    Parameters
+    ----------
+    latex : str
+        With ``@n@`` for the n-th cell in it; empty if the column is given or sums over rows.
+    cells : tuple of (str or None, str or None)
+        What belongs into each place: a column and an index, or how many rows an axis has.
+    """
+
+    latex: str
+    cells: tuple[tuple[str | None, str | None], ...]

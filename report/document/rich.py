@@ -10,11 +10,8 @@ import re
 from collections.abc import Collection, Iterator, Mapping
 from functools import cached_property
 
-from sympy import Symbol
-
-from ...derivations.text import Wording
 from ...derivations.vocabulary import Vocabulary
-from .math import name_latex
+from .names import name_latex
 from .numbers import read
 from .tree import Inline, Inlines, Math, Number, Refer, Unit
 
@@ -114,12 +111,12 @@ class Sentences:
     @cached_property
     def _written(self) -> dict[str, tuple[str, str]]:
         """Names as sentences of the derivations write them, ``x_m2``: the quantity and its index."""
-        text, quantities = Wording(self.vocabulary).text, self.vocabulary.items()
+        quantities = self.vocabulary.items()
         # x_p is the imprint depth before it is the x of some p.
         found: dict[str, tuple[str, str]] = {}
         for name, quantity in quantities:
-            found.setdefault(text(quantity.symbol), (name, ""))
+            found.setdefault(quantity.called(), (name, ""))
         for name, quantity in quantities:
-            for index in (1, 2, *map(Symbol, "ijkpq")):
-                found.setdefault(text(quantity[index]), (name, str(index)))
+            for index in "12ijkpq":
+                found.setdefault(quantity.called(index), (name, index))
         return found

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from sympy import Expr, Indexed, Integer
-
 from ...derivations.equation import Derivation, Equation, Step
-from ...derivations.proof import IDENTITY, Proof
+from ...derivations.proved import IDENTITY, Proof
 from ..messages.errors import suggest
 from ..result import verdict_words as words
 from ..result.agreement import Agreement
@@ -42,6 +40,7 @@ from .tree import (
     Value,
     joined,
 )  # fmt: skip
+from .written import gone
 
 __all__ = ["SAID", "Role", "Said", "UnknownName"]
 
@@ -249,8 +248,8 @@ class Said:
         material, ledger = self.material, self.report.ledger
         proof, derivation = material.proof(equation), ledger.derivation(equation)
         because = self.told(equation.because)
-        if equation.conditions:
-            because += (" Holds where ", *joined(map(self._formula, equation.conditions), " and "), ".")
+        if conditions := material.written(equation).conditions:
+            because += (" Holds where ", *joined(((Math(each),) for each in conditions), " and "), ".")
         if proof and proof.remark:
             because += (" ", *self.told(proof.remark))
         steps = tuple(self._steps(derivation, proof)) if derivation else ()
@@ -264,9 +263,6 @@ class Said:
             steps,
         )
 
-    def _formula(self, expression: Expr) -> Inlines:
-        return (Math(self.material.printer.doprint(expression)),)
-
     def _named(self, label: str, title: str) -> Inlines:
         return (Refer(label),) if label in self.material.identifiers else self.rich(title)
 
@@ -276,16 +272,16 @@ class Said:
         return ("Rests on: ", *(grounds or (IDENTITY,)), ".")
 
     def _steps(self, derivation: Derivation, proof: Proof | None) -> Iterator[Blocks]:
-        shown: set[Equation] = set()
+        shown: set[tuple[str, str]] = set()
         for number, step in enumerate(derivation.steps):
             blocks: Blocks = (Paragraph(self.rich(step.says)),)
             if step.claim.label != derivation.claim.label:
                 blocks += (Display(step.claim),)
             for premise in step.premises:  # those without a number, the first time
-                if premise.label not in self.material.identifiers and premise.origin not in shown:
+                if premise.label not in self.material.identifiers and _name(premise) not in shown:
                     title, why = self.rich(premise.title), self.rich(premise.because)
                     blocks += (Paragraph(("Premise: ", *title, " – ", *why, ":")), Display(premise))
-            shown.add(step.claim.origin)
+            shown.add(_name(step.claim))
             evidence = ("Evidence: ", *self.rich(proof.steps[number].sentence), ".") if proof else ()
             yield *blocks, Paragraph((*self._rests_on(step), *evidence), aside=True)
 
@@ -294,16 +290,14 @@ class Said:
             return ()
         # two branches of one law are one equation
         each = dict.fromkeys(map(self._premise, step.premises))
-        gone = joined(map(self._formula, step.eliminate), ", ")
-        return ("Rests on ", *joined(each, ", "), *(("; eliminated: ", *gone) if gone else ()), ". ")
+        out = joined(((Math(each),) for each in gone(step, self.material.names)), ", ")
+        return ("Rests on ", *joined(each, ", "), *(("; eliminated: ", *out) if out else ()), ". ")
 
     def _premise(self, equation: Equation) -> Inlines:
         """What a step rests on: its number or its name, and of which test it speaks."""
         named = self._named(equation.label, equation.title)
-        own, general = _indices(equation), _indices(equation.origin)
-        if len(own) == len(general) == 1 and own != general and isinstance(next(iter(own)), Integer):
-            return (*named, " for ", Math(f"{general.pop()} = {own.pop()}"))
-        return named
+        row = self.material.written(equation).speaks_of
+        return (*named, " for ", Math(row)) if row else named
 
     def versions(self) -> Blocks:
         """What computed the report."""
@@ -386,6 +380,6 @@ def _agreement(found: Agreement) -> Inlines:
     return Strong((found.engine,)), f", {found.program}: " if found.program else ": ", *said, "."
 
 
-def _indices(equation: Equation) -> set[Expr]:
-    """The indices that the cells of an equation carry."""
-    return {index for member in equation.members for cell in member.atoms(Indexed) for index in cell.indices}
+def _name(equation: Equation) -> tuple[str, str]:
+    """What an equation without a number, or what it is an instance of, is known by."""
+    return equation.origin.title, equation.origin.because

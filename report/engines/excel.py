@@ -18,8 +18,9 @@ from sympy.logic.boolalg import BooleanFunction
 from sympy.printing.printer import Printer
 
 from ..plan.nodes import Leaf, Plan, RowMedian, RowSum
+from .excel_values import NotPrintable
 
-__all__ = ["FUNCTIONS", "ExcelPrinter", "IfError", "IsNumber", "NotPrintable", "ordered"]
+__all__ = ["FUNCTIONS", "ExcelPrinter", "IfError", "IsNumber", "ordered"]
 
 FUNCTIONS = {
     "Abs": "ABS",
@@ -41,10 +42,6 @@ FUNCTIONS = {
 
 _EXACT_DIGITS = 15
 """Excel reads no more digits of a number."""
-
-
-class NotPrintable(ValueError):
-    """An expression has no spreadsheet formula; half a formula is never printed."""
 
 
 class IfError(Function):

@@ -21,7 +21,8 @@ from ..plan.nodes import Leaf, Map, Plan, RootNode
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, Reference, Sheet
 from .excel import ExcelPrinter, IfError
-from .excel_roots import READY, Auxiliary, Unrolled
+from .excel_roots import Auxiliary, Unrolled
+from .excel_values import READY
 
 __all__ = ["Formulas", "Places", "carried", "carried_name", "guard"]
 

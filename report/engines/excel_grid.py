@@ -1,33 +1,18 @@
-"""A sheet as a workbook's cells: puts every quantity in its place and every formula in its cell.
-
-An axis has a worksheet: the numbers of its rows, its columns in the order of the sheet, what is drawn of
-it, and, to the right, the cells on the way to its roots. Scalars stand one below the other on the
-worksheet ``report``; the cells on the way to a scalar root have the worksheet ``steps``.
-"""
+"""A sheet as a workbook's cells: laid out once for all data, with the values that they have now."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from fractions import Fraction
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain, count
 from typing import Any
 
-from ..cells.grid import CHECKED, FIRST_ROW, SCALARS, STEPS, CellBlock, Grid, Place, as_issued, checked
+from ..cells.grid import SCALARS, STEPS, CellBlock, Grid, Place
 from ..cells.layout import Layout
 from ..cells.values import Values
 from ..charts import Drawn
-from ..inputs.unit_text import UnitError, parse_unit
-from ..plan.kept import as_data, of_data, of_sheet
-from ..plan.lowering import lowered
-from ..plan.nodes import RootNode
-from ..quantity import Bounds
-from ..sheet import Axis, Column, Given, Sheet
-from .certified import certified
-from .excel import ordered
-from .excel_formulas import Formulas, Places, carried, guard
-from .excel_roots import Unrolled, unroll
-from .excel_values import auxiliary_texts, filled
+from ..plan.kept import of_data, of_sheet
+from ..sheet import Axis, Sheet
+from .excel_values import filled
 from .numpy import extend
 
 __all__ = ["MOST_ROWS", "TooManyRows", "check_rows", "grid"]
@@ -38,12 +23,6 @@ _RESERVED = (SCALARS, STEPS, "figures", "published", "equations", "history")
 """Worksheets that are there already, and one that Excel keeps for itself."""
 _LONGEST_NAME = 31
 """Characters of a worksheet's name."""
-_TOP = 5
-"""The row, from 0, of the first scalar."""
-_ABOVE = 6
-"""How far above the first row of a drawn axis the number stands that says how often it repeats."""
-_GAP = 3
-"""Rows from one group of scalars to the next: one empty, a title, a header."""
 
 
 class TooManyRows(ValueError):
@@ -84,15 +63,19 @@ def grid(
     whole, layouts = every.sheet, every.layouts
     counts = {axis.repeats: every.scalar(axis.repeats) for axis in whole.axes if axis.repeats}
 
+    worksheets = _worksheets(whole.axes)
+
     def make() -> dict[str, Any]:
-        return _Assembly(sheet, values.sheet, whole, layouts, counts, units, first).told()
+        from .excel_assembly import Assembly
+
+        return Assembly(worksheets, sheet, values.sheet, whole, layouts, counts, units, first).told()
 
     own = [layouts[axis.name].labels.tolist() for axis in whole.axes if not axis.parents]
     words = [(column.meaning, column.unit, column.display, column.source) for column in whole.columns]
     names = [list(each.by_name) for each in (sheet, values.sheet)]
     hangs_on = repr((names, own, sorted(counts.items()), words, sorted(units.items()), list(first)))
     told = of_sheet(whole, "formulas of the workbook", [hangs_on], make)
-    axes = dict(zip(_worksheets(whole.axes).values(), whole.axes, strict=True))
+    axes = dict(zip(worksheets.values(), whole.axes, strict=True))
     blocks = filled(of_data(told["blocks"], tuple[CellBlock, ...]), told["roots"], every)
     return Grid(tuple(blocks), axes, drawn, of_data(told["notes"], dict[str, Place]))
 
@@ -108,278 +91,6 @@ def check_rows(layouts: Mapping[str, Layout]) -> None:
     for name, layout in layouts.items():
         if layout.size > MOST_ROWS:
             raise TooManyRows(f"{name} has {layout.size} rows")
-
-
-@dataclass
-class _Room:
-    """Where the next column of a worksheet goes."""
-
-    worksheet: str
-    rows: int
-    column: int = 0
-
-    def next(self, scale: Fraction = Fraction(1)) -> Place:
-        place = Place(self.worksheet, FIRST_ROW, self.column, self.rows, scale)
-        self.column += 1
-        return place
-
-
-class _Assembly:
-    """Blocks being put together: first all places, then all formulas."""
-
-    def __init__(
-        self,
-        sheet: Sheet,
-        judged: Sheet,
-        whole: Sheet,
-        layouts: Mapping[str, Layout],
-        counts: Mapping[str, float],
-        units: Mapping[str, str],
-        first: Sequence[str],
-    ) -> None:
-        self.sheet, self.judged, self.whole, self.layouts, self.counts = sheet, judged, whole, layouts, counts
-        self.units, self.first = units, first
-        self.names = _worksheets(whole.axes)
-        self.rooms = {axis.name: _Room(self.names[axis.name], layouts[axis.name].size) for axis in whole.axes}
-        self.places: dict[str, Place] = {}
-        self.notes: dict[str, Place] = {}
-        self.indices: dict[str, tuple[Place, ...]] = {}
-        self.plan = ordered(lowered(whole))
-        roots = {node.column.name: node for node in self.plan.nodes if isinstance(node, RootNode)}
-        self.unrolled = {
-            c.name: unroll(self.plan, roots[c.name], certified(sheet, c))
-            for c in sheet.columns
-            if c.name in roots
-        }
-        asked = {
-            given.name
-            for unrolled in self.unrolled.values()
-            if unrolled.issued is not None
-            for given in sheet.ancestors(unrolled.column)
-            if isinstance(given.rule, Given)
-        }
-        self.asked = [column for column in sheet.columns if column.name in asked]
-        self.carried = {k: v for c in whole.columns for k, v in carried(whole, c).items()}
-
-    def told(self) -> dict[str, Any]:
-        """All of it but the values, as data."""
-        self.put_all()
-        named = {name: self.places[checked(name)] for name in self.whole.bounds}
-        places = Places({**self.places, **named}, {name: self.places[name] for name in named}, self.indices)
-        formulas = Formulas(self.whole, self.plan, self.layouts, places)
-        blocks = [*self.index_blocks(), *self.column_blocks(formulas), *self.step_blocks(formulas)]
-        order = [SCALARS, *self.names.values(), STEPS]
-        blocks.sort(
-            key=lambda b: (
-                order.index(b.place.worksheet),
-                b.place.column if b.place.worksheet in self.names.values() else 0,
-                b.place.row,
-                b.place.column,
-            )
-        )
-        return {
-            "blocks": as_data(blocks),
-            "roots": [auxiliary_texts(self.whole, unrolled) for unrolled in self.unrolled.values()],
-            "notes": as_data(self.notes),
-        }
-
-    # --- places
-
-    def put_all(self) -> None:
-        for axis in self.whole.axes:
-            parts = self.layouts[axis.name].labels.shape[1]
-            self.indices[axis.name] = tuple(self.rooms[axis.name].next() for _ in range(parts))
-        self.put_scalars()
-        given = [c for c in self.whole.columns if c.axis is not None and isinstance(c.rule, Given)]
-        for column in given:
-            self.put(column, column.name)
-        for worksheet in dict.fromkeys(self.places[column.name].worksheet for column in given):
-            (room,) = (room for room in self.rooms.values() if room.worksheet == worksheet)
-            self.notes[worksheet] = room.next()
-        for column in self.whole.columns:
-            if column.axis is not None and column not in given:
-                self.put(column, column.name)
-        for column in given:
-            self.put(column, checked(column.name))
-        for name, (leaf, axis) in sorted(self.carried.items()):
-            self.places[name] = self.rooms[axis.name].next(self.places[leaf.name].scale)
-        row = _TOP - 2
-        for unrolled in self.unrolled.values():
-            over = unrolled.column.axis
-            if over is not None:
-                for name in (unrolled.check.name, *_counting(unrolled), *(c.name for c in unrolled.cells)):
-                    self.places[name] = self.rooms[over.name].next()
-            else:
-                row = self.put_steps(unrolled, row)
-        for column in self.asked:
-            if column.axis is not None:
-                self.put(column, as_issued(column.name))
-            else:
-                self.places[as_issued(column.name)] = Place(STEPS, row := row + 1, 1, 1, self.unit(column)[1])
-
-    def put(self, column: Column, name: str) -> None:
-        """The next free column of its worksheet."""
-        assert column.axis is not None
-        self.places[name] = self.rooms[column.axis.name].next(self.unit(column)[1])
-
-    def put_scalars(self) -> None:
-        """The result, what is given, and the rest, each group under a title."""
-        for axis in self.whole.axes:
-            if axis.repeats and axis.repeats not in self.sheet:
-                for name, at in ((axis.repeats, 1), (checked(axis.repeats), 2)):
-                    self.places[name] = Place(self.names[axis.name], FIRST_ROW - _ABOVE, at)
-        scalars = [column for column in self.sheet.columns if column.axis is None]
-        groups = (
-            [self.sheet[name] for name in self.first if name in self.sheet and self.sheet[name].axis is None],
-            [c for c in scalars if isinstance(c.rule, Given) and c.name not in self.first],
-            [c for c in scalars if not isinstance(c.rule, Given) and c.name not in self.first],
-            [c for c in self.judged.columns if c.axis is None and c.name not in self.sheet],
-        )
-        row = _TOP
-        for group in groups:
-            for column in group:
-                self.places[column.name] = place = Place(SCALARS, row, 1, 1, self.unit(column)[1])
-                if isinstance(column.rule, Given):
-                    self.places[checked(column.name)] = replace(place, column=CHECKED)
-                row += 1
-            row += _GAP if group else 0
-
-    def put_steps(self, unrolled: Unrolled, row: int) -> int:
-        """What comes before the steps one below the other, then a table with a row for each step."""
-        place = row + 1
-        self.places[unrolled.check.name] = Place(STEPS, place, 1)
-        for name in _counting(unrolled):
-            place += 1
-            self.places[name] = Place(STEPS, place, 1)
-        for cell in unrolled.cells:
-            if cell.step == 0:
-                place += 1
-                self.places[cell.name] = Place(STEPS, place, 1)
-        table, last = place + 3, place
-        for cell in unrolled.cells:
-            if cell.step > 0:
-                fields = [own.name for own in unrolled.cells if own.step == cell.step]
-                last = table + cell.step - 1
-                self.places[cell.name] = Place(STEPS, last, 1 + fields.index(cell.name))
-        return last + 4
-
-    def unit(self, column: Column) -> tuple[str, Fraction]:
-        """The unit of a column's cells, and its size in SI."""
-        unit = self.units.get(column.name, "")
-        if not unit and column.display.startswith("like "):
-            unit = self.units.get(column.display.removeprefix("like "), "")
-        unit = unit or column.display or column.unit
-        try:
-            return unit, parse_unit(unit).scale
-        except UnitError:
-            return column.unit, Fraction(1)  # an exponent that is a symbol: SI
-
-    # --- blocks
-
-    def index_blocks(self) -> Iterator[CellBlock]:
-        for axis in self.whole.axes:
-            for part, (place, names) in enumerate(zip(self.indices[axis.name], axis.parts, strict=True)):
-                title, meaning = names
-                yield CellBlock(title, "index", title, meaning, place, shows=("labels", axis.name, str(part)))
-
-    def column_blocks(self, formulas: Formulas) -> Iterator[CellBlock]:
-        for column in self.whole.columns:
-            place = self.places[column.name]
-            block = CellBlock(
-                column.name,
-                "given",
-                column.name,
-                column.meaning,
-                place,
-                unit=self.unit(column)[0],
-                source=column.source,
-                shows=("column", column.name),
-            )
-            if isinstance(column.rule, Given):
-                yield from self.given_blocks(column, block, formulas)
-            elif column.name not in self.judged:
-                yield _computed(
-                    replace(block, kind="drawn", shows=("drawn", column.name)), formulas.drawn(column)
-                )
-            else:
-                written = formulas.column(column, self.unrolled.get(column.name))
-                kind = "computed" if column.name in self.sheet else "margin"
-                yield _computed(replace(block, kind=kind, kept=formulas.kept(column)), written)
-        for name, (leaf, axis) in sorted(self.carried.items()):
-            column = self.whole[leaf.name]
-            block = CellBlock(
-                name, "carried", leaf.written, f"{column.name} of each row, for its sums",
-                self.places[name], unit=self.unit(column)[0], of=column.name,
-                shows=("carried", column.name, axis.name, str(leaf.index)),
-            )  # fmt: skip
-            yield _computed(block, formulas.carried(leaf))
-
-    def given_blocks(self, column: Column, block: CellBlock, formulas: Formulas) -> Iterator[CellBlock]:
-        """What is typed, and what of it is allowed; how many rows there are is what the worksheets have."""
-        bounds = self.whole.bounds[column.name].over(block.place.scale)
-        if any(axis.repeats == column.name for axis in self.whole.axes):
-            there = self.counts[column.name]
-            bounds = Bounds(there, there)
-        test = guard(bounds)
-        yield replace(block, bounds=bounds, guard=test)
-        name = checked(column.name)
-        own = replace(
-            block, name=name, kind="checked", meaning=f"{column.name}, where it is allowed",
-            place=self.places[name], of=column.name,
-        )  # fmt: skip
-        yield _computed(own, formulas.checked(column, test))
-
-    def step_blocks(self, formulas: Formulas) -> Iterator[CellBlock]:
-        for unrolled in self.unrolled.values():
-            name = unrolled.check.name
-            block = CellBlock(
-                name, "step", "precedents", "whether all precedents have values, or the first error",
-                self.places[name], of=unrolled.column.name, source=unrolled.column.source,
-                shows=("cell", name),
-            )  # fmt: skip
-            yield _computed(block, formulas.check(unrolled))
-            if unrolled.issued is not None:
-                yield from self.counting_blocks(unrolled, formulas)
-            for cell in unrolled.cells:
-                block = CellBlock(
-                    cell.name, "step", cell.title, cell.meaning, self.places[cell.name],
-                    of=unrolled.column.name, step=cell.step, shows=("cell", cell.name),
-                )  # fmt: skip
-                yield _computed(block, formulas.auxiliary(unrolled, cell))
-        guarded = [unrolled.column for unrolled in self.unrolled.values() if unrolled.issued is not None]
-        for column in self.asked:
-            yield CellBlock(
-                as_issued(column.name), "step", f"{column.name} as issued", f"{column.name} as issued, "
-                "for which the roots were counted", self.places[as_issued(column.name)],
-                of=guarded[0].name, source=column.source, shows=("typed column", column.name),
-            )  # fmt: skip
-
-    def counting_blocks(self, unrolled: Unrolled, formulas: Formulas) -> Iterator[CellBlock]:
-        """Whether the inputs are as issued, and how many roots there are then."""
-        issued, counted = _counting(unrolled)
-        column = unrolled.column
-        given = [c.name for c in self.sheet.ancestors(column) if isinstance(c.rule, Given)]
-        block = CellBlock(
-            issued, "step", "as issued", "1 if all inputs are those as issued, for which the roots were "
-            "counted; if not, build the report again", self.places[issued], of=column.name,
-            source=column.source, shows=("cell", issued),
-        )  # fmt: skip
-        yield _computed(block, formulas.issued(issued, column, given))
-        says = "how many roots there are for the inputs as issued, by interval arithmetic; -1 if not certain"
-        place, shows = self.places[counted], ("typed cell", counted)
-        yield replace(block, name=counted, title="counted", meaning=says, place=place, shows=shows)
-
-
-def _computed(block: CellBlock, formulas: tuple[str, ...]) -> CellBlock:
-    """The block with its formulas; those that work on ranges are array formulas."""
-    return replace(
-        block, formulas=formulas, array=any(taken in formulas[0] for taken in ("SUM(IF(", "MEDIAN(IF("))
-    )
-
-
-def _counting(unrolled: Unrolled) -> tuple[str, ...]:
-    """The cells of a root whose number is known for the inputs as issued only."""
-    return tuple(cell.name for cell in (unrolled.issued, unrolled.counted) if cell is not None)
 
 
 def _worksheets(axes: Iterable[Axis]) -> dict[str, str]:

@@ -18,16 +18,13 @@ from ..sheet import Column
 from .excel import IfError, IsNumber
 from .roots import derivatives, householder
 
-__all__ = ["READY", "Auxiliary", "Unrolled", "unroll"]
+__all__ = ["Auxiliary", "Unrolled", "unroll"]
 
-READY = "ready"
-"""What the first cell says where all precedents have values."""
 _SETTLED = 10**7
 """A last step smaller than this part of the unknown leaves, by its order, less than rounding does."""
 _PRIMES = "′″‴"
 _DERIVATIVES = ("its derivative", "its second derivative", "its third derivative")
 _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
-
 
 _REAL = Symbol("_", real=True)
 

@@ -14,27 +14,17 @@ from numpy.typing import NDArray
 from ..cells.grid import CellBlock
 from ..cells.layout import precedents
 from ..cells.values import CODES, Status, Values, inherited, rows_kept
-from ..sheet import Sheet
-from .excel_roots import READY, Unrolled
 from .kernels import Array
 from .numpy import Program, parts
-from .numpy_texts import program_texts
 
-__all__ = ["auxiliary_texts", "auxiliary_values", "filled"]
+__all__ = ["READY", "NotPrintable", "auxiliary_values", "filled"]
+
+READY = "ready"
+"""What the first cell says where all precedents have values."""
 
 
-def auxiliary_texts(sheet: Sheet, unrolled: Unrolled) -> dict[str, Any]:
-    """What computes the cells of an unrolled root of a sheet, printed, as data."""
-    issued, counted = unrolled.issued, unrolled.counted
-    return {
-        "column": unrolled.column.name,
-        "check": unrolled.check.name,
-        "number": unrolled.number.name,
-        "issued": issued and issued.name,
-        "counted": counted and counted.name,
-        "cells": [(cell.name, cell.part.symbol.name, cell.alone) for cell in unrolled.cells],
-        "program": program_texts(sheet, unrolled.plan),
-    }
+class NotPrintable(ValueError):
+    """An expression has no spreadsheet formula; half a formula is never printed."""
 
 
 def filled(
@@ -46,7 +36,7 @@ def filled(
     ----------
     blocks : iterable of CellBlock
     roots : iterable of mapping
-        From :func:`auxiliary_texts`.
+        From :func:`~loopsheet.report.engines.excel_assembly.auxiliary_texts`.
     values : Values
         All columns, computed, without a batch.
     """
@@ -88,7 +78,7 @@ def auxiliary_values(values: Values, root: Mapping[str, Any]) -> dict[str, tuple
     ----------
     values : Values
     root : mapping
-        From :func:`auxiliary_texts`.
+        From :func:`~loopsheet.report.engines.excel_assembly.auxiliary_texts`.
     """
     column, sheet = values.sheet[root["column"]], values.sheet
     named, rows = precedents(sheet, values.layouts, column), len(values.value[column.name])

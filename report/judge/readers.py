@@ -22,7 +22,6 @@ from xml.etree import ElementTree
 
 from ..cells.grid import Grid, checked
 from ..cells.values import CODES, Status, Values
-from ..engines import javascript as printed
 from ..machine.programs import ProgramFailed, run
 from ..machine.scratch import scratch
 from ..sheet import Given, Sheet
@@ -188,6 +187,8 @@ def run_javascript(case: Case) -> Reading:
     if found is None:
         return Reading("JavaScript", missing="node or Chromium")
     program = _version(found[1], "node" if node else "Chromium")
+    from ..engines import javascript as printed
+
     runtime = printed.RUNTIME.read_text(encoding="utf-8")
     body = f"{runtime}\nconst program = {printed.program(case.sheet)};\n"
     try:

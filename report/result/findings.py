@@ -16,7 +16,7 @@ from . import verdict_words as words
 from .verdict import OTHERWISE, UNAMENDED, UNEXPLAINED, UNPINNED, UNREASONED
 
 if TYPE_CHECKING:
-    from ...derivations.proof import Proof
+    from ...derivations.proved import Proof
     from ..inputs.inputs import Inputs, PublishedValue
     from .agreement import Agreement
     from .result import Comparison, Report

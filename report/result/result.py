@@ -27,7 +27,7 @@ from .verdict import (
 
 if TYPE_CHECKING:
     from ...derivations.equation import Erratum, Ledger
-    from ...derivations.proof import Proof
+    from ...derivations.proved import Proof
     from ..engines.exact import ExactValues
 
 __all__ = ["Comparison", "Plotted", "Report", "Shown"]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from .common import FINDINGS, OK, Progress, folder_argument, keeping_arguments
 
 if TYPE_CHECKING:
-    from ...derivations.proof import Proof
+    from ...derivations.proved import Proof
     from ...derivations.vocabulary import Vocabulary
 
 HELP = "prove the algebra of a workbook, or show the proof of one equation"
@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
         options.equation, options.folder = None, word  # no equation has such a name
     study = Study(report_folder(options.folder))
     assert study.prepared  # whoever asks for the algebra of a folder hears of what is wrong with it
-    ledger = study.ledger
+    ledger = study.declared
     labels = [equation.label for equation in ledger.equations()]
     wanted: list[str] = labels
     if options.equation:
@@ -61,7 +61,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _print(proof: Proof, vocabulary: Vocabulary, steps: bool) -> None:
-    from ...derivations.proof import IDENTITY
+    from ...derivations.proved import IDENTITY
     from ...derivations.text import text_of_equation
 
     print(f"{proof.equation.label:6} {proof.status.value:12} {text_of_equation(proof.equation, vocabulary)}")

@@ -22,8 +22,13 @@ __all__ = ["draw", "drawings", "files", "of", "pdf", "svg"]
 def drawings(workbook: Workbook) -> Mapping[str, Callable[[Report], Figure]]:
     """Every drawing by its name in a FigureSpec: the workbook's charts and drawings, and the referee's."""
     own = {} if workbook.drawings is None else workbook.drawings()
+    return {**own, **_of_data(workbook)}
+
+
+def _of_data(workbook: Workbook) -> dict[str, Callable[[Report], Figure]]:
+    """Those that are no code of the workbook's."""
     drawn = {f.drawing: partial(charts.draw, chart=f.chart) for f in workbook.figures if f.chart}
-    return {**own, **drawn, FIGURE: reach.draw}
+    return {**drawn, FIGURE: reach.draw}
 
 
 def draw(report: Report, name: str) -> Figure:
@@ -40,7 +45,9 @@ def draw(report: Report, name: str) -> Figure:
     KeyError
         There is no drawing of that name.
     """
-    known = drawings(report.workbook)
+    known: Mapping[str, Callable[[Report], Figure]] = _of_data(report.workbook)
+    if name not in known:
+        known = drawings(report.workbook)
     if name not in known:
         raise KeyError(f"no drawing is called {name!r}; there are {', '.join(known)}")
     with drawing.styled():

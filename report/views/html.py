@@ -65,7 +65,7 @@ class HtmlWriter(Writer):
 
     def displayed(self, equation: Equation) -> Markup:
         """An equation on lines of its own."""
-        return mathml_block(block(self.material.printer, equation.members))
+        return mathml_block(block(self.material.written(equation).sides))
 
     def data(self, item: Item, identified: bool = True) -> Markup:
         """The attributes of a cell; its identifier goes to the first element that shows it in a table."""

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from msgspec import UNSET
 
-from ...derivations.text import text_of_equation
 from ..cells.marks import MarkCount
 from ..cells.values import Status
+from ..document.written import text_of
 from ..files import values as form
 from ..files.form import SCHEMA, alike, text
 from ..files.manifest import Manifest
@@ -113,7 +113,7 @@ def _rule(report: Report, column: Column) -> str:
     """What makes its values: its equation with its number, or ``given``."""
     if column.equation is None:
         return "given"
-    return f"{column.source} {text_of_equation(column.equation, report.ledger.vocabulary)}"
+    return f"{column.source} {text_of(column.equation, report.ledger.vocabulary)}"
 
 
 def _short(u: float) -> float | None:

@@ -105,7 +105,7 @@ class LatexWriter(Writer):
 
     def displayed(self, equation: Equation, number: str) -> Markup:
         """A displayed equation; one that may be too wide is shrunk to the line if it is."""
-        lines = block(self.material.printer, equation.members)
+        lines = block(self.material.written(equation).sides)
         body = lines.aligned
         if lines.width > _MARKED * TEXT_WIDTH:
             body = rf"\adjustbox{{max width=0.9\linewidth}}{{$\displaystyle {body}$}}"

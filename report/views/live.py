@@ -14,23 +14,19 @@ from dataclasses import dataclass, fields
 from fractions import Fraction
 from typing import Any
 
-from sympy import Indexed, Symbol
-
-from ...derivations.reductions import REDUCTIONS
 from ..cells.address import index_text
 from ..charts import Chart, Series
 from ..document.charted import PREFIXES, Words, unit_text
 from ..document.material import Material
-from ..document.math import MathPrinter
 from ..document.parts import slug
 from ..document.tree import Inlines, Math, Unit
+from ..document.written import placed
 from ..inputs.unit_text import parse_unit
 from ..machine.kept import kept
-from ..named import name_of
 from ..quantity import Bounds, Printed
 from ..result.result import Report
 from ..result.verdict import OTHERWISE, UNEXPECTED
-from ..sheet import Column, Formula, Given, Root
+from ..sheet import Column, Given, Root
 from .compact import short_script
 from .live_files import given
 from .writer import TEMPLATES
@@ -188,18 +184,18 @@ def _column(report: Report, document: Material, column: Column, grounds: list[Gr
         entry["given"] = _given(report, column)
         return entry
     entry["ground"] = grounds.index(_ground(report, column))
-    put = Put(document)
     if head.sources != (column.source,):
         entry["equations"] = head.sources
     if isinstance(column.rule, Root):
         entry |= {"none": column.rule.none, "two": column.rule.two}
         if column.unit != "1":
             entry["si"] = column.unit
-        if column.rule.unknown.name != column.name and not column.rule.turning_by:
-            entry["unknown"] = column.rule.unknown.name
-    if column.requires:
-        entry["requires"] = [sentence for _, sentence in column.requires]
-    if put.equation(column):
+        if column.rule.unknown_name != column.name and not column.rule.by_proof:
+            entry["unknown"] = column.rule.unknown_name
+    if column.conditions:
+        entry["requires"] = column.conditions
+    put = placed(column, report.sheet, document.names)
+    if put.latex:
         entry["put"] = put.cells
     return entry
 
@@ -269,7 +265,7 @@ class BarPart:
 def parts(report: Report, document: Material) -> Iterator[BarPart]:
     """What the formula bar shows of every column."""
     for column in report.sheet.columns:
-        equation = Put(document).equation(column)
+        equation = placed(column, report.sheet, document.names).latex
         yield BarPart(
             column,
             document.sentences.symbol(column.name),
@@ -277,58 +273,3 @@ def parts(report: Report, document: Material) -> Iterator[BarPart]:
             Unit(report.shown[column.name].unit),
             Math(equation) if equation else None,
         )
-
-
-_BETWEEN = re.compile(
-    r"(?<=[\d})])(?<!\\begin\{cases\}) (?=\\text\{@|\\left|\(|\\frac|\\ln|\\exp|\\sqrt|\\pi|\d)"
-)
-
-
-class Put(MathPrinter):
-    """Prints an equation with a numbered place for every cell, size and running number in it."""
-
-    def __init__(self, document: Material) -> None:
-        super().__init__(document.printer.names)
-        self.sheet = document.report.sheet
-        self.cells: list[list[str | None]] = []
-        """What belongs into each place: a column and an index, or how many rows an axis has."""
-
-    def equation(self, column: Column) -> str:
-        """The equation of a column in LaTeX; empty if it has none, or sums over rows."""
-        self.column = column
-        self.cells = []
-        if isinstance(column.rule, Formula):
-            members = column.rule.equation.members[-1:]
-        elif isinstance(column.rule, Root):
-            members = column.rule.equation.members
-        else:
-            return ""
-        if any(member.has(*REDUCTIONS) for member in members):
-            return ""
-        text = " = ".join(str(self.doprint(member)) for member in members)
-        # Two numbers side by side would be read as one.
-        return _BETWEEN.sub(r" \\cdot ", text)
-
-    def _place(self, name: str, index: str | None) -> str:
-        cell: list[str | None] = [name, index]
-        if cell not in self.cells:
-            self.cells.append(cell)
-        return rf"\text{{@{self.cells.index(cell)}@}}"
-
-    def _print_Symbol(self, expr: Symbol, style: str = "plain") -> str:
-        axis = self.column.axis
-        if expr in self.sheet.algebra.sizes:
-            return self._place("", self.sheet.algebra.sizes[expr].name)
-        if axis is not None and expr in axis.ordinals:
-            return self._place("#", expr.name)
-        if isinstance(self.column.rule, Root) and expr == self.column.rule.unknown:
-            return self._place(self.column.name, None if axis is None else str(axis.index))
-        if expr.name in self.sheet:
-            # The left side of an equation may name a column without its index.
-            return self._place(
-                expr.name, None if self.sheet[expr.name].axis is None else str(axis and axis.index)
-            )
-        return super()._print_Symbol(expr, style)
-
-    def _print_Indexed(self, expr: Indexed) -> str:
-        return self._place(name_of(expr), str(expr.indices[0]))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..cells.address import index_text
-from ..document.math import latex_names, name_latex
+from ..document.names import latex_names, name_latex
 from ..result.result import Comparison, Report
 from ..result.verdict import EXACT, REACHABLE, UNREACHABLE
 from ..result.verdict_words import CALLED

@@ -6,9 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from sympy import Expr
-
-from ..document.math import MathPrinter
+from ..document.names import Terms, join
 from ..document.notation import Notation, read
 
 __all__ = ["TEXT_WIDTH", "Typeset", "block", "relates", "width"]
@@ -62,22 +60,20 @@ def relates(row: str) -> bool:
     return row.startswith("=")
 
 
-def block(printer: MathPrinter, members: Sequence[Expr], room: float = TEXT_WIDTH) -> Typeset:
+def block(sides: Sequence[Terms], room: float = TEXT_WIDTH) -> Typeset:
     """Break an equation into lines, before a relation or between the terms of a sum.
 
     Parameters
     ----------
-    printer : MathPrinter
-    members : sequence of Expr
-        The sides of the equation, or one relation.
+    sides : sequence of terms
+        Of the equation, or one relation: from :meth:`~loopsheet.report.document.math.MathPrinter.sides`.
     room : float
         How wide a line may be, in letters.
     """
-    sides = [printer.terms(member) for member in members]
-    whole = " = ".join(printer.join(side) for side in sides)
-    if width(whole) <= room or (len(members) == 1 and len(sides[0]) == 1):
+    whole = " = ".join(join(side) for side in sides)
+    if width(whole) <= room or (len(sides) == 1 and len(sides[0]) == 1):
         return Typeset("", (whole,))
-    first = printer.join(sides[0])
+    first = join(sides[0])
     left = first if len(sides) > 1 and width(first) <= _SHORT else ""
     rows: list[str] = []
     for place, side in enumerate(sides):

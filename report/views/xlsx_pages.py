@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from ...derivations.proof import IDENTITY
-from ...derivations.text import Wording, text_of_equation
+from ...derivations.proved import IDENTITY
 from ..cells.address import index_text
 from ..cells.grid import CHECKED, SCALARS, CellBlock, Grid, checked, factors, letters
+from ..document.material import Material
 from ..result.result import Comparison, Report
 from .json import proof_grounds, proof_statuses
 from .xlsx_inputs import GivenCells
@@ -262,11 +262,12 @@ def write_equations(sheet: Any, style: Style, report: Report) -> None:
     for at, (head, width) in enumerate(_EQUATIONS):
         sheet.set_column(at, at, width)
         style.text(sheet, 3, at, head, "head")
-    statuses, grounds = proof_statuses(report), proof_grounds(report)
+    material, statuses, grounds = Material(report), proof_statuses(report), proof_grounds(report)
     for row, equation in enumerate(report.ledger.equations(), start=4):
-        claim = text_of_equation(equation, report.ledger.vocabulary)
-        if equation.conditions:
-            claim += "\nwhere " + ", ".join(map(Wording(report.ledger.vocabulary).text, equation.conditions))
+        own = material.written(equation)
+        claim = own.text
+        if own.where:
+            claim += "\nwhere " + ", ".join(own.where)
         cells = (
             equation.label,
             equation.title,

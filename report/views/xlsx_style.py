@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from math import floor, log10
 from typing import Any
 
-from ..document.math import with_index
+from ..document.names import with_index
 from ..document.notation import fragments
 
 __all__ = ["Style", "height", "number_format", "open_format", "said"]

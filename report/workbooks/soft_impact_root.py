@@ -8,7 +8,7 @@ from sympy import Expr, Integer, Max, Ne, Or, Piecewise, Poly, Pow, Rational, Re
 
 from ...derivations import alpha_root
 from ...derivations import soft_impact as model
-from ...derivations.equation import evaluated
+from ...derivations.rebuilt import evaluated
 from ...derivations.soft_impact import XP, E, V
 from ..sheet import Root
 

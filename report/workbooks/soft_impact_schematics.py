@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...derivations import soft_impact as model
-from ...derivations.equation import evaluated
+from ...derivations.rebuilt import evaluated
 from ..engines.numpy_code import kernel
 from ..result.result import Report
 from ..views import drawing

@@ -1,0 +1,77 @@
+"""What proofs found: verdicts on equations and steps, and their words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+
+from .equation import Equation, Step
+
+__all__ = ["DIGITS", "IDENTITY", "Proof", "ProofStatus", "StepProof", "said"]
+
+DIGITS = 50
+"""To how many an equation is evaluated."""
+IDENTITY = "nothing, it is an identity"
+"""What is said of a claim that needs no premise."""
+
+
+class ProofStatus(Enum):
+    """What is known of an equation."""
+
+    DEFINITION = "definition"
+    ASSUMPTION = "assumption"
+    LIMIT = "limit"
+    PROVED = "proved"
+    CORRECTED = "proved with a correction of the print"
+    REFUTED = "refuted"
+    UNDECIDED = "undecided"
+    REFUSED = "refused"
+
+    @property
+    def passes(self) -> bool:
+        """Whether a report may rest on it."""
+        return self not in (ProofStatus.REFUTED, ProofStatus.UNDECIDED, ProofStatus.REFUSED)
+
+
+@dataclass(frozen=True)
+class StepProof:
+    """What was found of one step."""
+
+    step: Step
+    status: ProofStatus
+    points: int
+    worst: float
+    """Largest relative residual over the points."""
+    symbolic: bool
+    counterexample: Mapping[str, str] = field(default_factory=dict)
+    sides: tuple[str, str] = ("", "")
+    """Both sides of the claim at the counterexample."""
+    why: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """The finding, in words."""
+        if self.status is ProofStatus.REFUTED:
+            return f"at {said(self.counterexample)} the sides are {self.sides[0]} and {self.sides[1]}"
+        if self.status is ProofStatus.UNDECIDED:
+            return self.why
+        return f"residual 0; {self.points} points at {DIGITS} digits agree within {self.worst:.0e}"
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What is known of one equation of the ledger."""
+
+    equation: Equation
+    status: ProofStatus
+    steps: tuple[StepProof, ...] = ()
+    remark: str = ""
+    """How the print differs from what was proved, or why an equation is refused."""
+    rests_on: tuple[str, ...] = ()
+    """The labels of what a claim finally rests on: definitions, assumptions and premises of its steps."""
+
+
+def said(point: Mapping[str, str]) -> str:
+    """Write a point as a list of values."""
+    return ", ".join(f"{name} = {value}" for name, value in point.items())

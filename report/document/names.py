@@ -1,0 +1,94 @@
+r"""Names for the eye: LaTeX of what quantities are called, and of signed terms one behind the other."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+
+from ...derivations.vocabulary import Vocabulary
+from ..sheet import Column
+
+__all__ = ["Terms", "join", "latex_names", "name_latex", "with_index"]
+
+Terms = list[tuple[bool, str]]
+"""LaTeX of the terms of a sum, each with whether it is subtracted."""
+
+_SMALL = "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa varkappa lambda mu nu"
+_SMALL += " xi pi varpi rho varrho sigma varsigma tau upsilon phi varphi chi psi omega"
+_CAPITAL = "Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
+_OTHER = "aleph beth gimel daleth ell eth hbar hslash mho wp"
+_LETTERS = frozenset(f"{_SMALL} {_CAPITAL} {_OTHER}".split())
+"""What LaTeX has a letter for."""
+
+
+def latex_names(vocabulary: Vocabulary, columns: Iterable[Column] = ()) -> dict[str, str]:
+    """LaTeX of all names of a report: as its columns print them, else as its vocabulary does.
+
+    Parameters
+    ----------
+    vocabulary : Vocabulary
+        Of the ledger.
+    columns : iterable of Column
+        Of the sheet.
+    """
+    names = {name: quantity.latex for name, quantity in vocabulary.items()}
+    for column in columns:
+        names[column.name] = column.latex or names.get(column.name) or _spelt(column.name)
+    return names
+
+
+def name_latex(name: str, names: Mapping[str, str] | None = None, index: str = "") -> str:
+    r"""Print the name of a quantity.
+
+    Parameters
+    ----------
+    name : str
+        The cell name, ``x_m``.
+    names : mapping of str to str
+        LaTeX of those that are printed otherwise than they are called; ``%s`` is where an index goes.
+    index : str
+        LaTeX of the index; empty for none.
+
+    Examples
+    --------
+    >>> name_latex("x_m", index="k"), name_latex("n_pairs"), name_latex("v", {"v": "v'%s"}, "2")
+    ('x_{m_{k}}', 'n_{\\mathrm{pairs}}', "v'_{2}")
+    """
+    return with_index(names[name] if names and name in names else _spelt(name), index)
+
+
+def _spelt(name: str) -> str:
+    """LaTeX of a name that nothing is said of: what follows the first ``_`` is a subscript."""
+    head, _, tail = name.partition("_")
+    return _word(head) + (f"_{{{_word(tail)}%s}}" if tail else "%s")
+
+
+def _word(text: str) -> str:
+    if len(text) == 1 or text.isdigit():
+        return text
+    plain = text.replace("_", r"\_")
+    return f"\\{text}" if text in _LETTERS else rf"\mathrm{{{plain}}}"
+
+
+def with_index(template: str, index: str = "") -> str:
+    r"""Put an index where the LaTeX of a quantity has its place for one.
+
+    >>> with_index("m_{red%s}"), with_index("e%s", "1")
+    ('m_{\\mathrm{red}}', 'e_{1}')
+    """
+    # A subscript of several letters is a word, not a product.
+    upright = re.sub(r"_\{([A-Za-z]{2,})(?=[%}])", r"_{\\mathrm{\1}", template)
+    if not index:
+        return upright.replace("%s", "")
+    if "%s" in upright:
+        return upright.replace("%s", f"_{{{index}}}")
+    return f"{{{upright}}}_{{{index}}}" if "_" in upright else f"{upright}_{{{index}}}"
+
+
+def join(terms: Iterable[tuple[bool, str]]) -> str:
+    """Join signed terms."""
+    text = ""
+    for negative, term in terms:
+        sign = "-" if negative else "+"
+        text += f" {sign} {term}" if text else ("-" if negative else "") + term
+    return text
