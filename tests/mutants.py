@@ -27,6 +27,7 @@ PARTS = {
     "engines": (
         ("report/engines/*.py",),
         (
+            "test_intervals", "test_numpy_enclosed", "test_elementary",
             "test_engine_numpy", "test_engine_exact", "test_engine_javascript", "test_engine_excel",
             "test_roots", "test_root_certificates", "test_overflow", "test_values", "test_engines",
         ),

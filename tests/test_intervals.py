@@ -146,3 +146,30 @@ def test_a_number_that_was_rounded_when_it_was_written_is_no_point() -> None:
 def test_a_function_that_intervals_do_not_know_is_refused() -> None:
     with pytest.raises(TypeError):
         np.tan(interval((0, 1)))
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "less", "less_equal", "equal"),
+    [
+        ((1, 2), (3, 4), (1, 1), (1, 1), (0, 0)),
+        ((3, 4), (1, 2), (0, 0), (0, 0), (0, 0)),
+        ((1, 3), (2, 4), (0, 1), (0, 1), (0, 1)),
+        ((1, 2), (2, 3), (0, 1), (1, 1), (0, 1)),
+        ((2, 3), (1, 2), (0, 0), (0, 1), (0, 1)),
+        ((2, 2), (2, 2), (0, 0), (1, 1), (1, 1)),
+        ((2, 2), (2, 3), (0, 1), (1, 1), (0, 1)),
+        ((1, 3), (1, 3), (0, 1), (0, 1), (0, 1)),
+    ],
+)
+def test_a_comparison_is_certain_possible_or_neither(
+    a: Any, b: Any, less: Any, less_equal: Any, equal: Any
+) -> None:
+    one, other = interval(a), interval(b)
+    asked = {np.less: less, np.less_equal: less_equal, np.equal: equal}
+    asked[np.not_equal] = (1 - equal[1], 1 - equal[0])
+    for compare, (certain, possible) in asked.items():
+        found = compare(one, other)
+        assert (found.low[0], found.high[0]) == (certain, possible), compare
+    for compare, (certain, possible) in {np.greater: less, np.greater_equal: less_equal}.items():
+        found = compare(other, one)
+        assert (found.low[0], found.high[0]) == (certain, possible), compare

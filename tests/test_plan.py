@@ -194,6 +194,8 @@ def test_sums_are_linear_and_differentiate_term_by_term() -> None:
     rows = Symbol("rows")
     assert RowSum(2 * x * y, rows) == 2 * RowSum(x * y, rows)
     assert RowSum(x * y**2, rows).diff(y) == 2 * RowSum(x * y, rows)
+    assert RowSum(x, rows).is_positive
+    assert RowSum(Symbol("z"), rows).is_positive is None
 
 
 def test_the_command_line_shows_it(capsys: pytest.CaptureFixture[str]) -> None:
