@@ -15,7 +15,7 @@ from loopsheet.report.inputs.inputs import Inputs, load
 from loopsheet.report.inputs.number_text import read_printed
 from loopsheet.report.inputs.stated import StatementError, read_statement
 from loopsheet.report.inputs.unit_text import parse_unit
-from loopsheet.report.messages.errors import InputError
+from loopsheet.report.messages.errors import InputError, render
 from loopsheet.report.which_workbook import find_workbook
 
 MM = parse_unit("mm")
@@ -88,6 +88,8 @@ def test_bare_limits_mean_what_was_said_once_for_all() -> None:
         ("u = 1,5", "5", 6),
         ("u = ", "", 3),
         ("u = 0.1, k = 2", "k = 2", 9),
+        ("U = 0.1, k = 2, k = 3", "k = 3", 16),
+        ("u = 1e61", "1e61", 4),
         ("u = 0.1; u = x", "x", 13),
         ("+-0.1 normal", "+-0.1 normal", 0),
         ("+-0.1 rect, k = 2", "+-0.1 rect", 0),
@@ -110,9 +112,10 @@ def test_what_is_refused_and_where(text: str, culprit: str, start: int) -> None:
     assert (found.code, found.text, found.start) == ("LS431", culprit, start)
 
 
-def test_percent_of_a_percentage_is_not_guessed() -> None:
-    with pytest.raises(StatementError, match="LS431"):
-        read_statement("u = 0.5 %", parse_unit("%"))
+def test_percent_of_a_pure_number_is_not_guessed() -> None:
+    for unit in ("%", "1"):
+        with pytest.raises(StatementError, match="LS431"):
+            read_statement("u = 0.5 %", parse_unit(unit))
     part = read_statement("u = 0.5 % of reading", parse_unit("%")).parts[0]
     assert (part.relative, part.absolute) == (Fraction(1, 200), 0)
 
@@ -193,6 +196,20 @@ def test_a_pure_number_needs_no_unit_in_between(read: Read, said: str) -> None:
     assert (inputs.parameters["beta"].text, inputs.parameters["beta"].u) == ("1.5", pytest.approx(0.1))
 
 
+def test_a_number_that_the_method_counts_with_has_no_uncertainty(read: Read) -> None:
+    with pytest.raises(InputError) as refused:
+        read(mass='8 g"\npoints_per_pair = "50(2)')
+    assert [found.code for found in refused.value.diagnostics] == ["LS431"]
+
+
+@pytest.mark.parametrize("cell", ["41.6 +- 0.1", "41.6(1.5)", "41.6(2)e0"])
+def test_what_a_cell_cannot_say_is_told_where_it_can(read: Read, cell: str) -> None:
+    with pytest.raises(InputError) as refused:
+        read(csv=CSV.replace("41.6(2)", cell))
+    (found,) = refused.value.diagnostics
+    assert (found.code, "41.6(2)" in render(found)) == ("LS401", True)
+
+
 def test_a_decimal_comma_is_still_told(read: Read) -> None:
     with pytest.raises(InputError) as refused:
         read(mass="8,366 g, exact")
@@ -239,6 +256,7 @@ def test_what_is_shared(read: Read) -> None:
         ),
         ('[uncertainty.correlation]\n"v, w" = "0.1"', "LS505", '"v, w"'),
         ('[uncertainty.correlation]\n"v, e" = "1.1"', "LS434", '"1.1"'),
+        ('[uncertainty.correlation]\n"v, e" = "0.9"\n"e, v" = "0.3"', "LS433", '"e, v"'),
         ('[uncertainty.correlation]\n"v, ball_mass" = "0.1"', "LS434", '"0.1"'),
         ('e = "u = 1; u = 2"\n[uncertainty.correlation]\n"v, e" = "0.1"', "LS434", '"0.1"'),
         (

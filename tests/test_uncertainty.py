@@ -17,8 +17,9 @@ from small_report import end_gauge
 from loopsheet.report.distribution import Shape
 from loopsheet.report.engines.numpy import evaluate
 from loopsheet.report.result.result import Report
+from loopsheet.report.result.uncertain import ErrorSource
 from loopsheet.report.study import Study
-from loopsheet.report.uncertainty import propagation
+from loopsheet.report.uncertainty import propagation, second_order
 from loopsheet.report.uncertainty.coverage import coverage, effective
 from loopsheet.report.uncertainty.propagation import Spread
 
@@ -192,6 +193,7 @@ def test_correlation(gauge_block: Callable[..., Spread], r: str, factor: float) 
         ('cycle = "0 +-0.5 K arcsine"\n', ""),
         ("U = 0.075 um, k = 3, dof = 18", "u = 10 nm"),
         ("+-1e-6 rect, dof = 50", "exact"),
+        ("+-2e-6 rect", "exact"),  # its product with dtheta is of second order
         ("+-0.05 rect, dof = 2", f"u = {10e-9 / (0.050000623 * 11.5e-6)!r}"),
         ('d = "u = 5.8 nm, dof = 24; u = 3.9 nm, dof = 5; u = 6.7 nm, dof = 8"', 'd = "exact"'),
         ("[measurements]", f'[uncertainty.correlation]\n"l_S, dtheta" = "{r}"\n[measurements]'),
@@ -201,7 +203,8 @@ def test_correlation(gauge_block: Callable[..., Spread], r: str, factor: float) 
     budget = spread.budget("l", 0)
     # dtheta lowers the length: what correlates positively cancels
     opposite = {2.0: 0.0, 0.0: 2.0, math.sqrt(3): 1.0}[factor]
-    assert budget.u * 1e9 == pytest.approx(10 * opposite, abs=1e-6)
+    # the product of the two is of second order: 3e-6 nm
+    assert budget.u * 1e9 == pytest.approx(10 * opposite, abs=1e-5)
 
 
 def test_a_shared_error_does_not_average_out(tmp_path: Path) -> None:
@@ -260,7 +263,39 @@ def test_a_group_may_hold_a_test_that_is_left_out(tmp_path: Path) -> None:
     assert spread.u("alpha")[1] > 0.01
 
 
+def test_second_order_of_correlated_errors(gauge_block: Callable[..., Spread]) -> None:
+    """A correlation of next to nothing changes next to nothing; of a product of two it makes a square."""
+    whole = gauge_block().budget("l", 0)
+    more = ("[measurements]", '[uncertainty.correlation]\n"theta, alpha_S" = "1e-9"\n[measurements]')
+    assert gauge_block(more).budget("l", 0).u == pytest.approx(whole.u, rel=1e-9)
+    exact = [("U = 0.075 um, k = 3, dof = 18", "exact"), ("+-0.05 rect, dof = 2", "exact")]
+    none = ('d = "u = 5.8 nm, dof = 24; u = 3.9 nm, dof = 5; u = 6.7 nm, dof = 8"', 'd = "exact"')
+    product = [*exact, none, ("-0.1 K, u = 0.2", "0 K, u = 0.2"), ("+-0.5 K arcsine", "K, exact")]
+    normal = ("+-1e-6 rect, dof = 50", "u = 1e-6")
+    one = ("[measurements]", '[uncertainty.correlation]\n"theta, dalpha" = "1"\n[measurements]')
+    size = 0.050000623 * 1e-6 * 0.2
+    assert gauge_block(*product, normal).budget("l", 0).u == pytest.approx(size, rel=1e-9)
+    # the product of two errors that are one is the square of one, of which the variance is 2
+    assert gauge_block(*product, normal, one).budget("l", 0).u == pytest.approx(size * 2**0.5, rel=1e-9)
+
+
+def test_what_cannot_be_looked_at_is_told(paper: Report, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(second_order, "LARGEST", 1)
+    large = Spread(paper.inputs, paper.values).budget("alpha", 0)
+    assert large.unlooked == "the sheet is too large for that"
+    monkeypatch.undo()
+    assert Spread(paper.inputs, paper.values).budget("alpha", 0).unlooked == ""
+
+
 # --- coverage ---------------------------------------------------------------------------------------------
+
+
+NORMAL = 1.9599639845400536
+
+
+def source(shape: Shape, dof: float = math.inf) -> ErrorSource:
+    """An error of no number in particular."""
+    return ErrorSource("g", shape, dof, ())
 
 
 @pytest.mark.parametrize(
@@ -274,15 +309,25 @@ def test_a_group_may_hold_a_test_that_is_left_out(tmp_path: Path) -> None:
     ],
 )
 def test_the_factor_follows_the_source_that_dominates(shape: Shape, level: float, factor: float) -> None:
-    shapes, sizes = [Shape.NORMAL, shape, Shape.RECTANGULAR], np.array([0.1, -1.0, 0.2])
-    assert coverage(shapes, sizes, math.inf, level)[0] == pytest.approx(factor, rel=1e-7)
-    assert coverage(shapes, np.array([0.6, -1.0, 0.6]), math.inf, 0.95)[0] == pytest.approx(1.959963984540054)
+    sources = [source(Shape.NORMAL), source(shape), source(Shape.RECTANGULAR)]
+    sizes = np.array([0.1, -1.0, 0.2])
+    assert coverage(sources, sizes, math.inf, level)[0] == pytest.approx(factor, rel=1e-7)
+    assert coverage(sources, np.array([0.6, -1.0, 0.6]), math.inf)[0] == pytest.approx(NORMAL)
+    assert coverage(sources, sizes, math.inf, second=0.1)[0] == pytest.approx(NORMAL)
+    doubtful = [sources[0], source(shape, 2), sources[2]]
+    assert coverage(doubtful, sizes, 2)[0] == pytest.approx(4.303, abs=5e-4)  # the limits are not certain
+
+
+def test_nothing_dominates_where_nothing_is_of_first_order() -> None:
+    assert coverage([source(Shape.RECTANGULAR)], np.array([0.0]), math.inf, second=1.0)[0] == NORMAL
 
 
 @pytest.mark.parametrize(("dof", "level", "factor"), [(16, 0.99, 2.92), (5, 0.95, 2.57), (1, 0.95, 12.71)])
 def test_the_factor_of_t(dof: float, level: float, factor: float) -> None:
     """JCGM 100:2008, table G.2."""
-    assert coverage([Shape.STUDENT], np.array([1.0]), dof, level)[0] == pytest.approx(factor, abs=0.005)
+    assert coverage([source(Shape.STUDENT, dof)], np.array([1.0]), dof, level)[0] == pytest.approx(
+        factor, abs=0.005
+    )
 
 
 @pytest.mark.parametrize(

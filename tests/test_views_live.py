@@ -31,7 +31,7 @@ from loopsheet.report.quantity import Bounds, Printed
 from loopsheet.report.referee import print_as, prints_same
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
-from loopsheet.report.views import compact, figures, html, live
+from loopsheet.report.views import compact, figures, html, live, live_files
 
 ROOT = Path(__file__).resolve().parent.parent
 LIVE = ROOT / "templates" / "live"
@@ -436,3 +436,18 @@ def test_published_values_are_compared_as_python_does(
             wanted.append({"again": again, "distance": distance, "same": prints_same(value, like)})
     assert in_js(cases) == wanted
     assert sum(each["same"] for each in wanted) > 40
+
+
+def test_an_uncertainty_in_parentheses_is_saved_so_that_an_edit_does_not_move_it(tmp_path: Path) -> None:
+    """In parentheses it counts units of the last digit: of 8.40 another one than of 8.366."""
+    (tmp_path / "measurements.csv").write_bytes((PAPER / "measurements.csv").read_bytes())
+    (tmp_path / "report.toml").write_text(
+        'workbook = "soft_impact"\n[parameters]\nball_mass = "8.366(4) g"  # (as weighed)\n'
+        '[measurements]\nfile = "measurements.csv"\n'
+    )
+    saved = live_files.given(Study(tmp_path).computed)["toml"]
+    toml = "".join(piece if isinstance(piece, str) else piece.get("line", "8.40") for piece in saved)
+    assert 'ball_mass = "8.40 g, u = 0.004"  # (as weighed)\n' in toml.replace("new", "")
+    (tmp_path / "report.toml").write_text(toml.replace("new", ""))
+    again = Study(tmp_path).inputs.parameters["ball_mass"]
+    assert (again.text, again.u) == ("8.40", pytest.approx(4e-6))

@@ -165,7 +165,7 @@ class Tables:
     def uncertain(self) -> Table:
         """The results with their uncertainties, and the sources that most of it comes from."""
         made = (
-            _Made("result", lambda budget: Math(self._of(budget).latex), "symbol"),
+            _Made("result", self._cell, "symbol"),
             _Made("value", lambda budget: Number(self._stated(budget)[0])),
             _Made("u", lambda budget: Number(self._stated(budget)[1])),
             _Made("k", self._factor),
@@ -176,6 +176,10 @@ class Tables:
         level = f"{100 * self.material.budgets[0].level:.12g}\u00a0%"
         caption = (Strong(("Uncertainty of the results.",)), f" U is the expanded one, for {level}")
         return _table("uncertain", caption, made, [((), self.material.budgets)], look="list", wide=True)
+
+    def _cell(self, budget: Budget) -> Inlines:
+        index = (f"\u00a0{_dashed(budget.label)}",) if budget.label else ()
+        return Math(self._of(budget).latex), *index
 
     def _of(self, budget: Budget) -> Head:
         return self.material.head(self.report.sheet[budget.name])

@@ -26,7 +26,7 @@ _EITHER = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
 _NOT_FINITE = frozenset(
     {"nan", "inf", "infinity", "∞", "#n/a", "#div/0!", "#value!", "#num!", "#ref!", "n/a"}
 )
-_CONCISE = re.compile(r"(?P<mantissa>[^()]*)\((?P<u>[0-9]+)\)(?P<power>[eE][+-]?[0-9]+)?")
+_CONCISE = re.compile(r"(?P<digits>[^()]*)\((?P<u>[0-9]+)\)")
 _LONGEST = 100
 _TOP = 300
 _LARGEST = Fraction(10) ** _TOP
@@ -104,7 +104,9 @@ def _why_not(text: str) -> NumberError:
         thousands = f" or '{text.replace(',', '')}', whichever is meant" if _EITHER.fullmatch(text) else ""
         return NumberError("LS402", text=text, example=plain, thousands=thousands)
     suggestion = ""
-    if _NUMBER.fullmatch(text.replace("\u2212", "-").replace("\u2013", "-")):
+    if re.search(r"[(±]|.\+/?-", text):
+        suggestion = "its uncertainty stands in parentheses behind all digits, 41.6(2), or in [uncertainty]"
+    elif _NUMBER.fullmatch(text.replace("\u2212", "-").replace("\u2013", "-")):
         suggestion = "write the minus sign as an ordinary hyphen"
     elif _NUMBER.fullmatch(re.sub(r"[\s_']", "", text, flags=re.ASCII)):
         suggestion = "write the digits without spaces or marks between them"
@@ -155,7 +157,7 @@ def read_value(
         As for :class:`Printed`.
     """
     concise = _CONCISE.fullmatch(text)
-    digits = concise["mantissa"] + (concise["power"] or "") if concise else text
+    digits = concise["digits"] if concise else text
     try:
         printed = read_printed(digits, unit or parse_unit(declared.unit), mode=mode, where=where)
         if concise:

@@ -121,7 +121,12 @@ class _Reader:
         place = self.toml.value(*self.path, start=start, length=max(len(digits), 1))
         where = self.toml.trace(*self.path)
         printed = read_value(digits, size, self.parameter, place, self.findings, where=where)
-        return self.stated(printed, said, begins) if said and printed and size else printed
+        if said and printed and size:
+            printed = self.stated(printed, said, begins)
+        if printed and printed.stated is not None and self.parameter.bounds.integer:
+            hint = f"{self.parameter.name} is a whole number that the method counts with: it has none"
+            self.findings.add("LS431", self.toml.value(*self.path), text=text, suggestion=hint)
+        return printed
 
     def stated(self, printed: Printed, text: str, begins: int) -> Printed | None:
         """The number with what is stated behind it; None, with a finding, if that is not understood."""

@@ -44,6 +44,8 @@ _RELATIVE = re.compile(r"%\s*(?:of\s+(?:the\s+)?(?:reading|value))?")
 _DIGITS = re.compile(r"digits?")
 _KEYS = {"u": {"dof"}, "U": {"k", "p", "dof"}, "s": {"n"}, "t scale": {"dof"}, "t sd": {"dof"}}
 """What may stand behind each beginning."""
+_LARGEST = 10**60
+"""Of whatever unit: its square, and that of what follows from it, shall be numbers still."""
 _LIMIT_KEYS = {"k", "p", "dof"}
 
 
@@ -204,8 +206,11 @@ def _root(number: Fraction) -> Fraction:
 
 def _keys(fields: list[tuple[str, int]], allowed: set[str]) -> Iterator[tuple[str, Fraction]]:
     """What stands behind the size: k, p, dof or n."""
+    seen: set[str] = set()
     for field, start in fields:
         named = _NAMED.match(field)
+        if named is not None and named["name"] in seen:
+            raise StatementError("LS431", field, start, "it is said already")
         if named is None or named["name"] not in allowed:
             raise StatementError("LS431", field, start, f"here may stand {' or '.join(sorted(allowed))}")
         text = field[named.end() :].strip()
@@ -219,6 +224,7 @@ def _keys(fields: list[tuple[str, int]], allowed: set[str]) -> Iterator[tuple[st
         if not fits.get(name, number > 0 and not percent):
             hints = {"p": "a probability is between 0 and 1, or 95 %", "n": "two readings or more"}
             raise StatementError("LS431", field, start, hints.get(name, "it must be greater than 0"))
+        seen.add(name)
         yield name, number
 
 
@@ -232,12 +238,14 @@ def _amount(text: str, start: int, unit: ParsedUnit) -> tuple[Fraction, Fraction
             number = read_number(match["number"]) if match else Fraction(-1)
         except NumberError:
             match = None
-        if match is None:
-            raise StatementError("LS431", term or text, at, "a size is a number, at least 0, with its unit")
+        if match is None or number > _LARGEST:
+            raise StatementError(
+                "LS431", term or text, at, "a size is a number from 0 to 1e60, with its unit"
+            )
         behind = match["unit"].strip()
         if _DIGITS.fullmatch(behind):
             digits += number
-        elif _RELATIVE.fullmatch(behind) and not (behind == "%" and unit.text in ("%", "percent")):
+        elif _RELATIVE.fullmatch(behind) and not (behind == "%" and not unit.dimension):
             relative += number / 100
         elif behind == "%":
             raise StatementError("LS431", term, at, "say '% of reading', or the size in the unit 1")

@@ -228,7 +228,8 @@ class _Reader:
         return tuple(map(tuple, written))
 
     def correlations(self, several: Collection[str]) -> Iterator[tuple[tuple[str, str], float]]:
-        """Coefficients by the names of two columns."""
+        """Coefficients by the names of two columns; one of 0 says nothing."""
+        seen: set[frozenset[str]] = set()
         for key in self.names("correlation"):
             path = (SECTION, "correlation", key)
             text = self.tables.text(path[:-1], key, "0.3")
@@ -239,10 +240,16 @@ class _Reader:
                 known = f"two of {listing(self.numbers)} with a comma between them"
                 self.findings.add("LS505", self.toml.key(*path), text=key, known=known, suggestion="")
                 continue
+            if frozenset(pair) in seen:
+                both = " and ".join(pair)
+                self.findings.add("LS433", self.toml.key(*path), name=f"{both} together", suggestion="")
+                continue
+            seen.add(frozenset(pair))
             if reason := self.why_not(text, pair, several):
                 self.findings.add("LS434", self.toml.value(*path), reason=reason, suggestion="")
                 continue
-            yield (pair[0], pair[1]), float(read_number(text))
+            if number := float(read_number(text)):
+                yield (pair[0], pair[1]), number
 
     def why_not(self, text: str, pair: Collection[str], several: Collection[str]) -> str:
         """Why a coefficient cannot be; empty if it can."""

@@ -101,6 +101,8 @@ class Budget:
     second : float
         The part of the variance that is of second order, in the square of the cell's SI unit; 0 where first
         order is enough.
+    unlooked : str
+        Why nothing is known of second order; empty if it was looked at.
     """
 
     cell: str
@@ -115,6 +117,7 @@ class Budget:
     factor: float = math.nan
     because: str = ""
     second: float = 0.0
+    unlooked: str = ""
 
     @property
     def expanded(self) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..distribution import DIVISORS, Shape
+from ..result.uncertain import ErrorSource
 
 __all__ = ["LEVEL", "coverage", "effective"]
 
@@ -54,24 +55,29 @@ def effective(u: float, contributions: NDArray[np.float64], dof: Sequence[float]
 
 
 def coverage(
-    shapes: Sequence[Shape], contributions: NDArray[np.float64], dof: float, level: float = LEVEL
+    sources: Sequence[ErrorSource],
+    contributions: NDArray[np.float64],
+    dof: float,
+    level: float = LEVEL,
+    second: float = 0.0,
 ) -> tuple[float, str]:
     """The coverage factor of a sum, and what it was taken from.
 
     Parameters
     ----------
-    shapes : sequence of Shape
-        Of the sources.
+    sources : sequence of ErrorSource
     contributions : float array (sources,)
-        Of the same.
+        What each makes.
     dof : float
         The effective degrees of freedom.
     level : float
         The coverage probability.
+    second : float
+        The variance of second order.
 
     Examples
     --------
-    >>> coverage([Shape.RECTANGULAR], np.array([1.0]), math.inf)
+    >>> coverage([ErrorSource("g", Shape.RECTANGULAR, math.inf, ())], np.array([1.0]), math.inf)
     (1.6454482671904334, 'the rectangular source that dominates')
     """
     if math.isnan(dof):
@@ -79,9 +85,9 @@ def coverage(
     sizes = np.abs(contributions)
     if sizes.size:
         largest = int(sizes.argmax())
-        rest = math.sqrt(float(np.sum(np.delete(sizes, largest) ** 2)))
-        if shapes[largest] in _QUANTILES and rest <= DOMINANT * sizes[largest]:
-            shape = shapes[largest]
+        rest = math.sqrt(float(np.sum(np.delete(sizes, largest) ** 2)) + abs(second))
+        shape, sure = sources[largest].shape, math.isinf(sources[largest].dof)
+        if sure and sizes[largest] and shape in _QUANTILES and rest <= DOMINANT * sizes[largest]:
             return DIVISORS[shape] * _QUANTILES[shape](level), f"the {shape} source that dominates"
     if math.isinf(dof):
         return NormalDist().inv_cdf((1 + level) / 2), "a normal distribution"

@@ -8,7 +8,7 @@ tails let them exist, and an interval only if nearly all draws have a value.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,8 @@ from ..engines.numpy import Program, evaluate
 from ..inputs.inputs import Inputs
 from ..result.uncertain import Budget, Distributed, ErrorSource
 from ..sheet import Sheet
-from .sources import correlations, given, sources
+from .second_order import root_of
+from .sources import correlated, given, sources
 
 __all__ = ["MOST", "draw"]
 
@@ -102,20 +103,9 @@ class _Draws:
         self.sources = [
             source for source in sources(inputs, values) if any(move[0] in self.base for move in source.moves)
         ]
-        self.root = self._root(correlations(inputs, values))
-
-    def _root(self, stated: Mapping[tuple[str, str], float]) -> Array | None:
-        """What makes independent normal errors correlated; None where none are."""
-        number = {source.name: n for n, source in enumerate(self.sources)}
-        pairs = [(number[a], number[b], r) for (a, b), r in stated.items() if a in number and b in number]
-        if not pairs:
-            return None
-        matrix = np.eye(len(self.sources))
-        for a, b, r in pairs:
-            matrix[a, b] = matrix[b, a] = r
-        values, vectors = np.linalg.eigh(matrix)
-        root: Array = vectors * np.sqrt(np.maximum(values, 0.0))
-        return root
+        pairs = correlated(self.sources, inputs, values)
+        self.root = root_of(len(self.sources), pairs)
+        self.mixed = {n for a, b, _ in pairs for n in (a, b)}
 
     def batches(self, size: int, most: int) -> Iterator[dict[str, Array]]:
         """What was given, one batch after another (size, rows)."""
@@ -134,14 +124,10 @@ class _Draws:
 
     def _errors(self, size: int) -> Iterator[Array]:
         """Errors in units of their standard uncertainty; correlated ones are normal."""
-        if self.root is not None:
+        if self.mixed:
             together = self.generator.standard_normal((size, len(self.sources))) @ self.root.T
-            correlated = np.count_nonzero(np.abs(self.root @ self.root.T) > 0, axis=1) > 1
         for n, source in enumerate(self.sources):
-            if self.root is not None and correlated[n]:
-                yield together[:, n]
-            else:
-                yield self._error(source, size)
+            yield together[:, n] if n in self.mixed else self._error(source, size)
 
     def _error(self, source: ErrorSource, size: int) -> Array:
         draws, shape = self.generator, source.shape

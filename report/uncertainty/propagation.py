@@ -22,8 +22,8 @@ from ..judge.sensitivity import Numbers
 from ..result.uncertain import Budget, Contribution, Uncertainties
 from ..sheet import Given, RepeatAxis
 from .coverage import LEVEL, coverage, effective
-from .second_order import SecondOrder
-from .sources import correlations, given, sources
+from .second_order import SecondOrder, root_of
+from .sources import correlated, given, sources
 
 __all__ = ["Spread", "uncertainties"]
 
@@ -51,16 +51,12 @@ class Spread:
     Attributes
     ----------
     sources : tuple of ErrorSource
-    correlations : mapping of (str, str) to float
-        Between the errors of two given numbers, by their addresses.
     """
 
     def __init__(self, inputs: Inputs, values: Values) -> None:
         self.values = values
         self.sources = sources(inputs, values)
-        known = {source.name for source in self.sources}
-        stated = correlations(inputs, values)
-        self.correlations = {pair: r for pair, r in stated.items() if known.issuperset(pair)}
+        self._pairs = correlated(self.sources, inputs, values)
         numbers, size = {}, 0
         for column in given(values):
             rows = len(values.labels(column))
@@ -74,11 +70,10 @@ class Spread:
         chain = Chain(made, values.layouts, numbers)
         self._along = Numbers(chain, values).go()
         self.second: SecondOrder | None = None
-        """What is of second order; None for a sheet that is too large, and where errors are correlated."""
-        if self.sources and not self.correlations and SecondOrder.is_small(values, self.sources):
-            self.second = SecondOrder(chain, values, self.sources, self._by_source)
-        number = {source.name: n for n, source in enumerate(self.sources)}
-        self._pairs = [(number[a], number[b], r) for (a, b), r in self.correlations.items()]
+        """What is of second order; None for a sheet that is too large."""
+        if self.sources and SecondOrder.is_small(values, self.sources):
+            root = root_of(len(self.sources), self._pairs)
+            self.second = SecondOrder(chain, values, self.sources, root, self._by_source)
 
     def contributions(self, cells: Sequence[tuple[str, int]]) -> Array:
         """What each source contributes to some cells, with its sign.
@@ -124,6 +119,15 @@ class Spread:
         return (
             np.zeros(len(cells)) if self.second is None else np.nan_to_num(self.second.variance(cells, own))
         )
+
+    def _unlooked(self, cells: Sequence[tuple[str, int]], own: Array) -> str:
+        """Why the terms of second order of a cell are not known; empty if they are."""
+        if not self.sources:
+            return ""
+        if self.second is None:
+            return "the sheet is too large for that"
+        known = np.isfinite(self.second.variance(cells, own)).all()
+        return "" if known else "the sheet has no values so far from what was given"
 
     def covariance(self, cells: Sequence[tuple[str, int]]) -> Array:
         """Variances and covariances of some cells (cells, cells)."""
@@ -176,25 +180,24 @@ class Spread:
         found = self.contributions(cell)
         own, second = found[0, : len(self.sources)], float(self._more(cell, found)[0])
         first = float(self._variance(found)[0])
-        u = math.sqrt(first + second)
-        if not math.isfinite(u):
+        u = math.sqrt(first + second) if math.isfinite(first + second) else math.nan
+        if math.isnan(u):
             return Budget(address(name, label), name, label, value, level=level)
         together = self._with_correlated(found)[0, : len(self.sources)]
         shares = own / u * (together / u) if u > 0 else np.zeros(len(own))
         dof = self._effective(math.sqrt(first), own)
-        shapes = [source.shape for source in self.sources]
-        factor, because = coverage(shapes, own, dof, level)
+        factor, because = coverage(self.sources, own, dof, level, second)
         order = [
             int(n)
             for n in np.argsort(-np.abs(shares), kind="stable")
             if abs(own[n]) > NOTHING * np.abs(own).max()
         ]
         told = tuple(self._contribution(n, float(own[n]), float(shares[n])) for n in order)
-        names = {self.sources[n].name for n in order}
-        correlated = {pair: r for pair, r in self.correlations.items() if names.issuperset(pair)}
-        return Budget(
-            address(name, label), name, label, value, u, told, correlated, dof, level, factor, because, second
-        )
+        pairs = {
+            (self.sources[a].name, self.sources[b].name): r for a, b, r in self._pairs if {a, b} <= set(order)
+        }
+        known = value, u, told, pairs, dof, level, factor, because, second, self._unlooked(cell, found)
+        return Budget(address(name, label), name, label, *known)
 
     def _contribution(self, n: int, u: float, share: float) -> Contribution:
         source = self.sources[n]

@@ -20,7 +20,7 @@ from ..judge.chain import Chain
 from ..judge.sensitivity import Numbers
 from ..result.uncertain import ErrorSource
 
-__all__ = ["SecondOrder"]
+__all__ = ["SecondOrder", "root_of"]
 
 Array = NDArray[np.float64]
 
@@ -35,6 +35,26 @@ _FOURTH = {Shape.RECTANGULAR: 9 / 5, Shape.TRIANGULAR: 12 / 5, Shape.ARCSINE: 3 
 """The fourth moment over the square of the variance; 3 for a normal error, as JCGM 100 takes all errors."""
 
 
+def root_of(number: int, pairs: Sequence[tuple[int, int, float]]) -> Array:
+    """What makes correlated errors of independent ones (number, number): a root of their correlation matrix.
+
+    Parameters
+    ----------
+    number : int
+        Of sources.
+    pairs : sequence of (int, int, float)
+        The correlation coefficients of some; an error that is in none is itself.
+    """
+    matrix = np.eye(number)
+    for a, b, r in pairs:
+        matrix[a, b] = matrix[b, a] = r
+    mixed = sorted({n for a, b, _ in pairs for n in (a, b)})
+    values, vectors = np.linalg.eigh(matrix[np.ix_(mixed, mixed)])
+    root = np.eye(number)
+    root[np.ix_(mixed, mixed)] = vectors * np.sqrt(np.maximum(values, 0.0))
+    return root
+
+
 class SecondOrder:
     """What a sheet's second derivatives add to its variances.
 
@@ -44,7 +64,8 @@ class SecondOrder:
         From the given numbers to all cells.
     values : Values
     sources : sequence of ErrorSource
-        Independent of one another.
+    root : float array (sources, sources)
+        What makes the errors of independent ones: its product with its transpose is their correlation matrix.
     by_source : callable
         Takes derivatives by the given numbers (..., cells, numbers); returns those by the sources, in
         standard uncertainties (..., cells, sources).
@@ -55,12 +76,15 @@ class SecondOrder:
         chain: Chain,
         values: Values,
         sources: Sequence[ErrorSource],
+        root: Array,
         by_source: Callable[[Array], Array],
     ) -> None:
-        self.sources, self.by_source = sources, by_source
-        self.fourth = np.array([_FOURTH.get(source.shape, 3.0) for source in sources])
+        self.sources, self.root, self.by_source = sources, root, by_source
+        own = np.array([_FOURTH.get(source.shape, 3.0) for source in sources])
+        alone = np.count_nonzero(root, axis=0) == 1  # what is mixed of several is taken as normal
+        self.fourth = np.where(alone, own, 3.0)
         self.width = 2 * len(sources) * max(1, chain.number)
-        self._along = Numbers(chain, _beside(values, sources)).go()
+        self._along = Numbers(chain, _beside(values, sources, root)).go()
 
     @staticmethod
     def is_small(values: Values, sources: Sequence[ErrorSource]) -> bool:
@@ -82,7 +106,7 @@ class SecondOrder:
             In the squares of the cells' SI units; 0 where it does not count. NaN where a cell has no value so
             near to its own.
         """
-        beside = self.by_source(self._along.at(cells))
+        beside, first = self.by_source(self._along.at(cells)) @ self.root, first @ self.root
         up, down = beside[: len(self.sources)], beside[len(self.sources) :]
         with np.errstate(all="ignore"):
             # [cell, i, j]: by source i and source j, and by i and twice by j
@@ -95,21 +119,20 @@ class SecondOrder:
             own = np.sum(first**2, axis=1)
             # A sum that would be negative is no variance: then the terms of the fourth order count too.
             more = np.where(own + bent + turned > 0, bent + turned, bent)
-            found: Array = np.where(bent <= COUNTS * own, 0.0, more)
+            found: Array = np.where(np.maximum(bent, np.abs(more)) <= COUNTS * own, 0.0, more)
         return found
 
 
-def _beside(values: Values, sources: Sequence[ErrorSource]) -> Values:
-    """The sheet a step up and a step down along every source (2 sources, rows)."""
+def _beside(values: Values, sources: Sequence[ErrorSource], root: Array) -> Values:
+    """The sheet a step up and a step down along every independent error (2 errors, rows)."""
     sheet = values.sheet
     moved = {
         name: np.tile(values.value[name], (2 * len(sources), 1))
         for name in dict.fromkeys(name for source in sources for name, _, _ in source.moves)
     }
-    for n, source in enumerate(sources):
+    for source, along in zip(sources, root, strict=True):
         for name, row, u in source.moves:
-            moved[name][n, row] += STEP * u
-            moved[name][n + len(sources), row] -= STEP * u
+            moved[name][:, row] += STEP * u * np.concatenate([along, -along])
     labels = {
         axis.name: values.layouts[axis.name].labels[:, 0].tolist() for axis in sheet.axes if not axis.parents
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Sequence
 
 from ..cells.address import address
 from ..cells.values import Values
@@ -10,7 +10,7 @@ from ..inputs.inputs import Inputs
 from ..result.uncertain import ErrorSource
 from ..sheet import Column, Given
 
-__all__ = ["correlations", "sources"]
+__all__ = ["correlated", "given", "sources"]
 
 
 def sources(inputs: Inputs, values: Values) -> tuple[ErrorSource, ...]:
@@ -67,11 +67,15 @@ def given(values: Values) -> tuple[Column, ...]:
     )
 
 
-def correlations(inputs: Inputs, values: Values) -> Mapping[tuple[str, str], float]:
-    """The correlation coefficients that were stated, by the names of two sources."""
-    found = {}
+def correlated(
+    every: Sequence[ErrorSource], inputs: Inputs, values: Values
+) -> tuple[tuple[int, int, float], ...]:
+    """The correlation coefficients that were stated, with the places of their two sources."""
+    place = {source.name: n for n, source in reversed(tuple(enumerate(every)))}  # own ones are first
+    found = []
     for (one, other), coefficient in inputs.uncertainty.correlations.items():
-        if one in values.sheet and other in values.sheet:
-            for label in values.labels(values.sheet[one]):
-                found[address(one, label), address(other, label)] = coefficient
-    return found
+        labels = values.labels(values.sheet[one]) if one in values.sheet and other in values.sheet else ()
+        for names in ((address(one, label), address(other, label)) for label in labels):
+            if place.keys() >= set(names):
+                found.append((place[names[0]], place[names[1]], coefficient))
+    return tuple(found)

@@ -21,7 +21,7 @@ def sentence(report: Report, budget: Budget) -> str:
     """The result in a line: ``alpha_mean = 1.3026, u = 0.0035, U = 0.0069 with k = 1.96 for 95 %``."""
     unit, scale = _unit(report, budget.name)
     if math.isnan(budget.value):
-        return f"{budget.cell} has no value"
+        return report.values.cell(budget.name, budget.label).reason
     if not budget.is_known:
         return f"{budget.cell} = {budget.value / scale:.6g}{unit}, and its uncertainty is not known"
     if not budget.u:
@@ -74,6 +74,7 @@ def as_json(report: Report, budget: Budget, drawn: Distributed | None = None) ->
             "k_from": budget.because,
             "U": _number(budget.expanded),
             "second_order_share": _number(budget.second / budget.u**2) if budget.u else 0.0,
+            "second_order_unknown": budget.unlooked or None,
             "sources": [_source(each) for each in budget.contributions],
             "correlations": [[*pair, r] for pair, r in budget.correlations.items()],
             **monte_carlo,
@@ -127,6 +128,8 @@ def _row(report: Report, budget: Budget, each: Contribution) -> tuple[str, ...]:
 def _notes(report: Report, budget: Budget) -> Iterator[str]:
     for (one, other), r in budget.correlations.items():
         yield f"{one} and {other} are correlated: {r:g}"
+    if budget.unlooked and budget.is_known:
+        yield f"terms of second order were not looked at: {budget.unlooked}; --draws tells more"
     if budget.second:
         yield f"terms of second order make {_percent(budget.second / budget.u**2)} of the variance"
     if budget.is_known and budget.u:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 
@@ -52,7 +53,7 @@ def _verdict(found: Differences) -> str:
 
 def _rest(names: Sequence[str], most: int) -> list[str]:
     """A line that counts, by column, what is not named."""
-    left = Counter(name.partition("[")[0] for name in names[most:])
+    left = Counter(re.sub(r"\[.*\]", "", name) for name in names[most:])
     if not left:
         return []
     return [f"           and {left.total()} more: {', '.join(f'{name} ({n})' for name, n in left.items())}"]

@@ -109,7 +109,7 @@ def _toml(report: Report) -> Iterator[str | dict[str, str]]:
     # Lines are counted as the reader counts them: any of the three ends, a mark in front is not text.
     text = re.sub("\r\n?", "\n", _raw(report))
     starts = [0, *(found.end() for found in re.finditer("\n", text))]
-    pieces: list[tuple[int, int, dict[str, str]]] = []
+    pieces: list[tuple[int, int, str | dict[str, str]]] = []
     for name, number in report.inputs.parameters.items():
         unit = number.unit if number.unit != "1" else ""
         found = re.fullmatch(r"report\.toml:(\d+):(\d+)", number.where)
@@ -120,7 +120,12 @@ def _toml(report: Report) -> Iterator[str | dict[str, str]]:
             continue
         place = text.find(number.text, starts[int(found[1]) - 1] + int(found[2]) - 1)
         if place >= 0:
-            pieces.append((place, place + len(number.text), {"parameter": name}))
+            end = place + len(number.text)
+            pieces.append((place, end, {"parameter": name}))
+            # In parentheses it counts units of the last digit, which an edit may move.
+            if concise := re.match(r"\([0-9]+\)(?P<behind>[^\"'\n]*)", text[end:]):
+                said = f", u = {_decimal(number.stated[0].width / number.scale)}" if number.stated else ""
+                pieces.append((end, end + concise.end(), concise["behind"] + said))
     for name in ("measurements", "published"):
         table = _table(text, name)
         named = re.search(r"""^[ \t]*file[ \t]*=[ \t]*(["'])(?P<name>[^"'\n]*)\1""", table, re.MULTILINE)
