@@ -168,7 +168,11 @@ def test_a_drawing_that_fails_is_told_with_its_line(folder: Path, capsys: pytest
     [
         ("why", "d[1]", ["d[1] = 215 nm  difference", "given     as 215 nm, d.csv:2:3"]),
         ("why", "l[1]", ["rests on  d[1] = 215 nm, l_S = 50.000623 mm,"]),
-        ("show", "d", ["d  difference  [nm]", "d[1]             215\n", "d[2]             204\n"]),
+        (
+            "show",
+            "d",
+            ["d  difference  [nm]", "d[1]             215  u 0.29\n", "d[2]             204  u 0.29\n"],
+        ),
         ("show", "l_S", ["[mm]", "l_S              50.000623"]),
     ],
 )

@@ -25,7 +25,7 @@ from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.judge.readers import Reading, _columns, read_cells
 from loopsheet.report.sheet import Root
-from loopsheet.report.views.xlsx import _Worksheet
+from loopsheet.report.views.xlsx_columns import ColumnwiseSheet
 
 MOST = 50
 """Campaigns of a workbook."""
@@ -85,7 +85,7 @@ def book_of(campaigns: Sequence[tuple[Grid, Campaign]]) -> bytes:
     buffer = io.BytesIO()
     with xlsxwriter.Workbook(buffer, {"in_memory": True}) as book:
         for n, (grid, campaign) in enumerate(campaigns):
-            sheets = {name: book.add_worksheet(f"{name} {n}", _Worksheet) for name in _worksheets(grid)}
+            sheets = {name: book.add_worksheet(f"{name} {n}", ColumnwiseSheet) for name in _worksheets(grid)}
             issued = _issued(campaign)
             for block in grid.blocks:
                 sheet, place = sheets[block.place.worksheet], block.place
