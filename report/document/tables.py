@@ -165,7 +165,7 @@ class Tables:
     def uncertain(self) -> Table:
         """The results with their uncertainties, and the sources that most of it comes from."""
         made = (
-            _Made("result", self._cell, "symbol"),
+            _Made("result", lambda budget: Code(budget.cell), "words"),
             _Made("value", lambda budget: Number(self._stated(budget)[0])),
             _Made("u", lambda budget: Number(self._stated(budget)[1])),
             _Made("k", self._factor),
@@ -176,10 +176,6 @@ class Tables:
         level = f"{100 * self.material.budgets[0].level:.12g}\u00a0%"
         caption = (Strong(("Uncertainty of the results.",)), f" U is the expanded one, for {level}")
         return _table("uncertain", caption, made, [((), self.material.budgets)], look="list", wide=True)
-
-    def _cell(self, budget: Budget) -> Inlines:
-        index = (f"\u00a0{_dashed(budget.label)}",) if budget.label else ()
-        return Math(self._of(budget).latex), *index
 
     def _of(self, budget: Budget) -> Head:
         return self.material.head(self.report.sheet[budget.name])
@@ -217,11 +213,11 @@ class Tables:
     def published(self, group: SourceGroup) -> Table:
         """The published values of one place of the source, beside those that are recomputed."""
         made = (
-            _Made("cell", lambda pair: Math(pair.head.latex)),
-            _Made("index", lambda pair: pair.index),
+            _Made("index", lambda pair: pair.index or _symbol(pair.head)),
+            _Made("cell", lambda pair: Math(pair.head.latex) if pair.index else ()),
             _Made("published", _printed, "aligned"),
             _Made("recomputed", lambda pair: Number(pair.again, pair.comparison.again), "aligned"),
-            _Made("unit", lambda pair: _unit(pair.printed.unit)),
+            _Made("unit", lambda pair: "–" if is_pure(pair.printed.unit) else Unit(pair.printed.unit)),
             _Made("off by", lambda pair: _number(pair.distance, signed=True), "aligned", tip=OFF_BY),
             _Made("finding", lambda pair: pair.finding, "verdict"),
             _Made("known reason", lambda pair: pair.comparison.published.reason, share=0.34),
@@ -265,7 +261,7 @@ class Tables:
         """What the referee says of every value by itself."""
         tip = "the least that was found, in half units of the last published digit"
         made = (
-            _Made("value", lambda value: value.pair.index or Math(value.pair.head.latex)),
+            _Made("value", lambda value: value.pair.index or _symbol(value.pair.head)),
             _Made(
                 "published", lambda value: Number(value.pair.published, value.pair.printed.text), "aligned"
             ),

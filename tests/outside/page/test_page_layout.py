@@ -125,12 +125,13 @@ def test_wide_equations_fit_or_show_that_they_scroll(open_page: Open, width: int
 
 def test_chapters_that_are_as_issued_say_so(live: Live) -> None:
     chapters = live.page.locator("section[data-issued]")
-    assert chapters.evaluate_all("all => all.map((one) => one.id)") == ["referee", "errata", "engines"]
+    issued = ["uncertainty", "referee", "errata", "engines"]
+    assert chapters.evaluate_all("all => all.map((one) => one.id)") == issued
     words = live.page.locator("[data-issued] > .stale")
-    assert [word.is_visible() for word in words.all()] == [False] * 3
+    assert [word.is_visible() for word in words.all()] == [False] * 4
     live.type("x_p", 2, "29.8")
     for chapter in chapters.all():
         assert "as issued, before the edits" in chapter.locator("> .stale").inner_text()
     assert "As issued, before the edits" in live.page.locator("#result .note").first.inner_text()
     live.click("live-undo")
-    assert [word.is_visible() for word in words.all()] == [False] * 3
+    assert [word.is_visible() for word in words.all()] == [False] * 4
