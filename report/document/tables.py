@@ -213,8 +213,8 @@ class Tables:
     def published(self, group: SourceGroup) -> Table:
         """The published values of one place of the source, beside those that are recomputed."""
         made = (
-            _Made("index", lambda pair: pair.index or _symbol(pair.head)),
-            _Made("cell", lambda pair: Math(pair.head.latex) if pair.index else ()),
+            _Made("value", lambda pair: pair.index or _symbol(pair.head)),
+            _Made("of", lambda pair: Math(pair.head.latex) if pair.index else ()),
             _Made("published", _printed, "aligned"),
             _Made("recomputed", lambda pair: Number(pair.again, pair.comparison.again), "aligned"),
             _Made("unit", lambda pair: "–" if is_pure(pair.printed.unit) else Unit(pair.printed.unit)),
