@@ -12,7 +12,12 @@ from enum import StrEnum
 from fractions import Fraction
 from types import MappingProxyType
 
-__all__ = ["DIVISORS", "Error", "Shape"]
+__all__ = ["DIVISORS", "DOMINANT", "LEVEL", "Error", "Shape"]
+
+LEVEL = 0.95
+"""The coverage probability that is stated where nobody asks for another; 0.9545 is another one."""
+DOMINANT = 0.3
+"""One source dominates where all others together are at most so much of it (EA-4/02, S9.14)."""
 
 
 class Shape(StrEnum):

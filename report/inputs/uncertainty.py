@@ -1,6 +1,7 @@
 """The section ``[uncertainty]`` of report.toml: what is stated of whole columns, and what errors share.
 
 [uncertainty]
+plus_minus = "rect"                      # what +-0.1 means where nothing is said
 x_p = "0.5 % of reading + 2 digits"
 
 [uncertainty.shared."height datum"]      # one error, the same in every test

@@ -9,16 +9,10 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
-from ..distribution import DIVISORS, Shape
+from ..distribution import DIVISORS, DOMINANT, LEVEL, Shape
 from ..result.uncertain import ErrorSource
 
-__all__ = ["LEVEL", "coverage", "effective"]
-
-LEVEL = 0.95
-"""The coverage probability that is stated where nobody asks for another; 0.9545 is another one."""
-
-DOMINANT = 0.3
-"""One source dominates where all others together are at most so much of it (EA-4/02, S9.14)."""
+__all__ = ["coverage", "effective"]
 
 _QUANTILES: dict[Shape, Callable[[float], float]] = {
     Shape.RECTANGULAR: lambda p: p,

@@ -16,12 +16,13 @@ from numpy.typing import NDArray
 from ..cells.address import address
 from ..cells.layout import how_large
 from ..cells.values import Status, Values
+from ..distribution import LEVEL
 from ..inputs.inputs import Inputs
 from ..judge.chain import Chain, Made
 from ..judge.sensitivity import Numbers
 from ..result.uncertain import Budget, Contribution, Uncertainties
 from ..sheet import Given, RepeatAxis
-from .coverage import LEVEL, coverage, effective
+from .coverage import coverage, effective
 from .second_order import SecondOrder, root_of
 from .sources import correlated, given, sources
 
@@ -66,7 +67,8 @@ class Spread:
         self._by = np.array([numbers[name][row] for _, name, row, _ in moves], dtype=np.intp)
         self._u = np.array([u for *_, u in moves])
         self._first = np.searchsorted([n for n, *_ in moves], np.arange(len(self.sources)))
-        made = Made.of(values.sheet).only(self._listed(values))
+        self._known = _known(values)
+        made = Made.of(values.sheet).only(self._known)
         chain = Chain(made, values.layouts, numbers)
         self._along = Numbers(chain, values).go()
         self.second: SecondOrder | None = None
@@ -111,23 +113,14 @@ class Spread:
         for first in range(0, rows, some):
             cells = [(name, row) for row in range(first, min(first + some, rows))]
             own = self.contributions(cells)
-            found[first : first + some] = np.sqrt(self._variance(own) + self._more(cells, own))
+            found[first : first + some] = np.sqrt(self._variance(own) + np.nan_to_num(self._more(cells, own)))
         return np.where(np.isfinite(found), found, np.nan)
 
     def _more(self, cells: Sequence[tuple[str, int]], own: Array) -> Array:
-        """The variance of second order; nothing where it is not known."""
-        return (
-            np.zeros(len(cells)) if self.second is None else np.nan_to_num(self.second.variance(cells, own))
-        )
-
-    def _unlooked(self, cells: Sequence[tuple[str, int]], own: Array) -> str:
-        """Why the terms of second order of a cell are not known; empty if they are."""
+        """The variance of second order; NaN where it is not known."""
         if not self.sources:
-            return ""
-        if self.second is None:
-            return "the sheet is too large for that"
-        known = np.isfinite(self.second.variance(cells, own)).all()
-        return "" if known else "the sheet has no values so far from what was given"
+            return np.zeros(len(cells))
+        return np.full(len(cells), np.nan) if self.second is None else self.second.variance(cells, own)
 
     def covariance(self, cells: Sequence[tuple[str, int]]) -> Array:
         """Variances and covariances of some cells (cells, cells)."""
@@ -147,16 +140,6 @@ class Spread:
         with np.errstate(all="ignore"):
             variance: Array = np.sum(found * self._with_correlated(found), axis=1)
             return np.maximum(variance, 0.0)
-
-    def _listed(self, values: Values) -> list[str]:
-        """The columns of which something is told: of a large sheet, those that rest on no generated rows."""
-        self._known = {
-            column.name
-            for column in values.sheet.columns
-            if how_large(values.sheet, values.layouts) <= LARGEST
-            or not any(isinstance(c.axis, RepeatAxis) for c in (column, *values.sheet.ancestors(column)))
-        }
-        return sorted(self._known)
 
     # --- one cell ---
 
@@ -178,7 +161,11 @@ class Spread:
             return Budget(address(name, label), name, label, value, level=level)
         cell = [(name, row)]
         found = self.contributions(cell)
-        own, second = found[0, : len(self.sources)], float(self._more(cell, found)[0])
+        own, more = found[0, : len(self.sources)], self._more(cell, found)
+        second, unlooked = float(np.nan_to_num(more)[0]), ""
+        if not np.isfinite(more[0]):
+            far = "the sheet has no values so far from what was given"
+            unlooked = "the sheet is too large for that" if self.second is None else far
         first = float(self._variance(found)[0])
         u = math.sqrt(first + second) if math.isfinite(first + second) else math.nan
         if math.isnan(u):
@@ -196,7 +183,7 @@ class Spread:
         pairs = {
             (self.sources[a].name, self.sources[b].name): r for a, b, r in self._pairs if {a, b} <= set(order)
         }
-        known = value, u, told, pairs, dof, level, factor, because, second, self._unlooked(cell, found)
+        known = value, u, told, pairs, dof, level, factor, because, second, unlooked
         return Budget(address(name, label), name, label, *known)
 
     def _contribution(self, n: int, u: float, share: float) -> Contribution:
@@ -211,6 +198,19 @@ class Spread:
         if any(np.isfinite(dof[n]) for n in correlated):
             return float("nan")
         return effective(u, own, dof)
+
+
+def _known(values: Values) -> set[str]:
+    """The columns of which something is told: of a large sheet, those that rest on no generated rows."""
+    sheet = values.sheet
+    if how_large(sheet, values.layouts) <= LARGEST:
+        return set(sheet.by_name)
+    generated = {column.name for column in sheet.columns if isinstance(column.axis, RepeatAxis)}
+    return {
+        column.name
+        for column in sheet.columns
+        if generated.isdisjoint(each.name for each in (column, *sheet.ancestors(column)))
+    }
 
 
 def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Uncertainties:

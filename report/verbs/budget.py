@@ -6,13 +6,13 @@ import argparse
 import sys
 from typing import TYPE_CHECKING
 
+from ..distribution import LEVEL
 from .common import OK, Progress, count, find_one, folder_argument, format_argument, keeping_arguments
 
 if TYPE_CHECKING:
     from ..study import Study
 
 HELP = "tell how uncertain one number is, and where that comes from"
-LEVEL = 0.95
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:

@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..cells.grid import CellBlock, Grid, checked
+from ..distribution import DOMINANT
 from ..document.numbers import stated
 from ..result.result import Report
 from ..result.uncertain import Budget, Contribution
@@ -111,12 +112,8 @@ class _Written:
             style.formula(sheet, row, 7, f"=D{row + 1}*G{row + 1}", contribution, style("number", form))
         else:  # larger in one cell than in another: there is no one sensitivity
             sheet.write_number(row, 7, contribution, style("input", number_format([contribution], 3)))
-        share, u_cell = each.u**2 / self.budget.u**2, f"$B${self.last + 3}"
-        correlated = self.correlated(row)
-        if correlated:
-            share = each.share
-        formula = f"=H{row + 1}*(H{row + 1}{correlated})/{u_cell}^2"
-        style.formula(sheet, row, 8, formula, share, style("number", "0.0%"))
+        formula = f"=H{row + 1}*(H{row + 1}{self.correlated(row)})/$B${self.last + 3}^2"
+        style.formula(sheet, row, 8, formula, each.share, style("number", "0.0%"))
 
     def correlated(self, row: int) -> str:
         """What correlated sources add to a contribution."""
@@ -141,6 +138,8 @@ class _Written:
         at = {name: f"$B${row + n + 1}" for n, name in enumerate(names)}
         sizes = sorted(abs(each.u) / scale for each in budget.contributions) or [0.0]
         first = f"SUMSQ({own}){self.pairs}"
+        ratio = f"({first})^2/SUMPRODUCT(({own})^4/({dof}))"
+        freedom = f"IF({ratio}>{_MOST},{_UNLIMITED:.0f},MAX(1,INT(ROUND({ratio},2))))"
         lines: tuple[tuple[str, str, float, str], ...] = (
             ("value", f"={self.block.place.cell(self.row_of_cell)}", budget.value / scale, "General"),
             (
@@ -163,13 +162,13 @@ class _Written:
             ),
             (
                 "all others together",
-                f"=SQRT(MAX(0,SUMSQ({own})-{at['largest']}^2))",
-                math.hypot(*sizes[:-1]),
+                f"=SQRT(MAX(0,SUMSQ({own})-{at['largest']}^2)+ABS({at['second']}))",
+                math.sqrt(math.hypot(*sizes[:-1]) ** 2 + abs(budget.second) / scale**2),
                 number_format(sizes[-1:], 4),
             ),
             (
                 "effective degrees of freedom",
-                f"=MIN({_UNLIMITED:.0f},MAX(1,INT(ROUND(({first})^2/SUMPRODUCT(({own})^4/({dof})),2))))",
+                f"=IF({at['largest']}=0,{_UNLIMITED:.0f},{freedom})",
                 min(budget.dof, _UNLIMITED),
                 _DOF,
             ),
@@ -206,11 +205,16 @@ class _Written:
         p, dof = at["p"], at["dof"]
         otherwise = f"IF({dof}>{_MOST},NORMSINV((1+{p})/2),TINV(1-{p},MIN({dof},{_MOST})))"
         place = f"IF(MAX({own})>=-MIN({own}),MATCH(MAX({own}),{own},0),MATCH(MIN({own}),{own},0))"
-        shape = f"INDEX({own.replace('H', 'E')},{place})"
+        shape, sure = (f"INDEX({own.replace('H', column)},{place})" for column in "EF")
         told = otherwise
         for name, factor in _FACTORS.items():
             told = f'IF({shape}="{name}",{factor.format(p=p)},{told})'
-        return f"IF({at['others']}<=0.3*{at['largest']},{told},{otherwise})"
+        # Where nothing is of first order there is no line to look at.
+        dominant = f"IF({sure}>{_MOST},{told},{otherwise})"
+        return (
+            f"IF({at['largest']}=0,{otherwise},"
+            f"IF({at['others']}<={DOMINANT}*{at['largest']},{dominant},{otherwise}))"
+        )
 
     @property
     def row_of_cell(self) -> int:

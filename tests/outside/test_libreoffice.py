@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 import spreadsheets
+from small_report import end_gauge
 
 from loopsheet.report.cells.grid import checked
 from loopsheet.report.cells.marks import Marks
@@ -268,3 +269,49 @@ def test_is_printed(require: Callable[..., str], tmp_path: Path) -> None:
     assert "Soft steel, ball drop" in pages
     assert "###" not in pages
     assert "Err:" not in pages
+
+
+SURE = {
+    "l_S": "50.000623 mm, exact",
+    "dalpha": "0 K^-1, exact",
+    "alpha_S": "11.5e-6 K^-1, exact",
+    "theta": "-0.1 K, exact",
+    "cycle": "0 K, exact",
+    "dtheta": "0 K, exact",
+}
+BUDGETS: dict[str, dict[str, str]] = {
+    "limits": {"l_S": "50.000623 mm, +-0.1 um rect"},
+    "limits and little": {"l_S": "50.000623 mm, +-0.1 um arcsine", "dtheta": "0 K, u = 0.001"},
+    "a triangle": {"l_S": "50.000623 mm, +-0.1 um tri"},
+    "limits that are not certain": {"l_S": "50.000623 mm, +-0.1 um rect, dof = 2"},
+    "no one dominates": {"l_S": "50.000623 mm, +-0.1 um rect", "dtheta": "0 K, +-0.2 rect"},
+    "few readings": {"l_S": "50.000623 mm, s = 0.1 um, n = 5", "dtheta": "0 K, u = 0.02"},
+    "correlated": {"l_S": "50.000623 mm, u = 0.1 um", "dtheta": "0 K, u = 0.1"},
+    "second order alone": {"dalpha": "0 K^-1, +-1e-6 rect", "cycle": "0 K, u = 0.2", "theta": "0 K, exact"},
+    "second order beside": {
+        "l_S": "50.000623 mm, +-0.05 um rect", "dalpha": "0 K^-1, u = 1e-6", "cycle": "0 K, u = 1",
+    },
+}  # fmt: skip
+
+
+def test_a_budget_is_recalculated_to_the_same(require: Callable[..., str], tmp_path: Path) -> None:
+    """Degrees of freedom, coverage factor, expanded uncertainty: by the formulas as by the program."""
+    books = {}
+    for n, (name, stated) in enumerate(BUDGETS.items()):
+        folder = tmp_path / str(n)
+        folder.mkdir()
+        given = "".join(f'{key} = "{said}"\n' for key, said in (SURE | stated).items())
+        more = '[uncertainty.correlation]\n"l_S, dtheta" = "0.5"\n' if name == "correlated" else ""
+        toml = f'workbook = "workbook.py"\n[parameters]\n{given}[measurements]\nfile = "d.csv"\n'
+        end_gauge(folder, report=f'{toml}[uncertainty]\nd = "exact"\n{more}')
+        books[str(n)] = spreadsheets.deliver(folder).content
+    soffice = require("soffice", "libreoffice")
+    read = spreadsheets.recalculate(soffice, tmp_path / "office", books)
+    for n, name in enumerate(BUDGETS):
+        stored = spreadsheets.cells_of(books[str(n)])["uncertainty"]
+        again = read[str(n)]["uncertainty"]
+        numbers = {at: value for at, value in stored.items() if isinstance(value, int | float)}
+        assert {at: again[at] for at in numbers} == pytest.approx(numbers, rel=1e-9, abs=1e-24), name
+        assert [again[at] for at, value in stored.items() if "±" in str(value)] == [
+            value for value in stored.values() if "±" in str(value)
+        ]
