@@ -194,6 +194,12 @@ class Values:
         """All but sheet and layouts, in their order: plain data for another process, which has those."""
         return self.value, self.status, self.roots, self.counted, self.broken
 
+    @property
+    def given_labels(self) -> dict[str, list[int]]:
+        """Row numbers of the axes that come with the data, by the name of the axis."""
+        axes = (axis for axis in self.sheet.axes if not axis.parents)
+        return {axis.name: self.layouts[axis.name].labels[:, 0].tolist() for axis in axes}
+
     def labels(self, column: Column) -> list[tuple[int, ...]]:
         """How the rows of a column are called; one empty label for a scalar."""
         return [()] if column.axis is None else self._labels(column.axis.name)

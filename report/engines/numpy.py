@@ -525,11 +525,8 @@ def extend(values: Values, columns: Sequence[Column], data: Mapping[str, Any]) -
         As for :func:`evaluate`.
     """
     sheet = Sheet((*values.sheet.columns, *columns))
-    labels = {
-        axis.name: values.layouts[axis.name].labels[:, 0].tolist() for axis in sheet.axes if not axis.parents
-    }
     arrays = _arrays(data)
-    layouts = lay_out(sheet, labels, _counts(sheet, {**values.value, **arrays}))
+    layouts = lay_out(sheet, values.given_labels, _counts(sheet, {**values.value, **arrays}))
     return _Run(Program.of(sheet, values.value), Laid(sheet, layouts), arrays, values).values()
 
 

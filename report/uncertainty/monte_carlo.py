@@ -91,7 +91,7 @@ class _Draws:
     def __init__(self, inputs: Inputs, values: Values, name: str, seed: int) -> None:
         column = values.sheet[name]
         self.sheet = Sheet((*values.sheet.ancestors(column), column))
-        self.labels = {axis.name: inputs.tests for axis in self.sheet.axes if not axis.parents}
+        self.labels = values.given_labels
         self.program, self.name = Program.of(self.sheet), name
         self.generator = np.random.Generator(np.random.PCG64(seed))
         self.base = {

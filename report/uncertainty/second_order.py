@@ -133,8 +133,5 @@ def _beside(values: Values, sources: Sequence[ErrorSource], root: Array) -> Valu
     for source, along in zip(sources, root, strict=True):
         for name, row, u in source.moves:
             moved[name][:, row] += STEP * u * np.concatenate([along, -along])
-    labels = {
-        axis.name: values.layouts[axis.name].labels[:, 0].tolist() for axis in sheet.axes if not axis.parents
-    }
     given = {name: values.value[name] for name in sheet.bounds if name in values.value}
-    return evaluate(sheet, labels, given | moved)
+    return evaluate(sheet, values.given_labels, given | moved)
