@@ -13,12 +13,22 @@ from functools import cached_property
 
 from .distribution import Error, Shape
 
-__all__ = ["LARGEST", "SMALLEST", "Bounds", "Printed"]
+__all__ = ["LARGEST", "SMALLEST", "Bounds", "Printed", "behind"]
+
 
 LARGEST = 2**1024 - 2**970
 """What is no smaller than this rounds to no finite double."""
 SMALLEST = 2.0**-1022
 """Below, doubles lose digits, and some programs hold zero: a positive quantity has no value there."""
+
+
+def behind(unit: str) -> str:
+    """A unit as it stands behind a number, with a space; nothing of a pure number.
+
+    >>> behind("um"), behind("1")
+    (' um', '')
+    """
+    return "" if unit == "1" else f" {unit}"
 
 
 @dataclass(frozen=True)
@@ -69,7 +79,7 @@ class Bounds:
 
     def said(self, unit: str) -> str:
         """What is allowed, with the unit of its numbers behind it."""
-        return str(self) if unit == "1" else f"{self} {unit}"
+        return f"{self}{behind(unit)}"
 
     def __str__(self) -> str:
         """Say what is allowed, as the end of the sentence "it must be ..."."""

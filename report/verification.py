@@ -18,6 +18,7 @@ from .machine.kept import nothing_kept
 from .machine.scratch import scratch
 from .machine.staging import half_moved
 from .messages.errors import InputError
+from .quantity import behind
 from .result.agreement import LIMIT
 from .result.findings import Check
 from .result.result import Report
@@ -195,7 +196,7 @@ def _moves(found: Differences | None) -> Iterator[Check]:
         return
     for move in found.moved:
         was, now, by = moved(move)
-        said = f"{move.address} was {was} and is {now}" + ("" if move.unit == "1" else f" {move.unit}")
+        said = f"{move.address} was {was} and is {now}" + behind(move.unit)
         yield Check("number", move.address, False, f"{said} ({by})" if by else said)
     for change in found.method:
         said = f"{change.name} was '{change.before or 'not there'}' and is '{change.after or 'not there'}'"

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..messages.errors import Location, OutputError, diagnose
-from ..quantity import Bounds
+from ..quantity import Bounds, behind
 from .wheel import wheel
 
 if TYPE_CHECKING:
@@ -206,7 +206,7 @@ def _parameter(parameter: Parameter, example: str | None) -> Iterator[str]:
     note = _meaning(parameter)
     if parameter.default is not None:
         note += f"; {parameter.default} if left out"
-    suffix = "" if parameter.unit == "1" else f" {parameter.unit}"
+    suffix = behind(parameter.unit)
     value = example or parameter.default or f"...{suffix}"
     mark = "" if example is not None else "# "
     yield f"{mark}{parameter.name} = {_quote(value)}".ljust(38) + f"  # {_one_line(note)}"

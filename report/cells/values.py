@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..quantity import Bounds
+from ..quantity import Bounds, behind
 from ..sheet import Column, Formula, Root, Sheet
 from .address import address
 from .layout import Layout, Precedent, precedents
@@ -306,7 +306,7 @@ class Values:
         if isinstance(rule, Root) and status is Status.NOROOT:
             return f"{column.source} has no root here: {rule.none}"
         if isinstance(rule, Root) and status is Status.TWOROOTS:
-            unit = "" if column.unit == "1" else f" {column.unit}"
+            unit = behind(column.unit)
             found = " and ".join(f"{root:.6g}{unit}" for root in self.roots.get(column.name, {}).get(row, ()))
             return f"{column.source} has more than one root here: {found or rule.two}" + (
                 f" ({rule.two})" if found else ""

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ..messages.errors import Findings, Location
+from ..quantity import behind
 from .number_text import read_printed, read_value
 from .stated import SHAPES, StatementError, read_statement
 from .unit_text import ParsedUnit, UnitError, examples, parse_unit
@@ -93,7 +94,7 @@ class _Reader:
         self.findings = findings
         self.path = ("parameters", parameter.name)
         self.expected = parse_unit(parameter.unit)
-        self.suffix = "" if parameter.unit == "1" else f" {parameter.unit}"
+        self.suffix = behind(parameter.unit)
 
     def read(self, value: object) -> Printed | None:
         name = self.parameter.name

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from ..cells.address import address
 from ..inputs.published import PublishedValue
-from ..quantity import Printed
+from ..quantity import Printed, behind
 from .verdict import (
     ALL,
     EXACT,
@@ -397,7 +397,7 @@ def fit(found: Fit, meaning: Callable[[str], str]) -> str:
         Takes a column's name; returns what it is.
     """
     printed = found.published.printed
-    unit = "" if printed.unit == "1" else f" {printed.unit}"
+    unit = behind(printed.unit)
     offs = joined(f"{mismatch(off)} as the {meaning(name)} {name}" for name, off in found.mismatch.items())
     return (
         f"{printed.text}{unit} is published as the {meaning(found.published.cell)}. "

@@ -82,6 +82,8 @@ def summary(report: Report) -> dict[str, Any]:
 
 def _line(report: Report, name: str) -> str:
     """A headline cell in a line, in the digits that its inputs warrant."""
+    from ..quantity import behind
+
     cell = report.values.cell(name)
     how = report.shown[name]
     column = report.sheet[name]
@@ -91,5 +93,5 @@ def _line(report: Report, name: str) -> str:
     left = "".join(f"  (over {n} {axis} that have values)" for axis, n in rows.items())
     left += "".join(f"  ({count.said})" for count in report.marks.behind(column) if count.number)
     left += (mark := report.marks.of(name)[0]) and f"  {mark}"
-    unit = "" if how.unit == "1" else f" {how.unit}"
+    unit = behind(how.unit)
     return f"{name:12} {cell.value / how.scale:#.{how.digits}g}{unit}  {column.meaning} {column.source}{left}"

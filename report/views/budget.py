@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 
 from ..document.numbers import decimals, rounded, stated
+from ..quantity import behind
 from ..result.result import Report
 from ..result.uncertain import Budget, Contribution, Distributed
 from . import markdown as md
@@ -202,7 +203,7 @@ def _percent(share: float) -> str:
 
 def _unit(report: Report, name: str) -> tuple[str, float]:
     how = report.shown[name]
-    return ("" if how.unit == "1" else f" {how.unit}"), how.scale
+    return behind(how.unit), how.scale
 
 
 def _number(value: float | None) -> float | None:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from ..archive.differences import Differences, Move
 from ..messages.diagnostics import visible
+from ..quantity import behind
 from . import markdown as md
 
 __all__ = ["FORMATS", "as_markdown", "as_text", "moved"]
@@ -64,7 +65,7 @@ def _said(text: str) -> str:
 
 
 def _unit(move: Move) -> str:
-    return "" if move.unit == "1" else f" {move.unit}"
+    return behind(move.unit)
 
 
 def moved(move: Move) -> tuple[str, str, str]:

@@ -12,6 +12,7 @@ from ...derivations.text import Wording, text_of_equation
 from ..cells.trace import Group, dependents_of, precedents_of
 from ..cells.values import Cell
 from ..document.numbers import stated
+from ..quantity import behind
 from ..result.result import Report
 from ..sheet import Column, Formula, Given, Root
 
@@ -73,8 +74,7 @@ def _line(what: str, text: str) -> str:
 
 
 def _unit(report: Report, name: str) -> str:
-    unit = report.shown[name].unit
-    return "" if unit == "1" else f" {unit}"
+    return behind(report.shown[name].unit)
 
 
 def _full(report: Report, cell: Cell) -> str:

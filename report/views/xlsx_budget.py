@@ -14,6 +14,7 @@ from typing import Any
 from ..cells.grid import CellBlock, Grid, checked
 from ..distribution import DOMINANT
 from ..document.numbers import stated
+from ..quantity import behind
 from ..result.result import Report
 from ..result.uncertain import Budget, Contribution
 from .xlsx_style import Style, height, number_format
@@ -227,7 +228,7 @@ class _Written:
             return row
         value, expanded = stated(budget.value / scale, budget.expanded / scale)
         form = f"0.{'0' * len(value.fraction)}" if value.fraction else "0"
-        unit = "" if self.block.unit == "1" else f" {self.block.unit}"
+        unit = behind(self.block.unit)
         power, over = (f"E{value.exponent}", f"/10^{value.exponent}") if value.exponent else ("", "")
         if value.exponent and value.exponent < 0:
             over = f"*10^{-value.exponent}"

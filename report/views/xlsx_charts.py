@@ -9,6 +9,7 @@ from ..cells.address import index_text
 from ..cells.grid import CellBlock, Grid
 from ..charts import Series, copied, shade
 from ..document.charted import Words, plain
+from ..quantity import behind
 from ..result.result import Report
 from .xlsx_style import Style, number_format
 
@@ -69,7 +70,7 @@ def _axis(name: str, from_zero: bool, log: bool) -> dict[str, Any]:
 def _told(sheet: Any, style: Style, row: int, label: str, block: CellBlock, words: Words) -> str:
     """Write a label with a number behind it, in the unit of its cell; the address of what is written."""
     form = number_format(block.values, words.report.shown[block.name].digits)
-    unit = "" if block.unit == "1" else f" {block.unit}"
+    unit = behind(block.unit)
     told = '"{}"&TEXT({},"{}")&"{}"'.format(label.replace('"', '""'), block.place.cell(), form, unit)
     style.formula(sheet, row, 0, told, label + words.value(block.name), style("number"))
     return f"={sheet.get_name()}!$A${row + 1}"
