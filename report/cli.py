@@ -55,6 +55,7 @@ and in such a folder, or with its name or 'paper' at the end:
   loopsheet budget alpha_mean          how uncertain it is, and where that comes from
   loopsheet verify                     the same report again? if not, which number and why
   loopsheet diff out other/out         two results, number by number
+  loopsheet validate --out record.txt  all shipped examples on this machine, as a record for the files
 """
 _FIRST = "'loopsheet new my-campaign' makes a folder to start from, 'loopsheet --help' tells more"
 

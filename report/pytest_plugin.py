@@ -145,7 +145,7 @@ class FolderChecks:
         return {
             "engine": list(ENGINES),
             "proof": [equation.label for equation in inputs.workbook.ledger().equations()],
-            "published": names_of(inputs.published),
+            "published": names_of((*inputs.published, *inputs.published_u)),
             "table": table_names(inputs),
             **oddities.names(prepared.sheet, inputs),
         }

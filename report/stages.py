@@ -193,8 +193,11 @@ def refereed(report: Report, step: Step = silent) -> Report:
     step : callable
         Told what is begun.
     """
+    from .referee.uncertain import compare_uncertainties
+
     found, comparisons = refereed_values(Prepared(report.inputs, report.sheet), report.values, step)
-    return replace(report, referee=found, comparisons=comparisons)
+    uncertain = compare_uncertainties(report.inputs, report.values, step)
+    return replace(report, referee=found, comparisons=comparisons, comparisons_u=uncertain)
 
 
 def refereed_values(
@@ -223,10 +226,12 @@ def refereed_values(
 def compared(report: Report) -> Report:
     """The report with published.csv read again, after only what is known of differences has changed."""
     from . import referee
+    from .referee.uncertain import compare_uncertainties
 
     inputs = load(report.inputs.folder, find_workbook)
     comparisons = referee.refereed(referee.compare(inputs.published, report.values), report.referee)
-    return replace(report, inputs=inputs, comparisons=comparisons)
+    again = replace(report, inputs=inputs, comparisons=comparisons)
+    return replace(again, comparisons_u=compare_uncertainties(inputs, report.values))
 
 
 def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:

@@ -250,7 +250,7 @@ def _printed(folder: Folder) -> None:
 
 def _published_printed(folder: Folder) -> None:
     if len(folder.published) > 1:
-        folder.toml += ["[published.printed]", f'{folder.published[-1][1]} = "truncated"']
+        folder.toml += ["[published.printed]", f'"{folder.published[-1][1]}" = "truncated"']
 
 
 def _errata(folder: Folder) -> None:
@@ -263,6 +263,18 @@ def _free(folder: Folder) -> None:
     folder.toml.insert(folder.toml.index("[published]") + 1, f"free = {names}".replace("'", '"'))
 
 
+ABOUT = ("u({0})", "u1({0})", "U95({0})", "k99.5({0})", "dof({0})", "low90({0})", "q({0})", "u({0}", "r({0})")
+
+
+def _about(folder: Folder, name: str) -> tuple[str, str]:
+    """The cell of a published value and its unit: now and then of something else than its value."""
+    unit = folder.unit(name)
+    if folder.dice.random() < 0.7:
+        return name, unit
+    form = folder.dice.choice(ABOUT)
+    return form.format(name), "1" if form[0] in "kdr" else unit
+
+
 def _publish(folder: Folder) -> None:
     name = folder.dice.choice(sorted(folder.base.cells))
     index = folder.dice.choice(INDICES)
@@ -270,7 +282,8 @@ def _publish(folder: Folder) -> None:
         index = "" if name in folder.base.parameters or name.endswith(("_mean", "_log")) else index or "1"
     if folder.dice.random() < 0.4:
         del folder.published[1:]
-    row = [folder.dice.choice(("Table 2", "T")), name, index, folder.number(), folder.unit(name)]
+    about, unit = _about(folder, name)
+    row = [folder.dice.choice(("Table 2", "T")), about, index, folder.number(), unit]
     folder.published.append(row + [""] * (len(folder.published[0]) - 5))
 
 

@@ -286,6 +286,7 @@ CASES: dict[str, Callable[[], None]] = {
     "LS506": published("1-2", "2-3"),
     "LS507": lambda: campaign(published=pinned("differs,1.258")),
     "LS508": lambda: campaign(published=pinned(",1.234 -> 1.258")),
+    "LS509": published("alpha", "q(alpha)"),
     "LS601": new_in_a_file,
     "LS602": new_on_a_file,
     "LS603": new_in_a_used_folder,

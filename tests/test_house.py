@@ -96,7 +96,10 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
         DECLARED | rooms("engines", "inputs", "judge", "result", "uncertainty"),
         {"numpy", "scipy"},
     ),
-    "report.referee": (DECLARED | rooms("engines", "inputs", "judge", "referee", "result"), NUMERIC),
+    "report.referee": (
+        DECLARED | rooms("engines", "inputs", "judge", "referee", "result", "uncertainty"),
+        NUMERIC,
+    ),
     "report.archive": (DECLARED | rooms("archive", "files", "inputs", "machine", "result"), {"msgspec"}),
     "report.document": (
         DECLARED | rooms("document", "inputs.measurements", "inputs.published", "result"),

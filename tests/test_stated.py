@@ -47,6 +47,7 @@ def errors(text: str, number: str = "12.50") -> tuple[tuple[float, Shape, float]
         ("u = 1 % of reading", 0.125, Shape.NORMAL, math.inf),
         ("s = 0.03, n = 9", 0.01, Shape.STUDENT, 8),
         ("s = 0.02, n = 2", 0.02 / 2**0.5, Shape.STUDENT, 1),
+        ("s = 0.02, n = 4, dof = 24", 0.01, Shape.STUDENT, 24),
         ("t scale = 0.01, dof = 4", 0.01, Shape.STUDENT, 4),
         ("t sd = 0.02, dof = 4", 0.02 / 2**0.5, Shape.STUDENT, 4),
     ],

@@ -10,10 +10,12 @@ from pathlib import Path
 from ..messages.errors import Location, UsageError, diagnose, listing
 
 __all__ = [
+    "EXAMPLES",
     "INPUTS",
     "PAPER",
     "WORD",
     "built_from",
+    "called",
     "is_report",
     "output",
     "report_folder",
@@ -24,6 +26,8 @@ __all__ = [
 
 PAPER = Path(__file__).resolve().parents[2] / "data" / "soft_steel"
 """The shipped campaign."""
+EXAMPLES = tuple(path.parent for path in sorted(PAPER.parent.glob("*/report.toml")))
+"""All shipped folders, of which each is published."""
 WORD = "paper"
 """What a user calls it; a folder of that name is written ``./paper``."""
 OUT = "out"
@@ -74,6 +78,12 @@ def written(folder: Path) -> str:
         return WORD
     text = folder.as_posix()
     return f"./{text}" if text == WORD or text.startswith("-") else shlex.quote(text)
+
+
+def called(folder: Path) -> str:
+    """A report folder by a name that is the same wherever loopsheet is installed, if it is a shipped one."""
+    shipped = folder.resolve()
+    return shipped.name if shipped in EXAMPLES else written(folder)
 
 
 def told(folder: Path) -> str:

@@ -76,6 +76,8 @@ class Inputs:
         The unit of each measured column, as written in the header.
     published : tuple of PublishedValue
         The values to referee.
+    published_u : tuple of PublishedValue
+        What is published of the uncertainties of cells.
     files : dict of str to bytes
         The bytes of every file that was read, by its name relative to the folder.
     free_at : dict of str to Location
@@ -112,6 +114,7 @@ class Inputs:
     left_out: tuple[LeftOut, ...] = ()
     aside: tuple[PublishedValue, ...] = ()
     uncertainty: Stated = field(default_factory=lambda: Stated({}))
+    published_u: tuple[PublishedValue, ...] = ()
 
     @property
     def about_source(self) -> bool:
@@ -203,16 +206,18 @@ def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[
         there = cells[name][1] if name in cells else () if not name else (index,)
         return index not in there and not gone.isdisjoint(index)
 
-    aside = tuple(value for value in inputs.published if rests_on_gone(value.cell, value.index))
+    every = (*inputs.published, *inputs.published_u)
+    aside = tuple(value for value in every if rests_on_gone(value.columns[0], value.index))
     kept = replace(
         inputs,
         expected=tuple(each for each in inputs.expected if not rests_on_gone(*each.cell)),
         published=tuple(value for value in inputs.published if value not in aside),
+        published_u=tuple(value for value in inputs.published_u if value not in aside),
         aside=aside,
     )
     findings = Findings()
     check_expected(kept.expected, kept.tests, cells, findings)
-    check_published(kept.published, kept.free_at, cells, findings)
+    check_published((*kept.published, *kept.published_u), kept.free_at, cells, findings)
     findings.check()
     return kept
 
@@ -267,7 +272,7 @@ class _Reader:
             measurements.tests,
             measurements.measured,
             measurements.header_units,
-            published,
+            tuple(value for value in published if value.about is None),
             self.files,
             self.free,
             expected,
@@ -275,6 +280,7 @@ class _Reader:
             self.by_source,
             measurements.left_out,
             uncertainty=uncertainty,
+            published_u=tuple(value for value in published if value.about is not None),
         )
         if self.findings.found:
             self.findings.found.extend(self.more(inputs))
@@ -362,6 +368,8 @@ class _Reader:
     # ------------------------------------------------------------------ the tables
 
     def measurements(self) -> Measurements | None:
+        if self.workbook is not None and not self.workbook.measured and "measurements" not in self.toml.data:
+            return Measurements((), {}, {})  # all that there is to give are parameters
         table = self.tables.keys(("measurements",), ("file", "printed"))
         above = self.toml.data
         missing = isinstance(above.get("measurements", {}), dict)

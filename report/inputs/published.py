@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from ..cells.address import index_text
 from ..messages.errors import Findings, Location, listing, suggest
+from .about import FORMS, About, read_about
 from .csvtable import CsvTable, Field, match_columns, read_table
 from .number_text import NumberError, read_number, read_printed
 from .unit_text import ParsedUnit, UnitError, examples, parse_unit
@@ -94,6 +95,8 @@ class PublishedValue:
         What the publication calls its row, if that names an equation: ``eq. 6``.
     unread : frozenset of str
         Fields that are refused already; the sheet is not asked for more about them.
+    about : About or None
+        What it tells of a cell besides its value, then `cell` is how that is written; None for a value.
     """
 
     source: str
@@ -108,6 +111,13 @@ class PublishedValue:
     places: Mapping[str, Location] = field(default_factory=dict, compare=False, repr=False)
     label: str = ""
     unread: frozenset[str] = frozenset()
+    about: About | None = None
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The columns that it tells of."""
+        about = self.about
+        return (self.cell,) if about is None else tuple(filter(None, (about.cell, about.other)))
 
 
 def read_published(source: Source, findings: Findings) -> tuple[PublishedValue, ...]:
@@ -150,6 +160,10 @@ def _value(table: CsvTable, fields: Mapping[str, Field], findings: Findings) -> 
         if not fields[name].text:
             findings.add("LS403", table.at(fields[name]), name=name, allowed=sentence)
             unread.add(name)
+    about = read_about(fields["cell"].text)
+    if about is None and "(" in fields["cell"].text:
+        findings.add("LS509", table.at(fields["cell"]), text=fields["cell"].text, known=FORMS)
+        unread.add("cell")
     index = fields["index"]
     if index.text and not _INDEX.fullmatch(index.text):
         findings.add("LS501", table.at(index), text=index.text)
@@ -178,6 +192,7 @@ def _value(table: CsvTable, fields: Mapping[str, Field], findings: Findings) -> 
         {name: table.at(field) for name, field in fields.items()},
         words["label"],
         frozenset(unread),
+        about,
     )
 
 
@@ -244,22 +259,20 @@ def check_published(
             break
         if "cell" in value.unread:
             continue
-        if value.cell not in cells:
-            at = value.places.get("cell")
-            findings.add(
-                "LS505",
-                at,
-                text=value.cell,
-                known=listing(cells, most=24),
-                suggestion=suggest(value.cell, cells),
-            )
+        unknown = [name for name in value.columns if name not in cells]
+        for name in unknown:
+            at, known = value.places.get("cell"), listing(cells, most=24)
+            findings.add("LS505", at, text=name, known=known, suggestion=suggest(name, cells))
+        if unknown:
             continue
-        unit, indices = cells[value.cell]
-        if value.index not in indices and "index" not in value.unread:
-            text = index_text(value.index)
-            findings.add(
-                "LS506", value.places.get("index"), name=value.cell, text=text, known=_indices(indices)
-            )
+        unit, _ = cells[value.columns[0]]
+        of_rows = value.columns if value.about and value.about.kind == "r" else value.columns[:1]
+        for name in of_rows if "index" not in value.unread else ():
+            if value.index not in cells[name][1]:
+                at, text = value.places.get("index"), index_text(value.index)
+                findings.add("LS506", at, name=name, text=text, known=_indices(cells[name][1]))
+        if value.about and value.about.is_pure:
+            unit = "1"
         others = None if "unit" in value.unread else _convertible(value.printed.unit, unit)
         if others is not None:
             at = value.places.get("unit")

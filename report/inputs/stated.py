@@ -42,7 +42,7 @@ _NAMED = re.compile(r"(?P<name>t scale|t sd|dof|[uUkpsn])\s*=\s*")
 _TERM = re.compile(r"(?P<number>[0-9.][0-9.]*(?:[eE][+-]?[0-9]+)?)\s*(?P<unit>.*)")
 _RELATIVE = re.compile(r"%\s*(?:of\s+(?:the\s+)?(?:reading|value))?")
 _DIGITS = re.compile(r"digits?")
-_KEYS = {"u": {"dof"}, "U": {"k", "p", "dof"}, "s": {"n"}, "t scale": {"dof"}, "t sd": {"dof"}}
+_KEYS = {"u": {"dof"}, "U": {"k", "p", "dof"}, "s": {"n", "dof"}, "t scale": {"dof"}, "t sd": {"dof"}}
 """What may stand behind each beginning."""
 _LARGEST = 10**60
 """Of whatever unit: its square, and that of what follows from it, shall be numbers still."""
@@ -143,7 +143,7 @@ def _part(text: str, start: int, unit: ParsedUnit, bare: Shape | None) -> _Part:
     absolute, relative, digits = _amount(size, start + begins, unit)
     keys = dict(_keys(others, _KEYS[name] if begin else _LIMIT_KEYS))
     shape, divisor = _meant(first, start, name, word and SHAPES[word["shape"]], keys, bare)
-    dof = float(keys["n"] - 1) if name == "s" else float(keys.get("dof", inf))
+    dof = float(keys.get("dof", keys["n"] - 1 if name == "s" else inf))
     if shape is Shape.NORMAL and dof < inf:
         shape = Shape.STUDENT  # JCGM 101, 6.4.9
     return _Part(absolute, relative, digits, divisor, shape, dof, text)

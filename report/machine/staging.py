@@ -14,7 +14,7 @@ from ..messages.errors import EXHAUSTED, Location, OutputError, diagnose
 from .scratch import left_over, locked, scratch
 from .stopping import unstoppable
 
-__all__ = ["half_moved", "put", "replaced", "staged"]
+__all__ = ["half_moved", "put", "replaced", "staged", "written"]
 
 PATIENCE = 60.0
 """Seconds to wait for somebody else who builds into the same folder."""
@@ -53,16 +53,35 @@ def replaced(path: Path, before: bytes, after: bytes) -> None:
     OutputError
         It cannot be written; it is as it was then.
     """
+    _replaced(path, before, after)
+
+
+def written(path: Path, content: bytes) -> None:
+    """Write a file of the user's choice as a whole, whether there is one already or not.
+
+    Raises
+    ------
+    OutputError
+        It cannot be written; what is there is as it was then.
+    """
+    _replaced(path, None, content)
+
+
+def _replaced(path: Path, before: bytes | None, after: bytes) -> None:
     target = path.resolve()
     try:
+        there = target.exists()
         # An administrator may write anything: what counts is what the owner has said.
-        if not target.stat().st_mode & 0o222 or not os.access(target, os.W_OK):
+        if there and (not target.stat().st_mode & 0o222 or not os.access(target, os.W_OK)):
             raise PermissionError("it is read-only")
+        if target.is_dir():
+            raise IsADirectoryError("it is a folder")
         with scratch(target.parent) as stage, unstoppable():
             draft = stage / target.name
             draft.write_bytes(after)
-            shutil.copymode(target, draft)
-            if target.read_bytes() != before:
+            if there:
+                shutil.copymode(target, draft)
+            if before is not None and target.read_bytes() != before:
                 raise PermissionError("somebody has changed it meanwhile")
             os.replace(draft, target)
     except OSError as error:

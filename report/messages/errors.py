@@ -312,6 +312,12 @@ CATALOGUE: dict[str, Entry] = {
         "'differs' in the column 'expect', or nothing in both",
         "leave both empty if the value has to print the same",
     ),
+    "LS509": Entry(
+        "not told of a cell",
+        "'{text}' is nothing that is told of a cell",
+        "{known}; its value by its name alone",
+        "write what is published of its uncertainty as it stands there, in quotes if it has a comma",
+    ),
     # Usage and outputs
     "LS601": Entry(
         "output not writable",

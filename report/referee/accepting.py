@@ -82,15 +82,15 @@ def accepted(report: Report, reason: str = "") -> Accepted:
     reason : str
         Why they differ, for the rows that do not say it.
     """
-    place = report.comparisons[0].published.places["value"]
-    name = report.comparisons[0].published.where.rsplit(":", 2)[0]
+    place = report.every_comparison[0].published.places["value"]
+    name = report.every_comparison[0].published.where.rsplit(":", 2)[0]
     before, path = report.inputs.files[name], report.inputs.folder / name
     findings = Findings()
     source = open_source(place.path, name, before, "", findings)
     table = None if source is None else read_table(source, COLUMNS, findings)
     findings.check()
     assert table is not None  # it was read before, with the same content
-    words = [_words(comparison, reason) for comparison in report.comparisons]
+    words = [_words(comparison, reason) for comparison in report.every_comparison]
     new = [name for name in COLUMNS if any(each.get(name) for each in words) and name not in _names(table)]
     lines = list(_lines(table, words, new))
     text = table.source.text

@@ -8,7 +8,7 @@ from dataclasses import replace
 from decimal import Context, Decimal
 from fractions import Fraction
 
-from ..cells.values import Values
+from ..cells.values import Cell, Values
 from ..inputs.published import PublishedValue
 from ..quantity import Printed
 from ..result import verdict_words as words
@@ -27,7 +27,7 @@ from ..result.verdict import (
     Verdict,
 )
 
-__all__ = ["compare", "print_as", "prints_same", "refereed"]
+__all__ = ["beside", "compare", "print_as", "prints_same", "refereed"]
 
 DIGITS = 15
 """Of a decimal number, how many every double keeps."""
@@ -76,7 +76,12 @@ def compare(published: tuple[PublishedValue, ...], values: Values) -> tuple[Comp
 
 
 def _compare(published: PublishedValue, values: Values) -> Comparison:
-    cell, printed = values.cell(published.cell, published.index), published.printed
+    return beside(published, values.cell(published.cell, published.index))
+
+
+def beside(published: PublishedValue, cell: Cell) -> Comparison:
+    """Set a published number beside a cell that holds what is computed."""
+    printed = published.printed
     if cell.value is None:
         again, distance, verdict = cell.status.code, None, "not-checkable"
     else:

@@ -41,10 +41,11 @@ MOST_NAMED = 5
 
 def checks(report: Report) -> tuple[Check, ...]:
     """Everything that was checked of a report, in the order in which it is told."""
+    every = (*report.comparisons, *report.comparisons_u)
     return (
         *(of_engine(agreement, report.inputs) for agreement in report.engines),
         *(of_proof(proof, report.inputs) for proof in report.proofs),
-        *map(of_comparison, report.comparisons, names_of(c.published for c in report.comparisons)),
+        *map(of_comparison, every, names_of(c.published for c in every)),
         *of_referee(report),
         *report.oddities,
     )

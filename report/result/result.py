@@ -155,6 +155,9 @@ class Report:
         Findings about the source's print, each made by a check.
     comparisons : tuple of Comparison
         In the order of published.csv.
+    comparisons_u : tuple of Comparison
+        The same of what is published of uncertainties, each with a cell of its own; empty before the referee
+        was asked.
     plotted : callable
         Computes what charts ask for besides.
     uncertain : callable
@@ -187,6 +190,15 @@ class Report:
     oddities: tuple[Check, ...] = ()
     referee: Referee = field(default_factory=Referee)
     versions: Mapping[str, str] = field(default_factory=dict)
+    comparisons_u: tuple[Comparison, ...] = ()
+
+    @property
+    def every_comparison(self) -> tuple[Comparison, ...]:
+        """Of values and of uncertainties, as they stand in published.csv."""
+        if not self.comparisons_u:
+            return self.comparisons
+        every = (*self.comparisons, *self.comparisons_u)
+        return tuple(sorted(every, key=lambda each: each.published.places["value"].line or 0))
 
     @property
     def ledger(self) -> Ledger:

@@ -3,7 +3,7 @@
 A verb is listed here and imports what it needs when it runs, so that ``--help`` answers at once.
 """
 
-from . import budget, build, check, crate, diff, new, prove, schema, show, verify, watch, why
+from . import budget, build, check, crate, diff, new, prove, schema, show, validate, verify, watch, why
 
 VERBS = {
     "build": build,
@@ -15,6 +15,7 @@ VERBS = {
     "budget": budget,
     "new": new,
     "verify": verify,
+    "validate": validate,
     "diff": diff,
     "crate": crate,
     "schema": schema,

@@ -68,7 +68,7 @@ def _accept(options: argparse.Namespace) -> int:
         raise UsageError(diagnose("LS614", reason=said, known=known))
     with Progress(sys.stderr) as progress:
         report = Study(folder, step=progress).refereed
-    if report.comparisons:
+    if report.every_comparison:
         found = accepted(report, reason)
         if found.after != found.before:
             replaced(found.path, found.before, found.after)
@@ -102,7 +102,7 @@ def _ask(report: Report) -> None:
     """What was not written, for nobody said why it differs."""
     from ..result.verdict import UNEXPECTED
 
-    number = sum(each.finding == UNEXPECTED and not each.published.expect for each in report.comparisons)
+    number = sum(each.finding == UNEXPECTED and not each.published.expect for each in report.every_comparison)
     if number:
         values = "1 more value differs and is" if number == 1 else f"{number} more values differ and are"
         print(f"{values} not written: say why, with --reason 'a sentence' or in the column 'reason'")
@@ -117,13 +117,12 @@ def _print(report: Report, found: Sequence[Check]) -> None:
         print(f"  erratum  {erratum.sentence}")
     for agreement in report.engines:
         print(f"engine     {agreement.line}")
-    same = sum(c.verdict == "same" for c in report.comparisons)
-    known = sum(bool(c.published.expect) and c.as_expected for c in report.comparisons)
-    if report.comparisons:
-        print(
-            f"published  {len(report.comparisons)} values: {same} print the same, {known} differ as is known"
-        )
-    for comparison in report.comparisons:
+    every = report.every_comparison
+    same = sum(c.verdict == "same" for c in every)
+    known = sum(bool(c.published.expect) and c.as_expected for c in every)
+    if every:
+        print(f"published  {len(every)} values: {same} print the same, {known} differ as is known")
+    for comparison in every:
         if comparison.verdict != "same":
             where = f"{comparison.published.source} {comparison.cell.address}"
             printed, reason = comparison.published.printed.text, comparison.published.reason
@@ -156,7 +155,7 @@ def _details(report: Report) -> dict[str, Any]:
                 "expected": c.as_expected,
                 "finding": c.finding or None,
             }
-            for c in report.comparisons
+            for c in report.every_comparison
         ],
         "referee": to_builtins(data(report.referee)),
     }

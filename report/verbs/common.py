@@ -26,6 +26,7 @@ __all__ = [
     "find",
     "find_one",
     "folder_argument",
+    "folders_argument",
     "format_argument",
     "keeping_arguments",
     "named",
@@ -44,6 +45,12 @@ def folder_argument(parser: argparse.ArgumentParser) -> None:
     """Take a FOLDER: a word for :func:`~loopsheet.report.inputs.folders.report_folder`."""
     said = f"a folder with a report.toml (default: the working directory), or '{WORD}' for the shipped paper"
     parser.add_argument("folder", metavar="FOLDER", nargs="?", type=named, help=said)
+
+
+def folders_argument(parser: argparse.ArgumentParser) -> None:
+    """Take any number of FOLDERs."""
+    said = f"folders with a report.toml, or '{WORD}' for the shipped paper (default: all that are shipped)"
+    parser.add_argument("folders", metavar="FOLDER", nargs="*", type=named, help=said)
 
 
 def keeping_arguments(parser: argparse.ArgumentParser) -> None:

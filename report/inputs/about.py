@@ -1,0 +1,66 @@
+"""What a publication tells of a cell besides its value: ``u(l)``, ``U99(l)``, ``r(R, X)``.
+
+u(l)              the combined standard uncertainty; u1(l): to first order alone
+u(l, d)           what all errors of the column d contribute to it
+U99(l), k99(l)    the expanded uncertainty for 99 %, and its coverage factor
+dof(l)            the effective degrees of freedom
+r(R, X)           the correlation of two cells of the same row
+low95(l), high95(l)   the ends of the interval with equal tails, by Monte Carlo
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+__all__ = ["FORMS", "About", "read_about"]
+
+FORMS = "u(l), u1(l), u(l, d), U95(l), k95(l), dof(l), r(l, m), low95(l), high95(l)"
+"""What there is, for messages."""
+_WRITTEN = re.compile(r"([^()\s]*)\s*\(\s*([^(),]+?)\s*(?:,\s*([^(),]+?)\s*)?\)")
+_KIND = re.compile(r"(u1?|dof|r)|(U|k|low|high)([0-9]{1,2}(?:\.[0-9]{1,6})?)")
+_PURE = ("k", "dof", "r")
+
+
+@dataclass(frozen=True)
+class About:
+    """What is told of a cell.
+
+    Parameters
+    ----------
+    kind : str
+        ``u``, ``u1``, ``U``, ``k``, ``dof``, ``r``, ``low`` or ``high``.
+    cell : str
+        The column of the cell.
+    other : str
+        The column whose errors contribute, or that it is correlated with; empty if there is none.
+    level : float
+        The coverage probability, where there is one.
+    """
+
+    kind: str
+    cell: str
+    other: str = ""
+    level: float = 0.95
+
+    @property
+    def is_pure(self) -> bool:
+        """Whether it is a pure number, whatever the unit of the cell."""
+        return self.kind in _PURE
+
+
+def read_about(text: str) -> About | None:
+    """What the field `cell` of published.csv tells of a cell; None if it is no such thing.
+
+    >>> read_about("U99(l)"), read_about("l")
+    (About(kind='U', cell='l', other='', level=0.99), None)
+    """
+    written = _WRITTEN.fullmatch(text)
+    kind = _KIND.fullmatch(written[1]) if written else None
+    if written is None or kind is None:
+        return None
+    name, cell, other = kind[1] or kind[2], written[2], written[3] or ""
+    level = float(kind[3] or 95) / 100
+    if level < 0.01 or bool(other) not in {"u": (False, True), "r": (True,)}.get(name, (False,)):
+        return None
+    return About(name, cell, other, level)

@@ -1,0 +1,92 @@
+"""Published uncertainties beside the computed ones, in the digits that were printed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..cells.values import Cell, Status, Values
+from ..inputs.about import About
+from ..inputs.inputs import Inputs
+from ..result.result import Comparison
+from ..uncertainty.monte_carlo import MOST, draw
+from ..uncertainty.propagation import Spread
+from .comparison import beside
+
+if TYPE_CHECKING:
+    from ..inputs.published import PublishedValue
+    from ..result.uncertain import Budget
+
+__all__ = ["compare_uncertainties"]
+
+NOTHING = "nothing is known of its uncertainty"
+
+
+def compare_uncertainties(
+    inputs: Inputs, values: Values, step: Callable[[str], None] = lambda _: None
+) -> tuple[Comparison, ...]:
+    """Set everything that is published of uncertainties beside what is computed.
+
+    Parameters
+    ----------
+    inputs : Inputs
+    values : Values
+        All columns, without a batch.
+    step : callable
+        Told what is begun.
+    """
+    if not inputs.published_u:
+        return ()
+    asked = _Asked(inputs, values, step)
+    return tuple(beside(each, asked.cell(each)) for each in inputs.published_u)
+
+
+class _Asked:
+    """What is told of cells."""
+
+    def __init__(self, inputs: Inputs, values: Values, step: Callable[[str], None]) -> None:
+        self.inputs, self.values, self.step = inputs, values, step
+        self.spread = Spread(inputs, values)
+
+    def cell(self, published: PublishedValue) -> Cell:
+        """What is computed, as a cell of its own name; without a value where the cell has none."""
+        assert published.about is not None
+        about, index = published.about, published.index
+        there = self.values.cell(about.cell, index)
+        if there.value is None:
+            return Cell(published.cell, index, None, there.status, there.culprit or there, there.why)
+        number = self.number(about, index)
+        if not math.isfinite(number):
+            return Cell(published.cell, index, None, Status.DOMAIN, None, NOTHING)
+        return Cell(published.cell, index, number, Status.OK)
+
+    def number(self, about: About, index: tuple[int, ...]) -> float:
+        """What is told, in SI; NaN where nothing is known."""
+        row = self.values.row(self.values.sheet[about.cell], index)
+        if about.kind == "r":
+            return self._correlation((about.cell, row), (about.other, row))
+        if about.other:
+            return self._contribution(about, row)
+        budget = self.spread.budget(about.cell, row, about.level)
+        if about.kind in ("low", "high"):
+            return self._end(about.kind, budget)
+        known = {"u": budget.u, "U": budget.expanded, "k": budget.factor, "dof": budget.dof}
+        return known.get(about.kind, math.sqrt(max(budget.u**2 - budget.second, 0.0)))
+
+    def _correlation(self, *cells: tuple[str, int]) -> float:
+        found = self.spread.covariance(cells)
+        with np.errstate(all="ignore"):
+            return float(found[0, 1] / np.sqrt(found[0, 0] * found[1, 1]))
+
+    def _contribution(self, about: About, row: int) -> float:
+        """Of all errors of a column together, to first order."""
+        own = self.spread.contributions([(about.cell, row)])[0]
+        names = [{name for name, _, _ in source.moves} for source in self.spread.sources]
+        return math.hypot(*(own[n] for n, moved in enumerate(names) if about.other in moved))
+
+    def _end(self, kind: str, budget: Budget) -> float:
+        drawn = draw(self.inputs, self.values, budget, MOST, step=self.step)
+        return drawn.symmetric[kind == "high"]

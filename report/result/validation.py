@@ -1,0 +1,91 @@
+"""The record of a validation: report folders whose results are published, computed here and now."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from .findings import Check, checks
+from .verdict import UNEXPECTED
+
+if TYPE_CHECKING:
+    from .result import Report
+
+__all__ = ["Example", "Validation"]
+
+
+@dataclass(frozen=True)
+class Example:
+    """One report folder, with all that is checked of it.
+
+    Parameters
+    ----------
+    name : str
+        What the record calls it.
+    report : Report
+        From :meth:`of`.
+    """
+
+    name: str
+    report: Report
+
+    @classmethod
+    def of(cls, name: str, report: Report) -> Example:
+        """What is checked of a report with proofs, engines and referee.
+
+        A published number has to print the same, or to be a known difference: that the printed inputs might
+        yield it excuses an author, but no program that is given the author's inputs.
+        """
+        strict = (
+            each if each.published.expect or each.verdict == "same" else replace(each, finding=UNEXPECTED)
+            for each in report.comparisons
+        )
+        return cls(name, replace(report, comparisons=tuple(strict)))
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """Everything that was checked, by names that no other example has."""
+        return tuple(
+            replace(check, name=f"{self.name}: {check.name}", at=replace(check.at, path=""))
+            for check in checks(self.report)
+        )
+
+    @property
+    def failed(self) -> tuple[Check, ...]:
+        """What is not as expected."""
+        return tuple(check for check in self.checks if not check.passed)
+
+
+@dataclass(frozen=True)
+class Validation:
+    """What was run on a machine, and what came of it.
+
+    Parameters
+    ----------
+    examples : tuple of Example
+    by : mapping of str to str
+        What computed it: versions, fingerprints of the sources, the machine.
+    """
+
+    examples: tuple[Example, ...]
+    by: Mapping[str, str]
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """Of all examples."""
+        return tuple(check for example in self.examples for check in example.checks)
+
+    @property
+    def passed(self) -> bool:
+        """Whether everything is as expected."""
+        return all(check.passed for check in self.checks)
+
+    @property
+    def verdict(self) -> str:
+        """The same in a line."""
+        found = self.checks
+        failed, skipped = sum(not each.passed for each in found), sum(each.skipped for each in found)
+        some = f"{len(found)} checks of {len(self.examples)} examples"
+        rest = f", {skipped} not checked: a program is not installed" if skipped else ""
+        return f"PASS: {some}{rest}" if self.passed else f"FAIL: {failed} of {some}{rest}"

@@ -1,0 +1,77 @@
+"""What is published of the uncertainty of a cell: how it is written, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from small_report import FILES, end_gauge
+
+from loopsheet.report.cli import main
+from loopsheet.report.inputs.about import About, read_about
+
+HEADER = "source,cell,index,value,unit,expect,recomputed,reason"
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("u(l)", About("u", "l")),
+        ("u1( l )", About("u1", "l")),
+        ("u(l, d)", About("u", "l", "d")),
+        ("U99(l)", About("U", "l", "", 0.99)),
+        ("k95.45(l)", About("k", "l", "", 0.9545)),
+        ("dof(l)", About("dof", "l")),
+        ("r(R,X)", About("r", "R", "X")),
+        ("low95(Y)", About("low", "Y", "", 0.95)),
+        *((text, None) for text in ("l", "u", "u()", "u(l", "u(l))", "q(l)", "r(l)", "U(l)", "U0(l)")),
+        *((text, None) for text in ("u1(l, d)", "U95(l, d)", "U100(l)", "dof(l, d)", "u(l, d, e)", "u((l))")),
+    ],
+)  # fmt: skip
+def test_how_it_is_written(text: str, meant: About | None) -> None:
+    assert read_about(text) == meant
+
+
+@pytest.mark.parametrize(
+    ("row", "code", "said"),
+    [
+        ("H.1,q(l),1,1,mm,,,", "LS509", "'q(l)' is nothing that is told of a cell"),
+        ("H.1,u(nothing),1,1,mm,,,", "LS505", "the sheet has no cell 'nothing'"),
+        ('H.1,"u(l, nothing)",1,1,mm,,,', "LS505", "the sheet has no cell 'nothing'"),
+        ("H.1,u(l),3,1,mm,,,", "LS506", "l has no index '3'"),
+        ('H.1,"r(l, theta)",1,1,1,,,', "LS506", "theta has no index '1'"),
+        ("H.1,u(l),1,1,K,,,", "LS422", "l"),
+        ("H.1,k95(l),1,1,mm,,,", "LS422", "mm"),
+    ],
+)
+def test_what_is_wrong_is_told_where_it_stands(
+    tmp_path: Path, row: str, code: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    end_gauge(tmp_path, f"{HEADER}\n{row}\n")
+    assert main(["check", str(tmp_path)]) == 2
+    told = capsys.readouterr().err
+    assert f"error[{code}]" in told
+    assert said in told
+    assert "published.csv:2:" in told
+
+
+def test_a_known_difference_of_an_uncertainty_is_pinned_in_its_row(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("PATH", "")
+    rows = "H.1,u(l),1,99,nm,,,\nH.1,l,1,50.000838,mm,,,\nH.1,u(l),2,98,nm,,,\n"
+    exact = "".join(f'{name} = "exact"\n' for name in ("d", "dalpha", "alpha_S", "theta", "cycle", "dtheta"))
+    toml = FILES["report.toml"].replace(' mm"', ' mm, u = 25 nm"') + f"[uncertainty]\n{exact}"
+    end_gauge(tmp_path, f"{HEADER}\n{rows}", report=toml)
+    assert main(["check", str(tmp_path)]) == 1
+    assert "H.1 u(l)[1] prints 99, recomputed 25 (differs)" in capsys.readouterr().out
+    assert main(["check", "--accept", "--reason", "rounded up", str(tmp_path)]) == 0
+    lines = (tmp_path / "published.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[1:] == [
+        "H.1,u(l),1,99,nm,differs,99 -> 25,rounded up",
+        "H.1,l,1,50.000838,mm,,,",
+        "H.1,u(l),2,98,nm,differs,98 -> 25,rounded up",
+    ]
+    assert main(["check", str(tmp_path)]) == 0
+    (tmp_path / "published.csv").write_text(f"{HEADER}\nH.1,u(l_S),,25,nm,,,\n", encoding="utf-8")
+    assert main(["check", str(tmp_path)]) == 0
