@@ -58,12 +58,16 @@ class Error:
         Degrees of freedom of the standard uncertainty; infinite where it is known.
     said : str
         How it was stated; empty if it follows from printed digits.
+    sample : str
+        What its standard uncertainty was estimated from, by a name that others of the same estimate have:
+        their degrees of freedom are the same ones. Empty for an estimate of its own.
     """
 
     width: Fraction
     shape: Shape = Shape.NORMAL
     dof: float = math.inf
     said: str = ""
+    sample: str = ""
 
     @property
     def u(self) -> float:

@@ -185,7 +185,16 @@ STATED = (
         "s = {0} {1}, n = 5",
         "t sd = {0}, dof = 3",
     ),
-    *("u = {0}, dof = 1; +-{0} rect", "u = 200 %", "t scale = {0}, dof = 0.5", "u = {0} %", "U = {0}", "{0}"),
+    *(
+        "scatter",
+        "scatter; u = {0}",
+        "u = {0}, dof = 1; +-{0} rect",
+        "u = 200 %",
+        "t scale = {0}, dof = 0.5",
+        "u = {0} %",
+        "U = {0}",
+        "{0}",
+    ),
 )
 
 
@@ -213,6 +222,8 @@ def _section(folder: Folder) -> None:
     lines += [f'{name} = "{_statement(folder, name)}"' for name in dice.sample(names, dice.choice((0, 1, 2)))]
     if dice.random() < 0.2:
         lines.append('plus_minus = "rect"')
+    if dice.random() < 0.2:
+        lines.append(f"paired = {dice.choice((dice.sample(names, 2), dice.choices(names, k=3), 'x'))}")
     for name in dice.sample(names, dice.choice((0, 0, 1, 2))):
         groups = dice.choice(("", "groups = [[1], [2]]", "groups = [[1, 2]]", "groups = [[9]]"))
         lines += [

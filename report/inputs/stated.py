@@ -1,13 +1,14 @@
 """Uncertainties as text: what is stated of a number, or of a whole column.
 
-``u = 0.02``, ``U = 0.03, k = 2``, ``+-0.1 rect``, ``0.5 % of reading + 2 digits``, ``s = 0.02, n = 5`` or
-``exact``; several errors of one number stand one after another, with a semicolon between them.
+``u = 0.02``, ``U = 0.03, k = 2``, ``+-0.1 rect``, ``0.5 % of reading + 2 digits``, ``s = 0.02, n = 5``, ``exact``,
+or ``scatter`` of a column of readings; several errors of one number stand one after another, with a semicolon
+between them.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, isqrt
@@ -22,9 +23,10 @@ if TYPE_CHECKING:
     from ..quantity import Printed
     from .unit_text import ParsedUnit
 
-__all__ = ["EXAMPLE", "SHAPES", "StatedErrors", "StatementError", "read_statement"]
+__all__ = ["EXAMPLE", "SCATTER", "SHAPES", "StatedErrors", "StatementError", "covariance", "read_statement"]
 
 EXAMPLE = "U = 0.03, k = 2"
+SCATTER = "scatter"
 SHAPES = {
     "rect": Shape.RECTANGULAR,
     "rectangular": Shape.RECTANGULAR,
@@ -69,10 +71,10 @@ class _Part:
     dof: float
     said: str
 
-    def of(self, printed: Printed) -> Error:
+    def of(self, printed: Printed, sample: str) -> Error:
         """The error of a number; what has no unit of its own has the number's."""
         size = self.absolute + self.relative * abs(printed.value) + self.digits * 2 * printed.half_unit
-        return Error(size / self.divisor, self.shape, self.dof, self.said)
+        return Error(size / self.divisor, self.shape, self.dof, self.said, sample if self.dof < inf else "")
 
 
 @dataclass(frozen=True)
@@ -87,12 +89,21 @@ class StatedErrors:
 
     parts: tuple[_Part, ...]
 
-    def of(self, printed: Printed) -> tuple[Error, ...]:
-        """The errors of a number: what is a share of it follows its value."""
-        return tuple(part.of(printed) for part in self.parts)
+    def of(self, printed: Printed, of: str = "") -> tuple[Error, ...]:
+        """The errors of a number: what is a share of it follows its value.
+
+        Parameters
+        ----------
+        printed : Printed
+        of : str
+            What else it is stated of, each by the same estimate; nothing for a number alone.
+        """
+        return tuple(part.of(printed, of and f"{of} {n}") for n, part in enumerate(self.parts))
 
 
-def read_statement(text: str, unit: ParsedUnit, bare: Shape | None = None) -> StatedErrors:
+def read_statement(
+    text: str, unit: ParsedUnit, bare: Shape | None = None, readings: Sequence[Printed] = ()
+) -> StatedErrors:
     """Read what is stated of a number.
 
     Parameters
@@ -103,6 +114,8 @@ def read_statement(text: str, unit: ParsedUnit, bare: Shape | None = None) -> St
         The unit of the number: that of every size that names no other.
     bare : Shape, optional
         What ``+-0.1`` without a word means; it is refused without.
+    readings : sequence of Printed
+        The numbers of the column that it is stated of, whose standard deviation is their ``scatter``.
 
     Raises
     ------
@@ -116,7 +129,27 @@ def read_statement(text: str, unit: ParsedUnit, bare: Shape | None = None) -> St
     """
     if text.strip() == "exact":
         return StatedErrors(())
-    return StatedErrors(tuple(_part(part, start, unit, bare) for part, start in _split(text, ";")))
+    parts = (
+        _scatter(readings, start) if part == SCATTER else _part(part, start, unit, bare)
+        for part, start in _split(text, ";")
+    )
+    return StatedErrors(tuple(parts))
+
+
+def _scatter(readings: Sequence[Printed], start: int) -> _Part:
+    """The experimental standard deviation of readings, each of which has it (JCGM 100, 4.2.2)."""
+    if (number := len(readings)) < 2:
+        hint = "it is that of a measured column with two rows or more, stated in [uncertainty]"
+        raise StatementError("LS431", SCATTER, start, hint)
+    own, nothing = covariance(readings, readings), Fraction(0)
+    return _Part(_root(own), nothing, nothing, Fraction(1), Shape.STUDENT, float(number - 1), SCATTER)
+
+
+def covariance(one: Sequence[Printed], other: Sequence[Printed]) -> Fraction:
+    """The experimental covariance of paired readings, exactly, in SI (JCGM 100, C.3.4)."""
+    means = [sum((each.value for each in column), Fraction(0)) / len(column) for column in (one, other)]
+    products = ((a.value - means[0]) * (b.value - means[1]) for a, b in zip(one, other, strict=True))
+    return sum(products, Fraction(0)) / (len(one) - 1)
 
 
 def _split(text: str, mark: str) -> Iterator[tuple[str, int]]:

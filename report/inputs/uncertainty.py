@@ -4,6 +4,8 @@
 plus_minus = "rect"                      # what +-0.1 means where nothing is said
 x_p = "0.5 % of reading + 2 digits"
 
+paired = ["V", "I", "phi"]               # repeated readings, together in each row: they scatter, correlated
+
 [uncertainty.shared."height datum"]      # one error, the same in every test
 of = "x_p"
 stated = "+-0.2 um rect"
@@ -24,7 +26,8 @@ from typing import TYPE_CHECKING, Any
 from ..messages.errors import listing, suggest
 from .number_text import NumberError, read_number
 from .parameters import wrong_type
-from .stated import SHAPES, StatedErrors, StatementError, read_statement
+from .readings import correlations_of, read_paired
+from .stated import SCATTER, SHAPES, StatedErrors, StatementError, read_statement
 from .unit_text import parse_unit
 
 if TYPE_CHECKING:
@@ -62,7 +65,7 @@ class SharedError:
 
     def error(self, printed: Printed) -> Error:
         """What it is for a number."""
-        return self.statement.of(printed)[0]
+        return self.statement.of(printed, self.name)[0]
 
 
 @dataclass(frozen=True)
@@ -76,18 +79,25 @@ class Stated:
     shared : tuple of SharedError
     correlations : mapping of (str, str) to float
         Between the errors of two columns in the same test, or of two parameters.
+    paired : tuple of str
+        The columns whose numbers are repeated readings that were taken together, a row each: all of it is one
+        sample.
     """
 
     columns: Mapping[str, StatedErrors]
     shared: tuple[SharedError, ...] = ()
     correlations: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    paired: tuple[str, ...] = ()
 
     def of(self, numbers: Numbers) -> dict[str, tuple[Printed, ...]]:
         """Numbers with what is stated of them."""
+        together = dict.fromkeys(self.paired, ", ".join(self.paired))
+
+        def said(name: str, each: Printed) -> Printed:
+            return replace(each, stated=self.columns[name].of(each, together.get(name, name)))
+
         return {
-            name: tuple(replace(each, stated=self.columns[name].of(each)) for each in column)
-            if name in self.columns
-            else column
+            name: tuple(said(name, each) for each in column) if name in self.columns else column
             for name, column in numbers.items()
         }
 
@@ -126,17 +136,17 @@ def read_uncertainty(
         From :func:`read_bare`.
     """
     reader = _Reader(tables, numbers, counted, tests)
-    written = tables.keys((SECTION,), (*numbers, "plus_minus", "shared", "correlation"))
+    written = tables.keys((SECTION,), (*numbers, "plus_minus", "paired", "shared", "correlation"))
+    paired = read_paired(tables, SECTION, numbers) if "paired" in written else ()
     columns = {name: reader.column(name, bare) for name in written if name in numbers}
+    columns |= {name: reader.of_readings(name, name in columns) for name in paired}
     shared = [reader.shared(name, bare) for name in reader.names("shared")]
     own = {name: found for name, found in columns.items() if found is not None}
     several = {name for name, found in own.items() if len(found.parts) != 1}
-    correlations = reader.possible(dict(reader.correlations(several)))
-    return Stated(
-        own,
-        tuple(found for found in shared if found is not None),
-        correlations,
-    )
+    correlations = reader.possible(dict(reader.correlations(several, paired)))
+    if paired and not tables.findings.found:
+        correlations |= correlations_of({name: numbers[name] for name in paired})
+    return Stated(own, tuple(found for found in shared if found is not None), correlations, paired)
 
 
 class _Reader:
@@ -168,7 +178,8 @@ class _Reader:
             self.findings.add("LS431", self.toml.value(*path), text=text, suggestion=hint)
             return None
         try:
-            return read_statement(text, parse_unit(self.numbers[of][0].unit), bare)
+            readings = self.numbers[of] if len(path) == 2 else ()
+            return read_statement(text, parse_unit(self.numbers[of][0].unit), bare, readings)
         except StatementError as error:
             at = self.toml.value(*path, start=error.start, length=max(len(error.text), 1))
             self.findings.add(error.code, at, text=error.text, suggestion=error.suggestion)
@@ -181,6 +192,15 @@ class _Reader:
             self.findings.add("LS433", self.toml.key(SECTION, name), name=name, suggestion=hint)
             return None
         return self.statement((SECTION, name), name, bare)
+
+    def of_readings(self, name: str, is_stated: bool) -> StatedErrors | None:
+        """What paired readings say of a column, of which nothing else is said."""
+        if is_stated or any(number.stated is not None for number in self.numbers[name]):
+            hint = f"'paired' says that {name} scatters; what its rows share stands in [uncertainty.shared]"
+            at = self.toml.value(SECTION, "paired")
+            self.findings.add("LS433", at, name=name, suggestion=hint)
+            return None
+        return read_statement(SCATTER, parse_unit("1"), readings=self.numbers[name])
 
     def shared(self, name: str, bare: Shape | None) -> SharedError | None:
         """An error that cells share."""
@@ -228,7 +248,9 @@ class _Reader:
             seen.add(test)
         return tuple(map(tuple, written))
 
-    def correlations(self, several: Collection[str]) -> Iterator[tuple[tuple[str, str], float]]:
+    def correlations(
+        self, several: Collection[str], paired: Collection[str]
+    ) -> Iterator[tuple[tuple[str, str], float]]:
         """Coefficients by the names of two columns; one of 0 says nothing."""
         seen: set[frozenset[str]] = set()
         for key in self.names("correlation"):
@@ -246,13 +268,15 @@ class _Reader:
                 self.findings.add("LS433", self.toml.key(*path), name=f"{both} together", suggestion="")
                 continue
             seen.add(frozenset(pair))
-            if reason := self.why_not(text, pair, several):
+            if reason := self.why_not(text, pair, several, paired):
                 self.findings.add("LS434", self.toml.value(*path), reason=reason, suggestion="")
                 continue
             if number := float(read_number(text)):
                 yield (pair[0], pair[1]), number
 
-    def why_not(self, text: str, pair: Collection[str], several: Collection[str]) -> str:
+    def why_not(
+        self, text: str, pair: Collection[str], several: Collection[str], paired: Collection[str]
+    ) -> str:
         """Why a coefficient cannot be; empty if it can."""
         try:
             if not -1 <= read_number(text) <= 1:
@@ -263,6 +287,8 @@ class _Reader:
             return f"{' and '.join(pair)} have not the same rows"
         if odd := [name for name in pair if name in several]:
             return f"the numbers of {odd[0]} have not one error each"
+        if odd := [name for name in pair if name in paired]:
+            return f"what {odd[0]} correlates with follows from its paired readings"
         return ""
 
     def possible(self, found: dict[tuple[str, str], float]) -> dict[tuple[str, str], float]:

@@ -267,7 +267,7 @@ CATALOGUE: dict[str, Entry] = {
         "not an uncertainty",
         "'{text}' is not understood as an uncertainty",
         "u = 0.02; U = 0.03, k = 2; +-0.1 rect (tri, arcsine); 0.5 % of reading + 2 digits; s = 0.02, n = 5; "
-        "exact",
+        "exact; scatter of a column",
         "{suggestion}",
     ),
     "LS432": Entry(

@@ -29,6 +29,8 @@ class ErrorSource:
         Columns and rows that it is an error of, and its standard uncertainty there, in SI.
     said : str
         How it was stated; empty if it follows from printed digits.
+    sample : str
+        As of :class:`~loopsheet.report.distribution.Error`.
     """
 
     name: str
@@ -36,6 +38,7 @@ class ErrorSource:
     dof: float
     moves: tuple[tuple[str, int, float], ...]
     said: str = ""
+    sample: str = ""
 
     @property
     def u(self) -> float | None:

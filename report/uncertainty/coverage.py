@@ -29,10 +29,10 @@ def effective(u: float, contributions: NDArray[np.float64], dof: Sequence[float]
     ----------
     u : float
         The combined standard uncertainty.
-    contributions : float array (sources,)
-        In the same unit.
+    contributions : float array (estimates,)
+        In the same unit: each of what one estimate tells of.
     dof : sequence of float
-        Of each source, which is independent of the others.
+        Of each estimate, which is independent of the others.
 
     Returns
     -------

@@ -8,6 +8,7 @@ tails let them exist, and an interval only if nearly all draws have a value.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
@@ -106,6 +107,8 @@ class _Draws:
         pairs = correlated(self.sources, inputs, values)
         self.root = root_of(len(self.sources), pairs)
         self.mixed = {n for a, b, _ in pairs for n in (a, b)}
+        estimated = Counter(source.sample for source in self.sources if source.shape is Shape.STUDENT)
+        self.samples = {sample for sample, number in estimated.items() if sample and number > 1}
 
     def batches(self, size: int, most: int) -> Iterator[dict[str, Array]]:
         """What was given, one batch after another (size, rows)."""
@@ -123,11 +126,22 @@ class _Draws:
         return moved
 
     def _errors(self, size: int) -> Iterator[Array]:
-        """Errors in units of their standard uncertainty; correlated ones are normal."""
+        """Errors in units of their standard uncertainty; correlated ones are normal.
+
+        Those of one sample are together as wrong as their common estimate is: a t distribution of many
+        dimensions, so that the mean of readings has the degrees of freedom of the readings (JCGM 101, 6.4.9).
+        """
         if self.mixed:
             together = self.generator.standard_normal((size, len(self.sources))) @ self.root.T
+        scales: dict[str, Array] = {}
         for n, source in enumerate(self.sources):
-            yield together[:, n] if n in self.mixed else self._error(source, size)
+            if source.sample not in self.samples or source.shape is not Shape.STUDENT:
+                yield together[:, n] if n in self.mixed else self._error(source, size)
+                continue
+            if source.sample not in scales:
+                scales[source.sample] = np.sqrt(source.dof / self.generator.chisquare(source.dof, size))
+            normal = together[:, n] if n in self.mixed else self.generator.standard_normal(size)
+            yield normal * scales[source.sample]
 
     def _error(self, source: ErrorSource, size: int) -> Array:
         draws, shape = self.generator, source.shape

@@ -172,7 +172,7 @@ class Spread:
             return Budget(address(name, label), name, label, value, level=level)
         together = self._with_correlated(found)[0, : len(self.sources)]
         shares = own / u * (together / u) if u > 0 else np.zeros(len(own))
-        dof = self._effective(math.sqrt(first), own)
+        dof = self._effective(math.sqrt(first), own, together)
         factor, because = coverage(self.sources, own, dof, level, second)
         order = [
             int(n)
@@ -192,12 +192,19 @@ class Spread:
         estimate = float(self.values.value[name][row]) if len(source.moves) == 1 else None
         return Contribution(source, estimate, self.values.sheet[name].unit, u, share)
 
-    def _effective(self, u: float, own: Array) -> float:
-        dof = [source.dof for source in self.sources]
-        correlated = {n for a, b, _ in self._pairs for n in (a, b) if own[a] and own[b]}
-        if any(np.isfinite(dof[n]) for n in correlated):
+    def _effective(self, u: float, own: Array, together: Array) -> float:
+        """Of independent estimates: the sources of one sample are one of them."""
+        samples = [source.sample or n for n, source in enumerate(self.sources)]
+        moving = [(a, b) for a, b, _ in self._pairs if own[a] and own[b]]
+        apart = (n for pair in moving if len({samples[n] for n in pair}) > 1 for n in pair)
+        if any(np.isfinite(self.sources[n].dof) for n in apart):
             return float("nan")
-        return effective(u, own, dof)
+        variances: dict[str | int, float] = {}
+        for n, sample in enumerate(samples):
+            variances[sample] = variances.get(sample, 0.0) + float(own[n] * together[n])
+        dof = {sample: source.dof for sample, source in zip(samples, self.sources, strict=True)}
+        parts = np.sqrt(np.maximum(list(variances.values()), 0.0))
+        return effective(u, parts, list(dof.values()))
 
 
 def _known(values: Values) -> set[str]:

@@ -37,7 +37,7 @@ def _own(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
                 if error.width:
                     told = f"{name}, {error.said}" if len(errors) > 1 else name
                     moves = ((column.name, row, error.u),)
-                    yield ErrorSource(told, error.shape, error.dof, moves, error.said)
+                    yield ErrorSource(told, error.shape, error.dof, moves, error.said, error.sample)
 
 
 def _shared(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
@@ -54,7 +54,7 @@ def _shared(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
             named = f" (test{'s' * (len(group) > 1)} {', '.join(map(str, group))})" if each.groups else ""
             if any(u for _, _, u in moves):
                 one = next(iter(errors.values()))
-                yield ErrorSource(f"{each.name}{named}", one.shape, one.dof, moves, one.said)
+                yield ErrorSource(f"{each.name}{named}", one.shape, one.dof, moves, one.said, one.sample)
 
 
 def given(values: Values) -> tuple[Column, ...]:

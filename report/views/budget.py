@@ -127,8 +127,12 @@ def _row(report: Report, budget: Budget, each: Contribution) -> tuple[str, ...]:
 
 
 def _notes(report: Report, budget: Budget) -> Iterator[str]:
-    for (one, other), r in budget.correlations.items():
-        yield f"{one} and {other} are correlated: {r:g}"
+    alike: dict[tuple[str, ...], list[str]] = {}
+    columns = {each.source.name: each.source.moves[0][0] for each in budget.contributions}
+    for pair, r in budget.correlations.items():
+        alike.setdefault((*map(columns.__getitem__, pair), f"{r:g}"), []).append(" and ".join(pair))
+    for (one, other, told), pairs in alike.items():
+        yield f"{pairs[0] if len(pairs) == 1 else f'{one} and {other} of a row'} are correlated: {told}"
     if budget.unlooked and budget.is_known:
         yield f"terms of second order were not looked at: {budget.unlooked}; --draws tells more"
     if budget.second:

@@ -139,7 +139,7 @@ class _Written:
         at = {name: f"$B${row + n + 1}" for n, name in enumerate(names)}
         sizes = sorted(abs(each.u) / scale for each in budget.contributions) or [0.0]
         first = f"SUMSQ({own}){self.pairs}"
-        ratio = f"({first})^2/SUMPRODUCT(({own})^4/({dof}))"
+        ratio = f"({first})^2/{self.below(own, dof)}"
         freedom = f"IF({ratio}>{_MOST},{_UNLIMITED:.0f},MAX(1,INT(ROUND({ratio},2))))"
         lines: tuple[tuple[str, str, float, str], ...] = (
             ("value", f"={self.block.place.cell(self.row_of_cell)}", budget.value / scale, "General"),
@@ -191,6 +191,19 @@ class _Written:
             else:
                 self.sheet.write_number(line, 1, value, self.style("input", form))
         return self.statement(row + len(lines), at)
+
+    def below(self, own: str, dof: str) -> str:
+        """What stands below in the formula of Welch and Satterthwaite: sources of one estimate are one."""
+        samples = [each.source.sample for each in self.budget.contributions]
+        if not any(sample and samples.count(sample) > 1 for sample in samples):
+            return f"SUMPRODUCT(({own})^4/({dof}))"
+        self.style.text(self.sheet, self.top + 1, len(_COLUMNS), "estimate", "head")
+        for row, sample in enumerate(samples, start=self.first):
+            number = samples.index(sample) if sample else row - self.first
+            self.sheet.write_number(row, len(_COLUMNS), number + 1, self.style("input", "0"))
+        share, estimate = (own.replace("H", column) for column in "IJ")
+        u = f"$B${self.last + 3}"
+        return f"({u}^4*SUMPRODUCT({share}*SUMIF({estimate},{estimate},{share})/({dof})))"
 
     @property
     def pairs(self) -> str:

@@ -13,6 +13,7 @@ from small_report import end_gauge
 from loopsheet.report.cells.grid import checked
 from loopsheet.report.cells.marks import Marks
 from loopsheet.report.cells.values import Status
+from loopsheet.report.inputs.folders import PAPER
 
 HOSTILE = "=cmd|' /C calc'!A0"
 
@@ -304,12 +305,14 @@ def test_a_budget_is_recalculated_to_the_same(require: Callable[..., str], tmp_p
         more = '[uncertainty.correlation]\n"l_S, dtheta" = "0.5"\n' if name == "correlated" else ""
         toml = f'workbook = "workbook.py"\n[parameters]\n{given}[measurements]\nfile = "d.csv"\n'
         end_gauge(folder, report=f'{toml}[uncertainty]\nd = "exact"\n{more}')
-        books[str(n)] = spreadsheets.deliver(folder).content
+        books[name] = spreadsheets.deliver(folder).content
+    shipped = [PAPER.parent / name for name in ("gum_h1", "gum_h2", "gum_h3")]
+    books |= {folder.name: spreadsheets.deliver(folder).content for folder in shipped}
     soffice = require("soffice", "libreoffice")
     read = spreadsheets.recalculate(soffice, tmp_path / "office", books)
-    for n, name in enumerate(BUDGETS):
-        stored = spreadsheets.cells_of(books[str(n)])["uncertainty"]
-        again = read[str(n)]["uncertainty"]
+    for name, book in books.items():
+        stored = spreadsheets.cells_of(book)["uncertainty"]
+        again = read[name]["uncertainty"]
         numbers = {at: value for at, value in stored.items() if isinstance(value, int | float)}
         assert {at: again[at] for at in numbers} == pytest.approx(numbers, rel=1e-9, abs=1e-24), name
         assert [again[at] for at, value in stored.items() if "±" in str(value)] == [

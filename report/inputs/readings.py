@@ -1,0 +1,48 @@
+"""Repeated readings of one quantity, or of several together: what they say of their own errors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+from math import copysign, sqrt
+from typing import TYPE_CHECKING, Any
+
+from ..messages.errors import listing, suggest
+from .parameters import wrong_type
+from .stated import covariance
+
+if TYPE_CHECKING:
+    from ..quantity import Printed
+    from .tables import TomlTables
+
+__all__ = ["correlations_of", "read_paired"]
+
+Numbers = Mapping[str, Sequence["Printed"]]
+
+
+def correlations_of(columns: Numbers) -> dict[tuple[str, str], float]:
+    """The correlation coefficients of paired readings; of none that are all the same."""
+    own = {name: covariance(column, column) for name, column in columns.items()}
+    found = {}
+    for one, other in combinations(columns, 2):
+        if own[one] and own[other]:
+            both = covariance(columns[one], columns[other])
+            found[one, other] = copysign(sqrt(both**2 / (own[one] * own[other])), both)
+    return found
+
+
+def read_paired(tables: TomlTables, section: str, numbers: Numbers) -> tuple[str, ...]:
+    """The columns of repeated readings that were taken together; none if what says so is wrong, which is told."""
+    path = (section, "paired")
+    written: Any = tables.toml.data[section]["paired"]
+    if not isinstance(written, list) or not all(isinstance(name, str) for name in written):
+        wrong_type(tables.toml, tables.findings, path, "a list of columns", 'paired = ["V", "I"]')
+        return ()
+    columns = [name for name, column in numbers.items() if len(column) > 1]
+    wrong = [name for n, name in enumerate(written) if name not in columns or name in written[:n]]
+    if wrong or len(written) < 2:
+        known = f"two or more of {listing(columns)}, each once, with two rows or more"
+        text, at = wrong[0] if wrong else ", ".join(written), tables.toml.value(*path)
+        tables.findings.add("LS505", at, text=text, known=known, suggestion=suggest(text, columns))
+        return ()
+    return tuple(written)

@@ -1,0 +1,140 @@
+"""Repeated readings of a column, alone or together with others: scatter, correlation, degrees of freedom."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from shutil import copytree
+from statistics import correlation, stdev
+
+import numpy as np
+import pytest
+
+from loopsheet.report.cli import main
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.study import Study
+from loopsheet.report.uncertainty.monte_carlo import draw
+from loopsheet.report.uncertainty.propagation import Spread
+
+V = [5.007, 4.994, 5.005, 4.990, 4.999]
+I = [19.663, 19.639, 19.640, 19.685, 19.678]  # noqa: E741
+Made = Callable[..., Path]
+
+
+@pytest.fixture
+def made(tmp_path: Path) -> Made:
+    """GUM H.2 with other statements, unpublished."""
+
+    def folder(section: str, **files: str) -> Path:
+        place = tmp_path / "h2"
+        copytree(PAPER.parent / "gum_h2", place, ignore=lambda *_: ["out", "__pycache__"])
+        head = (place / "report.toml").read_text(encoding="utf-8").partition("[uncertainty]")[0]
+        (place / "report.toml").write_text(f"{head}[uncertainty]\n{section}\n", encoding="utf-8")
+        for name, text in files.items():
+            (place / f"{name}.csv").write_text(text, encoding="utf-8")
+        return place
+
+    return folder
+
+
+def spread(folder: Path) -> Spread:
+    report = Study(folder).computed
+    return Spread(report.inputs, report.values)
+
+
+def test_readings_have_the_standard_deviation_that_they_have(made: Made) -> None:
+    found = spread(made('V = "scatter"\nI = "exact"\nphi = "exact"'))
+    budget = found.budget("V_mean", 0)
+    assert found.u("V") == pytest.approx([stdev(V)] * 5, rel=1e-14)
+    assert budget.u == pytest.approx(stdev(V) / math.sqrt(5), rel=1e-14)
+    assert (budget.dof, {each.source.shape.value for each in budget.contributions}) == (4, {"t"})
+
+
+def test_another_error_beside_the_scatter(made: Made) -> None:
+    budget = spread(made('V = "scatter; u = 0.004"\nI = "exact"\nphi = "exact"')).budget("V_mean", 0)
+    parts = stdev(V) / math.sqrt(5), 0.004 / math.sqrt(5)
+    assert budget.u == pytest.approx(math.hypot(*parts), rel=1e-14)
+    assert budget.dof == math.floor(4 * budget.u**4 / parts[0] ** 4)
+
+
+def test_readings_together_correlate_and_are_one_sample(made: Made) -> None:
+    found = spread(made('paired = ["V", "I"]\nphi = "exact"'))
+    covariance = found.covariance([("V_mean", 0), ("I_mean", 0)])
+    r = covariance[0, 1] / math.sqrt(covariance[0, 0] * covariance[1, 1])
+    assert r == pytest.approx(correlation(V, I), rel=1e-12)
+    assert found.budget("Z", 0).dof == 4
+
+
+def test_two_samples_are_two(made: Made) -> None:
+    """Without the pairing each column is a sample of its own: Welch and Satterthwaite, of two means."""
+    found = spread(made('V = "scatter"\nI = "scatter"\nphi = "exact"')).budget("Z", 0)
+    of_v, of_i = (stdev(x) / math.sqrt(5) / (sum(x) / 5) for x in (V, I))
+    assert found.dof == math.floor(4 * (of_v**2 + of_i**2) ** 2 / (of_v**4 + of_i**4))
+    assert 4 < found.dof < 8
+
+
+def test_one_estimate_for_a_column_is_one_estimate(made: Made) -> None:
+    """Stated once for all rows: its degrees of freedom do not add up with the rows."""
+    found = spread(made('V = "u = 0.004, dof = 6"\nI = "exact"\nphi = "exact"'))
+    assert found.budget("V_mean", 0).dof == found.budget("V", 0).dof == 6
+
+
+def test_a_test_that_is_left_out_is_no_reading(made: Made) -> None:
+    rows = "".join(f"{n},{v},{i},1.04,\n" for n, (v, i) in enumerate(zip(V, I, strict=True), 1))
+    table = f"test,V [V],I [mA],phi [1],left out\n{rows}6,9.9,30,1.04,it slipped\n"
+    found = spread(made('V = "scatter"', measurements=table))
+    assert found.u("V") == pytest.approx([stdev(V)] * 5, rel=1e-14)
+
+
+def test_readings_that_are_all_the_same_have_no_scatter(made: Made) -> None:
+    table = "test,V [V],I [mA],phi [1]\n" + "".join(f"{n},5,{i},1.04\n" for n, i in enumerate(I, 1))
+    found = spread(made('paired = ["V", "I", "phi"]', measurements=table))
+    assert found.u("V_mean").tolist() == [0]
+    assert found.budget("Z", 0).dof == 4
+
+
+def test_draws_of_readings_have_their_degrees_of_freedom(made: Made) -> None:
+    """The mean of five readings is spread as t with four degrees of freedom, no mean of five of these."""
+    report = Study(made('paired = ["V", "I"]\nphi = "exact"')).computed
+    for cell in ("V_mean", "Z"):
+        budget = Spread(report.inputs, report.values).budget(cell, 0)
+        drawn = draw(report.inputs, report.values, budget, 200_000)
+        ends = np.array(drawn.symmetric) - budget.value
+        assert ends == pytest.approx([-budget.expanded, budget.expanded], rel=0.02)
+        assert budget.factor == pytest.approx(2.7764, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("section", "code", "said"),
+    [
+        ('paired = "V"', "LS205", "a list of columns"),
+        ('paired = ["V"]', "LS505", "two or more of V, I or phi"),
+        ('paired = ["V", "V"]', "LS505", "'V'"),
+        ('paired = ["V", "U"]', "LS505", "'U'"),
+        ('paired = ["V", "I"]\nI = "u = 0.1"', "LS433", "uncertainty of I is stated twice"),
+        (
+            'paired = ["V", "I"]\nphi = "u = 0.1"\n[uncertainty.correlation]\n"V, phi" = "0.1"',
+            "LS434",
+            "what V correlates with follows from its paired readings",
+        ),
+        ('[uncertainty.shared.a]\nof = "V"\nstated = "scatter"', "LS431", "'scatter' is not understood"),
+        ('V = "scatter, n = 3"', "LS431", "say what the number is"),
+    ],
+)
+def test_what_is_wrong_is_told_where_it_stands(
+    made: Made, section: str, code: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check", str(made(section))]) == 2
+    told = capsys.readouterr().err
+    assert f"error[{code}]" in told
+    assert said in told
+    assert "report.toml:" in told
+
+
+def test_a_single_number_does_not_scatter(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    copytree(PAPER.parent / "gum_h1", tmp_path / "h1")
+    toml = tmp_path / "h1" / "report.toml"
+    toml.write_text(toml.read_text(encoding="utf-8").replace("u = 0.2", "scatter"), encoding="utf-8")
+    assert main(["check", str(tmp_path / "h1")]) == 2
+    assert "it is that of a measured column with two rows or more" in capsys.readouterr().err
