@@ -57,6 +57,7 @@ class Base:
 
 
 TEMPERATURES = ("K", "mK")
+READINGS = PAPER.parent / "gum_h2"
 BASES = {
     "gauge": Base(
         GAUGE,
@@ -75,6 +76,16 @@ BASES = {
         | dict.fromkeys(("ecc", "M", "E"), ("1",)),
         ("t",),
         ("T", "a", "ecc"),
+    ),
+    "readings": Base(
+        {path.name: path.read_text(encoding="utf-8") for path in READINGS.iterdir() if path.is_file()},
+        "measurements.csv",
+        dict.fromkeys(("V", "V_mean"), ("V", "mV"))
+        | dict.fromkeys(("I", "I_mean"), ("A", "mA"))
+        | dict.fromkeys(("R", "X", "Z"), ("ohm", "kohm"))
+        | dict.fromkeys(("phi", "phi_mean"), ("1",)),
+        ("V", "I", "phi"),
+        (),
     ),
     "paper": Base(
         {path.name: path.read_text(encoding="utf-8") for path in PAPER.iterdir()},
@@ -223,7 +234,8 @@ def _section(folder: Folder) -> None:
     if dice.random() < 0.2:
         lines.append('plus_minus = "rect"')
     if dice.random() < 0.2:
-        lines.append(f"paired = {dice.choice((dice.sample(names, 2), dice.choices(names, k=3), 'x'))}")
+        together = (dice.sample(names, 2), dice.choices(names, k=3), [*names], "x")
+        lines.append(f"paired = {dice.choice(together)!r}")
     for name in dice.sample(names, dice.choice((0, 0, 1, 2))):
         groups = dice.choice(("", "groups = [[1], [2]]", "groups = [[1, 2]]", "groups = [[9]]"))
         lines += [
@@ -374,7 +386,7 @@ CHANGES: tuple[Change, ...] = (
 )
 
 
-def malformed(seed: str, kinds: Sequence[str] = ("gauge", "mars")) -> Folder:
+def malformed(seed: str, kinds: Sequence[str] = ("gauge", "mars", "readings")) -> Folder:
     """The folder of a seed.
 
     Parameters

@@ -32,7 +32,7 @@ def correlations_of(columns: Numbers) -> dict[tuple[str, str], float]:
 
 
 def read_paired(tables: TomlTables, section: str, numbers: Numbers) -> tuple[str, ...]:
-    """The columns of repeated readings that were taken together; none if what says so is wrong, which is told."""
+    """The columns of repeated readings that were taken together; none, with a finding, if that is wrong."""
     path = (section, "paired")
     written: Any = tables.toml.data[section]["paired"]
     if not isinstance(written, list) or not all(isinstance(name, str) for name in written):

@@ -1,8 +1,8 @@
 """Uncertainties as text: what is stated of a number, or of a whole column.
 
-``u = 0.02``, ``U = 0.03, k = 2``, ``+-0.1 rect``, ``0.5 % of reading + 2 digits``, ``s = 0.02, n = 5``, ``exact``,
-or ``scatter`` of a column of readings; several errors of one number stand one after another, with a semicolon
-between them.
+``u = 0.02``, ``U = 0.03, k = 2``, ``+-0.1 rect``, ``0.5 % of reading + 2 digits``, ``s = 0.02, n = 5``,
+``exact``, or ``scatter`` of a column of readings; several errors of one number stand one after another, with
+a semicolon between them.
 """
 
 from __future__ import annotations

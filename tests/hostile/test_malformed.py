@@ -120,7 +120,7 @@ def test_a_malformed_folder_is_computed_or_refused(
 ) -> None:
     found, bugs = Counter[str](), []
     for turn in range(sizes.malformed):
-        kinds = ("paper",) if turn % 500 == 499 else ("gauge", "mars")
+        kinds = ("paper",) if turn % 500 == 499 else ("gauge", "mars", "readings")
         folder = malformed(f"{sizes.seed} {turn}", kinds).write(tmp_path)
         how = ends(folder, turn % 50 == 7)
         found[how] += 1
