@@ -81,6 +81,9 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     ),
     "report.inputs.unit_text": (rooms("messages"), {"pint"}),
     "report.plan": (DECLARED | rooms("content", "machine.kept", "plan"), ALGEBRA | {"msgspec"}),
+    # what engines may ask to fit; what is fitted is printed by them
+    "report.fitting.triangle": (set(), {"numpy"}),
+    "report.fitting.least_squares": (rooms("fitting.triangle"), {"numpy"}),
     "report.engines": (DECLARED | rooms("engines", "inputs.unit_text", "plan"), NUMERIC),
     "report.engines.elementary": (set(), {"numpy"}),
     "report.engines.intervals": (rooms("engines.elementary"), {"numpy"}),

@@ -1,0 +1,1 @@
+"""Least squares for any workbook: a solver that says how it ended, and models with errors in any variable."""
