@@ -368,7 +368,7 @@ class _Reader:
     # ------------------------------------------------------------------ the tables
 
     def measurements(self) -> Measurements | None:
-        if self.workbook is not None and not self.workbook.measured and "measurements" not in self.toml.data:
+        if self.workbook is not None and not (self.workbook.measured or "measurements" in self.toml.data):
             return Measurements((), {}, {})  # all that there is to give are parameters
         table = self.tables.keys(("measurements",), ("file", "printed"))
         above = self.toml.data

@@ -12,7 +12,7 @@ from ..cells.values import Cell, Status, Values
 from ..inputs.about import About
 from ..inputs.inputs import Inputs
 from ..result.result import Comparison
-from ..uncertainty.monte_carlo import MOST, draw
+from ..uncertainty.monte_carlo import draw
 from ..uncertainty.propagation import Spread
 from .comparison import beside
 
@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 __all__ = ["compare_uncertainties"]
 
 NOTHING = "nothing is known of its uncertainty"
+FINER = 5
+"""A printed end of an interval is drawn to a fifth of half of its last unit."""
+MOST = 10_000_000
+"""Draws, at most."""
 
 
 def compare_uncertainties(
@@ -50,6 +54,7 @@ class _Asked:
     def __init__(self, inputs: Inputs, values: Values, step: Callable[[str], None]) -> None:
         self.inputs, self.values, self.step = inputs, values, step
         self.spread = Spread(inputs, values)
+        self.drawn: dict[tuple[str, float, float], tuple[float, float]] = {}
 
     def cell(self, published: PublishedValue) -> Cell:
         """What is computed, as a cell of its own name; without a value where the cell has none."""
@@ -58,13 +63,13 @@ class _Asked:
         there = self.values.cell(about.cell, index)
         if there.value is None:
             return Cell(published.cell, index, None, there.status, there.culprit or there, there.why)
-        number = self.number(about, index)
+        number = self.number(about, index, float(published.printed.half_unit) / FINER)
         if not math.isfinite(number):
             return Cell(published.cell, index, None, Status.DOMAIN, None, NOTHING)
         return Cell(published.cell, index, number, Status.OK)
 
-    def number(self, about: About, index: tuple[int, ...]) -> float:
-        """What is told, in SI; NaN where nothing is known."""
+    def number(self, about: About, index: tuple[int, ...], tolerance: float) -> float:
+        """What is told, in SI; NaN where nothing is known. Draws tell it to a tolerance."""
         row = self.values.row(self.values.sheet[about.cell], index)
         if about.kind == "r":
             return self._correlation((about.cell, row), (about.other, row))
@@ -72,7 +77,7 @@ class _Asked:
             return self._contribution(about, row)
         budget = self.spread.budget(about.cell, row, about.level)
         if about.kind in ("low", "high"):
-            return self._end(about.kind, budget)
+            return self._interval(budget, tolerance)[about.kind == "high"]
         known = {"u": budget.u, "U": budget.expanded, "k": budget.factor, "dof": budget.dof}
         return known.get(about.kind, math.sqrt(max(budget.u**2 - budget.second, 0.0)))
 
@@ -87,6 +92,10 @@ class _Asked:
         names = [{name for name, _, _ in source.moves} for source in self.spread.sources]
         return math.hypot(*(own[n] for n, moved in enumerate(names) if about.other in moved))
 
-    def _end(self, kind: str, budget: Budget) -> float:
-        drawn = draw(self.inputs, self.values, budget, MOST, step=self.step)
-        return drawn.symmetric[kind == "high"]
+    def _interval(self, budget: Budget, tolerance: float) -> tuple[float, float]:
+        """By draws, the same for both of its ends."""
+        key = budget.cell, budget.level, tolerance
+        if key not in self.drawn:
+            told = draw(self.inputs, self.values, budget, MOST, step=self.step, tolerance=tolerance)
+            self.drawn[key] = told.symmetric
+        return self.drawn[key]

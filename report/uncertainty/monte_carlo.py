@@ -44,8 +44,9 @@ def draw(
     most: int = MOST,
     seed: int = 1,
     step: Callable[[str], None] = lambda _: None,
+    tolerance: float | None = None,
 ) -> Distributed:
-    """Draw until the interval is known to a digit of the uncertainty, or `most` times.
+    """Draw until the interval is known to a tolerance, or `most` times.
 
     Parameters
     ----------
@@ -58,6 +59,8 @@ def draw(
         The same seed draws the same.
     step : callable
         Told what is begun.
+    tolerance : float, optional
+        In SI; half a unit of the second digit of the standard uncertainty, if nobody asks for another.
 
     Returns
     -------
@@ -66,14 +69,14 @@ def draw(
     Notes
     -----
     It is enough when twice the standard deviations of mean, standard uncertainty and both ends, averaged over
-    the batches, are below half a unit of the second digit of the standard uncertainty (JCGM 101, 7.9.4).
+    the batches, are below the tolerance (JCGM 101, 7.9.4).
     """
     drawn = _Draws(inputs, values, budget.name, seed)
     row = values.row(values.sheet[budget.name], budget.label)
     size = min(most, max(10_000, math.ceil(100 / (1 - budget.level))))
     found: list[Array] = []
     told: list[tuple[float, ...]] = []
-    lost, tolerance = 0, _tolerance(budget.u)
+    lost, tolerance = 0, _tolerance(budget.u) if tolerance is None else tolerance
     for number, batch in enumerate(drawn.batches(size, most), start=1):
         step(f"drawing {number * size} times")
         own, status = drawn.of(batch, row)
