@@ -36,6 +36,7 @@ PARTS = {
         ("report/judge/*.py",),
         ("test_conditions", "test_enclosure", "test_analysis_engines", "test_oddities"),
     ),
+    "fitting": (("report/fitting/*.py",), ("test_fitting", "test_fitting_model")),
     "referee": (
         ("report/referee/*.py",),
         ("test_referee_parts", "test_referee_explanations", "test_referee"),

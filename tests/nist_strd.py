@@ -1,6 +1,6 @@
 """NIST's Statistical Reference Datasets for regression: the models, and what `strd/*.toml` says of them.
 
-Source: NIST/ITL StRD, Nonlinear Least Squares Regression (public domain).
+Source: NIST/ITL StRD, Nonlinear and Linear Least Squares Regression (public domain).
 """
 
 from __future__ import annotations
@@ -14,10 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 from sympy import Expr, Rational, Symbol, atan, cos, exp, pi, sin, symbols
 
+from loopsheet.report.fitting.model import Adjustment, Model
+
 Array = NDArray[np.float64]
 FOLDER = Path(__file__).resolve().parent / "strd"
 
-x, x1, x2 = symbols("x x1 x2")
+x, x1, x2, y = symbols("x x1 x2 y")
 b1, b2, b3, b4, b5, b6, b7, b8, b9 = PARAMETERS = symbols("b1:10")
 _growth = b1 * (1 - exp(-b2 * x))
 _decay = exp(-b1 * x) / (b2 + b3 * x)
@@ -62,16 +64,23 @@ MODELS: dict[str, Expr] = {
 
 
 class Strd(NamedTuple):
-    """One set."""
+    """One set: y = value of others, plus an error."""
 
-    model: Expr
+    value: Expr
     parameters: tuple[Symbol, ...]
-    starts: tuple[Array, Array]
+    starts: tuple[Array, ...]
     certified: Array
     deviations: Array
     squares: float
     y: Array
     of: Mapping[Symbol, Array]
+
+    @property
+    def model(self) -> Model:
+        return Model(y - self.value, self.parameters, (*self.of, y))
+
+    def fit(self, start: Array) -> Adjustment:
+        return self.model.fit({**self.of, y: self.y}, {y: None}, start.tolist())
 
 
 def _numbers(text: str, end: str) -> Array:
@@ -83,7 +92,7 @@ def nonlinear() -> dict[str, Strd]:
     found = {}
     for name, said in tomllib.loads((FOLDER / "nonlinear.toml").read_text(encoding="utf-8")).items():
         first, second, certified, deviations = _numbers(said["parameters"], "\n").T
-        y, *given = _numbers(said["rows"], ";").T
+        observed, *given = _numbers(said["rows"], ";").T
         of = dict(zip((x,) if len(given) == 1 else (x1, x2), given, strict=True))
         found[name] = Strd(
             MODELS[name],
@@ -92,13 +101,31 @@ def nonlinear() -> dict[str, Strd]:
             certified,
             deviations,
             float(said["squares"]),
-            np.log(y) if name == "Nelson" else y,
+            np.log(observed) if name == "Nelson" else observed,
             of,
         )
     return found
 
 
-def digits(found: Array, certified: Array) -> float:
-    """How many significant digits of all numbers are right; 11, if all that are printed are."""
+def linear() -> dict[str, Strd]:
+    """All linear sets, by their names: polynomials, without a constant term in NoInt, and Longley's plane."""
+    found = {}
+    for name, said in tomllib.loads((FOLDER / "linear.toml").read_text(encoding="utf-8")).items():
+        certified, deviations = _numbers(said["parameters"], "\n").T
+        observed, *given = _numbers(said["rows"], ";").T
+        of = dict(zip(symbols("x1:7") if name == "Longley" else (x,), given, strict=True))
+        first = 1 if name.startswith("NoInt") else 0
+        terms = (
+            [1, *of] if name == "Longley" else [x**power for power in range(first, first + len(certified))]
+        )
+        parameters = symbols(f"b0:{len(certified)}")
+        value = sum(b * term for b, term in zip(parameters, terms, strict=True))
+        start = np.zeros(len(certified))
+        found[name] = Strd(value, parameters, (start,), certified, deviations, np.nan, observed, of)
+    return found
+
+
+def digits(found: Array, certified: Array, printed: int = 11) -> float:
+    """How many significant digits of all numbers are right, of those that are printed."""
     apart = np.abs(np.asarray(found) - certified) / np.abs(certified)
-    return float(-np.log10(np.maximum(apart, 1e-11).max()))
+    return float(-np.log10(np.maximum(apart, 10.0**-printed).max()))

@@ -84,9 +84,14 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     # what engines may ask to fit; what is fitted is printed by them
     "report.fitting.triangle": (set(), {"numpy"}),
     "report.fitting.least_squares": (rooms("fitting.triangle"), {"numpy"}),
+    "report.fitting.feet": (rooms("fitting.triangle"), {"numpy"}),
     "report.engines": (DECLARED | rooms("engines", "inputs.unit_text", "plan"), NUMERIC),
     "report.engines.elementary": (set(), {"numpy"}),
     "report.engines.intervals": (rooms("engines.elementary"), {"numpy"}),
+    "report.fitting": (
+        rooms("column", "engines.kernels", "engines.numpy_code", "fitting"),
+        {"numpy", "sympy"},
+    ),
     "report.result": (
         DECLARED | rooms("engines.exact", "files", "inputs", "result"),
         {"mpmath", "msgspec", "numpy"},

@@ -40,7 +40,7 @@ class Ending(Enum):
     SINGULAR = "the parameters cannot be told apart or run away: the last Jacobian has not full rank"
     STUCK = "no step makes the sum of squares less, though by the Jacobian one should"
     UNFINISHED = f"{STEPS} steps were too few: the parameters run away, or creep along a valley"
-    OUTSIDE = "the model or its derivatives have no value where the run starts"
+    OUTSIDE = "the model, its derivatives or its adjusted points have no value where the run starts"
 
 
 class NotFitted(ArithmeticError):
