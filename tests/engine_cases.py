@@ -106,6 +106,8 @@ case("own_and_summed", gap[p] / summed, POINTS, [Rational(g, 10) for g in (1, 1,
 case("own_in_a_sum", a[k] - Sum(a[k], (k, 1, n)) / n, ROWS, [-2, -1, 3])
 case("a_constant_in_a_sum", Sum(w.symbol, (k, 1, n)), None, [Rational(3, 2)])
 case("a_number_in_a_sum", Sum(2, (k, 1, n)), None, [6])
+case("a_number_alone", Rational(2), None, [2])
+case("a_number_in_every_row", Rational(0), ROWS, [0, 0, 0])
 case("a_sum_in_a_sum", Sum(a[k] * Sum(gap[p] ** 2, (p, 1, n_pairs)), (k, 1, n)), None, [12 * 42])
 case("pairs_of_a_sum_in_a_sum", Sum(a[k] * Sum(a[i] * a[j], (p, 1, n_pairs)), (k, 1, n)), None, [12 * 41])
 case("members_in_a_sum", Sum(a[i] * a[j], (p, 1, n_pairs)), None, [41])

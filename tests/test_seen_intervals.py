@@ -5,64 +5,21 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from random_sheets import printed, sheet_of
 from small_report import end_gauge, judged, pure
-from sympy import Expr, Rational, Symbol, exp, log, sqrt
 
-from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.report.cells.values import Values
 from loopsheet.report.document.material import Material
 from loopsheet.report.inputs.published import PublishedValue
-from loopsheet.report.quantity import Printed
 from loopsheet.report.referee import judging, print_as
 from loopsheet.report.result.result import Comparison, Report
 from loopsheet.report.result.verdict import EXACT, REACHABLE
-from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
 from loopsheet.report.stages import refereed
 from loopsheet.report.study import Study
 
 # --- random sheets ----------------------------------------------------------------------------------------
 
-k, n = (Symbol(name, integer=True, positive=True) for name in "kn")
-ROWS = Axis("rows", k, n)
 SHEETS = 40
-
-
-def expression(rng: random.Random, leaves: list[Expr], depth: int) -> Expr:
-    """Something that bends, has poles and is undefined here and there."""
-    if not depth or rng.random() < 0.15:
-        return rng.choice(leaves)
-    one, other = (expression(rng, leaves, depth - 1) for _ in range(2))
-    match rng.randrange(9):
-        case 0 | 1:
-            return one + other
-        case 2 | 3:
-            return one - other
-        case 4 | 5:
-            return one * other
-        case 6:
-            return one / (other + Rational(5, 2))
-        case 7:
-            return rng.choice((sqrt, exp))(one)
-    return rng.choice((one**2, log(one + 2)))
-
-
-def printed(rng: random.Random) -> Printed:
-    """A small number, often zero: there derivatives of products vanish."""
-    return pure(f"{rng.choice((0, 0, rng.uniform(-2, 2), rng.uniform(0, 9))):.{rng.randrange(3)}f}")
-
-
-def sheet_of(rng: random.Random) -> Sheet:
-    given = [Column(name, ROWS, Given(), positive=False) for name in "ab"]
-    given += [Column(name, None, Given(), positive=False) for name in "cd"]
-    leaves = [given[0][k], given[1][k], given[2].symbol, given[3].symbol]
-    columns = list(given)
-    for name in "yz":
-        made = Equation(
-            "", (Symbol("made"), expression(rng, leaves, 4)), "for a test", Kind.DEFINITION, "made"
-        )
-        columns.append(Column(name, ROWS, Formula(made), positive=False))
-        leaves.append(columns[-1][k])
-    return Sheet(tuple(columns))
 
 
 def comparisons_of(rng: random.Random) -> tuple[Comparison, ...]:

@@ -115,7 +115,8 @@ def _datum(value: Any, bounds: Bounds) -> Any:
 
 
 def _held(value: Any, positive: bool) -> Any:
-    """A value that a double can hold, be it rounded."""
+    """A value that a double can hold, be it rounded; a formula without cells may be a plain number."""
+    value = mpmath.mpmathify(value)
     if isinstance(value, mpmath.mpc) or not mpmath.isfinite(value) or (positive and not value > 0):
         raise _Failed(Status.DOMAIN)
     if -1000 < mpmath.mag(value) < 1000:
