@@ -238,8 +238,8 @@ def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
     """In which unit a column is shown, and with how many digits.
 
     What was printed is shown in the unit it was printed in, whatever the workbook would show it in.
-    The digits follow from the inputs: one more than the least precise measured number that the column
-    rests on, so that rounding for the reader loses nothing that was measured.
+    The digits of a cell follow from its uncertainty; where that is not known, from the inputs: one more than
+    the least precise measured number that the column rests on. Zero and what is exact are no such number.
     """
     from .result.result import Shown
     from .sheet import Given
@@ -257,7 +257,7 @@ def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
     digits = []
     for given in (*sheet.ancestors(column), column):
         if isinstance(given.rule, Given) and not given.exact:
-            digits.append(min(printed.digits for printed in inputs.printed(given.name)))
+            digits += [each.digits for each in inputs.printed(given.name) if each.value and each.u]
     return Shown(unit, scale, min(digits, default=5) + 1)
 
 

@@ -236,6 +236,8 @@ def _section(folder: Folder) -> None:
     if dice.random() < 0.2:
         together = (dice.sample(names, 2), dice.choices(names, k=3), [*names], "x")
         lines.append(f"paired = {dice.choice(together)!r}")
+    if dice.random() < 0.2:
+        lines.append(f"digits = {dice.choice(('1', '2', '3', '0', 'true', '1.0', '[2]', folder.number()))}")
     for name in dice.sample(names, dice.choice((0, 0, 1, 2))):
         groups = dice.choice(("", "groups = [[1], [2]]", "groups = [[1, 2]]", "groups = [[9]]"))
         lines += [

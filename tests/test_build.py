@@ -234,13 +234,13 @@ def test_other_units_other_masses_and_other_numbers_of_tests(report: Report, tmp
 @pytest.mark.parametrize(
     ("change", "digits", "alpha_mean"),
     [
-        (("", ""), 4, "1.303"),  # e and three depths have three digits
-        (("5,4.993,0.453,51.03", "5,4.993,0.45,51.03"), 3, "1.32"),
-        (("41.6\n", "41.60\n"), 4, "1.303"),
-        (("5,4.993,0.453,51.03", "5,5,0.453,51.03"), 2, "1.3"),
+        (("", ""), 4, "1.3026"),  # e and three depths have three digits
+        (("5,4.993,0.453,51.03", "5,4.993,0.45,51.03"), 3, "1.317"),
+        (("41.6\n", "41.60\n"), 4, "1.3026"),
+        (("5,4.993,0.453,51.03", "5,5,0.453,51.03"), 2, "1.31"),
     ],
 )
-def test_a_digit_more_is_shown_than_the_least_precise_measured_number_has(
+def test_where_no_uncertainty_tells_a_digit_more_is_shown_than_the_least_precise_number_has(
     tmp_path: Path, change: tuple[str, str], digits: int, alpha_mean: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = copy_paper(tmp_path / "in")

@@ -71,7 +71,7 @@ def test_why_tells_what_the_formula_bar_tells(capsys: pytest.CaptureFixture[str]
     assert out.startswith("alpha[1-2] = 1.25799697873")
     assert "(11) proved, solved as (L5) proved" in out
     assert "0.512^2" in out  # the equation with the values put in
-    for cell in ("v[2] = 2.940 m/s", "x_p[2] = 29.7 um", "alpha_mean = 1.303", "F (50 rows)"):
+    for cell in ("v[2] = 2.940 m/s", "x_p[2] = 29.7 um", "alpha_mean = 1.3026", "F (50 rows)"):
         assert cell in out
 
 

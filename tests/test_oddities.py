@@ -111,7 +111,7 @@ def test_of_several_tests_that_may_be_wrong_the_one_that_moves_the_result_most(t
         report = Study(write(tmp_path / str(test), left)).computed
         means[test] = report.values.scalar("alpha_mean")
     worst = max(means, key=lambda test: abs(means[test] - whole))
-    goes = f"without it alpha_mean goes from {whole:.4g} to {means[worst]:.4g}, further than without another"
+    goes = f"without it alpha_mean goes from {whole:.4f} to {means[worst]:.4f}, further than without another"
     assert all(said.endswith(f"look at test {worst} first: {goes}") for said in both)
 
 

@@ -242,6 +242,7 @@ def test_what_is_shared(read: Read) -> None:
         ('x_p = "u = 1 um"', "LS433", "x_p"),
         ('points_per_pair = "u = 1"', "LS431", '"u = 1"'),
         ('plus_minus = "rectt"', "LS203", '"rectt"'),
+        *((f"digits = {wrong}", "LS435", wrong) for wrong in ("0", "3", "-1", "true", "2.0", '"2"', "[1]")),
         ("shared = 3", "LS205", "3"),
         ('[uncertainty.shared.a]\nof = "w"\nstated = "u = 1"', "LS505", '"w"'),
         ('[uncertainty.shared.a]\nof = "v"', "LS204", "uncertainty.shared.a"),

@@ -171,7 +171,7 @@ def test_mentions_in_prose_carry_the_same_values(report: Report, tree: ET.Elemen
     mentions = [e for e in tree.iter() if e.get("data-cell") == "alpha_mean"]
     assert len(mentions) >= 3
     assert {e.get("data-value") for e in mentions} == {repr(report.values.scalar("alpha_mean"))}
-    assert {_text(e) for e in mentions} == {"1.303"}
+    assert {_text(e) for e in mentions} == {"1.3026"}
 
 
 def test_given_cells_are_inputs_with_the_printed_string(report: Report, tree: ET.Element) -> None:
@@ -186,10 +186,11 @@ def test_given_cells_are_inputs_with_the_printed_string(report: Report, tree: ET
     assert inputs["ball_density", ""].get("value") == "7800"
 
 
-def test_shown_digits_follow_the_inputs(tree: ET.Element) -> None:
+def test_shown_digits_follow_the_uncertainties(tree: ET.Element) -> None:
     shown = {e.get("id"): _text(e) for e in tree.iter() if e.get("data-cell") and e.get("id")}
     assert shown["cell-alpha-1-2"] == "1.258"
-    assert shown["cell-x_m-1"] == "34.00"
+    assert shown["cell-alpha-1-3"] == "1.2767"
+    assert shown["cell-x_m-1"] == "33.996"
     assert shown["cell-Cprime_eq7-5"] == "3619"
     assert shown["cell-C_log"] == "1.019 × 10⁹"
 

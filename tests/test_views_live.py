@@ -3,6 +3,7 @@
 import base64
 import hashlib
 import json
+import math
 import random
 import re
 import struct
@@ -19,7 +20,6 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from loopsheet.report.document.material import Material
-from loopsheet.report.document.numbers import decimals, rounded, shown
 from loopsheet.report.document.tree import Math
 from loopsheet.report.document.written import placed
 from loopsheet.report.engines import javascript
@@ -27,9 +27,11 @@ from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.inputs.number_text import NumberError, read_printed, read_value
 from loopsheet.report.inputs.unit_text import parse_unit
 from loopsheet.report.messages.errors import Findings, Location
-from loopsheet.report.quantity import Bounds, Printed
+from loopsheet.report.quantity import Bounds
 from loopsheet.report.referee import print_as, prints_same
+from loopsheet.report.result.numbers import Numeral, at, decimals, last_place, order, shown
 from loopsheet.report.result.result import Report
+from loopsheet.report.sheet import RepeatAxis
 from loopsheet.report.study import Study
 from loopsheet.report.views import compact, figures, html, live, live_files
 
@@ -144,16 +146,20 @@ def test_pieces_of_the_toml_make_the_file_again(known: dict[str, Any], report: R
     assert sorted(places) == sorted(known["parameters"])
 
 
-def test_digits_follow_from_what_a_column_rests_on(known: dict[str, Any], report: Report) -> None:
-    columns, grounds = known["columns"], known["grounds"]
-    assert grounds[columns["alpha"]["ground"]] == [4, ["v", "e", "x_p"]]  # beta is exact
-    assert grounds[columns["m_red"]["ground"]] == [4, ["ball_diameter", "ball_density"]]
-    for name, column in columns.items():
-        assert ("given" in column) != ("ground" in column)
-        if "ground" in column:
-            digits, rests = grounds[column["ground"]]
-            printed = [number.digits for given in rests for number in report.inputs.printed(given)]
-            assert report.shown[name].digits == digits == min(printed, default=5) + 1
+def test_the_page_has_the_digits_of_every_cell(
+    known: dict[str, Any], report: Report, in_js: Callable[[list[list[Any]]], list[Any]]
+) -> None:
+    """As Python shows them: without an edit, and after one that leaves a cell as it was."""
+    for name, column in known["columns"].items():
+        assert ("given" in column) != ("digits" in column)
+        if "digits" in column and not isinstance(report.sheet[name].axis, RepeatAxis):
+            digits, values = column["digits"], report.in_unit(name)
+            every = digits if isinstance(digits, list) else [digits] * len(values)
+            cases = [[bits(x), d] for x, d in zip(values, every, strict=True) if x is not None]
+            (told,) = in_js([["column", cases]])
+            assert told == [figure.text for figure in report.figures(name) if figure], name
+    assert known["columns"]["alpha"]["digits"] == [4, 5, 5, 5, 5, 5, 5, 4, 5, 4]
+    assert known["columns"]["Cprime_1"]["digits"] == 4
 
 
 def test_published_values_keep_their_digits(known: dict[str, Any]) -> None:
@@ -226,13 +232,18 @@ const hexed = (x) => { const view = new DataView(new ArrayBuffer(8)); view.setFl
   return view.getBigUint64(0).toString(16).padStart(16, "0"); };
 const plain = (f) => [f.negative, f.whole, f.fraction, f.exponent, figureText(f)];
 const does = {
-  rounded: (x, digits) => plain(rounded(doubled(x), digits)),
+  rounded: (x, place) => plain(rounded(doubled(x), place)),
+  last: (x, digits) => plain(rounded(doubled(x), lastPlace(doubled(x), digits))),
+  column: (cells) => {
+    const values = cells.map(([x]) => doubled(x));
+    return shownColumn(values, (row) => lastPlace(values[row], cells[row][1])).map(figureText);
+  },
   decimals: (x, places) => plain(decimals(doubled(x), places)),
   repr: (x) => repr(doubled(x)),
   brief: (x) => brief(doubled(x)),
-  shown: (xs, scale, digits) => {
+  shown: (xs, places) => {
     const values = xs.map((x) => x === null ? NaN : doubled(x));
-    return shownColumn(values, doubled(scale), digits).map((f) => f && plain(f));
+    return shownColumn(values, (row) => places[row]).map((f) => f && plain(f));
   },
   beside: (x, text, [n, d], cut) => beside(doubled(x), text, { n: BigInt(n), d: BigInt(d) }, cut),
   read: (given, text) => {
@@ -240,7 +251,6 @@ const does = {
     return found.why ? null : hexed(found.value);
   },
   normalised: (text) => normalised(text),
-  digits: (text) => digitsOf(text),
 };
 console.log(JSON.stringify(cases.map(([name, ...rest]) => does[name](...rest))));
 """
@@ -275,16 +285,31 @@ def many() -> list[float]:
     return found + [-x for x in found[::3]]
 
 
+def told(figure: Numeral) -> list[Any]:
+    return [figure.negative, figure.whole, figure.fraction, figure.exponent, figure.text]
+
+
 def test_numbers_are_printed_as_python_does(in_js: Callable[[list[list[Any]]], list[Any]]) -> None:
     cases: list[list[Any]] = []
     wanted: list[Any] = []
-    for place, x in enumerate(many()):
-        digits = place % 7 + 1
-        for name, figure in (("rounded", rounded(x, digits)), ("decimals", decimals(x, place % 6))):
-            cases.append([name, bits(x), digits if name == "rounded" else place % 6])
-            wanted.append([figure.negative, figure.whole, figure.fraction, figure.exponent, figure.text])
+    for n, x in enumerate(many()):
+        place = order(x) - n % 8
+        cases += [["rounded", bits(x), place], ["decimals", bits(x), n % 6]]
+        wanted += [told(at(x, place)), told(decimals(x, n % 6))]
         cases += [["repr", bits(x)], ["brief", bits(x)]]
         wanted += [repr(x), f"{x:.6g}"]
+    assert in_js(cases) == wanted
+
+
+def test_uncertain_numbers_are_printed_as_python_does(in_js: Callable[[list[list[Any]]], list[Any]]) -> None:
+    """The page gets a number of digits for each cell, and shows with that what Python shows."""
+    dice, cases, wanted = random.Random(7), [], []
+    for x in [*many(), *(dice.uniform(1, 10) * 10.0 ** dice.randint(-250, 250) for _ in range(500))]:
+        size = dice.choice((1e-17, 1e-9, 1e-4, 0.01, 0.0996, 0.3, 1, 5, 1e3)) * dice.uniform(0.5, 1)
+        u = dice.choice((abs(x) * size, abs(x) * size, abs(x) * size, 0.0, math.nan, 9.96, 0.0996))
+        place = last_place(x, u, dice.randint(1, 7), dice.choice((1, 2)))
+        cases.append(["last", bits(x), order(x) - place + 1])
+        wanted.append(told(at(x, place)))
     assert in_js(cases) == wanted
 
 
@@ -294,14 +319,12 @@ def test_columns_are_printed_in_one_notation(
     in_js: Callable[[list[list[Any]]], list[Any]], data: st.DataObject
 ) -> None:
     sizes = st.floats(1e-12, 1e12) | st.just(0.0) | st.none() | st.floats(-1e9, -1e-9)
-    column = st.lists(sizes, min_size=1, max_size=6)
-    kind = st.tuples(column, st.sampled_from([1.0, 1e-6, 1e-3]), st.integers(2, 6))
-    columns = data.draw(st.lists(kind, min_size=1, max_size=60))
-    cases = [["shown", [x if x is None else bits(x) for x in xs], bits(scale), d] for xs, scale, d in columns]
-    wanted = [
-        [f and [f.negative, f.whole, f.fraction, f.exponent, f.text] for f in shown(xs, scale, d)]
-        for xs, scale, d in columns
+    column = st.lists(st.tuples(sizes, st.integers(-14, 9)), min_size=1, max_size=6)
+    columns = [
+        list(zip(*cells, strict=True)) for cells in data.draw(st.lists(column, min_size=1, max_size=60))
     ]
+    cases = [["shown", [x if x is None else bits(x) for x in xs], places] for xs, places in columns]
+    wanted = [[figure and told(figure) for figure in shown(xs, places)] for xs, places in columns]
     assert in_js(cases) == wanted
 
 
@@ -360,16 +383,6 @@ def test_the_page_refuses_what_the_reader_of_a_folder_refuses(
     for case, found, expected in zip(cases, in_js(cases), wanted, strict=True):
         assert found == expected, case
     assert 0.4 < refused / len(cases) < 0.9
-
-
-@settings(max_examples=15, suppress_health_check=list(HealthCheck))
-@given(st.lists(printed, min_size=1, max_size=80))
-def test_printed_digits_are_counted_as_python_does(
-    in_js: Callable[[list[list[Any]]], list[Any]], texts: list[str]
-) -> None:
-    texts = [*texts, "0", "0.00", ".9", "0.90", "+2.940", "12E+2", "-.050e-3"]
-    wanted = [Printed(text, "1", Fraction(0), Fraction(1)).digits for text in texts]
-    assert in_js([["digits", text] for text in texts]) == wanted
 
 
 @pytest.mark.parametrize(

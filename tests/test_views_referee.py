@@ -16,9 +16,9 @@ from matplotlib.text import Text
 
 from loopsheet.report import stages
 from loopsheet.report.document.material import Material
-from loopsheet.report.document.numbers import decimals
 from loopsheet.report.document.refereed import FIGURE, RefereedPair, figure
 from loopsheet.report.document.said import Said
+from loopsheet.report.result.numbers import decimals
 from loopsheet.report.result.result import Report
 from loopsheet.report.result.verdict import (
     INPUT,

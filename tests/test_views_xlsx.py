@@ -28,8 +28,8 @@ from loopsheet.report.views import xlsx
 from loopsheet.report.views.xlsx_style import (
     LONGEST,
     height,
-    number_format,
     open_format,
+    typical_format,
 )
 
 
@@ -88,7 +88,14 @@ def test_every_column_is_a_defined_name_with_the_values_of_the_report(report: Re
 def test_names_do_not_tell_capitals(report: Report, grid: Grid) -> None:
     sheet = report.sheet
     twin = replace(sheet["C"], name="c")
-    more = replace(report, sheet=type(sheet)((*sheet.columns, twin)))
+    values = report.values
+    own = {name: {**getattr(values, name), "c": getattr(values, name)["C"]} for name in ("value", "status")}
+    more = replace(
+        report,
+        sheet=(twins := type(sheet)((*sheet.columns, twin))),
+        values=replace(values, sheet=twins, **own),
+        shown={**report.shown, "c": report.shown["C"]},
+    )
     blocks = (*grid.blocks, replace(grid["C"], name="c"))
     content = xlsx.render(more, replace(grid, blocks=blocks))
     names = openpyxl.load_workbook(io.BytesIO(content)).defined_names
@@ -379,8 +386,10 @@ def test_a_very_long_text_is_cut(report: Report, grid: Grid) -> None:
         ([0.8, *[30.0] * 9], 4, "0.00"),
     ],
 )
-def test_number_formats_show_the_digits_that_are_known(values: list[Any], digits: int, form: str) -> None:
-    assert number_format(values, digits) == form
+def test_a_column_has_the_number_format_of_its_typical_cell(
+    values: list[Any], digits: int, form: str
+) -> None:
+    assert typical_format(values, digits) == form
 
 
 def test_an_input_shows_all_that_is_typed() -> None:

@@ -6,14 +6,14 @@ import re
 from dataclasses import dataclass
 
 from ..charts import Chart, Series
-from ..result.result import Report, Shown
+from ..result.numbers import is_pure
+from ..result.result import Report
 from ..sheet import Axis, RepeatAxis
 from .material import Material
 from .notation import fragments
-from .numbers import is_pure, rounded
 from .tree import Math, Refer
 
-__all__ = ["PREFIXES", "Letters", "Scale", "Words", "plain", "text_of", "unit_text"]
+__all__ = ["PREFIXES", "Letters", "Scale", "Words", "plain", "unit_text"]
 
 Letters = tuple[tuple[str, str], ...]
 """Pieces of a text: upright (``""``) or a symbol's, on the line (``i``), below or above it (``_``, ``^``)."""
@@ -58,11 +58,6 @@ def unit_text(unit: str) -> str:
 def plain(letters: Letters) -> str:
     """Without italics and heights."""
     return "".join(text for _, text in letters)
-
-
-def text_of(value: float, shown: Shown) -> str:
-    """A number as the report prints it, without its unit."""
-    return rounded(value / shown.scale, shown.digits).text
 
 
 class Words:
@@ -115,7 +110,5 @@ class Words:
 
     def value(self, name: str) -> str:
         """A single number as the report prints it, with its unit; empty if there is none."""
-        value, shown = self.report.values.cell(name).value, self.report.shown[name]
-        return (
-            "" if value is None else text_of(value, shown) + (f" {shown.unit}" if shown.unit != "1" else "")
-        )
+        cell = self.report.values.cell(name)
+        return "" if cell.value is None else self.report.text(cell)

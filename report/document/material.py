@@ -15,12 +15,12 @@ from ...derivations.proved import Proof, ProofStatus
 from ..cells.marks import MarkCount
 from ..cells.values import Cell
 from ..messages.diagnostics import Check
+from ..result.numbers import decimals, read, table_format
 from ..result.result import Report
 from ..result.uncertain import Budget
 from ..sheet import Axis, Column, Given, Root
 from ..workbook import FigureSpec, TableSpec
 from .names import latex_names, name_latex
-from .numbers import Numeral, decimals, read, shown, table_format
 from .parts import MARK, MOST, Head, Item, Pair, Remark, SourceGroup, Written, slug
 from .refereed import RefereedPair, figures
 from .rich import Sentences
@@ -65,16 +65,9 @@ class Material:
         """All cells of a column, in one notation."""
         column = self.report.sheet[name]
         head, cells = self.head(column), list(self.report.values.cells(name))
-        printed = self.report.inputs.printed(name) if head.given else ()
-        form = self.report.shown[name]
-        figures: list[Numeral | None]
-        if not printed:
-            figures = shown((cell.value for cell in cells), form.scale, form.digits)
-            texts: tuple[str | None, ...] = (None,) * len(cells)
-        else:
-            # A given number is shown as it was printed, in the unit it was printed in.
-            texts = tuple(number.text for number in printed)
-            figures = [read(number.text) for number in printed]
+        # A given number is shown as it was printed, in the unit it was printed in.
+        printed = tuple(number.text for number in self.report.printed(name))
+        texts, figures = printed or (None,) * len(cells), self.report.figures(name)
         places = max((len(figure.fraction) for figure in figures if figure is not None), default=0)
         head = replace(head, format=table_format(figures), places=places)
         rows = zip(cells, figures, texts, self.report.marks.of(name), strict=True)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from ..cells.address import index_text
 from ..cells.values import Cell, Status
 from ..quantity import Printed
+from ..result.numbers import Numeral, is_pure
 from ..result.result import Comparison
 from .names import Terms
-from .numbers import Numeral, is_pure
 
 __all__ = [
     "MARK",

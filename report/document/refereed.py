@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 
 from ..result import verdict_words as words
+from ..result.numbers import Numeral, decimals, read
 from ..result.result import Report
 from ..result.verdict import EXACT, REACHABLE, UNREACHABLE, WITHIN, Verdict
 from ..workbook import FigureSpec
-from .numbers import Numeral, decimals, read
 from .parts import Head, Pair
 
 __all__ = ["FIGURE", "GOOD", "RefereedPair", "figure", "figures", "shown_mismatch"]

@@ -11,8 +11,8 @@ from collections.abc import Collection, Iterator, Mapping
 from functools import cached_property
 
 from ...derivations.vocabulary import Vocabulary
+from ..result.numbers import read
 from .names import name_latex
-from .numbers import read
 from .tree import Inline, Inlines, Math, Number, Refer, Unit
 
 __all__ = ["Sentences"]

@@ -10,10 +10,10 @@ from ...derivations.proved import IDENTITY, Proof
 from ..messages.errors import suggest
 from ..result import verdict_words as words
 from ..result.agreement import Agreement
+from ..result.numbers import is_pure
 from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
 from ..workbook import FigureSpec
 from .material import Material
-from .numbers import is_pure
 from .parts import SourceGroup
 from .refereed import GOOD
 from .tables import Tables

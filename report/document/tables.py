@@ -12,12 +12,12 @@ from ..cells.address import index_text
 from ..inputs.measurements import LeftOut
 from ..inputs.published import PublishedValue
 from ..result import verdict_words as words
+from ..result.numbers import Numeral, decimals, is_pure, read, rounded, table_format
 from ..result.uncertain import Budget, Contribution
 from ..result.verdict import ALL, INPUT, UNREACHABLE, TableVerdict
 from ..sheet import Axis
 from ..workbook import TableSpec
 from .material import Material
-from .numbers import Numeral, decimals, is_pure, read, rounded, stated, table_format
 from .parts import MOST, Head, Pair, SourceGroup, described, slug, why_address
 from .refereed import GOOD, RefereedPair, shown_mismatch
 from .tree import (
@@ -180,18 +180,13 @@ class Tables:
     def _of(self, budget: Budget) -> Head:
         return self.material.head(self.report.sheet[budget.name])
 
-    def _scale(self, budget: Budget) -> float:
-        return self.report.shown[budget.name].scale
-
     def _stated(self, budget: Budget) -> tuple[Numeral, Numeral]:
-        scale = self._scale(budget)
-        return stated(budget.value / scale, budget.u / scale)
+        return self.report.stated(budget.name, budget.value, budget.u)
 
     def _expanded(self, budget: Budget) -> Number | None:
         if math.isnan(budget.factor):
             return None
-        scale = self._scale(budget)
-        return Number(stated(budget.value / scale, budget.expanded / scale)[1])
+        return Number(self.report.stated(budget.name, budget.value, budget.expanded)[1])
 
     def _factor(self, budget: Budget) -> Number | None:
         return None if math.isnan(budget.factor) else Number(rounded(budget.factor, 3))

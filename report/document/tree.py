@@ -11,8 +11,8 @@ from functools import cached_property
 
 from ...derivations.equation import Equation
 from ..cells.address import index_text
+from ..result import numbers
 from ..workbook import FigureSpec
-from . import numbers
 from .parts import Item, cell_id
 
 __all__ = [

@@ -2,6 +2,7 @@
 
 [uncertainty]
 plus_minus = "rect"                      # what +-0.1 means where nothing is said
+digits = 1                               # of uncertainties that are shown; 2, if nothing is said
 x_p = "0.5 % of reading + 2 digits"
 
 paired = ["V", "I", "phi"]               # repeated readings, together in each row: they scatter, correlated
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
 __all__ = ["SharedError", "Stated", "read_bare", "read_uncertainty"]
 
 SECTION = "uncertainty"
+DIGITS = (1, 2)
+"""How many digits an uncertainty may have: more would say nothing (JCGM 100, 7.2.6)."""
 Numbers = Mapping[str, tuple["Printed", ...]]
 
 
@@ -82,12 +85,15 @@ class Stated:
     paired : tuple of str
         The columns whose numbers are repeated readings that were taken together, a row each: all of it is one
         sample.
+    digits : int
+        Of an uncertainty that is shown: from these follow those of its value.
     """
 
     columns: Mapping[str, StatedErrors]
     shared: tuple[SharedError, ...] = ()
     correlations: Mapping[tuple[str, str], float] = field(default_factory=dict)
     paired: tuple[str, ...] = ()
+    digits: int = DIGITS[-1]
 
     def of(self, numbers: Numbers) -> dict[str, tuple[Printed, ...]]:
         """Numbers with what is stated of them."""
@@ -136,7 +142,7 @@ def read_uncertainty(
         From :func:`read_bare`.
     """
     reader = _Reader(tables, numbers, counted, tests)
-    written = tables.keys((SECTION,), (*numbers, "plus_minus", "paired", "shared", "correlation"))
+    written = tables.keys((SECTION,), (*numbers, "plus_minus", "digits", "paired", "shared", "correlation"))
     paired = read_paired(tables, SECTION, numbers) if "paired" in written else ()
     columns = {name: reader.column(name, bare) for name in written if name in numbers}
     columns |= {name: reader.of_readings(name, name in columns) for name in paired}
@@ -146,7 +152,8 @@ def read_uncertainty(
     correlations = reader.possible(dict(reader.correlations(several, paired)))
     if paired and not tables.findings.found:
         correlations |= correlations_of({name: numbers[name] for name in paired})
-    return Stated(own, tuple(found for found in shared if found is not None), correlations, paired)
+    known = tuple(found for found in shared if found is not None)
+    return Stated(own, known, correlations, paired, reader.digits())
 
 
 class _Reader:
@@ -157,6 +164,15 @@ class _Reader:
     ) -> None:
         self.tables, self.numbers, self.counted, self.tests = tables, numbers, counted, tests
         self.findings, self.toml = tables.findings, tables.toml
+
+    def digits(self) -> int:
+        """How many digits of an uncertainty are shown."""
+        section: Any = self.toml.data.get(SECTION, {})
+        wanted = section.get("digits", DIGITS[-1]) if isinstance(section, dict) else DIGITS[-1]
+        if type(wanted) is int and wanted in DIGITS:
+            return wanted
+        self.findings.add("LS435", self.toml.value(SECTION, "digits"))
+        return DIGITS[-1]
 
     def names(self, table: str) -> tuple[str, ...]:
         """The keys of a table of the section, whatever they are."""

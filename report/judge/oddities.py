@@ -194,11 +194,7 @@ class _Oddities:
 
     def valued(self, cell: Cell) -> str:
         """``alpha[1-2] = 2.73``; a given cell as it was printed."""
-        how, printed = self.report.shown[cell.name], self.printed(cell)
-        if cell.value is None:
-            return f"{cell.address} {cell.status.code}"
-        text = printed.text if printed else f"{cell.value / how.scale:.{how.digits}g}"
-        return f"{cell.address} = {text}" + (f" {how.unit}" if how.unit != "1" else "")
+        return f"{cell.address}{' ' if cell.value is None else ' = '}{self.report.text(cell)}"
 
     def of_expectations(self) -> Iterator[Check]:
         """Whether each expectation has come true."""

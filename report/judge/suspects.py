@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..engines.numpy import evaluate
+from ..result.numbers import at
 from ..sheet import Given, Sheet
 
 if TYPE_CHECKING:
@@ -68,6 +69,6 @@ def _furthest(report: Report, tests: Sequence[int]) -> tuple[int, str]:
     moved = np.nan_to_num(np.abs(after - before))
     if np.count_nonzero(moved == moved.max()) > 1:
         return 0, ""
-    row, how = int(moved.argmax()), report.shown[column.name]
-    was, now = (f"{each / how.scale:.{how.digits}g}" for each in (before, after[row]))
+    row, scale, (place,) = int(moved.argmax()), report.shown[column.name].scale, report.places(column.name)
+    was, now = (at(float(each) / scale, place).text for each in (before, after[row]))
     return tests[row], f"without it {column.name} goes from {was} to {now}, further than without another"

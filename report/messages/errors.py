@@ -285,6 +285,12 @@ CATALOGUE: dict[str, Entry] = {
         "correlation coefficients between -1 and 1 that can hold together",
         "{suggestion}",
     ),
+    "LS435": Entry(
+        "not a number of digits",
+        "this is not how many digits an uncertainty may have",
+        "digits = 1 or digits = 2",
+        "more digits of an uncertainty would say nothing; values.json has all of them",
+    ),
     # Published values
     "LS501": Entry(
         "not an index",

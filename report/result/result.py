@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -10,9 +11,11 @@ from ..cells.marks import Marks
 from ..cells.values import Cell, Values
 from ..inputs.inputs import Inputs, PublishedValue
 from ..messages.diagnostics import Check
-from ..sheet import Sheet
+from ..quantity import Printed, behind
+from ..sheet import Given, Sheet
 from ..workbook import Workbook
 from .agreement import Agreement
+from .numbers import Numeral, last_place, read, shown, stated, uncertainty
 from .uncertain import Uncertainties
 from .verdict import (
     OTHERWISE,
@@ -44,7 +47,8 @@ class Shown:
     scale : float
         One such unit in SI.
     digits : int
-        Significant digits that the inputs warrant: one more than the least precise input behind it.
+        Significant digits of a cell whose uncertainty is not known: one more than the least precise input
+        behind it.
     """
 
     unit: str
@@ -191,6 +195,7 @@ class Report:
     referee: Referee = field(default_factory=Referee)
     versions: Mapping[str, str] = field(default_factory=dict)
     comparisons_u: tuple[Comparison, ...] = ()
+    _figures: dict[str, tuple[Numeral | None, ...]] = field(default_factory=dict, init=False, compare=False)
 
     @property
     def every_comparison(self) -> tuple[Comparison, ...]:
@@ -208,3 +213,48 @@ class Report:
     def proof(self, label: str) -> Proof:
         """The proof of an equation by its label, ``(12a)``."""
         return next(proof for proof in self.proofs if proof.equation.label == label)
+
+    # --- numbers as they are shown, in every view
+
+    def in_unit(self, name: str) -> list[float | None]:
+        """The cells of a column in the unit that it is shown in; None where there is no value."""
+        # A double divided by a scale such as 1e-6 is not exact; the error is far below any shown digit.
+        scale = self.shown[name].scale
+        return [None if cell.value is None else cell.value / scale for cell in self.values.cells(name)]
+
+    def places(self, name: str) -> list[int]:
+        """The power of ten of the last digit that is shown of each cell of a column, in its unit."""
+        how, most = self.shown[name], self.inputs.uncertainty.digits
+        known = self.uncertain().u
+        values = self.in_unit(name)
+        u = (known[name] / how.scale).tolist() if name in known else [math.nan] * len(values)
+        return [last_place(value or 0.0, own, how.digits, most) for value, own in zip(values, u, strict=True)]
+
+    def printed(self, name: str) -> tuple[Printed, ...]:
+        """What was printed of a given column; nothing of others."""
+        return self.inputs.printed(name) if isinstance(self.sheet[name].rule, Given) else ()
+
+    def figures(self, name: str) -> tuple[Numeral | None, ...]:
+        """The cells of a column as they are shown: in one notation, or as they were printed."""
+        if name not in self._figures:
+            printed = tuple(read(each.text) for each in self.printed(name))
+            self._figures[name] = printed or shown(self.in_unit(name), self.places(name))
+        return self._figures[name]
+
+    def text(self, cell: Cell) -> str:
+        """A cell as it is shown, with its unit: a given one as it was printed; without a value, its code."""
+        if cell.value is None:
+            return cell.status.code
+        row = self.values.row(self.sheet[cell.name], cell.label)
+        printed, figure = self.printed(cell.name), self.figures(cell.name)[row]
+        number = printed[row].text if printed else figure.text if figure else ""
+        return number + behind(self.shown[cell.name].unit)
+
+    def stated(self, name: str, value: float, u: float) -> tuple[Numeral, Numeral]:
+        """A value of a column and its uncertainty, both in SI, as they are shown together in its unit."""
+        scale = self.shown[name].scale
+        return stated(value / scale, u / scale, self.inputs.uncertainty.digits)
+
+    def sure(self, name: str, u: float) -> Numeral:
+        """An uncertainty of a column by itself, in SI, as it is shown in its unit."""
+        return uncertainty(u / self.shown[name].scale, self.inputs.uncertainty.digits)

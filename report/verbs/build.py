@@ -81,11 +81,8 @@ def summary(report: Report) -> dict[str, Any]:
 
 
 def _line(report: Report, name: str) -> str:
-    """A headline cell in a line, in the digits that its inputs warrant."""
-    from ..quantity import behind
-
+    """A headline cell in a line, with the digits that its uncertainty leaves."""
     cell = report.values.cell(name)
-    how = report.shown[name]
     column = report.sheet[name]
     if cell.value is None:
         return cell.reason
@@ -93,5 +90,4 @@ def _line(report: Report, name: str) -> str:
     left = "".join(f"  (over {n} {axis} that have values)" for axis, n in rows.items())
     left += "".join(f"  ({count.said})" for count in report.marks.behind(column) if count.number)
     left += (mark := report.marks.of(name)[0]) and f"  {mark}"
-    unit = behind(how.unit)
-    return f"{name:12} {cell.value / how.scale:#.{how.digits}g}{unit}  {column.meaning} {column.source}{left}"
+    return f"{name:12} {report.text(cell)}  {column.meaning} {column.source}{left}"

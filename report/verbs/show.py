@@ -49,7 +49,6 @@ def _plan(report: Report, address: str) -> str:
 
 def _lines(report: Report, address: str) -> Iterator[str]:
     from ...derivations.text import text_of_equation
-    from ..document.numbers import rounded
 
     column, labels = find(report, address)
     name = column.name
@@ -69,7 +68,7 @@ def _lines(report: Report, address: str) -> Iterator[str]:
         if cell.label in wanted_labels:
             scale = report.shown[name].scale
             value = cell.reason if cell.value is None else given.get(cell.label) or repr(cell.value / scale)
-            u = f"  u {rounded(uncertain[row] / scale, 2).plain}" if uncertain[row] > 0 else ""
+            u = f"  u {report.sure(name, uncertain[row]).plain}" if uncertain[row] > 0 else ""
             yield f"  {cell.address:16} {value}{u}{mark and f'  {mark}'}"
     for count in report.marks.behind(column):
         if count.number or count.margin.limit.source:

@@ -6,8 +6,8 @@ import json
 import math
 from collections.abc import Callable, Iterator, Mapping
 
-from ..document.numbers import decimals, rounded, stated
 from ..quantity import behind
+from ..result.numbers import decimals, rounded, stated
 from ..result.result import Report
 from ..result.uncertain import Budget, Contribution, Distributed
 from . import markdown as md
@@ -24,15 +24,16 @@ def sentence(report: Report, budget: Budget) -> str:
     if math.isnan(budget.value):
         return report.values.cell(budget.name, budget.label).reason
     if not budget.is_known:
-        return f"{budget.cell} = {budget.value / scale:.6g}{unit}, and its uncertainty is not known"
+        told = report.text(report.values.cell(budget.name, budget.label))
+        return f"{budget.cell} = {told}, and its uncertainty is not known"
     if not budget.u:
         return f"{budget.cell} = {budget.value / scale!r}{unit}, exactly"
-    value, u = stated(budget.value / scale, budget.u / scale)
+    value, u = report.stated(budget.name, budget.value, budget.u)
     told = f"{budget.cell} = {value.text}{unit}, u = {u.text}{unit}"
     if math.isnan(budget.factor):
         return told
     level = f"{100 * budget.level:.12g} %"
-    _, expanded = stated(budget.value / scale, budget.expanded / scale)
+    _, expanded = report.stated(budget.name, budget.value, budget.expanded)
     return f"{told}, U = {expanded.text}{unit} with k = {rounded(budget.factor, 3).text} for {level}"
 
 
@@ -111,14 +112,13 @@ def _source(each: Contribution) -> dict[str, object]:
 def _row(report: Report, budget: Budget, each: Contribution) -> tuple[str, ...]:
     source = each.source
     name = source.moves[0][0]
-    unit, scale = _unit(report, name)
-    own, own_scale = _unit(report, budget.name)
+    (unit, _), (own, own_scale) = _unit(report, name), _unit(report, budget.name)
     estimate = f"{report.inputs.printed(name)[source.moves[0][1]].text}{unit}"
     contribution, _ = stated(each.u / own_scale, budget.u / own_scale, 3)
     return (
         source.name,
         _NONE if each.estimate is None else estimate,
-        _NONE if source.u is None else f"{rounded(source.u / scale, 2).text}{unit}",
+        _NONE if source.u is None else f"{report.sure(name, source.u).text}{unit}",
         source.shape.value,
         "∞" if math.isinf(source.dof) else f"{source.dof:g}",
         f"{contribution.text}{own}",
@@ -150,10 +150,11 @@ def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iter
     unit, scale = _unit(report, budget.name)
 
     def told(value: float) -> str:
-        return stated(value / scale, (drawn.u if math.isfinite(drawn.u) else budget.u) / scale)[0].text
+        u = drawn.u if math.isfinite(drawn.u) else budget.u
+        return report.stated(budget.name, value, u)[0].text
 
     yield f"Monte Carlo, {drawn.number} draws: median {told(drawn.median)}{unit}" + (
-        f", u = {rounded(drawn.u / scale, 2).text}{unit}" if math.isfinite(drawn.u) else ""
+        f", u = {report.sure(budget.name, drawn.u).text}{unit}" if math.isfinite(drawn.u) else ""
     )
     if drawn.lost:
         share = _percent(drawn.lost / drawn.number)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..cells.values import Status
 from ..charts import VERMILION, Chart, Series, shade
-from ..document.charted import PREFIXES, Letters, Words, text_of
+from ..document.charted import PREFIXES, Letters, Words
 from ..result.result import Report
 from . import drawing
 from .drawing import Array, Labels, Place
@@ -63,8 +63,13 @@ MARGINS = (0.06, 0.1)
 class Trace:
     """The points of a series, or of one row of the axis that is repeated; `at` has the shape (2, points)."""
 
-    names: list[str]
+    labels: list[tuple[int, ...]]
     at: Array
+
+    @property
+    def names(self) -> list[str]:
+        """What the points are called, or the row."""
+        return ["–".join(map(str, label)) for label in self.labels]
 
 
 def traces(words: Words, chart: Chart, series: Series, sizes: Sequence[float]) -> Iterator[Trace]:
@@ -83,7 +88,7 @@ def traces(words: Words, chart: Chart, series: Series, sizes: Sequence[float]) -
     for row in np.unique(which[ok]):
         here = np.flatnonzero(ok & (which == row))
         named = labels[here] if of is axis else labels[[row]]
-        yield Trace(["–".join(map(str, label)) for label in named], at[:, here])
+        yield Trace([tuple(label) for label in named.tolist()], at[:, here])
 
 
 def _units(words: Words, chart: Chart) -> list[tuple[str, float]]:
@@ -201,7 +206,7 @@ class _Picture:
             texts = [str(key.get_label()) for key in self.keys]
             ncols = len(texts) if sum(map(len, texts)) < 83 else 2 if len(texts[0]) < 48 else 1
             self.figure.legend(
-                handles=self.keys, loc="outside upper left", ncols=ncols, handlelength=1.5, columnspacing=1.5
+                handles=self.keys, loc="outside upper left", ncols=ncols, handlelength=1.5, columnspacing=1
             )
         labels = Labels(self.figure, self.axes)
         for at, radius in self.taken:
@@ -239,7 +244,7 @@ class _Picture:
         self.key(series, count, more, ls="", marker="o", ms=min(size, 2.4), color=series.colour)
         if series.named:
             self.edge(at, beyond, f"outside the frame: {total - len(within)} of {total}")
-            self.name(series, [name for trace in own for name in trace.names], at, named, beyond)
+            self.name(series, own, at, named, beyond)
 
     def edge(self, at: Array, beyond: NDArray[np.intp], told: str) -> None:
         """Triangles at the edges towards points that are outside."""
@@ -254,14 +259,17 @@ class _Picture:
             self.keys.append(Line2D([], [], ls="", marker="^", ms=5, color=VERMILION, label=told))
 
     def name(
-        self, series: Series, names: list[str], at: Array, named: NDArray[np.intp], beyond: NDArray[np.intp]
+        self, series: Series, own: list[Trace], at: Array, named: NDArray[np.intp], beyond: NDArray[np.intp]
     ) -> None:
         """The names of points; the triangle at the edge says where one is, the text how far."""
-        shown = self.words.plotted.shown[series.y]
+        names, report = [name for trace in own for name in trace.names], self.words.report
+        labels = [label for trace in own for label in trace.labels]
         held = np.clip(at.T, *np.transpose(self.frame.ends))
         for n in named:
-            far, value = n in beyond, text_of(float(at[1, n]) * self.size, shown)
-            text = f"{names[n]}: {value}" if far else names[n]
+            far, text = n in beyond, names[n]
+            if far:
+                cell = report.values.cell(series.y, labels[n]) if series.y in report.sheet else None
+                text += f": {report.text(cell) if cell else format(at[1, n], '.6g')}"
             self.names.append((text, [(held[n], AROUND[:2] if far else AROUND)], {"fontsize": 8.5}))
 
     def lines(self, series: Series, own: list[Trace]) -> None:

@@ -12,10 +12,10 @@ from pathlib import Path
 
 from ...derivations.equation import Equation
 from ..document.material import Material
-from ..document.numbers import is_pure
 from ..document.parts import Item
 from ..document.tree import Display, Entry, Math, Number, Refer, Silent, Table, TableColumn, Unit
 from ..machine.staging import put
+from ..result.numbers import is_pure
 from ..result.result import Report
 from .escape import Markup, tex
 from .issued import Issued

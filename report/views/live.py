@@ -24,14 +24,15 @@ from ..document.written import placed
 from ..inputs.unit_text import parse_unit
 from ..machine.kept import kept
 from ..quantity import Bounds, Printed
+from ..result.numbers import order
 from ..result.result import Report
 from ..result.verdict import OTHERWISE, UNEXPECTED
-from ..sheet import Column, Given, Root
+from ..sheet import Column, Given, RepeatAxis, Root
 from .compact import short_script
 from .live_files import given
 from .writer import TEMPLATES
 
-__all__ = ["SCRIPTS", "BarPart", "data", "drawn", "limits", "parts", "script"]
+__all__ = ["SCRIPTS", "BarPart", "data", "digits", "drawn", "limits", "parts", "script"]
 
 SCRIPTS = (
     "page.js",
@@ -86,9 +87,6 @@ def script(program: str, runtime: str, drawings: bool = True) -> str:
     return text
 
 
-Ground = tuple[int, tuple[str, ...]]
-"""How many digits a column has as issued, and the given columns, not exact, that it rests on."""
-
 # --- the data --------------------------------------------------------------------------------------------
 
 
@@ -102,10 +100,8 @@ def data(report: Report, document: Material) -> str:
         The same report, as its document sees it.
     """
     sheet = report.sheet
-    grounds = _grounds(report)
     known = {
-        "columns": {column.name: _column(report, document, column, grounds) for column in sheet.columns},
-        "grounds": grounds,
+        "columns": {column.name: _column(report, document, column) for column in sheet.columns},
         **given(report),
         "rows": next(([axis.name, axis.row] for axis in sheet.axes if not axis.parents), ["rows", "row"]),
         "headline": [name for name in report.workbook.headline if name in sheet],
@@ -167,7 +163,7 @@ def _fraction(value: Fraction) -> list[str]:
     return [str(value.numerator), str(value.denominator)]
 
 
-def _column(report: Report, document: Material, column: Column, grounds: list[Ground]) -> dict[str, Any]:
+def _column(report: Report, document: Material, column: Column) -> dict[str, Any]:
     shown = report.shown[column.name]
     head = document.head(column)
     entry: dict[str, Any] = {
@@ -183,7 +179,7 @@ def _column(report: Report, document: Material, column: Column, grounds: list[Gr
     if isinstance(column.rule, Given):
         entry["given"] = _given(report, column)
         return entry
-    entry["ground"] = grounds.index(_ground(report, column))
+    entry["digits"] = digits(report, column)
     if head.sources != (column.source,):
         entry["equations"] = head.sources
     if isinstance(column.rule, Root):
@@ -200,16 +196,19 @@ def _column(report: Report, document: Material, column: Column, grounds: list[Gr
     return entry
 
 
-def _grounds(report: Report) -> list[Ground]:
-    """What the digits of the computed columns follow from; most columns share one of a few."""
-    computed = (column for column in report.sheet.columns if not isinstance(column.rule, Given))
-    return list(dict.fromkeys(_ground(report, column) for column in computed))
+def digits(report: Report, column: Column) -> int | list[int]:
+    """How many digits each cell has as issued, from the first of its value on; a number, if all have as many.
 
-
-def _ground(report: Report, column: Column) -> Ground:
-    ancestors = report.sheet.ancestors(column)
-    measured = tuple(given.name for given in ancestors if isinstance(given.rule, Given) and not given.exact)
-    return report.shown[column.name].digits, measured
+    A cell without a value gets the fewest. Rows that no table shows have those that the inputs warrant.
+    """
+    warranted = report.shown[column.name].digits
+    if isinstance(column.axis, RepeatAxis):
+        return warranted
+    cells = zip(report.in_unit(column.name), report.places(column.name), strict=True)
+    found = [None if value is None else order(value) - place + 1 for value, place in cells]
+    least = min((number for number in found if number is not None), default=warranted)
+    told = [number or least for number in found]
+    return told if {*told} - {least} else least
 
 
 def _given(report: Report, column: Column) -> dict[str, Any]:

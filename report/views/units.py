@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 
-from ..document.numbers import RAISED, is_pure
+from ..result.numbers import RAISED, is_pure
 from .escape import Markup, html, tex
 
 __all__ = ["unit_html", "unit_tex"]

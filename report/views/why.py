@@ -11,7 +11,6 @@ from ...derivations.reductions import REDUCTIONS
 from ...derivations.text import Wording, text_of_equation
 from ..cells.trace import Group, dependents_of, precedents_of
 from ..cells.values import Cell
-from ..document.numbers import stated
 from ..quantity import behind
 from ..result.result import Report
 from ..sheet import Column, Formula, Given, Root
@@ -45,7 +44,7 @@ def why(report: Report, name: str, label: tuple[int, ...] = ()) -> str:
     row = report.values.row(column, label)
     cell = report.values.cell(name, label)
     given = _is_given(column) and cell.value is not None
-    value = _brief(report, cell) if given else _full(report, cell)
+    value = report.text(cell) if given else _full(report, cell)
     lines = [f"{cell.address} = {value}  {column.meaning}".rstrip()]
     if cell.reason:
         lines.append(_line("reason", cell.reason))
@@ -90,22 +89,9 @@ def _sure(report: Report, name: str, row: int) -> str:
     u = float(known[name][row]) if name in known else 0.0
     if not u > 0:
         return ""
-    scale, unit = report.shown[name].scale, _unit(report, name)
-    value, short = stated(float(report.values.value[name][row]) / scale, u / scale)
+    value, short = report.stated(name, float(report.values.value[name][row]), u)
+    unit = _unit(report, name)
     return f"u = {short.plain}{unit}, of {value.plain}{unit}; 'loopsheet budget' tells where it comes from"
-
-
-def _brief(report: Report, cell: Cell) -> str:
-    if cell.value is None:
-        return cell.status.code
-    column = report.sheet[cell.name]
-    how = report.shown[cell.name]
-    printed = report.inputs.printed(cell.name) if _is_given(column) else ()
-    if printed:
-        number = printed[report.values.row(column, cell.label)].text
-    else:
-        number = f"{cell.value / how.scale:#.{how.digits}g}".rstrip(".")
-    return f"{number}{_unit(report, cell.name)}"
 
 
 def _is_given(column: Column) -> bool:
@@ -194,5 +180,5 @@ def _told(report: Report, groups: Iterable[Group]) -> str:
             told[f"{group.column.name} ({len(group.rows)} rows)"] = None
         else:
             for cell in group.cells(report.values):
-                told[f"{cell.address} = {_brief(report, cell)}"] = None
+                told[f"{cell.address} = {report.text(cell)}"] = None
     return ", ".join(told)

@@ -13,8 +13,8 @@ from typing import Any
 
 from ..cells.grid import CellBlock, Grid, checked
 from ..distribution import DOMINANT
-from ..document.numbers import stated
 from ..quantity import behind
+from ..result.numbers import rounded
 from ..result.result import Report
 from ..result.uncertain import Budget, Contribution
 from .xlsx_style import Style, height, number_format
@@ -90,7 +90,7 @@ class _Written:
 
     def source(self, row: int, each: Contribution) -> None:
         """A line: what it is, and what it does."""
-        source, style, sheet = each.source, self.style, self.sheet
+        source, style, sheet, report = each.source, self.style, self.sheet, self.report
         name, cell, _ = source.moves[0]
         block = self.grid[name]
         scale = float(block.place.scale)
@@ -105,14 +105,14 @@ class _Written:
         contribution = each.u / self.scale
         if source.u:
             u = source.u / scale
-            sheet.write_number(row, 3, u, style("input", number_format([u], 3)))
+            sheet.write_number(row, 3, u, style("input", number_format(report.sure(name, source.u))))
             sheet.write_number(
-                row, 6, contribution / u, style("number", number_format([contribution / u], 4))
+                row, 6, contribution / u, style("number", number_format(rounded(contribution / u, 4)))
             )
-            form = number_format([contribution], 3)
+            form = number_format(rounded(contribution, 3))
             style.formula(sheet, row, 7, f"=D{row + 1}*G{row + 1}", contribution, style("number", form))
         else:  # larger in one cell than in another: there is no one sensitivity
-            sheet.write_number(row, 7, contribution, style("input", number_format([contribution], 3)))
+            sheet.write_number(row, 7, contribution, style("input", number_format(rounded(contribution, 3))))
         formula = f"=H{row + 1}*(H{row + 1}{self.correlated(row)})/$B${self.last + 3}^2"
         style.formula(sheet, row, 8, formula, each.share, style("number", "0.0%"))
 
@@ -142,30 +142,35 @@ class _Written:
         ratio = f"({first})^2/{self.below(own, dof)}"
         freedom = f"IF({ratio}>{_MOST},{_UNLIMITED:.0f},MAX(1,INT(ROUND({ratio},2))))"
         lines: tuple[tuple[str, str, float, str], ...] = (
-            ("value", f"={self.block.place.cell(self.row_of_cell)}", budget.value / scale, "General"),
+            (
+                "value",
+                f"={self.block.place.cell(self.row_of_cell)}",
+                budget.value / scale,
+                number_format(self.report.figures(budget.name)[self.row_of_cell]),
+            ),
             (
                 "standard uncertainty u",
                 f"=SQRT(MAX(0,{first}+{at['second']}))",
                 budget.u / scale,
-                number_format([budget.u / scale], 4),
+                self.form(budget.u),
             ),
             (
                 "variance of second order",
                 "",
                 budget.second / scale**2,
-                number_format([budget.second / scale**2], 3),
+                number_format(rounded(budget.second / scale**2, 3)),
             ),
             (
                 "largest contribution",
                 f"=MAX(MAX({own}),-MIN({own}))",
                 sizes[-1],
-                number_format(sizes[-1:], 4),
+                number_format(rounded(sizes[-1], 4)),
             ),
             (
                 "all others together",
                 f"=SQRT(MAX(0,SUMSQ({own})-{at['largest']}^2)+ABS({at['second']}))",
                 math.sqrt(math.hypot(*sizes[:-1]) ** 2 + abs(budget.second) / scale**2),
-                number_format(sizes[-1:], 4),
+                number_format(rounded(sizes[-1], 4)),
             ),
             (
                 "effective degrees of freedom",
@@ -179,7 +184,7 @@ class _Written:
                 "expanded uncertainty U",
                 f"={at['k']}*{at['u']}",
                 budget.expanded / scale,
-                number_format([budget.expanded / scale], 4),
+                self.form(budget.expanded),
             ),
         )
         for line, (name, formula, value, form) in enumerate(lines, start=row):
@@ -204,6 +209,10 @@ class _Written:
         share, estimate = (own.replace("H", column) for column in "IJ")
         u = f"$B${self.last + 3}"
         return f"({u}^4*SUMPRODUCT({share}*SUMIF({estimate},{estimate},{share})/({dof})))"
+
+    def form(self, u: float) -> str:
+        """The number format of an uncertainty of the cell."""
+        return number_format(self.report.sure(self.budget.name, u) if math.isfinite(u) else None)
 
     @property
     def pairs(self) -> str:
@@ -236,10 +245,10 @@ class _Written:
 
     def statement(self, row: int, at: Mapping[str, str]) -> int:
         """The result as it is written, to the digits of its uncertainty as issued."""
-        budget, scale = self.budget, self.scale
+        budget = self.budget
         if math.isnan(budget.factor):
             return row
-        value, expanded = stated(budget.value / scale, budget.expanded / scale)
+        value, expanded = self.report.stated(budget.name, budget.value, budget.expanded)
         form = f"0.{'0' * len(value.fraction)}" if value.fraction else "0"
         unit = behind(self.block.unit)
         power, over = (f"E{value.exponent}", f"/10^{value.exponent}") if value.exponent else ("", "")

@@ -69,7 +69,7 @@ def _axis(name: str, from_zero: bool, log: bool) -> dict[str, Any]:
 
 def _told(sheet: Any, style: Style, row: int, label: str, block: CellBlock, words: Words) -> str:
     """Write a label with a number behind it, in the unit of its cell; the address of what is written."""
-    form = number_format(block.values, words.report.shown[block.name].digits)
+    form = number_format(words.report.figures(block.name)[0])
     unit = behind(block.unit)
     told = '"{}"&TEXT({},"{}")&"{}"'.format(label.replace('"', '""'), block.place.cell(), form, unit)
     style.formula(sheet, row, 0, told, label + words.value(block.name), style("number"))

@@ -36,11 +36,16 @@ class ColumnwiseSheet(Worksheet):  # type: ignore[misc] # XlsxWriter comes witho
         self._put(row, column, [_Written("", f"<v>{number:.0f}</v>", form) for number in numbers])
 
     def write_formulas(
-        self, row: int, column: int, formulas: Iterable[str], values: Iterable[float | str | None], form: Any
+        self,
+        row: int,
+        column: int,
+        formulas: Iterable[str],
+        values: Iterable[float | str | None],
+        forms: Iterable[Any],
     ) -> None:
         """Write formulas one below the other, with the values that they have now; of None, an error."""
-        pairs = zip(formulas, values, strict=True)
-        self._put(row, column, [_formula(formula.removeprefix("="), value, form) for formula, value in pairs])
+        cells = zip(formulas, values, forms, strict=True)
+        self._put(row, column, [_formula(formula.removeprefix("="), *cell) for formula, *cell in cells])
 
     def _put(self, row: int, column: int, cells: list[_Written]) -> None:
         for place, cell in enumerate(cells, start=row):

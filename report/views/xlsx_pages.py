@@ -115,7 +115,7 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
         "they were changed since, build the report again. "
         "What depends on such a cell shows its code; a sum leaves such rows out and says from how many it "
         "was made.",
-        "Numbers are stored in full; only what is shown is rounded, to the digits that the inputs warrant.",
+        "Numbers are stored in full; only what is shown is rounded, as its uncertainty as issued has it.",
         f"How many rows there are is fixed in this workbook: to add {rows}"
         + (f" or change {' or '.join(counts)}" if counts else "")
         + f", build the report again. To leave {rows} out, empty one of its cells.",

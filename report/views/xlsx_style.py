@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import floor, log10
 from typing import Any
 
 from ..document.names import with_index
 from ..document.notation import fragments
+from ..result.numbers import Numeral, rounded
 
-__all__ = ["Style", "height", "number_format", "open_format", "said"]
+__all__ = ["Style", "height", "number_format", "open_format", "said", "typical_format"]
 
 LONGEST = 32_000
 """Characters of a cell; Excel takes 32 767."""
@@ -119,30 +119,26 @@ class Style:
 # --- numbers ---------------------------------------------------------------------------------------------
 
 
-def number_format(values: Iterable[float | str | None], digits: int) -> str:
-    """A number format that shows the digits of a column's typical cell.
+def number_format(figure: Numeral | None) -> str:
+    """The number format with which a spreadsheet shows a number as the report does.
 
-    Parameters
-    ----------
-    values : iterable of float, str or None
-        In the unit that is shown; errors do not count.
-    digits : int
-        Significant digits of the largest.
-
-    Examples
-    --------
-    >>> number_format([1.258, 1.371], 4), number_format([1525.4, 3619.0], 4), number_format([9.6e8], 4)
-    ('0.000', '0', '0.000E+00')
+    >>> number_format(rounded(1.258, 4)), number_format(rounded(9.6e8, 4)), number_format(rounded(1525.4, 4))
+    ('0.000', '0.000E+00', '0')
     """
-    known = [abs(value) for value in values if isinstance(value, float) and value]
-    if not known:
+    if figure is None:
         return "General"
-    # The middle of a column's sizes: a fitted curve begins near zero and must not set the digits.
-    first = sorted(floor(log10(value)) for value in known)[len(known) // 2]
-    if first > 5 or first < -4:
-        return f"0.{'0' * (digits - 1)}E+00" if digits > 1 else "0E+00"
-    decimals = min(_MOST_DECIMALS, max(0, digits - 1 - first))
-    return f"0.{'0' * decimals}" if decimals else "0"
+    point = f"0.{'0' * len(figure.fraction)}" if figure.fraction else "0"
+    return point if figure.exponent is None else f"{point}E+00"
+
+
+def typical_format(values: Iterable[float | str | None], digits: int) -> str:
+    """A number format that shows so many significant digits of a column's typical cell.
+
+    Errors do not count. It is the middle of a column's sizes: a fitted curve begins near zero and must not
+    set the digits.
+    """
+    known = sorted(abs(value) for value in values if isinstance(value, float) and value)
+    return number_format(rounded(known[len(known) // 2], digits) if known else None)
 
 
 def open_format(decimals: int) -> str:

@@ -7,9 +7,10 @@ from typing import Any
 
 from ..cells.grid import FIRST_ROW, STEPS, CellBlock, Grid, letters
 from ..result.result import Report
+from ..sheet import RepeatAxis
 from .xlsx_inputs import GivenCells
 from .xlsx_marks import TITLE
-from .xlsx_style import Style, height, number_format, said
+from .xlsx_style import Style, height, number_format, said, typical_format
 
 __all__ = ["mark_errors", "write_axis", "write_block", "write_steps"]
 
@@ -39,12 +40,12 @@ def write_block(
     if block.kind == "index":
         sheet.write_numbers(place.row, place.column, block.values, style("index"))
         return
-    form = style("step") if block.kind == "step" else style(name, _number_format(report, block))
+    forms = [style(name, form) if form else style("step") for form in _number_formats(report, block)]
     if block.array:
-        for row, (formula, value) in enumerate(zip(block.formulas, block.values, strict=True)):
-            style.formula(sheet, place.row + row, place.column, formula, value, form, array=True)
+        for row, cell in enumerate(zip(block.formulas, block.values, forms, strict=True), start=place.row):
+            style.formula(sheet, row, place.column, *cell, array=True)
     else:
-        sheet.write_formulas(place.row, place.column, block.formulas, block.values, form)
+        sheet.write_formulas(place.row, place.column, block.formulas, block.values, forms)
     if block.kind == "computed":
         # No formula names the roots that there are; as issued they are known.
         values, labels = report.values, report.values.labels(report.sheet[block.name])
@@ -53,9 +54,16 @@ def write_block(
             sheet.write_comment(place.row + row, place.column, f"as issued: {reason}", {"x_scale": 3})
 
 
-def _number_format(report: Report, block: CellBlock) -> str:
+def _number_formats(report: Report, block: CellBlock) -> Sequence[str]:
+    """Of each cell that the report shows its own; else one for all; none of a step."""
+    rows = len(block.formulas)
+    if block.kind == "step":
+        return [""] * rows
+    column = report.sheet.by_name.get(block.of or block.name)
+    if column and block.kind in ("computed", "checked") and not isinstance(column.axis, RepeatAxis):
+        return [number_format(figure) for figure in report.figures(column.name)]
     shown = report.shown.get(block.of or block.name)
-    return number_format(block.values, shown.digits if shown else 4)
+    return [typical_format(block.values, shown.digits if shown else 4)] * rows
 
 
 # --- the worksheet of an axis ----------------------------------------------------------------------------

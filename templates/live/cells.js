@@ -8,7 +8,6 @@ class Look {
     this.issued = issued;
     this.tests = usedTests(state);
     this.known = {};
-    this.least = {};
   }
 
   // The printed texts of a given column, row by row.
@@ -17,34 +16,26 @@ class Look {
     return axis === null ? [this.state.parameters[name]] : this.tests.map((test) => test.cells[name]);
   }
 
-  // The digits of the least precise text of a given column; what is no datum says nothing.
-  leastDigits(name) {
-    const codes = this.trace.sheet.status[name];
-    return (this.least[name] ??= Math.min(...this.texts(name).filter((_, row) => codes[row] === STATUS.OK).map(digitsOf)));
-  }
-
-  // One digit more than the least precise number that a computed column rests on, as it is typed now.
-  digits(name) {
-    const [issued, measured] = LIVE.grounds[LIVE.columns[name].ground];
-    const least = Math.min(...measured.map((given) => this.leastDigits(given)));
-    return least < Infinity ? least + 1 : issued;
+  // The last digit of a computed cell: it has as many as its uncertainty left it as issued, a new one has the fewest
+  // of its column.
+  place(name, row) {
+    const { digits, scale } = LIVE.columns[name], { trace } = this.issued ?? this;
+    const own = digits[digits.length && trace.row(name, this.trace.index(name, row))] ?? Math.min(...[digits].flat());
+    return lastPlace(this.trace.sheet.value[name][row] / scale, own);
   }
 
   column(name) {
     if (this.known[name]) return this.known[name];
-    const { scale, given } = LIVE.columns[name], values = this.trace.sheet.value[name];
-    if (given) {
-      const texts = this.texts(name), figures = texts.map(readFigure);
-      const places = Math.max(0, ...figures.map((figure) => figure?.fraction.length ?? 0));
-      return (this.known[name] = { texts, places, scientific: false, figure: (row) => figures[row] });
-    }
-    const digits = this.digits(name), form = columnForm(values, scale, digits);
-    const figure = (row) => (Number.isNaN(values[row]) ? null : rounded(values[row] / scale, digits, form.scientific));
-    return (this.known[name] = { texts: null, digits, ...form, figure });
+    const { scale, given } = LIVE.columns[name], texts = given && this.texts(name);
+    const figures = given
+      ? texts.map(readFigure)
+      : shownColumn(Array.from(this.trace.sheet.value[name], (value) => value / scale), (row) => this.place(name, row));
+    const places = figures.reduce((most, figure) => Math.max(most, figure?.fraction.length ?? 0), 0);
+    return (this.known[name] = { texts, figures, places });
   }
 
   cell(name, row) {
-    const { texts, places, ...form } = this.column(name), figure = form.figure(row);
+    const { texts, figures, places } = this.column(name), figure = figures[row];
     const code = CODES[this.trace.sheet.status[name][row]];
     const index = this.trace.index(name, row), missing = figure ? places - figure.fraction.length : 0;
     const before = this.issued && this.issued.trace.row(name, index);
@@ -62,7 +53,7 @@ class Look {
 
   // The number as the report prints it, with its unit.
   shownText(name, row) {
-    const { texts, figure } = this.column(name), shown = figure(row);
+    const { texts, figures } = this.column(name), shown = figures[row];
     if (!this.trace.isOk(name, row)) return CODES[this.trace.sheet.status[name][row]];
     const text = shown ? figureText(shown) : texts[row];
     const { unit } = LIVE.columns[name];
@@ -83,7 +74,7 @@ function isUnchanged(look, last, name, row, before) {
   const now = look.trace.sheet, then = last.trace.sheet;
   if (now.value[name][row] !== then.value[name][before] || now.status[name][row] || then.status[name][before]) return false;
   const form = look.column(name), old = last.column(name);
-  return form.digits === old.digits && form.scientific === old.scientific && form.places === old.places;
+  return form.figures[row].exponent === old.figures[before].exponent && form.places === old.places;
 }
 
 // What was last written into an element.

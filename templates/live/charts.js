@@ -25,7 +25,7 @@ function tracesOf({ x, y, style }, { log }, { sheet, declared }, sizes) {
     const at = [value[x][row] / sizes[0], value[y][row] / sizes[1]];
     if (status[x][row] || status[y][row] || at.some((one, n) => one <= 0 && log[n])) continue;
     const parent = of ? layouts[axis.name].rows[of.index][row] : row;
-    (found[of ? parent : 0] ??= []).push({ at, name: labels[parent].join("–") });
+    (found[of ? parent : 0] ??= []).push({ at, row, name: labels[parent].join("–") });
   }
   return found.filter(Boolean);
 }
@@ -104,7 +104,7 @@ function drawChart(chart, look) {
       for (const point of named) {
         const inside = frame.holds(point), at = point.at.map((value, n) => Math.min(Math.max(value, frame.ends[n][0]), frame.ends[n][1]));
         if (!inside) picture.arrow(at, point.at);
-        const text = inside ? point.name : `${point.name}: ${figureText(rounded(point.at[1], LIVE.columns[one.y] ? look.column(one.y).digits : 4))}`;
+        const text = inside ? point.name : `${point.name}: ${LIVE.columns[one.y] ? look.shownText(one.y, point.row) : brief(point.at[1])}`;
         names.push([text, [[at, inside ? AROUND : AROUND.slice(0, 2)]], { size: 8.5 }]);
       }
       if (out && one.named) keys.push({ mark: mark("M3 2h6l-3-5z", { fill: LOADING }), text: [["", `outside the frame: ${out} of ${all.length}`]] });

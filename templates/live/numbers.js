@@ -66,9 +66,12 @@ function fixedExact({ n, d }, places, whole = nearest) {
 const mayBeTie = (longer, x) => /5(?:e|$)/.test(longer) && Number(longer) === x;
 
 function fixed(x, places) {
-  if (Math.abs(x) >= 1e21 || mayBeTie(x.toFixed(places + 1), x)) return fixedExact(ofDouble(x), places);
-  return x.toFixed(places);
+  const plain = Math.abs(x) < 1e21 && places >= 0 && places < 100;
+  return plain && !mayBeTie(x.toFixed(places + 1), x) ? x.toFixed(places) : fixedExact(ofDouble(x), places);
 }
+
+// The power of ten of the first digit of a number; 0 for zero.
+const order = (x) => Number(x.toExponential().split("e")[1]);
 
 // The significant digits of a number that is not zero, and the power of ten of the first.
 function significant(x, digits) {
@@ -86,10 +89,6 @@ function significant(x, digits) {
 
 // --- numbers as they are shown ---------------------------------------------------------------------------
 
-// A number gets a power if it has more than two digits before the point beyond the known ones, or more than
-// three zeros behind it.
-const isFar = (first, digits) => first >= digits + 2 || first < -3;
-
 function figureOf(text, exponent = null) {
   const plain = text.replace("-", ""), [whole, fraction = ""] = plain.split(".");
   return { negative: text[0] === "-" && /[1-9]/.test(plain), whole, fraction, exponent };
@@ -103,43 +102,26 @@ function readFigure(text) {
   return { negative: sign === "-", whole, fraction, exponent: power === undefined ? null : Number(power) };
 }
 
-// A number with significant digits; `scientific` null decides by its size.
-function rounded(value, digits, scientific = null) {
-  if (value === 0) {
-    const zeros = "0".repeat(digits - 1);
-    return figureOf(digits > 1 ? `0.${zeros}` : "0", scientific ? 0 : null);
-  }
-  const short = significant(value, digits), sign = value < 0 ? "-" : "", all = short.digits;
-  if (scientific ?? isFar(short.first, digits)) {
-    return figureOf(sign + all[0] + (digits > 1 ? `.${all.slice(1)}` : ""), short.first);
-  }
-  if (short.first >= digits) return figureOf(fixed(value, 0));
-  const places = digits - 1 - short.first, padded = all.padStart(places + 1, "0");
-  return figureOf(sign + (places ? `${padded.slice(0, -places)}.${padded.slice(-places)}` : padded));
+// A number up to a digit, the power of ten of which is given. `scientific` null decides: where zeros before the point
+// would pass for known digits, or more than three stand behind it.
+function rounded(value, place, scientific = null) {
+  const text = fixed(value, -place), all = text.replace(/^[-0.]+|\./g, "").slice(0, place > 0 ? -place : undefined);
+  const first = all && place + all.length - 1, behind = order(value) - place;
+  if (!(scientific ?? (all && (place > 0 || first < -3)))) return figureOf(text);
+  const rest = behind > 0 ? `.${all.slice(1, behind + 1).padEnd(behind, "0")}` : "";
+  return figureOf((value < 0 ? "-" : "") + (all[0] ?? 0) + rest, Number(first));
 }
+
+// The last of so many digits.
+const lastPlace = (value, digits) => order(value) - digits + 1;
 
 const decimals = (value, places) => figureOf(fixed(value, Math.max(0, places)));
 
-// How a column is shown: a power of ten for all its numbers or for none, and the longest fraction among them.
-// Its largest and its smallest number decide both, so that the others are printed only where they are shown.
-function columnForm(values, scale, digits) {
-  let most = 0, least = Infinity, zero = false;
-  for (const value of values) {
-    const size = Math.abs(value / scale);
-    if (size > most) most = size;
-    if (size < least && size > 0) least = size;
-    zero ||= size === 0;
-  }
-  const firsts = most ? [least, most].map((size) => significant(size, digits).first) : [0];
-  const scientific = most > 0 && firsts.some((first) => isFar(first, digits));
-  const places = scientific ? digits - 1 : Math.max(0, digits - 1 - firsts[0], zero ? digits - 1 : 0);
-  return { scientific, places };
-}
-
-// A column in that form; NaN has no figure.
-function shownColumn(values, scale, digits) {
-  const { scientific } = columnForm(values, scale, digits);
-  return Array.from(values, (value) => (Number.isNaN(value) ? null : rounded(value / scale, digits, scientific)));
+// A column: a power of ten for all its numbers or for none. NaN has no figure.
+function shownColumn(values, places) {
+  const all = (scientific) => values.map((value, row) => (Number.isNaN(value) ? null : rounded(value, places(row), scientific)));
+  const found = all();
+  return found.some((figure) => figure && figure.exponent !== null) ? all(true) : found;
 }
 
 const raised = (n) => String(n).replace(/[0-9]/g, (digit) => RAISED[digit]).replace("-", "⁻");
@@ -187,9 +169,6 @@ function decimalsOf(text) {
   const [mantissa, power = "0"] = text.toLowerCase().split("e");
   return (mantissa.split(".")[1] ?? "").length - Number(power);
 }
-
-// Significant digits as printed: 4 for 2.940; zeros count unless they lead.
-const digitsOf = (text) => text.toLowerCase().split("e")[0].replace(/^[+-]/, "").replace(".", "").replace(/^0+/, "").length || 1;
 
 // n/d in the 15 digits that every double keeps, so that 29.7 is not cut to 29.6.
 function nearExact(x) {

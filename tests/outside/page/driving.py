@@ -9,6 +9,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -60,9 +61,34 @@ _CELLS = """() => Array.from(document.querySelectorAll("main [data-cell][data-va
 })"""
 
 
-def shown(cells: list[Shown]) -> list[tuple[str, ...]]:
-    """What a reader sees of the cells: their characters, how far they are moved, and their marks."""
-    return [(cell.name, cell.index, cell.text, cell.layout, cell.mark) for cell in cells]
+def shown(cells: list[Shown]) -> list[str]:
+    """What a reader sees of the cells: their characters and their marks."""
+    return [f"{cell.name} {cell.index}: {cell.text} {cell.mark}" for cell in cells]
+
+
+_SHOWN = re.compile("([-\u2212]?)(\\d[\\d\u202f]*)(\\.\\d+)?(?:[ \u00a0]×[ \u00a0]10([⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+))?")
+
+
+def alike(ours: list[str], theirs: list[str]) -> bool:
+    """Whether texts say the same, in numbers as far as both have digits.
+
+    An edited page keeps the digits that uncertainties left it as issued; a build of what was edited has those
+    that follow from its own.
+    """
+
+    def read(found: re.Match[str]) -> tuple[Fraction, Fraction]:
+        sign, whole, fraction, power = found.groups("")
+        exponent = int(power.translate(str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")) or 0)
+        size = Fraction(f"{whole}{fraction}".replace("\u202f", "")) * Fraction(10) ** exponent
+        return -size if sign else size, Fraction(10) ** (exponent - len(fraction[1:]))
+
+    def same(one: str, other: str) -> bool:
+        pairs = zip(map(read, _SHOWN.finditer(one)), map(read, _SHOWN.finditer(other)), strict=True)
+        return all(abs(a - b) <= (last + least) / 2 for (a, last), (b, least) in pairs)
+
+    return [_SHOWN.sub("#", text) for text in ours] == [_SHOWN.sub("#", text) for text in theirs] and all(
+        map(same, ours, theirs)
+    )
 
 
 # What stands beside the cells and follows from them.

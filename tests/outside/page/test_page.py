@@ -36,8 +36,8 @@ def test_edit_recalculates_every_cell_as_numpy_does(live: Live, open_page: Open,
     assert float(live.cell("alpha_mean").value) == pytest.approx(1.3049, abs=5e-5)
     # What it shows is what Python would have printed.
     fresh = open_page(driving.static(report, tmp_path / "edited.html"))
-    assert driving.shown(cells) == driving.shown(fresh.cells())
-    assert live.around() == fresh.around()
+    assert driving.alike(driving.shown(cells), driving.shown(fresh.cells()))
+    assert driving.alike(live.around(), fresh.around())
     # Marked is what changed, nothing else.
     differing = {
         place for place, cell in before.items() if not driving.close(cells[place[2]].value, float(cell.value))
@@ -98,7 +98,7 @@ def test_pair_without_a_root_says_why_as_the_terminal_does(
         assert cell.text == cell.status
         assert cell.title.startswith(report.values.cell(cell.name, label).reason), cell
     fresh = open_page(driving.static(report, tmp_path / "edited.html"))
-    assert live.around() == fresh.around()
+    assert driving.alike(live.around(), fresh.around())
     # The formula bar names the cell where the error began, and leads there.
     live.page.locator("#cell-C-1-2").click(position={"x": 3, "y": 3})
     origin = report.values.cell("C", (1, 2)).culprit
@@ -137,8 +137,8 @@ def test_cells_outside_of_what_is_expected_are_marked_and_counted(
         assert ours == set(report.marks.of(name)), name
         assert (ours == {""}) == (name in ("alpha_mean", "v"))
     fresh = open_page(driving.static(report, tmp_path / "edited.html"))
-    assert driving.shown(cells) == driving.shown(fresh.cells())
-    assert live.around() == fresh.around()
+    assert driving.alike(driving.shown(cells), driving.shown(fresh.cells()))
+    assert driving.alike(live.around(), fresh.around())
     told = live.page.locator("#missing").text_content() or ""
     assert "deeper than the radius of the ball" in told
     assert "e rises with the speed" in told
@@ -359,7 +359,7 @@ def test_sixth_test(live: Live, open_page: Open, tmp_path: Path) -> None:
     assert driving.differences(cells, report.values) == []
     assert {(c.name, c.index) for c in cells if c.added} > {("v", "6"), ("alpha", "1-6"), ("x_m", "6")}
     fresh = open_page(driving.static(report, tmp_path / "six.html"))
-    assert driving.shown(fresh.cells()) == driving.shown(cells)
+    assert driving.alike(driving.shown(fresh.cells()), driving.shown(cells))
     assert live.text("live-note") == ""
 
 
