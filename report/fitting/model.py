@@ -80,6 +80,10 @@ class Model:
         return (*self.variables, *self.parameters)
 
     @cached_property
+    def _names(self) -> list[str]:
+        return [each.name for each in self._all]
+
+    @cached_property
     def _slopes(self) -> Kernel:
         return kernel([self.equation, *(diff(self.equation, each) for each in self._all)])
 
@@ -101,10 +105,13 @@ class Model:
         return self._run(self._curvatures, points, place).reshape(-1, count, count)
 
     def _run(self, printed: Kernel, points: Array, place: Array) -> Array:
-        values = dict(zip(map(str, self._all), [*points.T, *place[:, None]], strict=True))
+        values = dict(zip(self._names, [*points.T, *place[:, None]], strict=True))
         with np.errstate(all="ignore"):
-            found = printed.run(*(values[name] for name in printed.arguments))
-        return np.stack([np.broadcast_to(each, len(points)) for each in found], axis=-1)
+            columns = printed.run(*(values[name] for name in printed.arguments))
+        found = np.empty((len(points), len(columns)))
+        for number, column in enumerate(columns):
+            found[:, number] = column
+        return found
 
     def fit(
         self,

@@ -52,7 +52,7 @@ class Triangle:
         order = np.arange(width)
         rank = min(rows, width)
         for k in range(rank):
-            left = np.sqrt(np.sum(work[k:, k:width] ** 2, axis=0))
+            left = np.sqrt(np.add.reduce(work[k:, k:width] ** 2, axis=0))
             best = int(np.argmax(left))
             if left[best] <= EPS * max(rows, width):
                 rank = k
@@ -111,7 +111,7 @@ class Triangle:
         work[:rows, :width], work[:rows, width] = self.upper, self.turned[:rows]
         work[range(rows, rows + width), range(width)] = (weights / self.scale)[self.order]
         for k in range(width):
-            _reflect(work[k:, k:], np.sqrt(np.sum(work[k:, k] ** 2)))
+            _reflect(work[k:, k:], np.sqrt(np.add.reduce(work[k:, k] ** 2)))
         return Triangle(self.scale, self.order, work[:width, :width], work[:, width], width)
 
     def spread(self, x: Array) -> float:
@@ -129,6 +129,10 @@ class Triangle:
 
 def lengths(matrix: Array) -> Array:
     """The lengths of columns (n, ...), however large or small their numbers are."""
+    with np.errstate(over="ignore", under="ignore"):
+        squares = np.add.reduce(matrix * matrix, axis=0)
+    if np.all((squares > 1e-200) & (squares < 1e200)):
+        return np.asarray(np.sqrt(squares))
     most = np.max(np.abs(matrix), axis=0, initial=0.0)
     safe = np.where((most > 0) & np.isfinite(most), most, 1.0)
     found: Array = safe * np.sqrt(np.sum((matrix / safe) ** 2, axis=0))
@@ -147,7 +151,7 @@ def _reflect(block: Array, length: float) -> None:
         mirror = block[:, 0] / length
         sign = -1.0 if mirror[0] < 0 else 1.0
         mirror[0] += sign
-        block -= mirror[:, None] * (np.sum(mirror[:, None] * block, axis=0) / (sign * mirror[0]))
+        block -= mirror[:, None] * (np.add.reduce(mirror[:, None] * block, axis=0) / (sign * mirror[0]))
         block[1:, 0] = 0.0
 
 
