@@ -216,6 +216,11 @@ def _made(
             finished = replace(finished, referee=referee, comparisons=comparisons)
             with timed("figures"):
                 pictures |= _pictures(study, finished, formats, finished.workbook.figures)
+        if study.inputs.published_u:
+            from .referee.uncertain import compare_uncertainties
+
+            beside = compare_uncertainties(finished.inputs, finished.values, study.step)
+            finished = replace(finished, comparisons_u=beside)
     with timed("writing"):
         _write(Issued(finished, pictures, source, content), stage, formats, study.step)
     return finished

@@ -75,3 +75,18 @@ def test_a_known_difference_of_an_uncertainty_is_pinned_in_its_row(
     assert main(["check", str(tmp_path)]) == 0
     (tmp_path / "published.csv").write_text(f"{HEADER}\nH.1,u(l_S),,25,nm,,,\n", encoding="utf-8")
     assert main(["check", str(tmp_path)]) == 0
+
+
+def test_the_report_shows_them_beside_what_is_computed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("PATH", "")
+    rows = "Table 8,u(l_S),,25,nm,,,\nTable 9,u(l_S),,26,nm,differs,26 -> 25,a slip\n"
+    toml = FILES["report.toml"].replace(' mm"', ' mm, u = 25 nm"')
+    end_gauge(tmp_path, f"{HEADER}\n{rows}", report=toml)
+    assert main(["build", str(tmp_path), "--to", "html,latex"]) == 0
+    for name in ("report.html", "report.tex"):
+        told = (tmp_path / "out" / name).read_text(encoding="utf-8")
+        assert "Published uncertainties" in told
+        assert "a slip" in told
+        assert "26" in told

@@ -322,6 +322,7 @@ SAID: dict[str, Callable[[Said], Answer]] = {
     "each_refereed": lambda s: (s.tables.refereed(),),
     "without": Said.without,
     "uncertain": lambda s: (s.tables.uncertain(),) if s.material.budgets else (),
+    "published_u": lambda s: (s.tables.published_u(),) if s.report.comparisons_u else (),
     "asked_why": lambda s: s.referee.asked_why,
     "possible": lambda s: s.referee.joint is not None and s.referee.joint.verdict in GOOD,
     "explained": lambda s: s.told(words.headline(s.referee.explanations)),

@@ -13,6 +13,7 @@ from ..inputs.measurements import LeftOut
 from ..inputs.published import PublishedValue
 from ..result import verdict_words as words
 from ..result.numbers import Numeral, decimals, is_pure, read, rounded, table_format
+from ..result.result import Comparison
 from ..result.uncertain import Budget, Contribution
 from ..result.verdict import ALL, INPUT, UNREACHABLE, TableVerdict
 from ..sheet import Axis
@@ -176,6 +177,27 @@ class Tables:
         level = f"{100 * self.material.budgets[0].level:.12g}\u00a0%"
         caption = (Strong(("Uncertainty of the results.",)), f" U is the expanded one, for {level}")
         return _table("uncertain", caption, made, [((), self.material.budgets)], look="list", wide=True)
+
+    def published_u(self) -> Table:
+        """What is published of uncertainties, beside what is computed."""
+
+        def told(one: Comparison) -> Inlines | str:
+            return self.rich(one.published.reason) if one.published.reason else one.verdict
+
+        def row(one: Comparison) -> dict[str, str]:
+            return {"state": "" if one.as_expected else "unexpected"}
+
+        made = (
+            _Made("in", lambda one: one.published.source, "words"),
+            _Made("of", lambda one: Code(one.cell.address), "words"),
+            _Made("published", lambda one: _as_is(one.published.printed.text), "aligned"),
+            _Made("computed", lambda one: _as_is(one.again), "aligned"),
+            _Made("unit", lambda one: Unit(one.published.printed.unit)),
+            _Made("verdict", told, "words", 0.3),
+        )
+        caption = (Strong(("Published uncertainties,",)), " each beside what is computed")
+        every = self.report.comparisons_u
+        return _table("published-uncertainties", caption, made, [((), every)], row, look="list", wide=True)
 
     def _of(self, budget: Budget) -> Head:
         return self.material.head(self.report.sheet[budget.name])
@@ -401,6 +423,10 @@ def _printed(pair: Pair) -> Number:
 
 def _number(figure: Any, otherwise: str = "", signed: bool = False) -> Number | str:
     return otherwise if figure is None else Number(figure, signed=signed)
+
+
+def _as_is(text: str) -> Number:
+    return Number(read(text), text)
 
 
 def _unit(unit: str) -> Hint | Unit:
