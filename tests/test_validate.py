@@ -55,7 +55,7 @@ def test_a_record_says_what_was_run_and_that_it_passes(
     [
         ("50.000838", "50.000839", "H.1.5 l 50.000839 mm 50.000838 mm FAIL (reachable)"),
         (",34,nm", ",35,nm", "H.1.7 u(l) 35 nm 34 nm FAIL (differs)"),
-        ("2.92", "2.93", "H.1.6 k99(l) 2.93 2.92 FAIL (differs)"),
+        (",2.92,1,", ",2.93,1,", "H.1.6 k99(l) 2.93 2.92 FAIL (differs)"),
         (",16.6,nm", ",16.7,nm", "Table H.1 u(l, dtheta) 16.7 nm 16.6 nm FAIL (differs)"),
     ],
 )
