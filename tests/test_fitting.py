@@ -173,6 +173,9 @@ from test_fitting import STRD
 for name in ("Gauss1", "Thurber", "MGH10"):
     fit = STRD[name].fit(STRD[name].starts[0]).fitted
     print([each.hex() for numbers in (fit.parameters, fit.u_by_scatter) for each in numbers.tolist()])
+from test_fitting_model import LINE, PEARSON, YORK
+found = LINE.fit(PEARSON, YORK, [5, 0])
+print([each.hex() for numbers in (found.parameters, found.u_propagated) for each in numbers.tolist()])
 """
 
 

@@ -20,8 +20,8 @@ PEARSON = {
     y: np.array([5.9, 5.4, 4.4, 4.6, 3.5, 3.7, 2.8, 2.8, 2.4, 1.5]),
 }
 YORK = {
-    x: np.array([1000, 1000, 500, 800, 200, 80, 60, 20, 1.8, 1]) ** -0.5,
-    y: np.array([1, 1.8, 4, 8, 20, 20, 70, 70, 100, 500]) ** -0.5,
+    x: 1 / np.sqrt([1000, 1000, 500, 800, 200, 80, 60, 20, 1.8, 1]),
+    y: 1 / np.sqrt([1, 1.8, 4, 8, 20, 20, 70, 70, 100, 500]),
 }
 
 
@@ -46,6 +46,36 @@ def test_all_that_is_published_of_pearsons_data_with_yorks_weights() -> None:
         strict=True,
     ):
         assert same(number, printed), (number, printed)
+
+
+@pytest.mark.parametrize(
+    ("data", "errors", "printed"),
+    [
+        (
+            {x: [1, 2, 3, 4, 5, 6], y: [3.3, 5.6, 7.1, 9.3, 10.7, 12.1]},
+            {y: 0.5},
+            ("1.867", "1.757", "0.465", "0.120", "-0.050", "1.665"),
+        ),
+        (
+            {x: [1, 2, 3, 4, 5, 6], y: [3.2, 4.3, 7.6, 8.6, 11.7, 12.8]},
+            {y: [0.5, 0.5, 0.5, 1, 1, 1]},
+            ("0.885", "2.057", "0.530", "0.178", "-0.082", "4.131"),
+        ),
+        (
+            {x: [1.2, 1.9, 2.9, 4.0, 4.7, 5.9], y: [3.4, 4.4, 7.2, 8.5, 10.8, 13.5]},
+            {x: 0.2, y: [0.2, 0.2, 0.2, 0.4, 0.4, 0.4]},
+            ("0.5788", "2.1597", "0.4764", "0.1355", "-0.0577", "2.743"),
+        ),
+    ],
+    ids=["6.3, alike", "6.3, not alike", "7.4, in both"],
+)
+def test_examples_of_iso_28037(
+    data: dict[Symbol, list[float]], errors: dict[Symbol, list[float]], printed: tuple[str, ...]
+) -> None:
+    found = LINE.fit(data, errors, [0, 1])
+    numbers = (*found.parameters, *found.u, found.covariance[0, 1], found.fitted.chi2)
+    for number, text in zip(numbers, printed, strict=True):
+        assert same(number, text), (number, text)
 
 
 def test_three_variables_with_errors() -> None:

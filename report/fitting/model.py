@@ -130,7 +130,8 @@ class Model:
             Standard uncertainties. What is left out is exact. None: nobody knows them, but they are all
             alike; then only the scatter tells how uncertain the parameters are.
         start : sequence of float
-            A value of each parameter to begin with.
+            A value of each parameter to begin with. With errors in several variables it is to lie near the
+            data; what a fit with errors in one of them finds does.
         correlated : mapping of pairs of Symbol to array (n,) or number, optional
             Correlation coefficients of the errors of a row.
 
