@@ -35,7 +35,7 @@ def ways(one: nist_strd.Strd, start: Any) -> dict[str, Callable[[], Any]]:
             with np.errstate(all="ignore"):
                 try:
                     return optimize.least_squares(
-                        feet.distances, start, feet.jacobian, method=method, x_scale="jac", **ends
+                        feet.residuals, start, feet.jacobian, method=method, x_scale="jac", **ends
                     ).x
                 except ValueError:  # it does not go on where the model has no value
                     return start * np.nan
@@ -43,7 +43,7 @@ def ways(one: nist_strd.Strd, start: Any) -> dict[str, Callable[[], Any]]:
         return run
 
     def own() -> Any:
-        found = least_squares(feet.distances, feet.jacobian, start)
+        found = least_squares(feet.residuals, feet.jacobian, start)
         return found.parameters if found.converged else start * np.nan
 
     return {OWN: own} | {name: by(method) for name, method in METHODS.items()}

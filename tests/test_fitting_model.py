@@ -186,6 +186,36 @@ def test_the_hessian_is_that_of_half_of_chi2(curve: Expr, true: Curve) -> None:
     assert np.linalg.inv(hessian) == pytest.approx(found.by_hessian, rel=1e-4)
 
 
+@pytest.mark.parametrize("in_x", [0.0, 0.3])
+def test_an_error_that_all_rows_share_is_a_parameter_that_is_known(in_x: float) -> None:
+    """Beside their own errors all y are off by one unknown amount: the intercept alone feels it."""
+    own, common = 0.2, 0.5
+    errors = {x: in_x, y: own}
+    shifted = Model(y - a - b * x - r, (a, b, r), (x, y))
+    found = shifted.fit(PEARSON, errors, [5, 0, 0], known={r: (0, common)})
+    alone = LINE.fit(PEARSON, errors, [5, 0])
+    assert found.parameters == pytest.approx([*alone.parameters, 0], abs=1e-12)
+    for name in ("u", "u_by_hessian", "u_propagated"):
+        apart, together = getattr(alone, name), getattr(found, name)
+        assert together == pytest.approx([np.hypot(apart[0], common), apart[1], common], rel=1e-11)
+    assert found.fitted.freedom == alone.fitted.freedom
+    assert found.fitted.chi2 == pytest.approx(alone.fitted.chi2, rel=1e-12)
+
+
+def test_what_is_known_of_a_parameter_is_a_datum() -> None:
+    """A slope that is known as well as the data tell it halves its variance, and moves half way."""
+    alone = LINE.fit(PEARSON, {y: 0.2}, [0, 0])
+    elsewhere = alone.parameters[1] + 3 * alone.u[1]
+    found = LINE.fit(PEARSON, {y: 0.2}, [0, 0], known={b: (elsewhere, alone.u[1])})
+    assert found.parameters[1] == pytest.approx(alone.parameters[1] + 1.5 * alone.u[1], rel=1e-12)
+    for u in (found.u, found.u_by_hessian, found.u_propagated):
+        assert u[1] == pytest.approx(alone.u[1] / 2**0.5, rel=1e-12)
+    assert found.fitted.chi2 == pytest.approx(alone.fitted.chi2 + 4.5, rel=1e-12)
+    assert found.fitted.freedom == alone.fitted.freedom + 1
+    with pytest.raises(SheetError, match="not zero"):
+        LINE.fit(PEARSON, {y: 0.2}, [0, 0], known={b: (0, 0)})
+
+
 def test_a_circle_is_fitted_by_distances() -> None:
     """The adjusted point of a circle is on the ray through the datum."""
     circle = Model((x - a) ** 2 + (y - b) ** 2 - r**2, (a, b, r), (x, y))

@@ -17,10 +17,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .triangle import EPS, Array, product
 
-__all__ = ["Feet", "Second"]
+__all__ = ["NOTHING", "Feet", "Known", "Second", "solved"]
 
 ROUNDS = 50
 """Steps towards the adjusted points of given parameters; a row that needs more has none."""
@@ -35,10 +36,32 @@ class Second(NamedTuple):
         Of half of chi2.
     pull : array (p, n, m)
         What one standard uncertainty of each datum adds to half of the gradient of chi2.
+    known : array (p, k)
+        The same of what was known of the parameters before.
     """
 
     hessian: Array
     pull: Array
+    known: Array
+
+
+class Known(NamedTuple):
+    """What is known of parameters before the fit: each is a datum of its own.
+
+    Attributes
+    ----------
+    which : array of int (k,)
+        Their places among the parameters.
+    values, sizes : array (k,)
+        The values and their standard uncertainties.
+    """
+
+    which: NDArray[np.intp]
+    values: Array
+    sizes: Array
+
+
+NOTHING = Known(np.empty(0, dtype=np.intp), np.empty(0), np.empty(0))
 
 
 class Feet:
@@ -57,6 +80,8 @@ class Feet:
         The correlation of the errors of a row.
     flat : bool
         Whether no second derivative by anything that has errors is there: a point is found at once.
+    known : Known
+        What is known of parameters.
     """
 
     def __init__(
@@ -67,8 +92,9 @@ class Feet:
         sizes: Array,
         shared: Array,
         flat: bool = False,
+        known: Known = NOTHING,
     ) -> None:
-        self.slopes, self.curvatures, self.flat = slopes, curvatures, flat
+        self.slopes, self.curvatures, self.flat, self.known = slopes, curvatures, flat, known
         self.rows, self.sizes, self.shared = rows, sizes, shared
         self.width = rows.shape[1]
         self._at(np.zeros(rows.shape), None)
@@ -92,8 +118,21 @@ class Feet:
         self.off = values[:, 0] / self.sigma
         self.distance: Array = self.off - np.sum(self.steep * eta, axis=-1)
 
+    def residuals(self, place: Array) -> Array:
+        """The distances for parameters (p,), and how far these are from what was known of them (n + k,)."""
+        which, values, sizes = self.known
+        return np.concatenate([self.distances(place), (place[which] - values) / sizes])
+
+    def jacobian(self, place: Array) -> Array:
+        """The derivatives (n + k, p) of the residuals that were asked last."""
+        return np.concatenate([self.by_place / self.sigma[:, None], self._certain(len(place))])
+
+    def _certain(self, count: int) -> Array:
+        which, _, sizes = self.known
+        return np.eye(count)[which] / sizes[:, None]
+
     def distances(self, place: Array) -> Array:
-        """The residuals (n,) for parameters (p,); not finite where a row has no adjusted point."""
+        """The distances (n,) for parameters (p,); not finite where a row has no adjusted point."""
         with np.errstate(all="ignore"):
             self._at(np.zeros(self.rows.shape), place)
             if self.flat:
@@ -115,11 +154,6 @@ class Feet:
                     return self.distance
                 before = largest
             return np.full(len(self.rows), np.nan)
-
-    def jacobian(self, place: Array) -> Array:
-        """The derivatives (n, p) of the distances that were asked last."""
-        found: Array = self.by_place / self.sigma[:, None]
-        return found
 
     def _bordered(self, place: Array) -> tuple[Array, Array]:
         """The derivatives (n, m + 1, m + 1) of the conditions of a foot by (eta, distance).
@@ -154,8 +188,9 @@ class Feet:
         # d(lambda g_theta): lambda by way of the distance, g_theta by way of the point.
         change = over * moved[:, None, width] + pull * product(mixed, moved[:, :width])
         count = own.shape[1]
-        hessian = np.sum(change[:, :, :count] + pull * own, axis=0)
-        return Second((hessian + hessian.T) / 2, np.swapaxes(change[:, :, count:], 0, 1))
+        certain = self._certain(count)
+        hessian = np.sum(change[:, :, :count] + pull * own, axis=0) + product(certain.T, certain)
+        return Second((hessian + hessian.T) / 2, np.swapaxes(change[:, :, count:], 0, 1), -certain.T)
 
 
 def solved(matrix: Array, right: Array) -> Array:

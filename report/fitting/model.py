@@ -22,7 +22,7 @@ from sympy import Expr, Symbol, diff
 from ..column import SheetError
 from ..engines.kernels import Kernel
 from ..engines.numpy_code import kernel
-from .feet import Feet, Second, solved
+from .feet import Feet, Known, Second, solved
 from .least_squares import Fitted, NotFitted, least_squares
 from .triangle import EPS, Array, product
 
@@ -119,6 +119,7 @@ class Model:
         errors: Mapping[Symbol, ArrayLike | None],
         start: Sequence[float],
         correlated: Mapping[tuple[Symbol, Symbol], ArrayLike] | None = None,
+        known: Mapping[Symbol, tuple[float, float]] | None = None,
     ) -> Adjustment:
         """The parameters that are likeliest for normal errors.
 
@@ -134,6 +135,9 @@ class Model:
             data; what a fit with errors in one of them finds does.
         correlated : mapping of pairs of Symbol to array (n,) or number, optional
             Correlation coefficients of the errors of a row.
+        known : mapping of Symbol to (float, float), optional
+            Value and standard uncertainty of parameters that are known from elsewhere. An error that all
+            rows share is such a parameter, of the value 0.
 
         Raises
         ------
@@ -143,8 +147,8 @@ class Model:
         """
         columns = [np.asarray(data[each], dtype=float) for each in self.variables]
         rows = np.stack(np.broadcast_arrays(*columns), axis=-1)
-        known = {each is not None for each in errors.values()}
-        if len(known) != 1:
+        given = {each is not None for each in errors.values()}
+        if len(given) != 1:
             raise SheetError("uncertainties are known of all variables with errors, or of none")
         sizes = np.zeros(rows.shape)
         shared = np.zeros((*rows.shape, len(columns))) + np.eye(len(columns))
@@ -160,10 +164,14 @@ class Model:
                 "correlation coefficients of a row fit together: no combination has less than none"
             )
         flat = not any(any(self._second[self.variables.index(symbol)]) for symbol in errors)
-        feet = Feet(self.slopes, self.curvatures, rows, sizes, shared, flat)
-        fitted = least_squares(feet.distances, feet.jacobian, np.array(start, dtype=float))
-        feet.distances(fitted.reached)
-        return Adjustment(feet, fitted, known == {True})
+        which = np.array([self.parameters.index(symbol) for symbol in known or {}], dtype=np.intp)
+        values, certain = np.reshape(list((known or {}).values()), (-1, 2)).astype(float).T
+        if not (np.isfinite(certain).all() and (certain > 0).all()):
+            raise SheetError("what is known of a parameter has a standard uncertainty that is not zero")
+        feet = Feet(self.slopes, self.curvatures, rows, sizes, shared, flat, Known(which, values, certain))
+        fitted = least_squares(feet.residuals, feet.jacobian, np.array(start, dtype=float))
+        feet.residuals(fitted.reached)
+        return Adjustment(feet, fitted, given == {True})
 
 
 @dataclass(frozen=True)
@@ -208,10 +216,16 @@ class Adjustment:
         return moved
 
     @property
+    def influences_known(self) -> Array:
+        """The same of what was known of parameters (p, k)."""
+        return -self._applied(self._second.known)
+
+    @property
     def propagated(self) -> Array:
         """Of the parameters (p, p), led from the data through the solution."""
-        moved = np.swapaxes(self.influences, 0, 1)
-        found: Array = np.sum(product(product(moved, self.feet.shared), np.swapaxes(moved, 1, 2)), axis=0)
+        moved, known = np.swapaxes(self.influences, 0, 1), self.influences_known
+        by_rows = np.sum(product(product(moved, self.feet.shared), np.swapaxes(moved, 1, 2)), axis=0)
+        found: Array = by_rows + product(known, known.T)
         return found
 
     @property
