@@ -40,7 +40,7 @@ def test_a_record_says_what_was_run_and_that_it_passes(
     assert main(["validate", "gauge", "--out", "record.txt"]) == 0
     told = capsys.readouterr().out
     assert Path("record.txt").read_text(encoding="utf-8") == told
-    assert "PASS: 21 checks of 1 examples, 2 not checked: a program is not installed\n" in told
+    assert "PASS: 21 checks of 1 example, 2 not checked: a program is not installed\n" in told
     assert "gauge: GUM H.1, end-gauge calibration" in told
     for line in ("H.1.5 l 50.000838 mm 50.000838 mm pass", "H.1.7 u(l) 34 nm 34 nm pass"):
         assert line in [" ".join(found.split()) for found in told.splitlines()]
@@ -66,7 +66,7 @@ def test_one_wrong_digit_fails(
     assert main(["validate", "gauge"]) == 1
     told = [" ".join(line.split()) for line in capsys.readouterr().out.splitlines()]
     assert named in told
-    assert any(line.startswith("FAIL: ") and line.endswith("of 21 checks of 1 examples, 2 not checked: a "
+    assert any(line.startswith("FAIL: ") and line.endswith("of 21 checks of 1 example, 2 not checked: a "
                "program is not installed") for line in told)  # fmt: skip
 
 

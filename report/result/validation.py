@@ -86,6 +86,7 @@ class Validation:
         """The same in a line."""
         found = self.checks
         failed, skipped = sum(not each.passed for each in found), sum(each.skipped for each in found)
-        some = f"{len(found)} checks of {len(self.examples)} examples"
+        number = len(self.examples)
+        some = f"{len(found)} checks of {number} example{'s' * (number != 1)}"
         rest = f", {skipped} not checked: a program is not installed" if skipped else ""
         return f"PASS: {some}{rest}" if self.passed else f"FAIL: {failed} of {some}{rest}"
