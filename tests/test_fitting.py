@@ -90,8 +90,9 @@ def test_linear_sets_come_out_to_what_doubles_leave(name: str) -> None:
         ),
         # a Jacobian of the wrong sign
         (Ending.STUCK, lambda b: b - np.array([1.0]), lambda b: -np.eye(1), [3]),
+        (Ending.STUCK, lambda b: b - np.array([1.0]), lambda b: -np.eye(1), [0]),
         # it is least at infinity alone
-        (Ending.SINGULAR, lambda b: 1 / np.maximum(b, 1), lambda b: -np.diag(b**-2), [2]),
+        (Ending.UNFINISHED, lambda b: 1 / np.maximum(b, 1), lambda b: -np.diag(b**-2), [2]),
         # an exponential through numbers that alternate
         (
             Ending.UNFINISHED,
@@ -140,6 +141,24 @@ def test_a_step_out_of_the_domain_is_not_taken() -> None:
     """Newton's step from 5 for log(b) = 0 leads to -3."""
     fit = least_squares(np.log, lambda b: np.diag(1 / b), np.array([5.0]))
     assert fit.parameters == pytest.approx([1], rel=1e-15)
+
+
+@pytest.mark.parametrize("size", [1e-300, 1e-160, 1.0, 1e160, 1e300])
+@pytest.mark.parametrize("start", [3.0, 0.0, 1e-30])
+def test_neither_the_size_of_residuals_nor_that_of_parameters_matters(size: float, start: float) -> None:
+    of_residuals = least_squares(
+        lambda b: size * np.array([b[0] ** 3 - 1, b[0] - 1.5]),
+        lambda b: size * np.array([[3 * b[0] ** 2], [1.0]]),
+        [start],
+    )
+    of_parameters = least_squares(
+        lambda b: np.array([(b[0] / size) ** 3 - 1, b[0] / size - 1.5]),
+        lambda b: np.array([[3 * (b[0] / size) ** 2 / size], [1 / size]]),
+        [start * size],
+    )
+    (found,) = of_residuals.parameters
+    assert 3 * found**2 * (found**3 - 1) + found - 1.5 == pytest.approx(0, abs=1e-14)
+    assert of_parameters.parameters == pytest.approx([found * size], rel=1e-14)
 
 
 def test_a_triangle_is_that_of_the_normal_equations() -> None:

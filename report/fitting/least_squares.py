@@ -1,10 +1,10 @@
 """Least squares of any model: the parameters that make a sum of squares least, or why there are none.
 
-What is guaranteed. A fit that says it has converged is stationary: what of its residuals lies in the tangent
-plane is too short to show in the rounded sum of squares (the relative offset of Bates and Watts is below
-1e-6, in practice 1e-9), or it is no more than what the rounding of the parameters makes of it. (That no other
-place is better nobody can say of a nonlinear model.) Any other end has its name in :class:`Ending`, and the
-numbers of such a run are refused, not given.
+What is guaranteed. A fit that says it has converged is stationary: what of its n residuals is in the tangent
+plane is too short to show in the rounded sum of squares (at most sqrt(n eps) of what lies across; `offset`
+tells it as Bates and Watts count it), or it is no more than what the rounding of the parameters makes of it.
+(That no other place is better nobody can say of a nonlinear model.) Any other end has its name in
+:class:`Ending`, and the numbers of such a run are refused, not given.
 
 Steps are Levenberg's and Marquardt's, within a radius, by orthogonal reflections of the Jacobian with scaled
 columns; normal equations are never formed. Once Bates and Watts would end, undamped steps follow as long as
@@ -29,7 +29,7 @@ from .triangle import EPS, Array, Triangle, lengths
 
 __all__ = ["Ending", "Fitted", "NotFitted", "least_squares"]
 
-STEPS = 5000
+STEPS, ROUNDS = 5000, 50
 Function = Callable[[Array], Array]
 
 
@@ -159,15 +159,12 @@ class _Point:
     @classmethod
     def of(cls, residuals: Function, jacobian: Function, place: Array, most: float = np.inf) -> _Point | None:
         """What is known at a place; nothing outside the domain, or where residuals are longer than `most`."""
-        with np.errstate(all="ignore"):
-            found = np.asarray(residuals(place), dtype=float)
-            length = float(lengths(found))
-            if not (np.isfinite(found).all() and length <= most):
-                return None
-            slopes = np.asarray(jacobian(place), dtype=float)
-            return (
-                cls(place, found, length, Triangle.of(slopes, -found)) if np.isfinite(slopes).all() else None
-            )
+        found = np.asarray(residuals(place), dtype=float)
+        length = float(lengths(found))
+        if not (np.isfinite(place).all() and np.isfinite(found).all() and length <= most):
+            return None
+        slopes = np.asarray(jacobian(place), dtype=float)
+        return cls(place, found, length, Triangle.of(slopes, -found)) if np.isfinite(slopes).all() else None
 
     @property
     def near(self) -> bool:
@@ -185,6 +182,7 @@ class _Point:
         return Fitted(ending, self.place, self.residuals, self.tangent, steps)
 
 
+@np.errstate(all="ignore")  # what is not finite is looked for
 def least_squares(residuals: Function, jacobian: Function, start: Array) -> Fitted:
     """The parameters that make the sum of squared residuals least.
 
@@ -196,7 +194,8 @@ def least_squares(residuals: Function, jacobian: Function, start: Array) -> Fitt
     jacobian : callable
         Of the parameters for which residuals were asked last: their derivatives (n, p).
     start : array (p,)
-        Where to begin. The first step is at most as long as this, counted by what it does to the residuals.
+        Where to begin. The first step is at most as long as this, counted by what it does to the residuals;
+        from zeros, as long as these.
 
     Returns
     -------
@@ -215,11 +214,12 @@ def least_squares(residuals: Function, jacobian: Function, start: Array) -> Fitt
     start = np.array(start, dtype=float)
     here = _Point.of(residuals, jacobian, start)
     if here is None:
-        with np.errstate(all="ignore"):
-            nothing = np.asarray(residuals(start), dtype=float)
+        nothing = np.asarray(residuals(start), dtype=float)
         return Fitted(Ending.OUTSIDE, start, nothing, Triangle.of(np.zeros((1, len(start))), np.zeros(1)), 0)
     weights = here.tangent.scale
-    radius = float(lengths(weights * start)) or here.length
+    radius = float(lengths(weights * start))
+    if radius < EPS**0.5 * here.length:
+        radius = here.length
     for steps in range(STEPS):
         here = _polished(residuals, jacobian, here)
         if here.stationary:
@@ -227,12 +227,14 @@ def least_squares(residuals: Function, jacobian: Function, start: Array) -> Fitt
         weights = np.maximum(weights, here.tangent.scale)
         damping, step = _within(here.tangent, weights, radius)
         length = float(lengths(weights * step))
-        if not length > EPS * lengths(weights * here.place):
+        if not length > EPS * max(float(lengths(weights * here.place)), EPS * here.length):
             return here.fit(Ending.STUCK, steps)
         there = _Point.of(residuals, jacobian, here.place + step, here.length)
-        moved = here.tangent.moved(step)
-        foreseen = moved * moved + 2 * damping * length * length  # too large a number's square is infinite
-        gain = (here.length - there.length) * (here.length + there.length) if there else 0.0
+        # What the sum of squares loses, in shares of it.
+        moved, share = here.tangent.moved(step) / here.length, length / here.length
+        foreseen = moved * moved + 2 * damping * share * share  # a power that is too large is an exception
+        left = there.length / here.length if there else 1.0
+        gain = (1 - left) * (1 + left)
         if gain < 0.25 * foreseen:
             radius = length / 4
         elif gain > 0.75 * foreseen or damping == 0:
@@ -248,14 +250,15 @@ def _within(tangent: Triangle, weights: Array, radius: float) -> tuple[float, Ar
     Newton's steps for 1/length, which is nearly straight: they come from below.
     """
     damping = 0.0 if tangent.full else EPS
-    while True:
+    for _ in range(ROUNDS):
         damped = tangent.damped(np.sqrt(damping) * weights) if damping else tangent
         step = damped.solved()
         length = float(lengths(weights * step))
         if not length > 1.1 * radius:
-            return damping, step
-        by_slope = length / damped.spread(weights * weights * step)
-        damping += (length / radius - 1) * by_slope * by_slope
+            break
+        slope = damped.spread(weights * (weights * step / length))
+        damping += (length / radius - 1) / slope / slope
+    return damping, step
 
 
 def _polished(residuals: Function, jacobian: Function, here: _Point) -> _Point:

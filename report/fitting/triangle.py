@@ -129,7 +129,7 @@ class Triangle:
 
 def lengths(matrix: Array) -> Array:
     """The lengths of columns (n, ...), however large or small their numbers are."""
-    with np.errstate(over="ignore", under="ignore"):
+    with np.errstate(over="ignore"):
         squares = np.add.reduce(matrix * matrix, axis=0)
     if np.all((squares > 1e-200) & (squares < 1e200)):
         return np.asarray(np.sqrt(squares))
