@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from sympy import Expr, Sum, lambdify, symbols
+from sympy import Expr, Integer, Sum, lambdify, symbols
 
 from loopsheet.derivations import straight_line as line
+from loopsheet.derivations.equation import Step
 from loopsheet.derivations.proof import check_step, prove
 from loopsheet.derivations.proved import ProofStatus
 from loopsheet.derivations.straight_line import LEDGER, k, n, w, x, x_mean, y, y_mean
@@ -46,6 +47,27 @@ def test_wrong_ones_are_refuted(number: str, wrong: Expr) -> None:
     (step,) = derivation.steps
     claim = replace(step.claim, members=(step.claim.members[0], wrong))
     assert check_step(replace(step, claim=claim)).status is ProofStatus.REFUTED
+
+
+def test_the_sums_of_jcgm_100_are_the_same_without_weights() -> None:
+    """(H.13a) and (H.13b), from the same normal equations with all weights 1."""
+    derivation = LEDGER.derivation(LEDGER["(3)"])
+    assert derivation is not None
+    normal_a, normal_b = (
+        replace(premise, members=tuple(member.xreplace({w[k]: Integer(1)}) for member in premise.members))
+        for premise in derivation.steps[0].premises[2:]
+    )
+    sum_x, sum_y = total(x[k]), total(y[k])
+    determinant = n * total(x[k] ** 2) - sum_x**2
+    slope = (n * total(x[k] * y[k]) - sum_x * sum_y) / determinant
+    intercept = (sum_y * total(x[k] ** 2) - total(x[k] * y[k]) * sum_x) / determinant
+    for symbol, formula, premises, unknowns in (
+        (line.b, slope, (normal_a, normal_b), (line.a, line.b)),
+        (line.a, intercept, (normal_b, normal_a), (line.b, line.a)),
+    ):
+        for claimed, status in ((formula, ProofStatus.PROVED), (formula * (1 + sum_x), ProofStatus.REFUTED)):
+            claim = replace(LEDGER["(3)"], members=(symbol, claimed), parent=None)
+            assert check_step(Step(claim, premises, unknowns, "")).status is status
 
 
 def test_the_solver_finds_what_is_proved() -> None:
