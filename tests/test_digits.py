@@ -15,7 +15,7 @@ from typing import Any
 import html5lib
 import openpyxl
 import pytest
-from small_report import end_gauge
+from small_report import FILES, end_gauge
 
 from loopsheet.report import stages
 from loopsheet.report.cells.address import index_text
@@ -213,11 +213,11 @@ def test_the_key_sets_the_number_of_digits(tmp_path: Path) -> None:
 
 
 def test_a_given_zero_and_what_is_exact_say_nothing_of_digits(tmp_path: Path) -> None:
-    """Two parameters of the end gauge are 0: no numbers of one digit."""
-    report = Study(end_gauge(tmp_path)).computed
+    """Parameters of the end gauge are 0: no numbers of one digit. The others have three at least."""
+    toml = FILES["report.toml"].replace('"-0.1 K"', '"-0.1000 K"')
+    report = Study(end_gauge(tmp_path, report=toml)).computed
     assert [printed.text for printed in report.inputs.printed("cycle")] == ["0"]
-    assert report.shown["l"].digits == 2  # theta is -0.1
-    assert [figure.plain for figure in report.figures("l") if figure] == ["0.0500", "0.0500"]
+    assert report.shown["l"].digits == 4
 
 
 @pytest.mark.parametrize("name", ["paper", "stated", "nothing is certain"])

@@ -214,8 +214,7 @@ def rounded(value: float, digits: int) -> Numeral:
 
 def decimals(value: float, places: int) -> Numeral:
     """Show a number with a given number of decimals: as another one is printed."""
-    with localcontext(_EXACTLY):
-        return _figure(f"{Decimal(value):.{max(0, places)}f}", None)
+    return at(value, -max(0, places), scientific=False)
 
 
 def _figure(text: str, exponent: int | None) -> Numeral:
