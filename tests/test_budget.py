@@ -1,12 +1,16 @@
 """`loopsheet budget`: what it prints, and what it refuses."""
 
 import json
+import math
 import re
 from pathlib import Path
 
 import pytest
 
 from loopsheet.report.cli import main
+from loopsheet.report.result.result import Report
+from loopsheet.report.result.uncertain import Budget, Distributed
+from loopsheet.report.views.budget import as_text
 
 FILES = {
     "report.toml": """\
@@ -89,3 +93,27 @@ def test_the_report_says_it_of_every_result(issued: Path) -> None:
         assert rf"\num{{{u}}}" in tex
     assert r"\num{0.038e9}" in tex
     assert f"{values['C_log']['u']:.2g}" == "3.8e+07"
+
+
+@pytest.mark.parametrize("u", [0.0035, math.nan])
+def test_draws_tell_of_a_cell_of_which_nothing_else_is_known(report: Report, u: float) -> None:
+    """As in a sheet that is too large for propagation; where they have no standard deviation, too."""
+    found = Distributed(
+        1000,
+        0,
+        1.3026,
+        math.nan,
+        u,
+        (1.2959, 1.3094),
+        (1.2958, 1.3093),
+        1.0,
+        0.01,
+        True,
+        (math.nan, math.nan),
+    )
+    told = as_text(report, Budget("alpha_mean", "alpha_mean", (), 1.30264, level=0.95), found)
+    digits = "1.2959 and 1.3094" if math.isfinite(u) else "1.296 and 1.309"
+    assert "alpha_mean = 1.3026, and its uncertainty is not known" in told
+    assert f"between {digits} (equal tails" in told
+    assert "nan" not in told.lower()
+    assert "law of propagation" not in told

@@ -148,10 +148,15 @@ def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iter
     if drawn is None:
         return
     unit, scale = _unit(report, budget.name)
+    u = drawn.u if math.isfinite(drawn.u) else budget.u
 
     def told(value: float) -> str:
-        u = drawn.u if math.isfinite(drawn.u) else budget.u
+        if not math.isfinite(u):
+            return rounded(value / scale, report.shown[budget.name].digits).text
         return report.stated(budget.name, value, u)[0].text
+
+    def wide(width: float) -> str:
+        return report.sure(budget.name, max(width, 0.0)).text
 
     yield f"Monte Carlo, {drawn.number} draws: median {told(drawn.median)}{unit}" + (
         f", u = {report.sure(budget.name, drawn.u).text}{unit}" if math.isfinite(drawn.u) else ""
@@ -167,22 +172,18 @@ def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iter
         return
     level = f"{100 * budget.level:.12g} %"
     for name, (low, high) in (("equal tails", drawn.symmetric), ("the shortest", drawn.shortest)):
-        around = (
-            f"{told(budget.value)} +{_width(high - budget.value, scale)}/-{_width(budget.value - low, scale)}"
-        )
+        around = f"{told(budget.value)} +{wide(high - budget.value)}/-{wide(budget.value - low)}"
         yield f"{level} between {told(low)} and {told(high)}{unit} ({name}; {around})"
     if not drawn.stable:
         yield "its ends are not known to the second digit of u: more draws would tell"
-    far = rounded(max(drawn.differences) / scale, 2).text
+    if not budget.is_known:
+        return  # of a sheet that is too large: there is nothing to compare with
+    far = wide(max(drawn.differences))
     yield (
         f"the law of propagation gives the same interval within {far}{unit}"
         if drawn.validates
         else f"the law of propagation is off by {far}{unit} at an end: the interval of the draws holds"
     )
-
-
-def _width(width: float, scale: float) -> str:
-    return rounded(max(width, 0.0) / scale, 2).text
 
 
 def _drawn(drawn: Distributed) -> dict[str, object]:
