@@ -178,6 +178,8 @@ def test_a_triangle_is_that_of_the_normal_equations() -> None:
     ridge = np.linalg.inv(unit.T @ unit + np.diag(weights**2))
     assert damped.solved() * triangle.scale == pytest.approx(ridge @ unit.T @ column)
     x = rng.normal(size=4)
+    both = np.vstack([unit, np.diag(weights)])
+    assert damped.moved(x / triangle.scale) == pytest.approx(np.linalg.norm(both @ x))
     assert damped.spread(x * triangle.scale) == pytest.approx(np.sqrt(x @ ridge @ x))
     assert triangle.moved(x / triangle.scale) == pytest.approx(np.linalg.norm(unit @ x))
     norms = np.linalg.norm(unit), np.linalg.norm(np.linalg.inv(triangle.upper))

@@ -112,7 +112,7 @@ class Triangle:
         work[range(rows, rows + width), range(width)] = (weights / self.scale)[self.order]
         for k in range(width):
             _reflect(work[k:, k:], np.sqrt(np.add.reduce(work[k:, k] ** 2)))
-        return Triangle(self.scale, self.order, work[:width, :width], work[:, width], width)
+        return Triangle(self.scale, self.order, np.triu(work[:width, :width]), work[:, width], width)
 
     def spread(self, x: Array) -> float:
         """sqrt(x^T (matrix^T matrix)^-1 x) of x (p,), for full rank."""
@@ -152,7 +152,6 @@ def _reflect(block: Array, length: float) -> None:
         sign = -1.0 if mirror[0] < 0 else 1.0
         mirror[0] += sign
         block -= mirror[:, None] * (np.add.reduce(mirror[:, None] * block, axis=0) / (sign * mirror[0]))
-        block[1:, 0] = 0.0
 
 
 def _back(upper: Array, right: Array) -> Array:
