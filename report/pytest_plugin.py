@@ -131,7 +131,7 @@ class FolderChecks:
         from .engines import ENGINES
         from .judge import oddities
         from .messages.errors import InputError
-        from .result.findings import names_of, table_names
+        from .result.findings import CONFORMITY, names_of, table_names
 
         try:
             prepared = self.study.prepared
@@ -148,6 +148,7 @@ class FolderChecks:
             "published": names_of((*inputs.published, *inputs.published_u)),
             "table": table_names(inputs),
             **oddities.names(prepared.sheet, inputs),
+            CONFORMITY: [each.address for each in inputs.limits],
         }
 
     def check(self, kind: str, name: str, every_engine: bool = True) -> Check:

@@ -13,7 +13,7 @@ from functools import cached_property
 
 from .distribution import Error, Shape
 
-__all__ = ["LARGEST", "SMALLEST", "Bounds", "Printed", "behind"]
+__all__ = ["LARGEST", "SMALLEST", "Bounds", "Printed", "behind", "span"]
 
 
 LARGEST = 2**1024 - 2**970
@@ -29,6 +29,15 @@ def behind(unit: str) -> str:
     (' um', '')
     """
     return "" if unit == "1" else f" {unit}"
+
+
+def span(low: str, high: str) -> str:
+    """An interval in words, of which an end may be missing.
+
+    >>> span("1.25", "1.35"), span("", "1.35 mm")
+    ('1.25 to 1.35', 'at most 1.35 mm')
+    """
+    return f"{low} to {high}" if low and high else f"at least {low}" if low else f"at most {high}"
 
 
 @dataclass(frozen=True)

@@ -253,6 +253,20 @@ def _section(folder: Folder) -> None:
     folder.toml += lines
 
 
+def _limits(folder: Folder) -> None:
+    dice, lines = folder.dice, ["[limits]"]
+    for name in dice.sample(sorted(folder.base.cells), 2):
+        index, unit = dice.choice(INDICES), folder.unit(name)
+        numbers = sorted((folder.number(), folder.number()), reverse=dice.random() < 0.1)
+        said = dice.choice(("{0} .. {1} {2}", "{0} {2} .. {1} {2}", "<= {1} {2}", ">= {0} {2}", "{0} {2}"))
+        lines.append(f'"{name}{index and f"[{index}]"}" = "{said.format(*numbers, unit)}"')
+    if dice.random() < 0.7:
+        guard = dice.choice(("U", "0.83 U", "0", "0.1", f"{folder.number()} {unit}", f"{folder.number()} U"))
+        level = dice.choice(("95 %", "0.9545", folder.number()))
+        lines += ["[limits.rule]", f'guard = "{guard}"', f'level = "{level}"']
+    folder.toml += lines
+
+
 def _columns(folder: Folder) -> None:
     order = folder.dice.sample(range(len(folder.table[0])), len(folder.table[0]))
     folder.table = [[row[place] for place in order] for row in folder.table]
@@ -382,6 +396,7 @@ CHANGES: tuple[Change, ...] = (
         _concise,
         _section,
         _section,
+        _limits,
         _ending,
         _line,
     ),

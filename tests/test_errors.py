@@ -280,6 +280,8 @@ CASES: dict[str, Callable[[], None]] = {
     "LS433": toml("8.366 g", "8.366(4) g, u = 0.02"),
     "LS434": toml("[published]", '[uncertainty.correlation]\n"v, e" = "1.2"\n[published]'),
     "LS435": toml("[published]", "[uncertainty]\ndigits = 3\n[published]"),
+    "LS441": toml("[published]", '[limits]\nalpha_mean = "1.3"\n[published]'),
+    "LS442": toml("[published]", '[limits.rule]\nguard = "V"\n[published]'),
     "LS501": published("1-2", "2-Jan"),
     "LS502": published("differs", "differ"),
     "LS504": published("\nTable 2", "\nTable 2,alpha,1-2,1.234,1,,\nTable 2"),

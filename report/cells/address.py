@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-__all__ = ["address", "index_text", "parts"]
+__all__ = ["address", "index_text", "named", "parts"]
+
+_ROW = re.compile("(?:[0-9]{1,9}(?:-[0-9]{1,9})*)?")
 
 
 def index_text(index: Sequence[int]) -> str:
@@ -20,6 +22,18 @@ def address(name: str, index: Sequence[int]) -> str:
     ('alpha[1-2]', 'alpha_mean')
     """
     return f"{name}[{index_text(index)}]" if index else name
+
+
+def named(text: str) -> tuple[str, tuple[int, ...]]:
+    """Column and index of an address that somebody wrote; what is none is a cell that there is not.
+
+    >>> named("alpha[1-2]"), named("alpha[x]")
+    (('alpha', (1, 2)), ('alpha[x]', ()))
+    """
+    found = parts(text)
+    if found is None or not _ROW.fullmatch(found[1]):
+        return text, ()
+    return found[0], tuple(map(int, filter(None, found[1].split("-"))))
 
 
 def parts(text: str) -> tuple[str, str] | None:

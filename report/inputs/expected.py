@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
-from ..cells.address import index_text, parts
+from ..cells.address import index_text, named
 from ..messages.errors import Findings, Location, listing, suggest
 
 __all__ = ["EXAMPLE", "Expectation", "check_expected"]
@@ -15,7 +16,22 @@ EXAMPLE = '"alpha[1-2]" = "both drops from one height"'
 """A line of the section."""
 
 _TEST = re.compile("test +([0-9]{1,9})")
-_ROW = re.compile("(?:[0-9]{1,9}(?:-[0-9]{1,9})*)?")
+
+
+class OfCell(Protocol):
+    """What report.toml says of a cell."""
+
+    @property
+    def address(self) -> str:
+        """As it was written."""
+
+    @property
+    def at(self) -> Location:
+        """Where it was written."""
+
+    @property
+    def cell(self) -> tuple[str, tuple[int, ...]]:
+        """Column and index; no column for a test."""
 
 
 @dataclass(frozen=True)
@@ -46,10 +62,7 @@ class Expectation:
         """
         if test := _TEST.fullmatch(self.address):
             return "", (int(test[1]),)
-        found = parts(self.address)
-        if found is None or not _ROW.fullmatch(found[1]):
-            return self.address, ()
-        return found[0], tuple(map(int, filter(None, found[1].split("-"))))
+        return named(self.address)
 
     def covers(self, cell: str, index: tuple[int, ...], tests: Collection[int]) -> bool:
         """Whether it speaks of a cell, by itself or by one of the tests that it rests on."""
@@ -58,7 +71,7 @@ class Expectation:
 
 
 def check_expected(
-    expected: Sequence[Expectation],
+    expected: Sequence[OfCell],
     tests: Sequence[int],
     cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
     findings: Findings,
@@ -67,7 +80,7 @@ def check_expected(
 
     Parameters
     ----------
-    expected : sequence of Expectation
+    expected : sequence of OfCell
     tests : sequence of int
         The numbers of the tests that there are.
     cells : mapping of str to (str, collection of tuple of int)

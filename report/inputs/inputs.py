@@ -20,6 +20,7 @@ from ..messages.errors import (
     suggest,
 )
 from .expected import EXAMPLE, Expectation, check_expected
+from .limits import Limits, check_limits, read_limits
 from .measurements import MODES, LeftOut, Measurements, read_measurements
 from .number_text import NumberError, read_printed
 from .parameters import read_parameters, wrong_type
@@ -95,6 +96,8 @@ class Inputs:
         Published values that rest on a test that is left out: they are not compared.
     uncertainty : Stated
         What report.toml states of the errors of whole columns, of what they share, and of correlations.
+    limits : tuple of Limits
+        Where cells have to lie.
     """
 
     folder: Path
@@ -115,6 +118,7 @@ class Inputs:
     aside: tuple[PublishedValue, ...] = ()
     uncertainty: Stated = field(default_factory=lambda: Stated({}))
     published_u: tuple[PublishedValue, ...] = ()
+    limits: tuple[Limits, ...] = ()
 
     @property
     def about_source(self) -> bool:
@@ -211,12 +215,14 @@ def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[
     kept = replace(
         inputs,
         expected=tuple(each for each in inputs.expected if not rests_on_gone(*each.cell)),
+        limits=tuple(each for each in inputs.limits if not rests_on_gone(*each.cell)),
         published=tuple(value for value in inputs.published if value not in aside),
         published_u=tuple(value for value in inputs.published_u if value not in aside),
         aside=aside,
     )
     findings = Findings()
     check_expected(kept.expected, kept.tests, cells, findings)
+    check_limits(kept.limits, cells, findings)
     check_published((*kept.published, *kept.published_u), kept.free_at, cells, findings)
     findings.check()
     return kept
@@ -245,7 +251,7 @@ class _Reader:
             self.findings.check()
             raise AssertionError("a folder was refused without a finding")
         self.toml, self.tables = toml, TomlTables(toml, self.findings)
-        sections = ("parameters", "measurements", "uncertainty", "expected", "published")
+        sections = ("parameters", "measurements", "uncertainty", "limits", "expected", "published")
         self.tables.keys((), ("title", "workbook", *sections))
         self.bare = read_bare(self.tables)
         self.workbook = self.open_workbook()
@@ -257,7 +263,7 @@ class _Reader:
             uncertainty, parameters, measurements = self.uncertainty(parameters, measurements)
         computable = not self.findings.found
         published = self.published()
-        expected = self.expected()
+        expected, limits = self.expected(), read_limits(self.tables)
         errata = self.errata(measurements) if measurements is not None else {}
         if not computable:
             self.findings.check()
@@ -281,6 +287,7 @@ class _Reader:
             measurements.left_out,
             uncertainty=uncertainty,
             published_u=tuple(value for value in published if value.about is not None),
+            limits=limits,
         )
         if self.findings.found:
             self.findings.found.extend(self.more(inputs))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ..cells.address import index_text
@@ -13,13 +12,13 @@ from ..messages.errors import Findings, Location, listing, suggest
 from .about import FORMS, About, read_about
 from .csvtable import CsvTable, Field, match_columns, read_table
 from .number_text import NumberError, read_number, read_printed
-from .unit_text import ParsedUnit, UnitError, examples, parse_unit
+from .unit_text import ParsedUnit, UnitError, examples, parse_open, parse_unit
 
 if TYPE_CHECKING:
     from ..quantity import Printed
     from .sources import Source
 
-__all__ = ["COLUMNS", "Pin", "PublishedValue", "check_published", "read_published"]
+__all__ = ["COLUMNS", "Pin", "PublishedValue", "check_published", "convertible", "read_published"]
 
 _REQUIRED = ("source", "cell", "index", "value", "unit")
 _OPTIONAL = ("label", "expect", "recomputed", "explained", "reason")
@@ -29,8 +28,6 @@ _INDEX = re.compile(r"[1-9][0-9]{0,8}(?:-[1-9][0-9]{0,8})?")
 _EXPECT = ("", "differs")
 _ARROW = " -> "
 _CODE = re.compile(r"#[A-Z]+!")
-_OPEN = re.compile(r"\^[^\W\d]\w*$")
-"""The end of a unit whose exponent is another cell, such as ``N/m^alpha``."""
 
 
 @dataclass(frozen=True)
@@ -212,10 +209,8 @@ def _printed(table: CsvTable, fields: Mapping[str, Field], unread: set[str], fin
     number, written = fields["value"], fields["unit"]
     unit = parse_unit("1")
     try:
-        unit = parse_unit(written.text)
+        unit = parse_open(written.text)
     except UnitError as error:
-        if _OPEN.search(written.text):  # the sheet knows whose it is
-            return _number(table, number, ParsedUnit(written.text, Fraction(1), ()), findings)
         at = table.at(written, error.start, len(error.text))
         known = "a unit, 1 for a pure number"
         findings.add(error.code, at, text=error.text, suggestion=error.suggestion, known=known)
@@ -273,13 +268,13 @@ def check_published(
                 findings.add("LS506", at, name=name, text=text, known=_indices(cells[name][1]))
         if value.about and value.about.is_pure:
             unit = "1"
-        others = None if "unit" in value.unread else _convertible(value.printed.unit, unit)
+        others = None if "unit" in value.unread else convertible(value.printed.unit, unit)
         if others is not None:
             at = value.places.get("unit")
             findings.add("LS422", at, name=value.cell, text=value.printed.unit, unit=unit, known=others)
 
 
-def _convertible(written: str, unit: str) -> str | None:
+def convertible(written: str, unit: str) -> str | None:
     """None where a unit converts to that of a cell, else what does."""
     try:
         expected = parse_unit(unit)

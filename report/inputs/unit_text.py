@@ -17,9 +17,11 @@ from typing import TYPE_CHECKING, Any, NoReturn
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["COMMON", "ParsedUnit", "UnitError", "examples", "parse_unit"]
+__all__ = ["COMMON", "ParsedUnit", "UnitError", "examples", "parse_open", "parse_unit"]
 
 _LONGEST = 60
+_OPEN = re.compile(r"\^[^\W\d]\w*$")
+"""The end of a unit whose exponent is another cell, such as ``N/m^alpha``."""
 _HIGHEST = 12
 """The largest power: m^9999 would make numbers of ten thousand digits."""
 
@@ -151,6 +153,20 @@ def parse_unit(text: str) -> ParsedUnit:
     start = text.index(stripped)
     scale, dimension = _Parser(stripped, start).whole()
     return ParsedUnit(text, scale, _sorted(dimension))
+
+
+def parse_open(text: str) -> ParsedUnit:
+    """The same; a unit whose exponent is a cell, of which the sheet knows, stays as it stands.
+
+    >>> parse_open("N/m^alpha").scale
+    Fraction(1, 1)
+    """
+    try:
+        return parse_unit(text)
+    except UnitError:
+        if not _OPEN.search(text):
+            raise
+        return ParsedUnit(text, Fraction(1), ())
 
 
 def examples(unit: ParsedUnit) -> str:

@@ -291,6 +291,18 @@ CATALOGUE: dict[str, Entry] = {
         "digits = 1 or digits = 2",
         "more digits of an uncertainty would say nothing; values.json has all of them",
     ),
+    "LS441": Entry(
+        "not limits",
+        "'{text}' is not understood as limits",
+        "1.25 .. 1.35, <= 1.35 or >= 1.25, with a unit where the cell has one: 22 .. 24 um",
+        "{suggestion}",
+    ),
+    "LS442": Entry(
+        "not a decision rule",
+        "'{text}' is not understood as a part of a decision rule",
+        'guard = "U", "0.83 U", "0.2 um" or "0"; level = "95 %"',
+        "{suggestion}",
+    ),
     # Published values
     "LS501": Entry(
         "not an index",

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 from ..cells.address import address
 from ..messages.diagnostics import Check, Diagnostic, Location
 from . import verdict_words as words
+from .conformity import probabilities, sentence
+from .uncertain import Conformity, Decision
 from .verdict import OTHERWISE, UNAMENDED, UNEXPLAINED, UNPINNED, UNREASONED
 
 if TYPE_CHECKING:
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from .result import Comparison, Report
 
 __all__ = [
+    "CONFORMITY",
     "MISPRINTS",
     "TOGETHER",
     "Check",
@@ -30,11 +33,14 @@ __all__ = [
     "of_comparison",
     "of_diagnostics",
     "of_engine",
+    "of_limits",
     "of_proof",
     "of_referee",
     "table_names",
 ]
 
+CONFORMITY = "conformity"
+"""The kind of the checks of limits."""
 MOST_NAMED = 5
 """Of the findings about an engine; one wrong formula spoils many cells."""
 
@@ -48,6 +54,7 @@ def checks(report: Report) -> tuple[Check, ...]:
         *map(of_comparison, every, names_of(c.published for c in every)),
         *of_referee(report),
         *report.oddities,
+        *(map(of_limits, report.uncertain().conformities) if report.inputs.limits else ()),
     )
 
 
@@ -96,6 +103,12 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
     places = published.places
     at = places.get(field.get(comparison.finding, ""), places.get("value", Location()))
     return Check("published", name, comparison.as_expected, said, at)
+
+
+def of_limits(found: Conformity) -> Check:
+    """Whether a cell conforms to its limits; where the rule leaves that open, nobody has shown it."""
+    passed, told = found.decision is Decision.CONFORMS, "; ".join((str(found.limits), *probabilities(found)))
+    return Check(CONFORMITY, found.limits.address, passed, f"{sentence(found)} ({told})", found.limits.at)
 
 
 def _otherwise(comparison: Comparison) -> str:

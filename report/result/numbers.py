@@ -17,6 +17,7 @@ __all__ = [
     "RAISED",
     "Numeral",
     "at",
+    "chance",
     "decimals",
     "is_pure",
     "last_place",
@@ -215,6 +216,19 @@ def rounded(value: float, digits: int) -> Numeral:
 def decimals(value: float, places: int) -> Numeral:
     """Show a number with a given number of decimals: as another one is printed."""
     return at(value, -max(0, places), scientific=False)
+
+
+def chance(probability: float, other: float) -> str:
+    """A probability in percent, and that of the contrary: it is told to be 0 or 1 only where it is.
+
+    >>> chance(0.66, 0.34), chance(1.0, 1e-19), chance(1e-9, 1 - 1e-9), chance(0.0, 1.0)
+    ('66.00 %', 'more than 99.99 %', 'less than 0.01 %', '0 %')
+    """
+    if probability == 0.0 or other == 0.0:
+        return f"{100 * probability:.0f} %"
+    if probability < 1e-4:
+        return "less than 0.01 %"
+    return "more than 99.99 %" if probability > 1 - 1e-4 else f"{decimals(100 * probability, 2).text} %"
 
 
 def _figure(text: str, exponent: int | None) -> Numeral:

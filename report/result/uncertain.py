@@ -5,13 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..distribution import Shape
 
-__all__ = ["Budget", "Contribution", "Distributed", "ErrorSource", "Uncertainties"]
+if TYPE_CHECKING:
+    from ..inputs.limits import Limits
+
+__all__ = ["Budget", "Conformity", "Contribution", "Decision", "Distributed", "ErrorSource", "Uncertainties"]
 
 
 @dataclass(frozen=True)
@@ -106,6 +111,8 @@ class Budget:
         order is enough.
     unlooked : str
         Why nothing is known of second order; empty if it was looked at.
+    shape : Shape
+        The distribution that is assigned to it: normal, Student's t, or that of a source which dominates.
     """
 
     cell: str
@@ -121,6 +128,7 @@ class Budget:
     because: str = ""
     second: float = 0.0
     unlooked: str = ""
+    shape: Shape = Shape.NORMAL
 
     @property
     def expanded(self) -> float:
@@ -174,6 +182,69 @@ class Distributed:
         return max(self.differences) <= self.tolerance
 
 
+class Decision(StrEnum):
+    """What the rule decides."""
+
+    CONFORMS = "conforms"
+    DOES_NOT = "does not conform"
+    NONE = "no decision"
+
+
+@dataclass(frozen=True)
+class Conformity:
+    """A cell beside its limits.
+
+    Parameters
+    ----------
+    budget : Budget
+        Its uncertainty, with U at the level of the rule.
+    limits : Limits
+    guard : float
+        The width of the guard band in SI; NaN where it is a share of a U that is not known.
+    below, above : float
+        The probabilities that the quantity lies outside of its tolerance limits; NaN where the budget assigns
+        no distribution.
+    probability : float
+        That it lies within them: the conformance probability (JCGM 106, 3.3.7).
+    decision : Decision
+    """
+
+    budget: Budget
+    limits: Limits
+    guard: float
+    below: float
+    above: float
+    probability: float
+    decision: Decision
+
+    @property
+    def acceptance(self) -> tuple[float, float]:
+        """The acceptance limits in SI: the tolerance limits, drawn in by the guard band."""
+        low, high = self.limits.ends
+        return low + self.guard, high - self.guard
+
+    @property
+    def consumer_risk(self) -> float | None:
+        """The specific consumer's risk: that what was accepted does not conform (JCGM 106, 9.3.2)."""
+        return self.below + self.above if self.decision is Decision.CONFORMS else None
+
+    @property
+    def producer_risk(self) -> float | None:
+        """The specific producer's risk: that what was rejected conforms (JCGM 106, 9.3.3)."""
+        return self.probability if self.decision is Decision.DOES_NOT else None
+
+    @property
+    def because(self) -> str:
+        """Why it is decided so."""
+        if self.decision is Decision.CONFORMS:
+            return "it lies within the acceptance limits"
+        if self.decision is Decision.DOES_NOT:
+            return "it lies outside of the tolerance limits"
+        if math.isnan(self.budget.value):
+            return "it has no value"
+        return "the guard band is not known" if math.isnan(self.guard) else "it lies in the guard band"
+
+
 @dataclass(frozen=True)
 class Uncertainties:
     """The standard uncertainty of every cell, and the budgets of the result.
@@ -184,7 +255,10 @@ class Uncertainties:
         In SI; NaN where a cell has no value, and where nothing is known.
     budgets : tuple of Budget
         Of the cells of the headline.
+    conformities : tuple of Conformity
+        Of the cells that have limits.
     """
 
     u: Mapping[str, NDArray[np.float64]]
     budgets: tuple[Budget, ...] = ()
+    conformities: tuple[Conformity, ...] = ()

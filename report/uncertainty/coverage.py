@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..distribution import DIVISORS, DOMINANT, LEVEL, Shape
 from ..result.uncertain import ErrorSource
 
-__all__ = ["coverage", "effective"]
+__all__ = ["assigned", "coverage", "effective"]
 
 _QUANTILES: dict[Shape, Callable[[float], float]] = {
     Shape.RECTANGULAR: lambda p: p,
@@ -48,6 +48,20 @@ def effective(u: float, contributions: NDArray[np.float64], dof: Sequence[float]
     return float(max(1, math.floor(round(1 / below, 2)))) if below > 0 else math.inf
 
 
+def assigned(
+    sources: Sequence[ErrorSource], contributions: NDArray[np.float64], dof: float, second: float = 0.0
+) -> Shape:
+    """The distribution of a sum; parameters as for :func:`coverage`."""
+    sizes = np.abs(contributions)
+    if sizes.size:
+        largest = int(sizes.argmax())
+        rest = math.sqrt(float(np.sum(np.delete(sizes, largest) ** 2)) + abs(second))
+        shape, sure = sources[largest].shape, math.isinf(sources[largest].dof)
+        if sure and sizes[largest] and shape in _QUANTILES and rest <= DOMINANT * sizes[largest]:
+            return shape
+    return Shape.NORMAL if math.isinf(dof) else Shape.STUDENT
+
+
 def coverage(
     sources: Sequence[ErrorSource],
     contributions: NDArray[np.float64],
@@ -76,14 +90,10 @@ def coverage(
     """
     if math.isnan(dof):
         return math.nan, "nothing: correlated sources have finite degrees of freedom"
-    sizes = np.abs(contributions)
-    if sizes.size:
-        largest = int(sizes.argmax())
-        rest = math.sqrt(float(np.sum(np.delete(sizes, largest) ** 2)) + abs(second))
-        shape, sure = sources[largest].shape, math.isinf(sources[largest].dof)
-        if sure and sizes[largest] and shape in _QUANTILES and rest <= DOMINANT * sizes[largest]:
-            return DIVISORS[shape] * _QUANTILES[shape](level), f"the {shape} source that dominates"
-    if math.isinf(dof):
+    shape = assigned(sources, contributions, dof, second)
+    if shape in _QUANTILES:
+        return DIVISORS[shape] * _QUANTILES[shape](level), f"the {shape} source that dominates"
+    if shape is Shape.NORMAL:
         return NormalDist().inv_cdf((1 + level) / 2), "a normal distribution"
     from scipy.special import stdtrit  # a quarter of a second, for those who have degrees of freedom
 

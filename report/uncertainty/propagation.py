@@ -18,11 +18,13 @@ from ..cells.layout import how_large
 from ..cells.values import Status, Values
 from ..distribution import LEVEL
 from ..inputs.inputs import Inputs
+from ..inputs.limits import Limits
 from ..judge.chain import Chain, Made
 from ..judge.sensitivity import Numbers
-from ..result.uncertain import Budget, Contribution, Uncertainties
+from ..result.uncertain import Budget, Conformity, Contribution, Uncertainties
 from ..sheet import Given, RepeatAxis
-from .coverage import coverage, effective
+from .conformity import conformity
+from .coverage import assigned, coverage, effective
 from .second_order import SecondOrder, root_of
 from .sources import correlated, given, sources
 
@@ -174,6 +176,7 @@ class Spread:
         shares = own / u * (together / u) if u > 0 else np.zeros(len(own))
         dof = self._effective(math.sqrt(first), own, together)
         factor, because = coverage(self.sources, own, dof, level, second)
+        shape = assigned(self.sources, own, dof, second)
         order = [
             int(n)
             for n in np.argsort(-np.abs(shares), kind="stable")
@@ -183,8 +186,14 @@ class Spread:
         pairs = {
             (self.sources[a].name, self.sources[b].name): r for a, b, r in self._pairs if {a, b} <= set(order)
         }
-        known = value, u, told, pairs, dof, level, factor, because, second, unlooked
+        known = value, u, told, pairs, dof, level, factor, because, second, unlooked, shape
         return Budget(address(name, label), name, label, *known)
+
+    def conformity(self, limits: Limits) -> Conformity:
+        """A cell beside its limits."""
+        name, label = limits.cell
+        row = self.values.row(self.values.sheet[name], label)
+        return conformity(self.budget(name, row, limits.guard.level), limits)
 
     def _contribution(self, n: int, u: float, share: float) -> Contribution:
         source = self.sources[n]
@@ -239,4 +248,8 @@ def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Un
         c.name for c in sheet.columns if not isinstance(c.axis, RepeatAxis) or isinstance(c.rule, Given)
     ]
     budgets = (spread.budget(name, row) for name, row in cells[:MOST_BUDGETS])
-    return Uncertainties({name: spread.u(name) for name in listed}, tuple(budgets))
+    return Uncertainties(
+        {name: spread.u(name) for name in listed},
+        tuple(budgets),
+        tuple(map(spread.conformity, inputs.limits)),
+    )

@@ -64,4 +64,5 @@ def _told(study: Study, address: str, form: str, level: str, draws: str, seed: s
     budget, drawn = spread.budget(column.name, row, float(level)), None
     if int(draws) and budget.u > 0:
         drawn = draw(report.inputs, report.values, budget, int(draws), int(seed), study.step)
-    return FORMATS[form](report, budget, drawn)
+    limited = [each for each in report.inputs.limits if each.cell == (column.name, tuple(label))]
+    return FORMATS[form](report, budget, drawn, tuple(map(spread.conformity, limited)))

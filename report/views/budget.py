@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from ..quantity import behind
+from ..result.conformity import lines
 from ..result.numbers import decimals, rounded, stated
 from ..result.result import Report
-from ..result.uncertain import Budget, Contribution, Distributed
+from ..result.uncertain import Budget, Conformity, Contribution, Distributed
 from . import markdown as md
 
 __all__ = ["FORMATS", "as_json", "as_markdown", "as_text", "sentence"]
@@ -37,32 +38,40 @@ def sentence(report: Report, budget: Budget) -> str:
     return f"{told}, U = {expanded.text}{unit} with k = {rounded(budget.factor, 3).text} for {level}"
 
 
-def as_text(report: Report, budget: Budget, drawn: Distributed | None = None) -> str:
-    """The sentence, a table of the sources, and what draws told."""
-    lines = [sentence(report, budget)]
+def as_text(
+    report: Report, budget: Budget, drawn: Distributed | None = None, limited: Sequence[Conformity] = ()
+) -> str:
+    """The sentence, what limits say, a table of the sources, and what draws told."""
+    said = [sentence(report, budget), *_of_limits(report, limited)]
     rows = [HEADER, *(_row(report, budget, each) for each in budget.contributions)]
     if len(rows) > 1:
         widths = [max(len(row[n]) for row in rows) for n in range(len(HEADER))]
-        lines += [
+        said += [
             "",
             *("  ".join(f"{text:{w}}" for text, w in zip(row, widths, strict=True)).rstrip() for row in rows),
         ]
-        lines.append("")
-    return "\n".join([*lines, *_notes(report, budget), *_of_draws(report, budget, drawn)])
+        said.append("")
+    return "\n".join([*said, *_notes(report, budget), *_of_draws(report, budget, drawn)])
 
 
-def as_markdown(report: Report, budget: Budget, drawn: Distributed | None = None) -> str:
+def as_markdown(
+    report: Report, budget: Budget, drawn: Distributed | None = None, limited: Sequence[Conformity] = ()
+) -> str:
     """The same for a pull request."""
     rows = [[md.cell(text) for text in _row(report, budget, each)] for each in budget.contributions]
     notes = "".join(
         f"\n{md.cell(note)}\n" for note in (*_notes(report, budget), *_of_draws(report, budget, drawn))
     )
-    return f"{md.cell(sentence(report, budget))}\n\n{md.table(HEADER, rows) if rows else ''}{notes}".rstrip()
+    said = "\n\n".join(map(md.cell, (sentence(report, budget), *_of_limits(report, limited))))
+    return f"{said}\n\n{md.table(HEADER, rows) if rows else ''}{notes}".rstrip()
 
 
-def as_json(report: Report, budget: Budget, drawn: Distributed | None = None) -> str:
+def as_json(
+    report: Report, budget: Budget, drawn: Distributed | None = None, limited: Sequence[Conformity] = ()
+) -> str:
     """All digits, in SI."""
     monte_carlo = {} if drawn is None else {"monte_carlo": _drawn(drawn)}
+    conformity = {"conformity": _conformity(limited[0])} if limited else {}
     return json.dumps(
         {
             "schema": 1,
@@ -80,13 +89,14 @@ def as_json(report: Report, budget: Budget, drawn: Distributed | None = None) ->
             "sources": [_source(each) for each in budget.contributions],
             "correlations": [[*pair, r] for pair, r in budget.correlations.items()],
             **monte_carlo,
+            **conformity,
         },
         indent=1,
         ensure_ascii=False,
     )
 
 
-FORMATS: Mapping[str, Callable[[Report, Budget, Distributed | None], str]] = {
+FORMATS: Mapping[str, Callable[[Report, Budget, Distributed | None, Sequence[Conformity]], str]] = {
     "text": as_text,
     "markdown": as_markdown,
     "json": as_json,
@@ -200,6 +210,28 @@ def _drawn(drawn: Distributed) -> dict[str, object]:
         "tolerance": drawn.tolerance,
         "differences": list(map(_number, drawn.differences)),
         "validates": drawn.validates,
+    }
+
+
+def _of_limits(report: Report, limited: Iterable[Conformity]) -> Iterator[str]:
+    """What limits say of the cell, in lines."""
+    return (line for each in limited for line in lines(report, each))
+
+
+def _conformity(found: Conformity) -> dict[str, object]:
+    return {
+        "limits": list(map(_number, found.limits.ends)),
+        "level": found.limits.guard.level,
+        "guard": _number(found.guard),
+        "acceptance": list(map(_number, found.acceptance)),
+        "decision": found.decision.value,
+        "because": found.because,
+        "distribution": found.budget.shape.value,
+        "probability": _number(found.probability),
+        "below": _number(found.below),
+        "above": _number(found.above),
+        "consumer_risk": _number(found.consumer_risk),
+        "producer_risk": _number(found.producer_risk),
     }
 
 

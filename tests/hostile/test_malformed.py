@@ -57,6 +57,10 @@ def ends(folder: Path, further: bool) -> str:
         for budget in uncertain.budgets:
             for render in BUDGETS.values():
                 render(report, budget, None)
+        stage = "the limits"
+        for found in uncertain.conformities:
+            for render in BUDGETS.values():
+                render(report, found.budget, None, [found])
         if further:
             stage = "the draws"
             for budget in uncertain.budgets[:1]:

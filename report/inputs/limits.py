@@ -1,0 +1,222 @@
+"""The section ``[limits]`` of report.toml: where cells have to lie, and by which rule that is decided.
+
+[limits]
+alpha_mean = "1.25 .. 1.35"              # or "<= 1.35", ">= 1.25"; with a unit where the cell has one
+"x_p[1]" = "22 .. 24 um"
+
+[limits.rule]
+guard = "U"                              # or "0.83 U", "0.2 um"; without it 0, simple acceptance
+level = "95 %"                           # of U
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import inf
+from typing import TYPE_CHECKING
+
+from ..cells.address import address, named
+from ..distribution import LEVEL
+from ..quantity import behind, span
+from .expected import check_expected
+from .number_text import NumberError, read_number, read_printed
+from .published import convertible
+from .stated import StatementError
+from .unit_text import UnitError, parse_open
+
+if TYPE_CHECKING:
+    from ..messages.errors import Findings, Location
+    from ..quantity import Printed
+    from .tables import TomlTables
+
+__all__ = ["Guard", "Limits", "check_limits", "read_limits"]
+
+SECTION, RULE = "limits", "rule"
+EXAMPLE = "1.25 .. 1.35"
+_BOTH = re.compile(r"(?P<low>.+?)\s*\.\.\s*(?P<high>.+)")
+_ONE = re.compile(r"(?P<sign><=|>=|≤|≥)\s*(?P<number>.+)")
+_SHARE = re.compile(r"(?:(?P<times>[0-9.]+)\s*)?U")
+_LEVELS = (Fraction(1, 100), Fraction(999_999, 1_000_000))
+
+
+@dataclass(frozen=True)
+class Guard:
+    """How far acceptance limits are drawn in (JCGM 106, 8.3.2): so many expanded uncertainties, or a width.
+
+    Parameters
+    ----------
+    times : Fraction
+        Of U; 0 for simple acceptance.
+    width : Printed or None
+        Instead, as it is written.
+    level : float
+        The coverage probability of U.
+    at : Location or None
+        Where it is written.
+    """
+
+    times: Fraction = Fraction(0)
+    width: Printed | None = None
+    level: float = LEVEL
+    at: Location | None = None
+
+
+@dataclass(frozen=True)
+class Limits:
+    """The tolerance limits of a cell, which are allowed values themselves; at least one of them is there.
+
+    Parameters
+    ----------
+    address : str
+        As it was written.
+    low, high : Printed or None
+    guard : Guard
+    at : Location
+    """
+
+    address: str
+    low: Printed | None
+    high: Printed | None
+    guard: Guard
+    at: Location
+
+    @property
+    def cell(self) -> tuple[str, tuple[int, ...]]:
+        """Column and index of the cell; what is no address is a cell that there is not."""
+        return named(self.address)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Both in SI; infinite where there is none."""
+        low, high = self.low, self.high
+        return -inf if low is None else float(low.value), inf if high is None else float(high.value)
+
+    def __str__(self) -> str:
+        """What is allowed, in the words of the file."""
+        low, high = ("" if end is None else end.text + behind(end.unit) for end in (self.low, self.high))
+        if self.low and self.high and self.low.unit == self.high.unit:
+            low = self.low.text
+        return span(low, high)
+
+
+def read_limits(tables: TomlTables) -> tuple[Limits, ...]:
+    """Read the section; what is wrong with it is told where it stands."""
+    section = tables.toml.data.get(SECTION, {})
+    written = tables.keys((SECTION,), section if isinstance(section, dict) else ())
+    ruled = isinstance(written.get(RULE), dict)
+    guard = _rule(tables) if ruled else Guard()
+    return tuple(_limits(tables, written, guard, ruled))
+
+
+def _limits(tables: TomlTables, written: Collection[str], guard: Guard, ruled: bool) -> Iterator[Limits]:
+    for cell in written:
+        if cell == RULE and ruled:
+            continue
+        text = tables.text((SECTION,), cell, EXAMPLE)
+        if text is None:
+            continue
+        try:
+            low, high = _ends(text)
+        except StatementError as error:
+            at = tables.toml.value(SECTION, cell, start=error.start, length=max(len(error.text), 1))
+            tables.findings.add(error.code, at, text=error.text, suggestion=error.suggestion)
+        else:
+            yield Limits(cell, low, high, guard, tables.toml.key(SECTION, cell))
+
+
+def _ends(text: str) -> tuple[Printed | None, Printed | None]:
+    """The lower and the upper limit."""
+    if one := _ONE.fullmatch(text):
+        end = _number(one["number"], one.start("number"), "LS441")
+        return (end, None) if one["sign"] in (">=", "≥") else (None, end)
+    both = _BOTH.fullmatch(text)
+    if both is None:
+        raise StatementError("LS441", text, 0)
+    high = _number(both["high"], both.start("high"), "LS441")
+    unit = "" if " " in both["low"] else high.unit  # a unit behind the second is that of both
+    low = _number(f"{both['low']} {unit}".strip(), both.start("low"), "LS441")
+    if low.value >= high.value:
+        raise StatementError("LS441", text, 0, "the lower one stands first")
+    return low, high
+
+
+def _number(text: str, start: int, code: str) -> Printed:
+    digits, _, unit = text.partition(" ")
+    try:
+        return read_printed(digits, parse_open(unit.strip() or "1"))
+    except NumberError as error:
+        hint = error.fields["suggestion"] or "a number, a space and a unit"
+        raise StatementError(code, digits, start, hint) from None
+    except UnitError as error:
+        at = start + text.find(unit) + error.start
+        raise StatementError(code, error.text, at, error.suggestion) from None
+
+
+def _rule(tables: TomlTables) -> Guard:
+    """The decision rule; what is wrong with it is simple acceptance, and told."""
+    path = (SECTION, RULE)
+    tables.keys(path, ("guard", "level"))
+    found = Guard()
+    for key, example in (("guard", "U"), ("level", "95 %")):
+        if (text := tables.text(path, key, example)) is None:
+            continue
+        at = tables.toml.value(*path, key)
+        try:
+            found = _guard(found, text, at) if key == "guard" else replace(found, level=_level(text))
+        except StatementError as error:
+            tables.findings.add(error.code, at, text=text, suggestion=error.suggestion)
+    return found
+
+
+def _guard(rule: Guard, text: str, at: Location) -> Guard:
+    share = _SHARE.fullmatch(text)
+    if share is None:
+        width = _number(text, 0, "LS442")
+        if width.value < 0:
+            raise StatementError("LS442", text, 0, "a guard band is 0 or more wide")
+        return replace(rule, width=width if width.value else None, at=at)
+    times = _number(share["times"] or "1", 0, "LS442").value
+    return replace(rule, times=times, at=at)
+
+
+def _level(text: str) -> float:
+    try:
+        number = read_number(text.removesuffix("%").strip()) / (100 if text.endswith("%") else 1)
+    except NumberError:
+        number = Fraction(0)
+    if not _LEVELS[0] <= number <= _LEVELS[1]:
+        raise StatementError("LS442", text, 0, "a level is a probability from 1 % to 99.9999 %")
+    return float(number)
+
+
+def check_limits(
+    limits: Sequence[Limits],
+    cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
+    findings: Findings,
+) -> None:
+    """Find limits of cells that there are not, twice of one, or in a unit of another dimension.
+
+    Parameters
+    ----------
+    limits : sequence of Limits
+    cells : mapping of str to (str, collection of tuple of int)
+        As for :func:`~loopsheet.report.inputs.expected.check_expected`.
+    findings : Findings
+    """
+    check_expected(limits, (), cells, findings)
+    for each in limits:
+        name, index = each.cell
+        if name not in cells or index not in cells[name][1]:
+            continue
+        if each.address != (own := address(name, index)):
+            findings.add("LS506", each.at, name=name, text=each.address, known=own)
+        unit = cells[name][0]
+        numbers = ((each.low, each.at), (each.high, each.at), (each.guard.width, each.guard.at))
+        for number, at in numbers:
+            others = convertible(number.unit, unit) if number else None
+            if number and others is not None:
+                findings.add("LS422", at, name=name, text=number.unit, unit=unit, known=others)
+                break

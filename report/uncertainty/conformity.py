@@ -1,0 +1,85 @@
+"""The probability that a quantity lies within its limits, and the decision (JCGM 106:2012, 7 and 8)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+
+from ..distribution import DIVISORS, Shape
+from ..inputs.limits import Limits
+from ..result.uncertain import Budget, Conformity, Decision
+
+__all__ = ["beyond", "conformity"]
+
+_SHARES: Mapping[Shape, Callable[[float], float]] = {
+    Shape.RECTANGULAR: lambda x: x,
+    Shape.TRIANGULAR: lambda x: 1 - (1 - x) ** 2,
+    Shape.ARCSINE: lambda x: 2 / math.pi * math.asin(x),
+}
+"""The share of a distribution with ends that lies within a part of its width."""
+
+
+def beyond(z: float, shape: Shape, dof: float) -> float:
+    """The probability that an error is larger than z standard uncertainties.
+
+    Parameters
+    ----------
+    z : float
+    shape : Shape
+        That the budget assigns; a width is such that the standard uncertainty is 1, of Student's t the scale.
+    dof : float
+        Of Student's t.
+
+    Examples
+    --------
+    >>> beyond(math.sqrt(3) / 2, Shape.RECTANGULAR, math.inf), round(beyond(1.4, Shape.NORMAL, math.inf), 4)
+    (0.25, 0.0808)
+    """
+    if shape in _SHARES:
+        share = _SHARES[shape](min(abs(z) / DIVISORS[shape], 1.0))
+        return (1 - share) / 2 if z > 0 else (1 + share) / 2
+    if shape is Shape.NORMAL:
+        return math.erfc(z / math.sqrt(2)) / 2
+    from scipy.special import stdtr  # a quarter of a second, for those who have degrees of freedom
+
+    return float(stdtr(dof, -z))
+
+
+def conformity(budget: Budget, limits: Limits) -> Conformity:
+    """A cell beside its limits.
+
+    Parameters
+    ----------
+    budget : Budget
+        Of the cell, with U at the level of the rule.
+    limits : Limits
+    """
+    (low, high), value = limits.ends, budget.value
+
+    def more(distance: float) -> float:
+        """The probability that the error is larger."""
+        if math.isnan(distance) or (math.isnan(budget.factor) and budget.u != 0):
+            return math.nan
+        z = distance / budget.u if budget.u else math.copysign(math.inf, distance)
+        return beyond(z, budget.shape, budget.dof)
+
+    below, above = more(value - low), more(high - value)
+    if below > 0.5:  # a difference of small ones, where that of 1 and nearly 1 would have lost its digits
+        probability = more(low - value) - more(high - value)
+    elif above > 0.5:
+        probability = more(value - high) - more(value - low)
+    else:
+        probability = 1 - (below + above)
+    rule = limits.guard
+    share = float(rule.times) * budget.expanded if rule.times and budget.u else 0.0
+    guard = share if rule.width is None else float(rule.width.value)
+    guard = guard if math.isfinite(guard) else math.nan
+    decision = _decided(value, (low, high), guard)
+    return Conformity(budget, limits, guard, below, above, probability, decision)
+
+
+def _decided(value: float, limits: tuple[float, float], guard: float) -> Decision:
+    low, high = limits
+    if value < low or value > high:
+        return Decision.DOES_NOT
+    return Decision.CONFORMS if low + guard <= value <= high - guard else Decision.NONE

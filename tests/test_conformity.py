@@ -1,0 +1,258 @@
+"""Conformity with limits: JCGM 106's examples, what probabilities are to one another, and what is printed."""
+
+import json
+import math
+from pathlib import Path
+
+import mpmath
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from test_budget import FILES
+
+from loopsheet.report.cli import main
+from loopsheet.report.distribution import DIVISORS, Shape
+from loopsheet.report.inputs.inputs import Inputs, load
+from loopsheet.report.inputs.limits import Guard, Limits
+from loopsheet.report.inputs.number_text import read_printed
+from loopsheet.report.inputs.unit_text import parse_unit
+from loopsheet.report.messages.errors import Location
+from loopsheet.report.result.uncertain import Budget, Conformity, Decision
+from loopsheet.report.uncertainty.conformity import beyond, conformity
+from loopsheet.report.which_workbook import find_workbook
+
+INF = math.inf
+
+
+def judged(
+    value: float, u: float, low: str = "", high: str = "", times: str = "0", shape: Shape = Shape.NORMAL
+) -> Conformity:
+    """A value beside its limits, with U = 2 u, or 3 u for a t of 5 degrees of freedom."""
+    ends = (read_printed(text, parse_unit("1")) if text else None for text in (low, high))
+    dof, factor = (5.0, 3.0) if shape is Shape.STUDENT else (INF, 2.0)
+    budget = Budget("y", "y", (), value, u, dof=dof, level=0.95, factor=factor, shape=shape)
+    guard = Guard(read_printed(times, parse_unit("1")).value)
+    return conformity(budget, Limits("y", *ends, guard, Location()))
+
+
+@pytest.mark.parametrize(
+    ("value", "u", "low", "high", "digits"),
+    [
+        (-5.47, 0.05, "", "-5.40", "0.92"),  # 7.3.2, a Zener diode: Phi(1.4)
+        (509.7, 8.6, "490", "", "0.99"),  # 7.3.3, a container that is burst: Phi(2.3)
+        (13.6, 1.8, "12.5", "16.3", "0.66"),  # 7.4, motor oil: Phi(1.5) - Phi(-0.6)
+    ],
+)
+def test_examples_of_the_standard(value: float, u: float, low: str, high: str, digits: str) -> None:
+    found = judged(value, u, low, high)
+    assert f"{found.probability:.2f}" == digits
+    assert found.decision is Decision.CONFORMS
+    assert found.consumer_risk == pytest.approx(1 - found.probability, rel=1e-12)
+
+
+def test_a_guard_band_of_the_expanded_uncertainty_leaves_a_risk_of_a_fortieth() -> None:
+    """One limit, U = 2 u, at the acceptance limit: 2.3 % (ILAC-G8, table 1: less than 2.5 %)."""
+    found = judged(8.0, 1.0, high="10", times="1")
+    assert found.decision is Decision.CONFORMS
+    assert found.consumer_risk == pytest.approx(0.022750131948179195, rel=1e-12)
+    assert judged(math.nextafter(8.0, 9.0), 1.0, high="10", times="1").decision is Decision.NONE
+
+
+@pytest.mark.parametrize(("z", "probability"), [(0.84, 0.80), (1.28, 0.90), (1.64, 0.95), (2.33, 0.99)])
+def test_how_far_from_a_limit_a_value_has_to_lie(z: float, probability: float) -> None:
+    """JCGM 106, 7.3: table 1."""
+    assert f"{judged(-z, 1.0, high='0').probability:.2f}" == f"{probability:.2f}"
+
+
+SHAPES = st.sampled_from(list(Shape))
+SIZES = st.floats(-8, 8)
+
+
+def density(x: mpmath.mpf, shape: Shape) -> mpmath.mpf:
+    """Of an error with standard uncertainty 1: what the probabilities are integrals of."""
+    half = mpmath.mpf(DIVISORS[shape])
+    if shape is Shape.NORMAL:
+        return mpmath.npdf(x)
+    if shape is Shape.STUDENT:
+        front = mpmath.gamma(3) / (mpmath.sqrt(5 * mpmath.pi) * mpmath.gamma(mpmath.mpf(5) / 2))
+        return front * (1 + x**2 / 5) ** -3
+    if abs(x) >= half:
+        return mpmath.mpf(0)
+    if shape is Shape.RECTANGULAR:
+        return 1 / (2 * half)
+    return (
+        (half - abs(x)) / half**2
+        if shape is Shape.TRIANGULAR
+        else 1 / (mpmath.pi * mpmath.sqrt(half**2 - x**2))
+    )
+
+
+@pytest.mark.parametrize("shape", Shape)
+@pytest.mark.parametrize("z", [0.0, 0.3, 1.1, 1.39])
+def test_a_probability_is_the_integral_of_its_density(shape: Shape, z: float) -> None:
+    whole = mpmath.quad(lambda x: density(x, shape), [0, z])
+    assert beyond(z, shape, 5.0) == pytest.approx(float(mpmath.mpf(1) / 2 - whole), rel=1e-12)
+
+
+@given(SHAPES, SIZES, SIZES, st.floats(0.01, 9))
+def test_probabilities_make_one(shape: Shape, value: float, low: float, width: float) -> None:
+    found = judged(value, 1.0, f"{low:.9f}", f"{low + width:.9f}", shape=shape)
+    assert found.below + found.above + found.probability == pytest.approx(1, abs=1e-14)
+    assert all(0 <= each <= 1 for each in (found.below, found.above, found.probability))
+    assert (found.consumer_risk is None) == (found.decision is not Decision.CONFORMS)
+    assert (found.producer_risk is None) == (found.decision is not Decision.DOES_NOT)
+
+
+@given(SHAPES, SIZES, st.floats(0.01, 9))
+def test_both_sides_of_symmetric_limits_are_alike(shape: Shape, value: float, half: float) -> None:
+    one, other = (judged(y, 1.0, f"{-half:.9f}", f"{half:.9f}", "0.5", shape) for y in (value, -value))
+    assert (one.below, one.above, one.decision) == (other.above, other.below, other.decision)
+    assert one.probability == other.probability
+
+
+@given(SHAPES, st.floats(0, 8), st.floats(0, 3), st.floats(0, 3))
+def test_a_wider_guard_band_accepts_less_and_leaves_a_smaller_risk(
+    shape: Shape, value: float, one: float, other: float
+) -> None:
+    narrow, wide = (judged(value, 1.0, "0", "9", f"{t:.9f}", shape) for t in sorted((one, other)))
+    if wide.decision is Decision.CONFORMS:
+        assert narrow.decision is Decision.CONFORMS
+    least = [judged(9 - each.guard, 1.0, "", "9", shape=shape).above for each in (narrow, wide)]
+    assert least[0] >= least[1]
+
+
+def test_far_outside_the_probability_keeps_its_digits() -> None:
+    found = judged(20.0, 1.0, "0", "10")
+    assert found.producer_risk == pytest.approx(float(mpmath.ncdf(-10) - mpmath.ncdf(-20)), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("value", "u", "factor", "decision", "because"),
+    [
+        (math.nan, math.nan, math.nan, Decision.NONE, "it has no value"),
+        (5.0, math.nan, math.nan, Decision.NONE, "the guard band is not known"),
+        (11.0, math.nan, math.nan, Decision.DOES_NOT, "it lies outside of the tolerance limits"),
+        (10.0, 0.0, 1.96, Decision.CONFORMS, "it lies within the acceptance limits"),
+        (5.0, 1.0, math.nan, Decision.NONE, "the guard band is not known"),
+    ],
+)
+def test_what_is_not_known(value: float, u: float, factor: float, decision: Decision, because: str) -> None:
+    high = read_printed("10", parse_unit("1"))
+    budget = Budget("y", "y", (), value, u, level=0.95, factor=factor)
+    found = conformity(budget, Limits("y", None, high, Guard(high.value / 10), Location()))
+    assert (found.decision, found.because) == (decision, because)
+    assert math.isnan(found.probability) == (u != 0)
+
+
+LIMITS = """
+[limits]
+"x_p[1]" = "22.2 .. 23 um"
+"x_p[2]" = ">= 0.0318 mm"
+alpha_mean = "<= 1.2"
+[limits.rule]
+guard = "0.5 U"
+level = "99 %"
+"""
+
+
+def folder(tmp_path: Path, more: str) -> str:
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text + (more if name == "report.toml" else ""), encoding="utf-8")
+    return str(tmp_path)
+
+
+def told(capsys: pytest.CaptureFixture[str], *words: str) -> str:
+    assert main(["budget", *words, "--no-cache"]) == 0
+    return capsys.readouterr().out
+
+
+def test_a_budget_tells_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    campaign = folder(tmp_path, LIMITS)
+    assert told(capsys, "x_p[1]", campaign).splitlines()[1:4] == [
+        "limits 22.2 to 23 um, guard band 0.29 um (0.5 U at 99 %), acceptance limits 22.49 to 22.71 um",
+        "x_p[1] conforms: it lies within the acceptance limits",
+        "conformance probability 92.22 %, specific consumer's risk 7.78 %, "
+        "by a t distribution with 100 degrees of freedom",
+    ]
+    assert "no decision on x_p[2]: it lies in the guard band" in told(capsys, "x_p[2]", campaign)
+    assert "limits" not in told(capsys, "x_p[3]", campaign)
+    assert "conforms: it lies" in told(capsys, "x_p[1]", campaign, "--format", "markdown")
+
+
+def test_a_program_gets_all_digits(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = json.loads(told(capsys, "x_p[1]", folder(tmp_path, LIMITS), "--format", "json"))
+    own, u = found["conformity"], found["u"]
+    # 100 degrees of freedom: t at 99 %, from the incomplete beta function
+    low, high = (float(mpmath.mpf(d)) / (u * 1e6) for d in ("0.38", "0.42"))
+    tails = [mpmath.betainc(50, 0.5, 0, 100 / (100 + z * z), regularized=True) / 2 for z in (low, high)]
+    assert own["below"] == pytest.approx(float(tails[0]), rel=1e-9)
+    assert own["above"] == pytest.approx(float(tails[1]), rel=1e-9)
+    assert own["guard"] == pytest.approx(0.5 * 2.6258905 * u, rel=1e-7)
+    assert (own["decision"], own["distribution"]) == ("conforms", "t")
+
+
+def test_a_check_counts_what_does_not_conform(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", folder(tmp_path, LIMITS), "--format", "json", "--no-cache"]) == 1
+    found = json.loads(capsys.readouterr().out)["checks"]
+    own = {each["name"]: each for each in found if each["kind"] == "conformity"}
+    assert {name: each["passed"] for name, each in own.items()} == {
+        "x_p[1]": True,
+        "x_p[2]": False,
+        "alpha_mean": False,
+    }
+    assert "specific producer's risk" in own["alpha_mean"]["message"]
+
+
+def read(tmp_path: Path, more: str) -> Inputs:
+    return load(Path(folder(tmp_path, more)), find_workbook)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("1.25..1.35", "1.25 to 1.35"),
+        ("<=1.35", "at most 1.35"),
+        ("≥ -2 um", "at least -2 um"),
+        ("1 .. 2 um", "1 to 2 um"),
+        ("1 mm .. 2 cm", "1 mm to 2 cm"),
+    ],
+)
+def test_what_is_understood(tmp_path: Path, text: str, said: str) -> None:
+    (found,) = read(tmp_path, f'[limits]\nq = "{text}"\n').limits
+    assert str(found) == said
+
+
+def test_a_unit_behind_the_second_number_is_that_of_both(tmp_path: Path) -> None:
+    (found,) = read(tmp_path, '[limits]\nx = "1 .. 2 um"\n').limits
+    assert found.ends == (1e-6, 2e-6)
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "culprit"),
+    [
+        ('alpha_mean = "1.3"', "LS441", "1.3"),
+        ('alpha_mean = "1.25 .. x"', "LS441", "x"),
+        ('alpha_mean = "1.35 .. 1.25"', "LS441", "1.35 .. 1.25"),
+        ('alpha_mean = "<= 1.25 furlung"', "LS441", "furlung"),
+        ("alpha_mean = 1.3", "LS205", "1.3"),
+        ('alpha_mean = "<= 1 m"', "LS422", "alpha_mean"),
+        ('alfa_mean = "<= 1"', "LS505", "alfa_mean"),
+        ('"alpha[1-9]" = "<= 1"', "LS506", '"alpha[1-9]"'),
+        ('"x_p[01]" = "<= 1 um"', "LS506", '"x_p[01]"'),
+        ('[limits.rule]\nguard = "2 furlung"', "LS442", '"2 furlung"'),
+        ('[limits.rule]\nguard = "-1"', "LS442", '"-1"'),
+        ('[limits.rule]\nlevel = "0.5 %"', "LS442", '"0.5 %"'),
+        ('[limits.rule]\nlevl = "95 %"', "LS203", "levl"),
+        ('alpha_mean = "<= 2"\n[limits.rule]\nguard = "1 um"', "LS422", '"1 um"'),
+    ],
+)
+def test_what_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, code: str, culprit: str
+) -> None:
+    assert main(["budget", "alpha_mean", folder(tmp_path, f"[limits]\n{line}\n"), "--no-cache"]) == 2
+    told = capsys.readouterr().err
+    assert told.count("error[") == 1
+    assert f"error[{code}]" in told
+    marked = next(row for row in told.splitlines() if "^" in row)
+    above = told.splitlines()[told.splitlines().index(marked) - 1]
+    assert above[marked.index("^") : marked.rindex("^") + 1] == culprit
