@@ -23,6 +23,7 @@ __all__ = [
     "Column",
     "Formula",
     "Given",
+    "Iterated",
     "Limit",
     "Mentioned",
     "PairAxis",
@@ -256,10 +257,14 @@ class Given:
         Where from.
     bounds : Bounds
         What it may be, in SI. Every engine asks for that: any other number is ``#INPUT!``.
+    u_of : str
+        The name of the given column whose standard uncertainties it holds; empty for one that is measured or
+        chosen.
     """
 
     source: str = "given"
     bounds: Bounds = field(default_factory=Bounds)
+    u_of: str = ""
 
 
 @dataclass(frozen=True)
@@ -359,7 +364,44 @@ class Root:
         return (self.expression, self.value, self.low, self.high, self.start, *signs, *self.turning)
 
 
-Rule = Given | Formula | Root
+@dataclass(frozen=True)
+class Iterated:
+    """A value that is put into its own formula again until it stays: columns that rest on one another.
+
+    All columns on the way from it and back to it are computed again and again, from `start` on: the formulas
+    in their order, then the next values of the iterated ones, all at once. What they come to satisfies all
+    their equations together, as a spreadsheet's circular references do.
+
+    Parameters
+    ----------
+    equation : Equation
+        What holds when it stays: a statement of the ledger.
+    step : Expr
+        The next value, in cells of the sheet, its own among them. Where it is the value itself, the equation
+        must hold; how fast it leads there is its own matter.
+    start : Expr
+        The first value, in cells that do not rest on it.
+    none : str
+        What it means when it does not settle, for the reader.
+    """
+
+    equation: Equation
+    step: Expr
+    start: Expr
+    none: str = "the values go on changing"
+
+    @property
+    def statements(self) -> tuple[Equation, ...]:
+        """What the ledger must say."""
+        return (self.equation,)
+
+    @property
+    def expressions(self) -> tuple[Expr, ...]:
+        """Everything that is evaluated, in terms of columns."""
+        return (self.step, self.start)
+
+
+Rule = Given | Formula | Root | Iterated
 
 
 @dataclass(frozen=True)
@@ -436,7 +478,7 @@ class Column:
         The cell name, ``x_m1``.
     axis : Axis or None
         None for a scalar.
-    rule : Given, Formula or Root
+    rule : Given, Formula, Root or Iterated
         Where its values come from.
     unit : str
         SI unit; an exponent may be another column's name (``N/m^alpha``).
@@ -510,7 +552,7 @@ class Column:
         conditions = tuple(condition for condition, _ in self.requires)
         if isinstance(self.rule, Formula):
             return (self.rule.expression, *conditions)
-        return (*self.rule.expressions, *conditions) if isinstance(self.rule, Root) else conditions
+        return conditions if isinstance(self.rule, Given) else (*self.rule.expressions, *conditions)
 
     @cached_property
     def content(self) -> str:

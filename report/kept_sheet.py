@@ -15,7 +15,7 @@ from ..derivations.equation import Equation, Ledger
 from ..derivations.vocabulary import Vocabulary
 from .cells.marks import margins
 from .charts import Drawn
-from .column import Axis, Column, Formula, Given, Limit, Mentioned, PairAxis, RepeatAxis, Root, Rule
+from .column import Axis, Column, Formula, Given, Iterated, Limit, Mentioned, PairAxis, RepeatAxis, Root, Rule
 from .document.names import latex_names
 from .document.parts import Placed
 from .document.written import placed
@@ -56,7 +56,7 @@ class _ToldLimit:
 
 @dataclass(frozen=True)
 class _ToldColumn:
-    """What a column says; `given` if it is, and of a root what there is to say of its cells."""
+    """What a column says; `given` if it is, and of a root or a loop what there is to say of its cells."""
 
     name: str
     axis: str | None
@@ -74,6 +74,7 @@ class _ToldColumn:
     equations: tuple[ToldEquation, ...]
     placed: Placed | None
     root: tuple[str, str, str, bool] | None
+    iterated: str | None
 
 
 @dataclass(frozen=True)
@@ -216,6 +217,7 @@ def _column(
         _mentioned(sheet, column), tuple(limits), asdict(rule) if isinstance(rule, Given) else None,
         tuple(told_equation(each, *writing) for each in equations) if writing else (), place,
         (rule.none, rule.two, rule.unknown_name, rule.by_proof) if isinstance(rule, Root) else None,
+        rule.none if isinstance(rule, Iterated) else None,
     )  # fmt: skip
 
 
@@ -284,13 +286,14 @@ class _Known:
 
     def rule(self, told: _ToldColumn, whole: Callable[[], Column]) -> Rule:
         if told.given is not None:
-            return Given(told.given["source"], Bounds(**told.given["bounds"]))
+            return Given(told.given["source"], Bounds(**told.given["bounds"]), told.given["u_of"])
         equations = {
             name: known_equation(own, lambda name=name: getattr(whole().rule, name))  # type: ignore[misc]
             for name, own in zip(("equation", "form"), told.equations, strict=False)
         }
-        more = zip(("none", "two", "unknown_name", "by_proof"), told.root or (), strict=False)
-        kind: Any = Formula if told.root is None else Root
+        said = told.root or (() if told.iterated is None else (told.iterated,))
+        more = zip(("none", "two", "unknown_name", "by_proof"), said, strict=False)
+        kind: Any = Root if told.root else Formula if told.iterated is None else Iterated
         rule: Rule = partly(kind, {**equations, **dict(more)}, lambda: whole().rule)
         return rule
 

@@ -9,7 +9,7 @@ from sympy import And, Basic, Eq, Expr, Indexed, Rational, Symbol, floor
 from sympy.logic.boolalg import Boolean
 
 from ..derivations.reductions import REDUCTIONS, Median
-from .column import Axis, Column, Reference, Root, SheetError
+from .column import Axis, Column, Iterated, Reference, Root, SheetError
 from .messages.errors import close
 from .quantity import Bounds
 
@@ -71,6 +71,33 @@ class Named:
                         f"its unknown is one number, not one for each of {column.axis.name}",
                         column.name,
                     )
+
+    def check_in_loop(self, column: Column, names: set[str]) -> None:
+        """A loop begins somewhere, and each of its columns is a formula or iterated.
+
+        Parameters
+        ----------
+        column : Column
+        names : set of str
+            Of the columns of its loop.
+        """
+        rule = column.rule
+        if isinstance(rule, Root):
+            raise SheetError(
+                f"{column.name}: a root cannot be sought again and again; iterate its equation", column.name
+            )
+        if any(expression.has(Median) for expression in column.expressions):
+            raise SheetError(
+                f"{column.name}: a median cannot stand in what is iterated; it jumps", column.name
+            )
+        if isinstance(rule, Iterated):
+            named = sorted({r.name for r in references(rule.start, self.indices)} & names)
+            if named:
+                raise SheetError(
+                    f"{column.name}: its start {rule.start} names {', '.join(named)}, which is computed from "
+                    "it; a start rests on other cells",
+                    column.name,
+                )
 
     def _check_scope(self, column: Column, expression: Basic, axis: Axis | None) -> None:
         if isinstance(expression, REDUCTIONS):

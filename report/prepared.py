@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from .column import Given
 from .inputs.inputs import Inputs, check_cells
 
 if TYPE_CHECKING:
@@ -66,7 +68,11 @@ class Prepared:
     def exact_data(self) -> dict[str, Any]:
         """What the exact engine starts from."""
         needed = {c.name for c in self.sheet.columns}
-        return {name: value for name, value in given_data(self.inputs).items() if name in needed}
+        data = {name: value for name, value in given_data(self.inputs).items() if name in needed}
+        for column in self.sheet.columns:
+            if isinstance(column.rule, Given) and (own := column.rule.u_of):
+                data[column.name] = [Fraction(printed.u) for printed in self.inputs.printed(own)]
+        return data
 
     @property
     def data(self) -> dict[str, Any]:

@@ -45,7 +45,9 @@ def refuse_what_is_misnamed(
 def refuse_what_is_missing(sheet: Sheet, inputs: Inputs) -> None:
     """A workbook need not say which parameters go together: what its sheet wants must be there."""
     place = Location((inputs.folder / "report.toml").as_posix())
-    missing = [c for c in sheet.columns if isinstance(c.rule, Given) and not inputs.printed(c.name)]
+    missing = [
+        c for c in sheet.columns if isinstance(c.rule, Given) and not inputs.printed(c.rule.u_of or c.name)
+    ]
     found = [
         diagnose("LS204", place, text=c.name, table="[parameters]", example=f'{c.name} = "1.0 {c.unit}"')
         for c in missing

@@ -6,7 +6,7 @@ columns' names, so the graph of what depends on what is read from the algebra an
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from keyword import iskeyword
@@ -17,6 +17,7 @@ from .column import (
     Column,
     Formula,
     Given,
+    Iterated,
     Limit,
     PairAxis,
     Reference,
@@ -40,6 +41,7 @@ __all__ = [
     "CycleError",
     "Formula",
     "Given",
+    "Iterated",
     "Limit",
     "PairAxis",
     "Reference",
@@ -80,7 +82,9 @@ class Sheet:
     columns: tuple[Column, ...]
     by_name: Mapping[str, Column] = field(init=False, repr=False)
     order: tuple[Column, ...] = field(init=False, repr=False)
-    """Order of evaluation; ties break by declaration."""
+    """Order of evaluation; ties break by declaration. A loop's columns stand together, the iterated last."""
+    loops: tuple[tuple[Column, ...], ...] = field(init=False, repr=False)
+    """Columns that rest on one another by way of iterated ones, in their order."""
     _named: Mapping[str, tuple[Reference, ...]] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -97,7 +101,12 @@ class Sheet:
             if column.mentioned is None and column.expressions:
                 self.algebra.check(column)
         object.__setattr__(self, "_named", {c.name: tuple(self._read(c)) for c in self.columns})
-        object.__setattr__(self, "order", tuple(self._sorted()))
+        groups = tuple(self._sorted())
+        object.__setattr__(self, "order", tuple(column for group in groups for column in group))
+        object.__setattr__(self, "loops", tuple(group for group in groups if _iterated(group)))
+        for column in self.columns:
+            if column.mentioned is None and column.name in self.loop_of:
+                self.algebra.check_in_loop(column, {each.name for each in self.loop_of[column.name]})
 
     def __getitem__(self, name: str) -> Column:
         return self.by_name[name]
@@ -198,7 +207,7 @@ class Sheet:
             new = [p for p in self.precedents(waiting.pop()) if p.name not in seen]
             seen |= {precedent.name for precedent in new}
             waiting += new
-        return tuple(c for c in self.order if c.name in seen)
+        return tuple(c for c in self.order if c.name in seen and c.name != column.name)
 
     def summed_axes(self, column: Column) -> tuple[Axis, ...]:
         """The axes that its rule sums over, or takes a median over."""
@@ -235,10 +244,39 @@ class Sheet:
 
         return partly(Reference, {"name": name, "index": index, "over": summed}, whole)
 
-    def _sorted(self) -> Iterator[Column]:
-        """Depth first in the order of declaration; a cycle is shown as the path that closes it."""
+    def _sorted(self) -> Iterator[tuple[Column, ...]]:
+        """Each column after its precedents, those of a loop together.
+
+        Depth first in the order of declaration (Tarjan): columns that wait for one another come out as one
+        group.
+        """
+        number: dict[str, int] = {}
+        waiting: list[Column] = []
         done: set[str] = set()
-        path: list[str] = []
+
+        def visit(column: Column) -> Iterator[tuple[Column, ...]]:
+            own = earliest = number[column.name] = len(number)
+            waiting.append(column)
+            for precedent in self.precedents(column):
+                if precedent.name not in number:
+                    yield from visit(precedent)
+                if precedent.name not in done:
+                    earliest = min(earliest, number[precedent.name])
+            number[column.name] = earliest
+            if earliest == own:
+                place = [each.name for each in waiting].index(column.name)
+                group = waiting[place:]
+                del waiting[place:]
+                done.update(member.name for member in group)
+                yield tuple(self._in_loop(group))
+
+        for column in self.columns:
+            if column.name not in number:
+                yield from visit(column)
+
+    def _in_loop(self, group: Sequence[Column]) -> Iterator[Column]:
+        """Columns of which each waits for all: formulas from the last values of iterated ones, then these."""
+        names, done, path = {column.name for column in group}, set[str](), list[str]()
 
         def visit(column: Column) -> Iterator[Column]:
             if column.name in done:
@@ -247,13 +285,25 @@ class Sheet:
                 raise CycleError((*path[path.index(column.name) :], column.name))
             path.append(column.name)
             for precedent in self.precedents(column):
-                yield from visit(precedent)
+                if precedent.name in names and not isinstance(precedent.rule, Iterated):
+                    yield from visit(precedent)
             path.pop()
             done.add(column.name)
             yield column
 
-        for column in self.columns:
+        declared = [column for column in self.columns if column.name in names]
+        for column in (c for c in declared if not isinstance(c.rule, Iterated)):
             yield from visit(column)
+        yield from (c for c in declared if isinstance(c.rule, Iterated))
+
+    @cached_property
+    def loop_of(self) -> dict[str, tuple[Column, ...]]:
+        """The loop that a column is part of, by its name, if it is."""
+        return {column.name: loop for loop in self.loops for column in loop}
+
+
+def _iterated(group: Sequence[Column]) -> bool:
+    return any(isinstance(column.rule, Iterated) for column in group)
 
 
 def with_parents(axes: Iterable[Axis | None]) -> Iterator[Axis]:

@@ -80,8 +80,8 @@ class Moved(exact._Exact):
         super().__init__(judge.sheet, laid_out(campaign), given)
         self.rng = random.Random(seed)
 
-    def _rule(self, column: Column, size: int) -> Any:
-        status, compute = super()._rule(column, size)
+    def _rule(self, column: Column, size: int, what: str) -> Any:
+        status, compute = super()._rule(column, size, what)
         signs: dict[Any, int] = {}
 
         def off(row: int) -> Any:

@@ -16,6 +16,7 @@ import xlsxwriter
 from sympy import (
     And,
     Expr,
+    IndexedBase,
     Integer,
     Max,
     Min,
@@ -40,7 +41,7 @@ from loopsheet.report.engines import ENGINES, excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.judge.readers import Book, Case, Reading
 from loopsheet.report.quantity import Bounds
-from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
+from loopsheet.report.sheet import Axis, Column, Formula, Given, Iterated, PairAxis, RepeatAxis, Root, Sheet
 from loopsheet.report.views.xlsx_columns import ColumnwiseSheet
 
 OK, INPUT, DOMAIN, OVERFLOW = Status.OK, Status.INPUT, Status.DOMAIN, Status.OVERFLOW
@@ -148,6 +149,55 @@ root("no_sign_at_an_end", (x - 1) * (x - Rational(1, 3)), 0, 1, [Rational(1, 3)]
 root("two", x**2 - 3 * x + 2, 0, 9, [TWOROOTS], turning=(Rational(3, 2),))
 root("none", x + 1, 0, 1, [NOROOT])
 root("of_a_sum", Sum(x * a[k], (k, 1, n)) - 6, 0, 2, [Rational(3, 2)], value=1 + x)
+
+# --- loops: columns that rest on one another --------------------------------------------------------------
+
+
+def iterated(name: str, step: Any, start: Any, known: Sequence[Any], axis: Axis | None = None) -> Column:
+    """A value that is put into its own formula again, and what its rows come to."""
+    equation = Equation("(3)", (Symbol("made"), step), "for a test", Kind.DEFINITION)
+    COLUMNS.append(Column(name, axis, Iterated(equation, step, start)))
+    KNOWN[name] = known
+    return COLUMNS[-1]
+
+
+def cell(name: str) -> Symbol:
+    return Symbol(name, positive=True)
+
+
+iterated("babylonian", (cell("babylonian") + 2 / cell("babylonian")) / 2, Integer(1), [sqrt(2)])
+row = IndexedBase(cell("of_rows"))[k]
+iterated("of_rows", (row + a[k] / row) / 2, a[k], [sqrt(2), sqrt(3), sqrt(7)], ROWS)
+# Both at once, each from the other's last value.
+iterated("one", (1 + cell("other")) / 100, w.symbol, [Rational(102, 9999)])
+iterated("other", (2 + cell("one")) / 100, w.symbol, [Rational(201, 9999)])
+case("after_both", cell("other") / cell("one"), None, [Rational(201, 102)])
+iterated("growing", exp(cell("growing")), Integer(1), [NOROOT])
+iterated("out_of_its_domain", cell("out_of_its_domain") - 1, Rational(7, 2), [NOROOT])
+iterated("to_and_fro", 1 - cell("to_and_fro"), Rational(1, 4), [NOROOT])
+iterated("without_a_start", cell("without_a_start") / 2, log(w.symbol), [DOMAIN])
+case("after_growing", cell("growing") + 1, None, [NOROOT])
+
+
+def weighted(tag: str, numbers: Sequence[float], **known: Sequence[Any]) -> None:
+    """A mean that trusts a row the less the farther it lies off: weights and mean rest on one another."""
+    size, k = whole(f"n_{tag}"), whole(f"k_{tag}")
+    rows = Axis(f"rows_{tag}", k, size)
+    LABELS[rows.name] = range(1, 1 + len(numbers))
+    A = given(f"a_{tag}", rows, numbers)
+    centre = cell(f"centre_{tag}")
+    weight = case(
+        f"weight_{tag}", 1 / (100 + (A[k] - centre) ** 2), rows, known.get("weight", []), positive=True
+    )
+    every = (k, 1, size)
+    trusted = Sum(weight[k] * A[k], every) / Sum(weight[k], every)
+    iterated(centre.name, trusted, Sum(A[k], every) / size, known.get("centre", []))
+
+
+weighted("weighted", [1, 2, 6, 3.5])
+weighted("weighted_alike", [4, 4], centre=[4], weight=[Rational(1, 100)] * 2)
+weighted("weighted_missing", [1, NAN, 3], centre=[2], weight=[Rational(1, 101), INPUT, Rational(1, 101)])
+weighted("weighted_of_nothing", [NAN], centre=[INPUT], weight=[INPUT])
 
 # --- what no double holds ---------------------------------------------------------------------------------
 
@@ -278,6 +328,7 @@ GAPS = {
     ("xlsx", "factors"): "a spreadsheet does not tell the sign of what is too large",
     ("xlsx", "product_of_any_sign"): "a power that is too small for a double is an error of a spreadsheet",
     ("xlsx", "solved"): "the same, and its steps come to an end",
+    ("xlsx", "to_and_fro"): "its passes come to an end, and it does not know that others' go on",
 }
 """What an engine is known not to do, and why; a gap that is closed is noticed."""
 

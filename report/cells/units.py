@@ -16,7 +16,7 @@ from ...derivations.dimensions import PURE, Dimension, DimensionError, Dimension
 from ...derivations.vocabulary import NO_WORDS
 from ..named import name_of
 from ..quantity import Bounds
-from ..sheet import Column, Formula, Given, Root, Sheet, SheetError
+from ..sheet import Column, Formula, Given, Iterated, Root, Sheet, SheetError
 
 __all__ = ["Dimension", "DimensionMismatch", "check", "dimension_of_unit"]
 
@@ -113,6 +113,9 @@ def check(sheet: Sheet) -> None:
         rule = column.rule
         if isinstance(rule, Formula):
             _expect(checker, rule.expression, own)
+        elif isinstance(rule, Iterated):
+            for value in rule.expressions:
+                _expect(checker, value, own)
         elif isinstance(rule, Root):
             checker.of(rule.expression)
             _expect(checker, rule.value, own)

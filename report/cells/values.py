@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..quantity import Bounds, behind
-from ..sheet import Column, Formula, Root, Sheet
+from ..sheet import Column, Formula, Iterated, Root, Sheet
 from .address import address
 from .layout import Layout, Precedent, precedents
 
@@ -283,19 +283,42 @@ class Values:
         return Cell(column.name, label, None, status, None, self._why(column, row, status))
 
     def _culprit(self, column: Column, row: int) -> Cell | None:
-        """Follow the first precedent that is in error to where the error began."""
+        """The cell where the error of a cell began; None if it is this one."""
+        other, its_row = self._origin(column, row, set()) or (column, row)
+        loop = {each.name for each in self.sheet.loop_of.get(column.name, ())}
+        if (other.name, its_row) == (column.name, row) or (
+            isinstance(column.rule, Iterated) and other.name in loop
+        ):
+            return None  # of what a loop iterates, none is to blame for the others
+        label, status = self.labels(other)[its_row], Status(int(self.status[other.name][its_row]))
+        return Cell(other.name, label, None, status, None, self._why(other, its_row, status))
+
+    def _origin(self, column: Column, row: int, seen: set[tuple[str, int]]) -> tuple[Column, int] | None:
+        """Follow the first precedents that are in error to where it began; None if that leads in a circle."""
+        seen.add((column.name, row))
+        wrong = list(self._wrong(column, row))
+        for other, its_row in wrong:
+            if (other.name, its_row) not in seen and (found := self._origin(other, its_row, seen)):
+                return found
+        return None if wrong else (column, row)
+
+    def _wrong(self, column: Column, row: int) -> Iterator[tuple[Column, int]]:
+        """The precedents of a cell that are in error, first those before its loop.
+
+        A loop that did not settle is where it began.
+        """
         named, kept = self._named(column)
-        for precedent in named:
-            if precedent.over is not None:
-                mask = kept[precedent.over.name]
-                if mask.any() or not mask.size:
-                    continue  # a sum is in error only if no row of its axis has a value
-            other, its_row = precedent.column, precedent.row(0 if precedent.over is not None else row)
+        loop = {each.name for each in self.sheet.loop_of.get(column.name, ())}
+        failed = isinstance(column.rule, Iterated) and self.status[column.name][row] == Status.NOROOT
+        for precedent in sorted(named, key=lambda each: each.column.name in loop):
+            other, over = precedent.column, precedent.over
+            if failed and other.name in loop:
+                continue
+            if over is not None and (kept[over.name].any() or not kept[over.name].size):
+                continue  # a sum is in error only if no row of its axis has a value
+            its_row = precedent.row(0 if over is not None else row)
             if self.status[other.name][its_row] != Status.OK:
-                return self._culprit(other, its_row) or self._cell(
-                    other, its_row, self.labels(other)[its_row]
-                )
-        return None
+                yield other, its_row
 
     def _why(self, column: Column, row: int, status: Status) -> str:
         rule = column.rule
@@ -303,6 +326,8 @@ class Values:
             allowed = self.sheet.bounds[column.name]
             told = "" if allowed == Bounds() else f"; it must be {allowed.said(column.unit)}"
             return f"the datum is missing or invalid{told}"
+        if isinstance(rule, Iterated) and status is Status.NOROOT:
+            return f"{column.source} did not settle: {rule.none}"
         if isinstance(rule, Root) and status is Status.NOROOT:
             return f"{column.source} has no root here: {rule.none}"
         if isinstance(rule, Root) and status is Status.TWOROOTS:

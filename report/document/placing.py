@@ -9,7 +9,7 @@ from sympy import Indexed, Symbol
 
 from ...derivations.reductions import REDUCTIONS
 from ..named import name_of
-from ..sheet import Column, Given, Root, Sheet
+from ..sheet import Column, Formula, Given, Root, Sheet
 from .math import MathPrinter
 from .parts import Placed
 
@@ -39,7 +39,7 @@ class _Placing(MathPrinter):
         """The equation of the column in LaTeX; empty if it has none, or sums over rows."""
         rule = self.column.rule
         assert not isinstance(rule, Given)
-        members = rule.equation.members if isinstance(rule, Root) else rule.equation.members[-1:]
+        members = rule.equation.members[-1:] if isinstance(rule, Formula) else rule.equation.members
         if any(member.has(*REDUCTIONS) for member in members):
             return ""
         text = " = ".join(str(self.doprint(member)) for member in members)

@@ -24,7 +24,7 @@ from ..cells.layout import Layout, lay_out, precedents
 from ..cells.values import Status, Values, how_many, inherited, rows_kept
 from ..plan.kept import of_sheet
 from ..quantity import LARGEST, SMALLEST, Bounds
-from ..sheet import Column, Given, Sheet
+from ..sheet import Column, Given, Iterated, Sheet
 from .exact_roots import Enclose, brackets, of_arrays, of_mpmath
 from .intervals import Intervals
 from .isolation import Doubtful
@@ -36,6 +36,9 @@ DIGITS = 50
 _GUARD = 15
 """Digits carried beyond those that are promised: sums and differences eat some."""
 _CLOSE = mpmath.mpf(f"1e-{DIGITS + 5}")
+_NEAR = mpmath.mpf("1e-30")
+_PASSES = 400
+"""How many passes a loop gets; nearer than that, one that does not halve the way moves by rounding only."""
 _ROUGHLY = 1e-12
 """As parts of a root: how close it is sought, and how close doubles should come."""
 
@@ -182,33 +185,86 @@ class _Exact:
 
     def run(self) -> ExactValues:
         for column in self.sheet.order:
-            size = 1 if column.axis is None else self.layouts[column.axis.name].size
-            status, compute = self._rule(column, size)
-            self.value[column.name] = values = [None] * size
-            for row in np.flatnonzero(status == Status.OK).tolist():
-                try:
-                    values[row] = compute(row)
-                except _Failed as failed:
-                    status[row] = failed.status
-            self.status[column.name] = status
+            loop = self.sheet.loop_of.get(column.name)
+            if loop is None:
+                self.value[column.name], self.status[column.name] = self._column(column)
+            elif column is loop[-1]:
+                self._loop(loop)
         codes = {name: [Status(code) for code in status.tolist()] for name, status in self.status.items()}
         return ExactValues(self.value, codes, self.roots, self.layouts, self.counted, self.broken)
 
+    def _column(self, column: Column, what: str = "value") -> tuple[list[Any], NDArray[np.uint8]]:
+        """The values of a column, and their statuses."""
+        status, compute = self._rule(column, self._rows_of(column), what)
+        values: list[Any] = [None] * status.size
+        for row in np.flatnonzero(status == Status.OK).tolist():
+            try:
+                values[row] = compute(row)
+            except _Failed as failed:
+                status[row] = failed.status
+        return values, status
+
+    def _rows_of(self, column: Column) -> int:
+        return 1 if column.axis is None else self.layouts[column.axis.name].size
+
+    def _loop(self, loop: Sequence[Column]) -> None:
+        """Columns that rest on one another: passes until 50 digits stay."""
+        iterated = [column for column in loop if isinstance(column.rule, Iterated)]
+        for column in loop:
+            # Nothing is in error because of what is not there yet.
+            self.value[column.name] = [None] * self._rows_of(column)
+            self.status[column.name] = np.zeros(self._rows_of(column), dtype=np.uint8)
+        while True:  # until all know of the errors before the loop that reach them
+            known = [self.status[column.name] for column in loop]
+            for column in loop:
+                self.status[column.name] = self._named(column)[2]
+            if all(map(np.array_equal, known, (self.status[column.name] for column in loop))):
+                break
+        begun = {column.name: self._column(column, "start") for column in iterated}
+        self._put(begun)
+        last = mpmath.inf
+        for _ in range(_PASSES):
+            for column in loop[: -len(iterated)]:
+                self._put({column.name: self._column(column)})
+            after = {column.name: self._column(column) for column in iterated}
+            if any((status != begun[name][1]).any() for name, (_, status) in after.items()):
+                break  # a value got lost on the way
+            moved = max(
+                (
+                    abs(new - old) / abs(new)
+                    for name, (values, _) in after.items()
+                    for new, old in zip(values, self.value[name], strict=True)
+                    if new is not None and new != old
+                ),
+                default=mpmath.mpf(0),
+            )
+            if moved <= _CLOSE or (moved <= _NEAR and moved >= last / 2):
+                return
+            self._put(after)
+            last = moved
+        for name, (values, status) in begun.items():
+            status[status == Status.OK] = Status.NOROOT
+            self._put({name: ([None] * len(values), status)})
+        for column in loop[: -len(iterated)]:
+            self._put({column.name: self._column(column)})
+
+    def _put(self, found: Mapping[str, tuple[list[Any], NDArray[np.uint8]]]) -> None:
+        for name, (values, status) in found.items():
+            self.value[name], self.status[name] = values, status
+
     # --- rules ----------------------------------------------------------------------------------------
 
-    def _rule(self, column: Column, size: int) -> tuple[NDArray[np.uint8], Callable[[int], Any]]:
+    def _rule(self, column: Column, size: int, what: str) -> tuple[NDArray[np.uint8], Callable[[int], Any]]:
         """The errors that the rows inherit, and what computes the others."""
         if isinstance(column.rule, Given):
             return np.zeros(size, dtype=np.uint8), lambda row: self._given(column, row)
-        named = precedents(self.sheet, self.layouts, column)
-        kept = rows_kept(named, self.layouts, self.status)
-        if some := how_many(kept):
+        kept, some, status = self._named(column)
+        if some:
             self.counted[column.name] = some
-        status = inherited(named, kept, self.status, size)
         scope = _Scope(self, column, {axis: np.flatnonzero(mask).tolist() for axis, mask in kept.items()})
         texts = self.texts[column.name]
         conditions = [scope.function(condition) for condition in texts["requires"]]
-        body = scope.function(texts["value"]) if "form" not in texts else self._root(texts, column, scope)
+        body = scope.function(texts[what]) if "form" not in texts else self._root(texts, column, scope)
 
         broken = np.zeros(size, dtype=np.uint8)
         if conditions:
@@ -222,6 +278,12 @@ class _Exact:
             return _held(body(row), column.positive)
 
         return status, compute
+
+    def _named(self, column: Column) -> tuple[Mapping[str, Any], dict[str, int], NDArray[np.uint8]]:
+        """The rows that a column's sums run over, how many where some are left out, its inherited errors."""
+        named = precedents(self.sheet, self.layouts, column)
+        kept = rows_kept(named, self.layouts, self.status)
+        return kept, how_many(kept), inherited(named, kept, self.status, self._rows_of(column))
 
     def _given(self, column: Column, row: int) -> Any:
         value = self.given[column.name][row]

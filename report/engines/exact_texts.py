@@ -13,7 +13,7 @@ from ..named import name_of
 from ..plan.domain import typed
 from ..plan.lowering import lowered_column
 from ..plan.nodes import Leaf, RootNode
-from ..sheet import Axis, Column, Given, Root, Sheet
+from ..sheet import Axis, Column, Given, Iterated, Root, Sheet
 from .certified import certified, enclosing, slope
 from .mpmath_code import source_of
 from .mpmath_intervals import differences, text_of
@@ -41,6 +41,8 @@ class _Rule:
 
     def texts(self) -> dict[str, Any]:
         rule, conditions = self.column.rule, [self.of(condition) for condition, _ in self.column.requires]
+        if isinstance(rule, Iterated):
+            return {"requires": conditions, "value": self.of(rule.step), "start": self.of(rule.start)}
         if not isinstance(rule, Root):
             return {"requires": conditions, "value": self.of(self.column.rule.expression)}  # type: ignore[union-attr]
         counted = None if certified(self.sheet, self.column) else self.counted(rule)

@@ -17,7 +17,7 @@ from sympy import Add, Basic, Expr, Function, Integer, Mul, Pow, Rational, Symbo
 from sympy.logic.boolalg import BooleanFunction
 from sympy.printing.printer import Printer
 
-from ..plan.nodes import Leaf, Plan, RowMedian, RowSum
+from ..plan.nodes import Leaf, Node, Plan, RowMedian, RowSum
 from .excel_values import NotPrintable
 
 __all__ = ["FUNCTIONS", "ExcelPrinter", "IfError", "IsNumber", "ordered"]
@@ -84,12 +84,13 @@ def ordered(plan: Plan) -> Plan:
     def moved(value: Any) -> Any:
         if isinstance(value, tuple):
             return tuple(map(moved, value))
+        if isinstance(value, Node):
+            return replace(value, **{f.name: moved(getattr(value, f.name)) for f in fields(value)})
         if not isinstance(value, Basic):
             return value
         return value.xreplace({symbol: behind(symbol) for symbol in value.atoms(Symbol)})
 
-    nodes = (replace(n, **{f.name: moved(getattr(n, f.name)) for f in fields(n)}) for n in plan.nodes)
-    return Plan(tuple(nodes), {behind(symbol): leaf for symbol, leaf in plan.leaves.items()})
+    return Plan(moved(plan.nodes), {behind(symbol): leaf for symbol, leaf in plan.leaves.items()})
 
 
 class ExcelPrinter(Printer):

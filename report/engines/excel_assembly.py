@@ -23,6 +23,7 @@ from ..sheet import Column, Given, Sheet
 from .certified import certified
 from .excel import ordered
 from .excel_formulas import Formulas, Places, carried, guard
+from .excel_loops import passes_of
 from .excel_roots import Unrolled, unroll
 from .numpy_texts import program_texts
 
@@ -86,6 +87,7 @@ class Assembly:
             if isinstance(given.rule, Given)
         }
         self.asked = [column for column in sheet.columns if column.name in asked]
+        self.passes = passes_of(sheet)
         self.carried = {k: v for c in whole.columns for k, v in carried(whole, c).items()}
 
     def told(self) -> dict[str, Any]:
@@ -139,6 +141,8 @@ class Assembly:
                     self.places[name] = self.rooms[over.name].next()
             else:
                 row = self.put_steps(unrolled, row)
+        for loop in dict.fromkeys(loop for loop, _, _ in self.passes.values()):
+            row = self.put_passes(loop, row)
         for column in self.asked:
             if column.axis is not None:
                 self.put(column, as_issued(column.name))
@@ -191,6 +195,25 @@ class Assembly:
                 self.places[cell.name] = Place(STEPS, last, 1 + fields.index(cell.name))
         return last + 4
 
+    def put_passes(self, loop: str, row: int) -> int:
+        """The starts of scalars one below the other, then a table with a row for each pass."""
+        own = {
+            name: number
+            for name, (its, _, number) in self.passes.items()
+            if its == loop and self.whole[name].axis is None
+        }
+        starts = [name for name, number in own.items() if not number]
+        table = row + len(starts) + 4
+        fields: dict[int, int] = {}
+        for name, number in own.items():
+            if number:
+                at = fields[number] = fields.get(number, 0) + 1
+                place = Place(STEPS, table + number - 1, at)
+            else:
+                place = Place(STEPS, row + 1 + starts.index(name), 1)
+            self.places[name] = replace(place, scale=self.unit(self.whole[name])[1])
+        return table + max(own.values(), default=0) + 3
+
     def unit(self, column: Column) -> tuple[str, Fraction]:
         """The unit of a column's cells, and its size in SI."""
         unit = self.units.get(column.name, "")
@@ -227,6 +250,12 @@ class Assembly:
             )
             if isinstance(column.rule, Given):
                 yield from self.given_blocks(column, block, formulas)
+            elif column.name in self.passes:
+                loop, of, number = self.passes[column.name]
+                own = replace(
+                    block, kind="step", title=of, of=loop, step=number, source=self.sheet[of].source
+                )
+                yield _computed(own, formulas.column(column))
             elif column.name not in self.judged:
                 yield _computed(
                     replace(block, kind="drawn", shows=("drawn", column.name)), formulas.drawn(column)

@@ -19,8 +19,9 @@ from ..cells.values import CODES, Status
 from ..named import within
 from ..plan.nodes import Leaf, Map, Plan, RootNode
 from ..quantity import Bounds
-from ..sheet import Axis, Column, Given, Reference, Sheet
+from ..sheet import Axis, Column, Given, Iterated, Reference, Sheet
 from .excel import ExcelPrinter, IfError
+from .excel_loops import PASSES, pass_name
 from .excel_roots import Auxiliary, Unrolled
 from .excel_values import READY
 
@@ -29,6 +30,8 @@ __all__ = ["Formulas", "Places", "carried", "carried_name", "guard"]
 _CODE = {status: f'"{code}"' for status, code in CODES.items()}
 _UNSETTLED = '"#STEPS!"'
 """Only a workbook has this code: its steps are columns and come to an end, other engines go on."""
+_SETTLED = 10**12
+"""A last pass that moves a value by a smaller part leaves less than rounding does."""
 _NOT_AVAILABLE = "NA()"
 _SMALLEST = "(2)^(0-1022)"
 """The least positive number with all its digits; spreadsheets hold none below."""
@@ -91,7 +94,7 @@ class Formulas:
 
     def __init__(self, sheet: Sheet, plan: Plan, layouts: Mapping[str, Layout], places: Places) -> None:
         self.sheet, self.plan, self.layouts, self.places = sheet, plan, layouts, places
-        self.maps = {node.column.name: node for node in plan.nodes if isinstance(node, Map)}
+        self.maps = {node.column.name: node for node in plan.every if isinstance(node, Map)}
 
     def checked(self, column: Column, guard: str) -> tuple[str, ...]:
         """The formulas of what is given, if it is allowed, or else its code."""
@@ -102,6 +105,8 @@ class Formulas:
     def column(self, column: Column, unrolled: Unrolled | None = None) -> tuple[str, ...]:
         """The formulas of a computed column, one a row."""
         writing = _Writing(self, column, column.name, unrolled.plan if unrolled else None)
+        if isinstance(column.rule, Iterated):
+            return writing.rows(writing.iterated())
         return writing.rows(writing.root(unrolled) if unrolled else writing.formula(self.maps[column.name]))
 
     def drawn(self, column: Column) -> tuple[str, ...]:
@@ -335,6 +340,16 @@ class _Writing:
             found = f"IF(ISNUMBER({number}),{found},{domain})"
         found = self.where_it_holds(node, found, domain)
         return f'IF({check}="{READY}",{found},{check})'
+
+    def iterated(self) -> str:
+        """A cell that the last pass has left where it was: an error of its start, or its value."""
+        start, before, last = (
+            self.address(Leaf("cells", pass_name(self.column.name, number), self.axis))
+            for number in (0, PASSES - 1, PASSES)
+        )
+        settled = f"ABS({last}-{before})*{_SETTLED}<=ABS({last})"
+        found = f"IF({settled},{last},{_UNSETTLED})"
+        return f"IF(ISNUMBER({start}),IF(ISNUMBER({last}),{found},{_CODE[Status.NOROOT]}),{start})"
 
     def drawn(self, node: Map) -> str:
         """A cell for a chart: its value, or what charts leave out."""

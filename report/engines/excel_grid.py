@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from itertools import chain, count
 from typing import Any
 
@@ -12,10 +13,11 @@ from ..cells.values import Values
 from ..charts import Drawn
 from ..plan.kept import of_data, of_sheet
 from ..sheet import Axis, Sheet
+from .excel_loops import pass_columns, passes_of
 from .excel_values import filled
 from .numpy import extend
 
-__all__ = ["MOST_ROWS", "TooManyRows", "check_rows", "grid"]
+__all__ = ["MOST_ROWS", "TooManyRows", "check_rows", "grid", "with_passes"]
 
 MOST_ROWS = 40_000
 """Rows of a worksheet; a million would fit, but these take half a gigabyte to make, and more to open."""
@@ -59,6 +61,7 @@ def grid(
         A formula has no spreadsheet formula.
     """
     check_rows(values.layouts)
+    drawn = with_passes(drawn, sheet)
     every = values if drawn is None else extend(values, drawn.columns, drawn.given)
     whole, layouts = every.sheet, every.layouts
     counts = {axis.repeats: every.scalar(axis.repeats) for axis in whole.axes if axis.repeats}
@@ -78,6 +81,15 @@ def grid(
     axes = dict(zip(worksheets.values(), whole.axes, strict=True))
     blocks = filled(of_data(told["blocks"], tuple[CellBlock, ...]), told["roots"], every)
     return Grid(tuple(blocks), axes, drawn, of_data(told["notes"], dict[str, Place]))
+
+
+def with_passes(drawn: Drawn | None, sheet: Sheet) -> Drawn | None:
+    """What is drawn, and the passes of the loops."""
+    there = {column.name for column in drawn.columns} if drawn else set()
+    if there >= passes_of(sheet).keys():
+        return drawn
+    own = drawn or Drawn()
+    return replace(own, columns=(*own.columns, *pass_columns(sheet)))
 
 
 def check_rows(layouts: Mapping[str, Layout]) -> None:

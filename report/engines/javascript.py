@@ -16,16 +16,18 @@ from sympy import Expr, Symbol, cse, numbered_symbols
 from sympy.printing.jscode import JavascriptCodePrinter
 
 from ..plan.lowering import lowered
-from ..plan.nodes import GivenNode, Leaf, Map, Plan, RootNode, RowSum, Total
+from ..plan.nodes import GivenNode, Leaf, LoopNode, Map, Plan, RootNode, RowSum, Total
 from ..plan.nodes import Node as PlanNode
 from ..sheet import Axis, Column, PairAxis, RepeatAxis, Sheet
 from .certified import certified, slope, typed_form
 from .javascript_intervals import enclose, needed
 
-__all__ = ["RUNTIME", "program"]
+__all__ = ["LOOPS", "RUNTIME", "program"]
 
 RUNTIME = Path(__file__).resolve().parents[2] / "templates" / "engines" / "runtime.js"
 """What runs a program."""
+LOOPS = RUNTIME.with_name("loops.js")
+"""What a program with loops brings along."""
 
 _NULL = Symbol("null", real=True)
 """JavaScript's null."""
@@ -284,7 +286,12 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
         Given scalars that are no input of the user's.
     """
     plan, columns = lowered(sheet), []
-    nodes = {name: list(own) for name, own in groupby(plan.nodes, lambda node: node.column.name)}
+    passes = [each for n in plan.nodes for each in (n.body if isinstance(n, LoopNode) else (n,))]
+    starts = [each for loop in plan.loops.values() for each in loop.starts]
+    nodes, begun = (
+        {name: list(own) for name, own in groupby(each, lambda node: node.column.name)}
+        for each in (passes, starts)
+    )
     for column in sheet.order:
         node = nodes[column.name][-1]
         kind = _KINDS[type(node)]
@@ -308,12 +315,19 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
         kernels = _kernels(sheet, plan, nodes[column.name])
         if kernels:
             parts.append(f"kernels: {kernels}")
+        if column.name in sheet.loop_of:
+            parts.append(f'loop: "{sheet.loop_of[column.name][0].name}"')
+        if column.name in begun:
+            parts.append(f"start: {_kernels(sheet, plan, begun[column.name])}")
         columns.append(f"  {{{', '.join(parts)}}}")
     axes = ", ".join(map(_axis, sheet.axes))
     fixed = json.dumps({name: [value] for name, value in (constants or {}).items()})
     listed = ",\n".join(columns)
-    text = f'{{\n "constants": {fixed},\n "axes": [{axes}],\n "columns": [\n{listed}\n ]{_WHOLE}\n}}'
+    settle = " settle,\n" if sheet.loops else ""
+    text = f'{{\n{settle} "constants": {fixed},\n "axes": [{axes}],\n "columns": [\n{listed}\n ]{_WHOLE}\n}}'
     used = needed(text)
+    if sheet.loops:
+        used += LOOPS.read_text(encoding="utf-8")
     return f"(() => {{\n{used}\nreturn {text};\n}})()" if used else text
 
 

@@ -22,6 +22,7 @@ from ..plan.kept import of_sheet
 from ..quantity import SMALLEST
 from ..sheet import Column, Sheet
 from .kernels import SAME, Array, Function, Kernel, compiled
+from .numpy_loop import LoopProgram, Settling
 from .numpy_root import RootProgram
 from .numpy_rows import Kept, chosen
 
@@ -48,6 +49,7 @@ class Program:
     function : callable
         Called with a run.
     roots : mapping of column name to RootProgram
+    loops : mapping of column name to LoopProgram
     source : str
         The text of all of it.
     functions : module
@@ -58,6 +60,7 @@ class Program:
     known: Collection[str]
     function: Function
     roots: Mapping[str, RootProgram]
+    loops: Mapping[str, LoopProgram]
     source: str
     functions: Any = SAME
     _laid: dict[Any, Laid] = field(default_factory=dict, repr=False)
@@ -109,9 +112,13 @@ class Program:
             As for :meth:`of`.
         """
         roots = {name: RootProgram.of(root, functions) for name, root in texts["roots"].items()}
-        parts = (f"# {name}\n{root.source}" for name, root in roots.items())
+        loops = {name: LoopProgram.of(loop, functions) for name, loop in texts["loops"].items()}
+        sources = {name: root.source for name, root in roots.items()}
+        sources |= {name: loop.source for name, loop in loops.items()}
+        parts = (f"# {name}\n{own}" for name, own in sources.items())
         function = compiled(texts["sheet"], functions)
-        return cls(sheet, known, function, roots, "\n\n".join([texts["sheet"], *parts]), functions)
+        source = "\n\n".join([texts["sheet"], *parts])
+        return cls(sheet, known, function, roots, loops, source, functions)
 
     def run(
         self,
@@ -227,10 +234,12 @@ class Laid:
     def shapes(self, data: Mapping[str, Array]) -> dict[str, tuple[int, ...]]:
         """The shape of every column: a batch has what rests on one."""
         found: dict[str, tuple[int, ...]] = {name: own.shape for name, own in data.items()}
-        for column in self.sheet.columns:
+        for column in self.sheet.order:
             if column.name not in found:
-                leading = (found[name][:-1] for name in self.names[column.name])
-                found[column.name] = (*np.broadcast_shapes(*leading), self.size(column))
+                loop = self.sheet.loop_of.get(column.name, (column,))
+                named = set().union(*(self.names[each.name] for each in loop)) - {each.name for each in loop}
+                leading = np.broadcast_shapes(*(found[name][:-1] for name in named))
+                found |= {each.name: (*leading, self.size(each)) for each in loop}
         return found
 
     def size(self, column: Column) -> int:
@@ -342,6 +351,45 @@ class _Run:
         odd = [(found == Status.OK) & condition for condition in (np.isnan(value), beyond)]
         found = chosen(odd, [Status.DOMAIN, Status.OVERFLOW], found).astype(np.uint8)
         return self._computed(column, value, found, requires, status)
+
+    def loop(self, name: str) -> None:
+        """Columns that rest on one another, by passes until they stay."""
+        program = self.program.loops[name]
+        every = [self.sheet[each] for each in (*program.formulas, *program.iterated)]
+        for column in every:
+            self._hold(column.name, np.full(size := self.laid.size(column), np.nan), np.zeros(size, np.uint8))
+        while True:  # until all know of the errors before the loop that reach them
+            known = [self.status[column.name] for column in every]
+            for column in every:
+                self.masks.pop(column.name, None)
+                own = self._inherited(column)
+                self._hold(column.name, np.full(own.shape, np.nan), own)
+            if all(map(np.array_equal, known, (self.status[column.name] for column in every))):
+                break
+        program.start(self)
+        begun = {each: self.status[each] for each in program.iterated}
+        settling = Settling(begun)
+        while not settling.ended:
+            before = {each: self.value[each] for each in program.iterated}
+            self._again(program)
+            settling.after(before, self.value, self.status)
+            self._put(settling.values, begun)
+        if settling.failed.any():
+            self._put(settling.values, settling.statuses)
+        values, statuses = dict(settling.values), {each: self.status[each] for each in program.iterated}
+        self._again(program)  # the formulas of what it came to
+        self._put(values, statuses)
+
+    def _again(self, program: LoopProgram) -> None:
+        """One pass."""
+        for each in (*program.iterated, *program.formulas):
+            self.masks.pop(each, None)
+        program.once(self)
+
+    def _put(self, values: Mapping[str, Array], statuses: Mapping[str, Codes]) -> None:
+        for each, value in values.items():
+            shape = np.broadcast_shapes(value.shape, statuses[each].shape)
+            self._hold(each, np.broadcast_to(value, shape), np.broadcast_to(statuses[each], shape))
 
     def _computed(
         self, column: Column, value: Array, found: Codes, requires: Sequence[Any], status: Codes | None = None

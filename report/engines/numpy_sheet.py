@@ -7,19 +7,20 @@ one text computes numbers (:mod:`~loopsheet.report.engines.numpy`) and intervals
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from typing import Any
 
 from sympy import Expr, Symbol
 from sympy.logic.boolalg import Boolean
 
-from ..plan.nodes import GivenNode, Leaf, Map, Node, Part, Plan, RootNode, Total, free_name
+from ..column import Column
+from ..plan.nodes import GivenNode, Leaf, LoopNode, Map, Node, Part, Plan, RootNode, Total, free_name
 from .numpy_code import ArrayPrinter, printed, text_of
 
 __all__ = ["sheet_function"]
 
 
-def sheet_function(plan: Plan, roots: Mapping[str, Iterable[str]]) -> str:
+def sheet_function(plan: Plan, roots: Mapping[str, Iterable[str]], iterated: Iterable[Column] = ()) -> str:
     """Print a plan.
 
     Parameters
@@ -27,6 +28,8 @@ def sheet_function(plan: Plan, roots: Mapping[str, Iterable[str]]) -> str:
     plan : Plan
     roots : mapping of column name to iterable of str
         What each root is called with.
+    iterated : iterable of Column
+        Those that are named as they were before, although they get other values here.
 
     Raises
     ------
@@ -34,8 +37,10 @@ def sheet_function(plan: Plan, roots: Mapping[str, Iterable[str]]) -> str:
         NumPy has no word for a part of it.
     """
     writing = _Writing(plan, roots)
+    writing.need(plan.own[column.name] for column in iterated)
+    before = {column.name for column in iterated}
     for node, values in writing.nodes:
-        writing.node(node, values)
+        writing.node(node, values, before)
     return text_of("sheet", ["run"], writing.lines or ["pass"])
 
 
@@ -48,6 +53,8 @@ def _expressions(node: Node, own: Mapping[str, Symbol]) -> tuple[Any, ...]:
         return (node.terms,)
     if isinstance(node, Part):
         return (node.value,)
+    if isinstance(node, LoopNode):
+        return ()  # it brings functions of its own
     return (node.value, *node.requires) if isinstance(node, Map) else node.requires
 
 
@@ -116,7 +123,7 @@ class _Writing:
         every = [expression for _, own in self.nodes for expression in own]
         self.printer = _Sharing(_shared(every), self.lines, self.names)
 
-    def node(self, node: Node, values: tuple[Any, ...]) -> None:
+    def node(self, node: Node, values: tuple[Any, ...], before: Container[str]) -> None:
         """The line of a node, after those that it needs."""
         name = node.column.name
         if isinstance(node, Total):
@@ -129,12 +136,19 @@ class _Writing:
             axis = "None" if node.axis is None else f'"{node.axis.name}"'
             self.define(node.symbol, f'run.part("{node.symbol}", {axis}, {self.text(values[0])})')
             return
+        if isinstance(node, LoopNode):
+            self.lines.append(f'run.loop("{name}")')
+            return
         symbol = self.plan.own[name]
         if isinstance(node, GivenNode):
             self.define(symbol, f'run.data["{name}"]')
             self.define(symbol, f'run.given("{name}", {", ".join([str(symbol), *map(self.text, values)])})')
         elif isinstance(node, Map):
-            self.define(symbol, f'run.formula("{name}", {", ".join(map(self.text, values))})')
+            computed = f'run.formula("{name}", {", ".join(map(self.text, values))})'
+            if name in before:
+                self.lines.append(computed)
+            else:
+                self.define(symbol, computed)
         else:
             assert isinstance(node, RootNode)
             named = {symbol.name: symbol for symbol in self.plan.leaves}

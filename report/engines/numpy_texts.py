@@ -7,14 +7,14 @@ from typing import Any
 
 from sympy import Expr, Integer, Symbol, diff
 
-from ..plan.nodes import Map, Plan, RootNode, RowSum, taken_over
+from ..plan.nodes import LoopNode, Map, Plan, RootNode, RowSum, taken_over
 from ..sheet import Sheet
 from .certified import certified, enclosing
 from .numpy_code import kernel, write
 from .numpy_sheet import sheet_function
 from .roots import hoist, magnitude, step
 
-__all__ = ["condition_texts", "program_texts", "root_texts", "terms_of"]
+__all__ = ["condition_texts", "loop_texts", "program_texts", "root_texts", "terms_of"]
 
 
 def program_texts(sheet: Sheet, plan: Plan) -> dict[str, Any]:
@@ -34,7 +34,29 @@ def program_texts(sheet: Sheet, plan: Plan) -> dict[str, Any]:
     nodes = {node.column.name: node for node in plan.nodes if isinstance(node, RootNode)}
     roots = {name: root_texts(sheet, plan, node) for name, node in nodes.items()}
     asked = {name: texts["arguments"] for name, texts in roots.items()}
-    return {"sheet": sheet_function(plan, asked), "roots": roots}
+    loops = {name: loop_texts(plan, node) for name, node in plan.loops.items()}
+    return {"sheet": sheet_function(plan, asked), "roots": roots, "loops": loops}
+
+
+def loop_texts(plan: Plan, node: LoopNode) -> dict[str, Any]:
+    """The functions of a loop, printed: what it starts from, and a pass.
+
+    Parameters
+    ----------
+    plan : Plan
+    node : LoopNode
+        Of the plan.
+    """
+    start = sheet_function(Plan(node.starts, plan.leaves), {})
+    once = sheet_function(Plan(node.body, plan.leaves), {}, node.columns)
+    formulas = dict.fromkeys(each.column.name for each in node.body if isinstance(each, Map))
+    iterated = [column.name for column in node.columns]
+    return {
+        "iterated": iterated,
+        "formulas": [name for name in formulas if name not in iterated],
+        "start": start,
+        "pass": once,
+    }
 
 
 def root_texts(sheet: Sheet, plan: Plan, node: RootNode) -> dict[str, Any]:
@@ -90,7 +112,7 @@ def terms_of(node: RootNode) -> frozenset[str]:
 
 def condition_texts(plan: Plan, name: str) -> list[Any]:
     """Where a formula is positive although no double may hold it, and where it has a value at all."""
-    (node,) = (n for n in plan.nodes if isinstance(n, Map) and n.column.name == name)
+    node = next(n for n in plan.every if isinstance(n, Map) and n.column.name == name)
     return [_texts_of(each, plan) for each in (node.positive, node.defined)]
 
 

@@ -110,7 +110,7 @@ class _Spread(Numbers):
         self.rounding = np.zeros(chain.number)
         for node in chain.made.nodes:
             own = self.parts[node.rounding]
-            alive = node.over is not None or ~np.isnan(values.value[node.name])
+            alive = node.over is not None or ~np.isnan(values.value[node.of])
             # What has no value has no error; a value whose rounding is unknown may be wrong by anything.
             self.rounding[chain.sources[node.name]] = np.where(alive, np.where(np.isnan(own), np.inf, own), 0)
 
@@ -165,7 +165,7 @@ class _Spread(Numbers):
         found = super().slope(node, slope)
         if (unknown := np.isnan(found)).any():
             rows = self.chain.sources[node.name]
-            odd = unknown.any() if node.over else unknown & ~np.isnan(self.values.value[node.name])
+            odd = unknown.any() if node.over else unknown & ~np.isnan(self.values.value[node.of])
             self.rounding[rows] = np.where(odd, np.inf, self.rounding[rows])
         return np.nan_to_num(found)
 

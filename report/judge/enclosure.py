@@ -137,6 +137,13 @@ class Enclosure(_Rows):
             sure = sure & (found.low > 0)
         return self._hold(column, found, sure, requires)
 
+    def loop(self, name: str) -> None:
+        """Columns that rest on one another: nothing is known of them."""
+        program = self.program.loops[name]
+        for each in (*program.iterated, *program.formulas):
+            rows = self.number(self.sheet[each])
+            self.value[each], self.sure[each] = whole((rows,)), np.zeros(rows, dtype=bool)
+
     def root(self, name: str, arguments: Sequence[Any], requires: Sequence[Any] = ()) -> Intervals:
         """A column by its root."""
         column, program = self.sheet[name], self.program.roots[name]

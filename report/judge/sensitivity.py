@@ -151,9 +151,9 @@ class Numbers(Along):
 
     def ended(self, node: Local) -> None:
         """What has no value moves nothing: a sum leaves it out."""
-        if node.name in self.odd:
+        if node.over is None and node.of in self.odd:
             cells = self.chain.patterns[node.name]
-            dead = self.values.status[node.name][..., cells.rows] != Status.OK
+            dead = self.values.status[node.of][..., cells.rows] != Status.OK
             self.entries[..., cells.entries] = np.where(dead, 0.0, self.entries[..., cells.entries])
 
     def share(self, node: Local, name: str, rows: Numbered) -> Array:

@@ -4,6 +4,7 @@ Every node c = f(r, s, ...) has
 
 - slopes: the derivative of f by each cell and each total that it names; for a root c = w(u) of G(u, r) = 0 by
   the implicit function theorem, w_r - w' G_r / G_u;
+- for columns that are iterated, those of a number of passes where they have settled;
 - the rounding R that its own operations leave, in units of eps, what it names taken as exact: |c| for a given
   column, whose double is the nearest to what was printed; for a formula one rounding of each operation's
   result, a sum with nothing cancelling, each times the derivative of what is computed from it; for a root
@@ -53,11 +54,13 @@ from sympy.core.function import ArgumentIndexError
 from ..column import Axis, Column
 from ..sheet import Sheet
 from .lowering import RESERVED, lowered
-from .nodes import GivenNode, Leaf, Map, Node, Part, Plan, RootNode, RowSum, Total, free_name
+from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Part, Plan, RootNode, RowSum, Total, free_name
 from .slopes import Local, Slope, unknown_of
 
 __all__ = ["Derivatives", "derivatives", "rounding"]
 
+PASSES = 20
+"""How many passes of a loop are followed: each leaves a small share of what the last one did."""
 _NO_FUNCTIONS = (Derivative, Subs, DiracDelta, Heaviside)
 
 
@@ -115,9 +118,29 @@ class _Making:
         elif isinstance(node, Map):
             value = _chosen(node.value)
             yield self.local(node.column, lambda: rounding(value), self.slopes(value))
+        elif isinstance(node, LoopNode):
+            yield from self.loop(node)
         elif isinstance(node, Total):
             self.nodes.append(node)
             yield self.total(node)
+
+    def loop(self, node: LoopNode) -> Iterator[Local]:
+        """Passes of a loop where it has settled: there, derivatives settle with them.
+
+        All passes have the same slopes. In the first, what is iterated does not move.
+        """
+        once = [local for each in node.body for local in self.node(each)]
+        own, iterated = {local.name for local in once}, {column.name for column in node.columns}
+        for number in range(PASSES):
+
+            def named(name: str, back: int = 0, number: int = number) -> str:
+                left = PASSES - 1 - number + back
+                return f"{name}~{left}" if left and name in own else name
+
+            for local in once:
+                moving = (slope for slope in local.slopes if number or slope.by not in iterated)
+                slopes = (replace(each, by=named(each.by, each.by in iterated)) for each in moving)
+                yield replace(local, name=named(local.name), slopes=tuple(slopes))
 
     def total(self, node: Total) -> Local:
         """A sum or a median; it is a node of the derivatives too."""

@@ -10,9 +10,9 @@ from sympy import Expr, Indexed, Integer, Max, Min, Symbol, false
 
 from ...derivations.reductions import REDUCTIONS, Median
 from ..named import name_of
-from ..sheet import Axis, Column, Formula, Given, Root, Sheet
+from ..sheet import Axis, Column, Formula, Given, Iterated, Root, Sheet
 from .domain import defined, is_positive, positive, typed_symbols
-from .nodes import GivenNode, Leaf, Map, Node, Plan, RootNode, RowMedian, RowSum, Total
+from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Plan, RootNode, RowMedian, RowSum, Total
 
 __all__ = ["lowered", "lowered_column"]
 
@@ -34,7 +34,8 @@ def lowered(sheet: Sheet, known: Collection[str] = ()) -> Plan:
     key = frozenset(known)
     if key not in sheet.plans:
         lowering = Lowering(sheet)
-        nodes = [node for c in sheet.order if c.name not in known for node in lowering.column(c)]
+        left = [column for column in sheet.order if column.name not in known]
+        nodes = [node for column in left for node in lowering.nodes(column)]
         sheet.plans[key] = Plan(tuple(nodes), lowering.leaves)
     return sheet.plans[key]  # type: ignore[no-any-return]
 
@@ -48,7 +49,7 @@ def lowered_column(sheet: Sheet, column: Column) -> Plan:
     column : Column
     """
     lowering = Lowering(sheet)
-    return Plan(tuple(lowering.column(column)), lowering.leaves)
+    return Plan(tuple(lowering.nodes(column)), lowering.leaves)
 
 
 class Lowering:
@@ -63,6 +64,8 @@ class Lowering:
         self.sheet = sheet
         self.leaves: dict[Symbol, Leaf] = {}
         self._symbols: dict[Leaf, Symbol] = {}
+        self._totals: dict[str, int] = {}
+        """How many there are of each column."""
         self._written: dict[Expr, Expr] = {}
         """Sums and medians by what they became."""
         self._axes = {axis.name: axis for axis in sheet.axes}
@@ -143,6 +146,29 @@ class Lowering:
             return expression.func(*parts, evaluate=False)
         return expression.func(*parts)
 
+    def nodes(self, column: Column) -> list[Node]:
+        """The nodes of a column, or those of its loop, which come with the last column of that."""
+        loop = self.sheet.loop_of.get(column.name, ())
+        if not loop:
+            return self.column(column)
+        if column.name != loop[-1].name:
+            return []
+        iterated, starts, body = list[Column](), list[Node](), list[Node]()
+        for each in loop:
+            if isinstance(each.rule, Iterated):
+                iterated.append(each)
+                starts += self.iterated(each, each.rule.start)
+                body += self.iterated(each, each.rule.step)
+            else:
+                body += self.column(each)
+        return [LoopNode(tuple(iterated), tuple(starts), tuple(body))]
+
+    def iterated(self, column: Column, expression: Expr) -> list[Node]:
+        """The nodes of a value of an iterated column: where it has none, the loop as a whole has failed."""
+        nodes = list[Node]()
+        value = self._lifted(self.plain(expression, column, column.axis), column, None, nodes)
+        return [*nodes, Map(column, value, (), false, false)]
+
     def column(self, column: Column) -> list[Node]:
         """The nodes of a column: its totals, then itself."""
         rule, nodes = column.rule, list[Node]()
@@ -164,6 +190,7 @@ class Lowering:
             sign = positive(asked) if column.positive else false
             nodes.append(Map(column, lower(rule.expression), requires, defined(asked), sign))
         else:
+            assert isinstance(rule, Root)
             nodes.append(
                 RootNode(
                     column,
@@ -199,8 +226,9 @@ class Lowering:
         total = known.get((over, terms, median))
         if total is None:
             word = "median" if median else "sum"
+            number = self._totals[column.name] = self._totals.get(column.name, 0) + 1
             symbol = self.symbol(
-                Leaf("total", f"{column.name}.{len(nodes)}"), _REAL, f"{column.name}_{word}_{len(nodes) + 1}"
+                Leaf("total", f"{column.name}.{number}"), _REAL, f"{column.name}_{word}_{number}"
             )
             total = Total(column, symbol, over, terms, self._written[expression], median)
             nodes.append(total)

@@ -15,6 +15,7 @@ from ..column import Axis, Column
 __all__ = [
     "GivenNode",
     "Leaf",
+    "LoopNode",
     "Map",
     "Node",
     "Part",
@@ -260,7 +261,31 @@ class Part:
     value: Expr
 
 
-Node = GivenNode | Total | Part | Map | RootNode
+@dataclass(frozen=True)
+class LoopNode:
+    """Columns that rest on one another: computed again and again until the iterated ones stay.
+
+    Parameters
+    ----------
+    columns : tuple of Column
+        The iterated ones, in their order.
+    starts : tuple of Node
+        What gives them their first values.
+    body : tuple of Node
+        A pass: the columns that are formulas, then the iterated ones, which name each other's last values.
+    """
+
+    columns: tuple[Column, ...]
+    starts: tuple[Node, ...]
+    body: tuple[Node, ...]
+
+    @property
+    def column(self) -> Column:
+        """The one that it is called by."""
+        return self.columns[0]
+
+
+Node = GivenNode | Total | Part | Map | RootNode | LoopNode
 
 
 @dataclass(frozen=True)
@@ -300,6 +325,17 @@ class Plan:
         return found
 
     @cached_property
+    def every(self) -> tuple[Node, ...]:
+        """Its nodes, those in loops one by one: the starts before the passes."""
+        loops = ((*n.starts, *n.body) if isinstance(n, LoopNode) else (n,) for n in self.nodes)
+        return tuple(node for loop in loops for node in loop)
+
+    @cached_property
+    def loops(self) -> dict[str, LoopNode]:
+        """Its loops, by what they are called."""
+        return {node.column.name: node for node in self.nodes if isinstance(node, LoopNode)}
+
+    @cached_property
     def totals(self) -> dict[str, Total]:
         """Its sums and medians, by the names of what stands for them."""
-        return {node.symbol.name: node for node in self.nodes if isinstance(node, Total)}
+        return {node.symbol.name: node for node in self.every if isinstance(node, Total)}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from typing import Any
 
-from .nodes import GivenNode, Leaf, Map, Node, Part, Plan, RootNode, Total
+from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Part, Plan, RootNode, Total
 
 __all__ = ["text"]
 
@@ -19,12 +19,17 @@ def text(plan: Plan, columns: Collection[str] | None = None) -> str:
     columns : collection of str, optional
         All of them, if it is left out.
     """
-    nodes = [node for node in plan.nodes if columns is None or node.column.name in columns]
+    nodes = [node for node in plan.nodes if columns is None or _names(node) & set(columns)]
     lines = [line for node in nodes for line in _node(plan, node)]
     named = {symbol.name for node in nodes for each in _expressions(node) for symbol in each.free_symbols}
     told = [(name, _stands_for(leaf)) for name, leaf in plan.named.items() if name in named]
     legend = [f"{name} = {said}" for name, said in sorted(told) if said]
     return "\n".join([*lines, *(["", *legend] if legend else [])]) + "\n"
+
+
+def _names(node: Node) -> set[str]:
+    """The columns that a node computes, or takes part in."""
+    return {each.column.name for each in (node.body if isinstance(node, LoopNode) else (node,))}
 
 
 def _on(node: GivenNode | Map | RootNode) -> str:
@@ -39,6 +44,12 @@ def _node(plan: Plan, node: Node) -> Iterator[str]:
     if isinstance(node, Part):
         on = "" if node.axis is None else f" on {node.axis.name}"
         yield f"{node.symbol}{on} = {node.value}"
+        return
+    if isinstance(node, LoopNode):
+        yield f"{', '.join(str(plan.own[column.name]) for column in node.columns)}: again and again"
+        for title, own in (("from", node.starts), ("then", node.body)):
+            yield f"    {title}"
+            yield from (f"        {line}" for each in own for line in _node(plan, each))
         return
     name = f"{plan.own[node.column.name]}{_on(node)}"
     if isinstance(node, GivenNode):
@@ -64,7 +75,9 @@ def _node(plan: Plan, node: Node) -> Iterator[str]:
 
 
 def _expressions(node: Node) -> Iterator[Any]:
-    if isinstance(node, Total):
+    if isinstance(node, LoopNode):
+        yield from (expression for each in (*node.starts, *node.body) for expression in _expressions(each))
+    elif isinstance(node, Total):
         yield node.terms
     elif isinstance(node, GivenNode):
         yield from () if node.allowed is None else (node.allowed,)

@@ -58,12 +58,12 @@ def _shared(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
 
 
 def given(values: Values) -> tuple[Column, ...]:
-    """The given columns of a sheet that are measured, and not counted."""
+    """The given columns of a sheet that are measured: not counted, and no standard uncertainties."""
     sheet = values.sheet
     return tuple(
         column
         for column in sheet.columns
-        if isinstance(column.rule, Given) and not sheet.bounds[column.name].integer
+        if isinstance(column.rule, Given) and not column.rule.u_of and not sheet.bounds[column.name].integer
     )
 
 

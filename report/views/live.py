@@ -27,7 +27,7 @@ from ..quantity import Bounds, Printed
 from ..result.numbers import order
 from ..result.result import Report
 from ..result.verdict import OTHERWISE, UNEXPECTED
-from ..sheet import Column, Given, RepeatAxis, Root
+from ..sheet import Column, Given, Iterated, RepeatAxis, Root
 from .compact import short_script
 from .live_files import given
 from .writer import TEMPLATES
@@ -176,14 +176,21 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
             (each.column.name, each.limit.mark, each.limit.says if each.limit.source else "")
             for each in limits
         ]
+    if isinstance(column.rule, Given) and column.rule.u_of:
+        labels = (label for (label,) in report.values.labels(column))
+        printed = zip(labels, report.inputs.printed(column.rule.u_of), strict=True)
+        stated = {label: number.u for label, number in printed if number.stated is not None}
+        return entry | {"of": column.rule.u_of, "stated": stated, "digits": digits(report, column)}
     if isinstance(column.rule, Given):
         entry["given"] = _given(report, column)
         return entry
     entry["digits"] = digits(report, column)
     if head.sources != (column.source,):
         entry["equations"] = head.sources
+    if isinstance(column.rule, Iterated):
+        entry["none"] = f"did not settle: {column.rule.none}"
     if isinstance(column.rule, Root):
-        entry |= {"none": column.rule.none, "two": column.rule.two}
+        entry |= {"none": f"has no root here: {column.rule.none}", "two": column.rule.two}
         if column.unit != "1":
             entry["si"] = column.unit
         if column.rule.unknown_name != column.name and not column.rule.by_proof:

@@ -100,13 +100,14 @@ function evaluateSheet(program, labels, inputs) {
   const sheet = { layouts: {}, value: {}, status: {}, roots: {}, counted: {}, broken: {} };
   const { layouts, value, status } = sheet, faulty = {};
   for (const axis of program.axes) layouts[axis.name] = layOut(axis, layouts, labels, data);
-  for (const { name, kind, axis, refs, sums, ...column } of program.columns) {
+  // One column, by its kernels or those of its start: its values and codes.
+  const compute = ({ name, kind, axis, refs, sums, ...column }, what = "kernels") => {
     const size = axis === null ? 1 : layouts[axis].size;
-    const out = (value[name] = new Float64Array(size)), codes = (status[name] = new Uint8Array(size));
+    const out = new Float64Array(size), codes = new Uint8Array(size);
     const note = (list, row, what) => ((sheet[list][name] ??= {})[row] = what);
     if (kind === "given") {
       faulty[name] = fill(out, codes, (row) => data[name][row], 0, () => STATUS.INPUT);
-      continue;
+      return [out, codes];
     }
     // Only what names a cell in error, or sums over no rows, can inherit an error.
     const doubtful = refs.filter(([other, , over]) => faulty[other] || (over !== null && layouts[over].size === 0));
@@ -117,8 +118,12 @@ function evaluateSheet(program, labels, inputs) {
       const lost = leaveOut(keep[summed], doubtful, summed, layouts, status);
       if (lost) note("counted", summed, (sizes[summed] -= lost));
     }
-    const kernels = column.kernels(value, layouts, sizes, keep), { requires } = kernels, { positive } = column;
     for (let row = 0; doubtful.length && row < size; row++) codes[row] = inherited(doubtful, axis, row, layouts, status, sizes);
+    if (what === "errors") {
+      faulty[name] = codes.some(Boolean);
+      return [[], codes];
+    }
+    const kernels = column[what](value, layouts, sizes, keep), { requires } = kernels, { positive } = column;
     for (let row = 0; requires && row < size; row++) {
       // What breaks a condition is outside the domain, whatever the rule would make of it.
       const failed = codes[row] ? 0 : requires(row).indexOf(false) + 1;
@@ -143,7 +148,16 @@ function evaluateSheet(program, labels, inputs) {
       return beyond && defined(row, number) ? STATUS.OVERFLOW : STATUS.DOMAIN;
     };
     faulty[name] = fill(out, codes, kind === "root" ? only : kernels.value, positive, fault);
-  }
+    return [out, codes];
+  };
+  const put = ({ name }, [out, codes]) => {
+    value[name] = out;
+    status[name] = codes;
+  };
+  program.columns.forEach((column, n, every) => {
+    if (!column.loop) put(column, compute(column));
+    else if (column.loop !== every[n - 1]?.loop) program.settle(every.filter(({ loop }) => loop === column.loop), compute, put, sheet, faulty);
+  });
   return sheet;
 }
 

@@ -18,7 +18,7 @@ const LARGEST = tenTo(300);
 const isLess = (a, b) => a.n * b.d < b.n * a.d;
 const isSane = ({ n, d }) => magnitude(n) <= LARGEST * d && magnitude(n) * LARGEST >= d;
 
-// A printed text as the value of an input in SI: { value }, or { why } there is none.
+// A printed text as the value of an input in SI: { value }, with u by its last digit, or { why } there is none.
 function readInput(given, text) {
   const allowed = `it must be ${given.allowed}`;
   if (text === "") return { why: `the datum is missing; ${allowed}` };
@@ -30,6 +30,7 @@ function readInput(given, text) {
   const value = { n: exact.n * scale.n, d: exact.d * scale.d };
   // Its last digit is asked for, too: from it comes the uncertainty.
   const places = decimalsOf(text), unit = places < 0 ? { n: scale.n * tenTo(-places), d: scale.d } : { n: scale.n, d: scale.d * tenTo(places) };
+  const u = toDouble(unit) / 2 / Math.sqrt(3);
   if (!isSane(unit) || (value.n !== 0n && !isSane(value))) return { why: `“${text}” is out of all range; ${allowed}` };
   const { low, high, low_open, high_open, integer } = given.bounds;
   const wrong = [
@@ -38,7 +39,7 @@ function readInput(given, text) {
     high !== undefined && (isLess(readExact(high), value) || (high_open && !isLess(value, readExact(high)))),
   ];
   if (wrong.some(Boolean)) return { why: `“${text}” is not allowed; ${allowed}` };
-  return { value: toDouble(value) };
+  return { value: toDouble(value), u };
 }
 
 // --- states ----------------------------------------------------------------------------------------------
@@ -99,6 +100,12 @@ function computeSheet(program, columns, state) {
   for (const axis of program.axes) if (axis.kind === "given") labels[axis.name] = tests.map((test) => test.label);
   for (const { name, axis, kind } of program.columns) {
     if (kind !== "given" || program.constants[name]) continue;
+    const { of, stated } = columns[name];
+    if (of) {
+      // What was stated of a test holds for whatever is typed there; of all others the digits tell.
+      data[name] = tests.map(({ label, cells }) => stated[label] ?? readInput(columns[of].given, cells[of]).u ?? NaN);
+      continue;
+    }
     const texts = axis === null ? [state.parameters[name]] : tests.map((test) => test.cells[name]);
     data[name] = texts.map((text, row) => {
       const read = readInput(columns[name].given, text);

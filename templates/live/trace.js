@@ -70,14 +70,33 @@ class Trace {
     return found;
   }
 
-  // The cell where an error began: the first precedent in error, followed to its end.
+  // The cell where an error began: the first precedents in error, followed to their end.
   culprit(name, row) {
-    for (const { name: other, rows, over } of this.precedents(name, row)) {
-      // A sum is in error only if no row has a value.
-      if (over !== null && (this.sheet.counted[name]?.[over] ?? this.sheet.layouts[over].size) > 0) continue;
-      if (rows.length && !this.isOk(other, rows[0])) return this.culprit(other, rows[0]);
+    // Of what a loop iterates, none is to blame for the others.
+    const found = this.origin(name, row, []) ?? { name, row }, { loop, start } = this.declared[name];
+    return start && this.declared[found.name].loop === loop ? { name, row } : found;
+  }
+
+  origin(name, row, seen) {
+    seen.push(this.address(name, row));
+    const wrong = this.wrong(name, row);
+    for (const { name: other, rows } of wrong) {
+      const found = !seen.includes(this.address(other, rows[0])) && this.origin(other, rows[0], seen);
+      if (found) return found;
     }
-    return { name, row };
+    return wrong.length ? null : { name, row };
+  }
+
+  // The precedents in error, first those before its loop; a loop that did not settle is where it began.
+  wrong(name, row) {
+    const { loop, start } = this.declared[name], failed = start && this.sheet.status[name][row] === STATUS.NOROOT;
+    const inside = (other) => !!loop && this.declared[other].loop === loop;
+    const every = this.precedents(name, row).sort((a, b) => inside(a.name) - inside(b.name));
+    return every.filter(({ name: other, rows, over }) => {
+      // A sum is in error only if no row has a value.
+      if (over !== null && (this.sheet.counted[name]?.[over] ?? this.sheet.layouts[over].size) > 0) return false;
+      return rows.length && !this.isOk(other, rows[0]) && !(failed && inside(other));
+    });
   }
 
   // What limits a cell lies outside of.
@@ -97,7 +116,7 @@ class Trace {
     const told = si && !(unknown && status === STATUS.UNDECIDED) ? ` ${si}` : "";
     const roots = Array.from(this.sheet.roots[name]?.[row] ?? [], (root) => brief(root) + told);
     if (status === STATUS.INPUT) return this.sheet.refused[name]?.[row] ?? "the datum is missing or invalid";
-    if (status === STATUS.NOROOT) return `${source} has no root here: ${none}`;
+    if (status === STATUS.NOROOT) return `${source} ${none}`;
     if (status === STATUS.TWOROOTS) {
       return `${source} has more than one root here: ${roots.join(" and ")} (${two})`;
     }

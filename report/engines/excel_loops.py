@@ -1,0 +1,105 @@
+"""Loops as visible cells: each pass is columns of its own, formulas as all others are.
+
+Other engines go on until nothing moves; a workbook has a number of passes, and its own code where they do not
+settle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from ..column import Column, Formula, Iterated
+from ..sheet import Sheet
+
+if TYPE_CHECKING:
+    from sympy import Basic
+
+__all__ = ["PASSES", "pass_columns", "pass_name", "passes_of"]
+
+PASSES = 20
+"""How many a workbook has; a step that does not come near by a tenth each time would need more."""
+
+
+def pass_name(name: str, number: int) -> str:
+    """What the column of a pass is called; 0 is the start.
+
+    >>> pass_name("alpha_eiv", 2)
+    'alpha_eiv_pass_2'
+    """
+    return f"{name}_pass_{number}"
+
+
+def passes_of(sheet: Sheet) -> dict[str, tuple[str, str, int]]:
+    """The columns of all passes of a sheet's loops.
+
+    Returns
+    -------
+    mapping of str to (str, str, int)
+        The name of the loop's first iterated column, the column that is passed, and the number of the pass.
+    """
+    found: dict[str, tuple[str, str, int]] = {}
+    for loop in sheet.loops:
+        iterated = [column.name for column in loop if isinstance(column.rule, Iterated)]
+        for number in range(PASSES + 1):
+            for column in loop:
+                if number or column.name in iterated:
+                    found[pass_name(column.name, number)] = iterated[0], column.name, number
+    return found
+
+
+def pass_columns(sheet: Sheet) -> tuple[Column, ...]:
+    """The passes of a sheet's loops as columns with formulas.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    """
+    return tuple(column for loop in sheet.loops for column in _of_loop(loop))
+
+
+def _of_loop(loop: tuple[Column, ...]) -> Iterator[Column]:
+    iterated = {column.name for column in loop if isinstance(column.rule, Iterated)}
+    for column in loop:
+        if isinstance(column.rule, Iterated):
+            yield _passed(column, 0, column.rule.start, {})
+    for number in range(1, PASSES + 1):
+        now = {c.name: pass_name(c.name, number - (c.name in iterated)) for c in loop}
+        for column in loop:
+            rule: Any = column.rule
+            yield _passed(column, number, rule.step if column.name in iterated else rule.expression, now)
+
+
+def _passed(column: Column, number: int, value: Basic, now: Mapping[str, str]) -> Column:
+    from ...derivations.equation import Equation, Kind
+
+    name = pass_name(column.name, number)
+    own = replace(column, name=name)
+    equation = Equation("", (own.cell, _renamed(value, now)), "", Kind.DEFINITION, "a pass")
+    meaning = f"{column.meaning}, pass {number}" if number else f"{column.meaning}, at the start"
+    requires = tuple((_renamed(condition, now), says) for condition, says in column.requires)
+    return replace(
+        own,
+        rule=Formula(equation),
+        meaning=meaning,
+        requires=requires,
+        limits=(),
+        display=f"like {column.name}",
+    )
+
+
+def _renamed(expression: Basic, now: Mapping[str, str]) -> Any:
+    """The expression in cells of passes."""
+    from sympy import Indexed, IndexedBase, Symbol
+
+    def new(symbol: Any) -> Any:
+        return Symbol(now[symbol.name], **symbol.assumptions0)
+
+    cells = {
+        cell: IndexedBase(new(cell.base.label))[cell.indices]
+        for cell in expression.atoms(Indexed)
+        if cell.base.label.name in now
+    }
+    plain = {symbol: new(symbol) for symbol in expression.atoms(Symbol) if symbol.name in now}
+    return expression.xreplace(cells).xreplace(plain)

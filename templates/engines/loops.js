@@ -1,0 +1,35 @@
+// Columns that rest on one another, as a program with such columns brings them along: passes until nothing moves
+// that rounding does not move.
+function settle(loop, compute, put, { layouts, value, status }, faulty) {
+  const iterated = loop.filter(({ start }) => start), formulas = loop.filter(({ start }) => !start);
+  for (const column of loop) put(column, [[], new Uint8Array(column.axis === null ? 1 : layouts[column.axis].size)]);
+  // First of all, until all know of the errors before the loop that reach them.
+  for (let before, now = ""; before !== now; ) {
+    before = now;
+    for (const column of loop) put(column, compute(column, "errors"));
+    now = loop.map(({ name }) => status[name].join()).join();
+  }
+  const begun = iterated.map((column) => compute(column, "start"));
+  iterated.forEach((column, n) => put(column, begun[n]));
+  const pass = () => formulas.forEach((column) => put(column, compute(column)));
+  for (let passes = 1, last = Infinity; ; passes++) {
+    pass();
+    const after = iterated.map((column) => compute(column));
+    let moved = 0, lost = false;
+    after.forEach(([out, codes], n) => out.forEach((now, row) => {
+      if (codes[row] !== begun[n][1][row]) lost = true;
+      else if (!codes[row]) moved = Math.max(moved, Math.abs((now - value[iterated[n].name][row]) / now) || 0);
+    }));
+    const still = moved <= 2 ** -51 || (moved <= 2 ** -30 && moved >= last / 2);
+    if (lost || (!still && passes === 100)) {
+      for (const [n, column] of iterated.entries()) {
+        faulty[column.name] = true;
+        put(column, [begun[n][0].fill(NaN), begun[n][1].map((code) => code || STATUS.NOROOT)]);
+      }
+      return pass();
+    }
+    iterated.forEach((column, n) => put(column, after[n]));
+    if (still) return pass();
+    last = moved;
+  }
+}
