@@ -23,7 +23,7 @@ __all__ = [  # noqa: RUF022 - symbols, the equations in their order, what other 
     "eq1", "eq2", "eq3", "law_c", "law_r", "eq4", "eq5", "energy_c", "eq6", "energy_r", "eq7", "eq8",
     "continuity", "eq9", "eq10a", "eq10b", "eq10c", "ratio", "eq11", "eq12a", "eq12b", "eq12c", "eq12d",
     "eq12e", "volume", "ball_mass", "mass_ratio", "immobile", "reduced_by_ratio", "immobile_mass",
-    "x_m_of_test", "Cprime_of_test",
+    "x_m_of_test", "Cprime_of_test", "ratio_step",
     "u", "Lambda", "reciprocal", "root_form", "logarithm", "log_speeds", "turning", "starting_value",
     "N", "n_pairs", "x_top", "top", "abscissa", "mean", "x_scale", "F_scale",
     "LEDGER",
@@ -294,7 +294,7 @@ def _one_test(equation: Equation, number: int | Expr) -> Equation:
     return equation.at({v: V[number], e: E[number], x_p: XP[number], x_m: XM[number], Cprime: CP[number]})
 
 
-_ratio_step = Step(
+ratio_step = Step(
     ratio,
     (eq10a, eq10c, eq10b),
     (m_red, CP[k], XP[k]),
@@ -347,7 +347,7 @@ LEDGER = Ledger(
         Derivation.of(eq10c, (_one_test(eq9, k),), (C,), "Write (9) for test k."),
         Derivation(
             (
-                _ratio_step,
+                ratio_step,
                 _approach_2,
                 _law_work_1,
                 Step(
@@ -359,7 +359,7 @@ LEDGER = Ledger(
                 ),
             )
         ),
-        Derivation((_ratio_step, _approach_2)),
+        Derivation((ratio_step, _approach_2)),
         Derivation((_law_work_1,)),
         Derivation.of(eq12c, (_work_2,), (m_red,), "Solve (10a) of test 2 for the coefficient."),
         Derivation.of(eq12d, (eq10c.at({k: Integer(1)}),), (CP[1],), "Read (10c) for test 1."),

@@ -10,7 +10,8 @@ from ...derivations.proved import IDENTITY, Proof
 from ..messages.errors import suggest
 from ..result import verdict_words as words
 from ..result.agreement import Agreement
-from ..result.numbers import is_pure
+from ..result.chi_square import SIGNIFICANT, tail
+from ..result.numbers import is_pure, rounded
 from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
 from ..workbook import FigureSpec
 from .material import Material
@@ -84,6 +85,8 @@ class Said:
             "say": Role(lambda name: SAID[_known("sentence", name, SAID)](self)),
             "sym": Role(lambda name: (self.material.sentences.symbol(name),)),
             "table": Role(lambda name: _links("table", self._table(name)), self._table),
+            "tail": Role(self._probability),
+            "unlikely": Role(lambda what: (p := self._tail(what)) is not None and p < SIGNIFICANT),
         }
 
     # --- cells, counts, references
@@ -106,6 +109,16 @@ class Said:
     def _inside(self, name: str) -> Inlines:
         limited = self.report.marks.limited(self._column(name))
         return (Count(limited.inside, "inside", limited.margin.column.name),)
+
+    def _probability(self, what: str) -> Inlines:
+        found = self._tail(what)
+        return () if found is None else self.sentence(rounded(found, 1).plain)
+
+    def _tail(self, what: str) -> float | None:
+        """``chi2 tests 2``: how likely so large a sum of squares is, of all tests but 2; None without one."""
+        name, axis, fewer = what.split()
+        value, dof = self.report.values.scalar(self._column(name)), self.material.count(axis) - int(fewer)
+        return tail(value, dof) if dof > 0 and value == value else None
 
     def _printed(self, cell: str) -> Inlines:
         self._column(cell)

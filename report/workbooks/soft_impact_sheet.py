@@ -18,7 +18,7 @@ from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sh
 from .soft_impact_limits import limits
 from .soft_impact_root import alpha_rule, two_tests
 
-__all__ = ["sheet"]
+__all__ = ["TESTS", "e", "sheet", "v", "x_p"]
 
 # --- index sets ------------------------------------------------------------------------------------------
 

@@ -1,0 +1,369 @@
+"""One force law for all tests at once: errors in speeds, restitutions and depths, by maximum likelihood.
+
+System (10) for more than two tests has more equations than unknowns. Every test then has true values, on one
+curve, and measured ones beside them; the best curve and the best true values make the sum of the squares of
+all deviations, each over its standard uncertainty, least. What they satisfy is written so that a computer can
+put it into itself again: Gauss and Helmert's adjustment of conditions.
+
+Source: W. E. Deming, Statistical Adjustment of Data, 1943; ISO/TS 28037:2010 for the standard uncertainty by
+the adjusted points; R. T. Birge, Phys. Rev. 40 (1932) 207 for the ratio.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from sympy import Expr, Function, Integer, Matrix, Sum, Symbol, diff, exp, log, sqrt
+from sympy.core.parameters import evaluate
+
+from .equation import Derivation, Equation, Kind, Step
+from .soft_impact import LEDGER as PAPER
+from .soft_impact import ratio_step, v, x_m, x_m_of_test
+from .symbols import VOCABULARY, k
+
+__all__ = [
+    "EO",
+    "LEDGER",
+    "VO",
+    "alpha_start",
+    "alpha_step",
+    "approach",
+    "birge",
+    "by_adjusted",
+    "by_exponent",
+    "by_restitution",
+    "by_scatter",
+    "by_speed",
+    "coefficient",
+    "depth",
+    "depth_scale",
+    "deviation",
+    "exponent",
+    "force",
+    "force_start",
+    "force_step",
+    "least",
+    "misfit",
+    "multiplier",
+    "restitution",
+    "restitution_step",
+    "speed",
+    "speed_scale",
+    "speed_step",
+    "squares",
+    "weight",
+]
+
+# fmt: off
+V, E, XM, XP = (VOCABULARY[name] for name in ("v", "e", "x_m", "x_p"))
+Z = VOCABULARY["z_R"]
+VO, EO, XO, UV, UE, UX, D, BV, BE, W, R, LAM = (
+    VOCABULARY[name]
+    for name in ("v_obs", "e_obs", "x_obs", "u_v", "u_e", "u_x", "D", "B_v", "B_e", "W", "R", "lam")
+)
+ALPHA, beta, m_red, C, F_0, x_0, v_0, chi2, u_alpha, R_B, u_B, G_alpha, G_F = VOCABULARY.plain(
+    "alpha beta m_red C F_0 x_0 v_0 chi2 u_alpha R_B u_B G_alpha G_F"
+)
+# fmt: on
+n_tests = Symbol("n_tests", integer=True, positive=True)
+"""How many tests there are; the sums run over all of them."""
+_all = (k, 1, n_tests)
+_A = ALPHA + 1
+
+
+def _sum(terms: Expr) -> Expr:
+    return Sum(terms, _all)
+
+
+def _determinant() -> Expr:
+    """Of the normal matrix of the exponent and of the force."""
+    return _sum(W[k] * D[k] ** 2) * _sum(W[k] * XP[k] ** 2) - _sum(W[k] * D[k] * XP[k]) ** 2
+
+
+with evaluate(False):
+    depth_scale = Equation(
+        "(L29)",
+        (x_0, Sum(XO[k], _all) / n_tests),
+        "a depth within the data: the force there is known best",
+        Kind.DEFINITION,
+        "mean imprint depth",
+        defines=x_0,
+    )
+
+    speed_scale = Equation(
+        "(L30)",
+        (v_0, Sum(VO[k], _all) / n_tests),
+        "a speed within the data, where the search begins",
+        Kind.DEFINITION,
+        "mean impact speed",
+        defines=v_0,
+    )
+
+    coefficient = Equation(
+        "(L31)",
+        (C, F_0 / x_0**ALPHA),
+        "the curve has the force F_0 at the mean depth",
+        Kind.DEFINITION,
+        "coefficient by the force at the mean depth",
+        defines=C,
+    )
+
+    approach = Equation(
+        "(L32)",
+        (XM[k], x_0 * (_A * m_red * V[k] ** 2 / (2 * F_0 * x_0)) ** (1 / _A)),
+        "(L3) by the force at the mean depth",
+        title="approach of a test on the common curve",
+        defines=XM[k],
+    )
+
+    depth = Equation(
+        "(L33)",
+        (XP[k], XM[k] * (1 - (beta + 1) / _A * E[k] ** 2)),
+        "the energy ratio, solved for the imprint depth",
+        title="imprint depth of a test on the common curve",
+        defines=XP[k],
+    )
+
+    by_exponent = Equation(
+        "(L34)",
+        (D[k], (XM[k] - XP[k] + XP[k] * (1 / _A - log(XM[k] / x_0))) / _A),
+        "(L32) and (L33), differentiated by the exponent",
+        title="change of the imprint depth with the exponent",
+        defines=D[k],
+    )
+
+    by_speed = Equation(
+        "(L35)",
+        (BV[k], 2 * XP[k] / (_A * V[k])),
+        "(L32) and (L33), differentiated by the speed",
+        title="change of the imprint depth with the speed",
+        defines=BV[k],
+    )
+
+    by_restitution = Equation(
+        "(L36)",
+        (BE[k], -2 * (beta + 1) / _A * E[k] * XM[k]),
+        "(L33), differentiated by the restitution",
+        title="change of the imprint depth with the restitution",
+        defines=BE[k],
+    )
+
+    weight = Equation(
+        "(L37)",
+        (W[k], 1 / (UX[k] ** 2 + (BV[k] * UV[k]) ** 2 + (BE[k] * UE[k]) ** 2)),
+        "the variance of a measured depth beside the one that follows from speed and restitution",
+        Kind.DEFINITION,
+        "weight of a test",
+        defines=W[k],
+    )
+
+    misfit = Equation(
+        "(L38)",
+        (R[k], XO[k] - XP[k] - BV[k] * (VO[k] - V[k]) - BE[k] * (EO[k] - E[k])),
+        "how far the measured depth lies beside it, along the tangent at the adjusted point",
+        Kind.DEFINITION,
+        "misfit of a test",
+        defines=R[k],
+    )
+
+    multiplier = Equation(
+        "(L39)",
+        (LAM[k], W[k] * R[k]),
+        "the misfit is shared among depth, speed and restitution by their variances",
+        title="multiplier of a test",
+        defines=LAM[k],
+    )
+
+    speed = Equation(
+        "(L40)",
+        (VO[k], V[k] - UV[k] ** 2 * BV[k] * LAM[k]),
+        "the sum of squares is least: no other true speed makes it smaller",
+        title="adjusted impact speed",
+    )
+
+    restitution = Equation(
+        "(L41)",
+        (EO[k], E[k] - UE[k] ** 2 * BE[k] * LAM[k]),
+        "the sum of squares is least: no other true restitution makes it smaller",
+        title="adjusted coefficient of restitution",
+    )
+
+    exponent = Equation(
+        "(L42)",
+        (G_alpha, Sum(LAM[k] * D[k], _all)),
+        "half the slope of the sum of squares, downwards; where that is least, it is zero",
+        Kind.DEFINITION,
+        "global fit: exponent",
+        defines=G_alpha,
+    )
+
+    force = Equation(
+        "(L43)",
+        (G_F, Sum(LAM[k] * XP[k], _all)),
+        "the same by the force, times alpha + 1; where the sum of squares is least, it is zero",
+        Kind.DEFINITION,
+        "global fit: force",
+        defines=G_F,
+    )
+
+    squares = Equation(
+        "(L44)",
+        (chi2, Sum(LAM[k] * R[k], _all)),
+        "the squares of a test's deviations, each over its variance, add up to this",
+        Kind.DEFINITION,
+        "global fit: sum of squares",
+        defines=chi2,
+    )
+
+    by_adjusted = Equation(
+        "(L45)",
+        (u_alpha, sqrt(_sum(W[k] * XP[k] ** 2) / _determinant())),
+        "the inverse of the normal matrix at the adjusted points, for errors as stated",
+        Kind.DEFINITION,
+        "standard uncertainty of the exponent by the adjusted points",
+        defines=u_alpha,
+    )
+
+    birge = Equation(
+        "(L46)",
+        (R_B, sqrt(chi2 / (n_tests - 2))),
+        "how many times larger the deviations are than the standard uncertainties say",
+        Kind.DEFINITION,
+        "Birge ratio",
+        defines=R_B,
+    )
+
+    by_scatter = Equation(
+        "(L47)",
+        (u_B, u_alpha * R_B),
+        "how far the tests scatter about the curve, whatever their standard uncertainties say",
+        Kind.DEFINITION,
+        "standard uncertainty of the exponent by the scatter",
+        defines=u_B,
+    )
+
+    deviation = Equation(
+        "(L48)",
+        (Z[k], R[k] * sqrt(W[k])),
+        "the misfit over its standard deviation",
+        Kind.DEFINITION,
+        "misfit in standard deviations",
+        defines=Z[k],
+    )
+
+# --- what leads there --------------------------------------------------------------------------------------
+
+speed_step: Expr = VO[k] + V[k] - speed.value
+restitution_step: Expr = EO[k] + E[k] - restitution.value
+"""The next true values: they stay where (L38) and (L39) hold."""
+_normal = Matrix(2, 2, lambda i, j: _sum(W[k] * (D[k], -XP[k])[i] * (D[k], -XP[k])[j]))
+_step = _normal.adjugate() * Matrix([_sum(LAM[k] * D[k]), -_sum(LAM[k] * XP[k])]) / _determinant()
+
+alpha_step: Expr = ALPHA + _step[0]
+"""The next exponent, by least squares along the tangents: it stays where (L42) and (L43) are 0."""
+force_step: Expr = F_0 * exp(_A * _step[1])
+"""The next force, which stays positive."""
+_ln_v, _ln_x = log(VO[k] / v_0), log(XO[k] / x_0)
+alpha_start: Expr = 2 * Sum(_ln_v**2, _all) / Sum(_ln_v * _ln_x, _all) - 1
+"""Depths rise with the speed to the power 2/(alpha + 1) if the restitution is the same."""
+force_start: Expr = m_red * v_0**2 / x_0
+"""A force that stops the mean test within twice its depth."""
+
+least = {G_alpha: Integer(0), G_F: Integer(0)}
+"""What holds at the least sum of squares."""
+
+# --- why they hold -----------------------------------------------------------------------------------------
+
+_on_curve = depth.sides[1].xreplace({XM[k]: approach.sides[1]})
+
+
+def _slope(of: Expr, by: Expr, name: str) -> Equation:
+    because = f"derivative of the imprint depth by the {name}"
+    return Equation("", (of, diff(_on_curve, by)), "definition", Kind.DEFINITION, because, defines=of)
+
+
+_depth_of = Function("x_p")(V[k], E[k])
+_squares = (
+    (VO[k] - V[k]) ** 2 / UV[k] ** 2
+    + (EO[k] - E[k]) ** 2 / UE[k] ** 2
+    + (XO[k] - _depth_of) ** 2 / UX[k] ** 2
+)
+"""Those of a test, whose depth is a function of its true speed and its true restitution."""
+
+
+def _least(true: Expr, slope: Expr, name: str) -> Equation:
+    because = f"the squares of a test are least where their derivative by the true {name} vanishes"
+    derivative = diff(_squares, true).xreplace({diff(_depth_of, true): slope}).xreplace({_depth_of: XP[k]})
+    return Equation(
+        "", (derivative, Integer(0)), because, Kind.DEFINITION, f"normal equation of the true {name}"
+    )
+
+
+_least_speed = _least(V[k], BV[k], "speed")
+_least_restitution = _least(E[k], BE[k], "restitution")
+_multiplied = Equation(
+    "",
+    (XO[k], XP[k] + UX[k] ** 2 * LAM[k]),
+    "definition: Lagrange's multiplier of the condition that the depth lies on the curve",
+    Kind.DEFINITION,
+    "multiplier by the depth",
+)
+_curve, _cells = (depth, approach), (XP[k], XM[k])
+
+
+def _entries() -> tuple[Equation | Derivation, ...]:
+    """All of it, in the order of a ledger."""
+    work = x_m_of_test.at({v: V[k], x_m: XM[k]})
+    return (
+        depth_scale,
+        speed_scale,
+        coefficient,
+        Derivation.of(approach, (coefficient, work), (C, XM[k]), "Put the coefficient (L31) into (L3)."),
+        Derivation(
+            (
+                ratio_step,
+                Step(depth, (ratio_step.claim,), (XP[k],), "Solve the energy ratio for the depth."),
+            )
+        ),
+        *(
+            Derivation.of(
+                claim,
+                (_slope(of, by, name), *_curve),
+                (of, *_cells),
+                "Differentiate (L33) with (L32) in it; what is left are the depths themselves.",
+            )
+            for claim, of, by, name in (
+                (by_exponent, D[k], ALPHA, "exponent"),
+                (by_speed, BV[k], V[k], "speed"),
+                (by_restitution, BE[k], E[k], "restitution"),
+            )
+        ),
+        weight,
+        misfit,
+        Derivation.of(
+            multiplier,
+            (_multiplied, weight, misfit, _least_speed, _least_restitution),
+            (XO[k], W[k], R[k], VO[k], EO[k]),
+            "Put what the normal equations say of speed and restitution into the misfit.",
+        ),
+        Derivation.of(
+            speed, (_multiplied, _least_speed), (XO[k], VO[k]), "Solve the normal equation of the speed."
+        ),
+        Derivation.of(
+            restitution,
+            (_multiplied, _least_restitution),
+            (XO[k], EO[k]),
+            "Solve the normal equation of the restitution.",
+        ),
+        exponent,
+        force,
+        squares,
+        by_adjusted,
+        birge,
+        by_scatter,
+        deviation,
+    )
+
+
+LEDGER = replace(PAPER, entries=(*PAPER.entries, *_entries()))
+"""The equations of the paper, then those of the fit."""

@@ -1,0 +1,224 @@
+"""The fit of one curve to all tests: known digits, other least squares, and campaigns made for it."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+from scipy.stats import t as student
+
+from loopsheet.report.cells.values import Status, Values
+from loopsheet.report.engines import exact
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.engines.numpy import Program
+from loopsheet.report.result.result import Report
+from loopsheet.report.study import Study
+from loopsheet.report.workbooks.soft_impact_fit import WORKBOOK
+
+Array = NDArray[np.float64]
+FOLDER = Path(__file__).resolve().parents[1] / "data" / "soft_steel_fit"
+SHEET = WORKBOOK.sheet(frozenset({"ball_mass"}))
+PROGRAM = Program.of(SHEET)
+MASS, BETA, ALPHA, C = 0.008366, 1.5, 1.3, 9.6e8
+
+V = np.array([2.334, 2.940, 4.089, 4.504, 4.993])
+E = np.array([0.530, 0.512, 0.479, 0.467, 0.453])
+X = np.array([23.5, 29.7, 41.6, 45.97, 51.03]) * 1e-6
+U = [np.array(half) / 2 / np.sqrt(3) for half in ([1e-3] * 5, [1e-3] * 5, [1e-7, 1e-7, 1e-7, 1e-8, 1e-8])]
+
+
+def data(v: Any, e: Any, x_p: Any, u_v: Any, u_e: Any, u_x: Any) -> dict[str, Any]:
+    more = {"u_v": u_v, "u_e": u_e, "u_x_p": u_x, "ball_mass": MASS, "beta": BETA, "points_per_pair": 2.0}
+    return {"v": v, "e": e, "x_p": x_p, **more}
+
+
+def fitted(*given: Any) -> Values:
+    return engine.evaluate(SHEET, {"tests": range(1, given[0].shape[-1] + 1)}, data(*given), PROGRAM)
+
+
+def depth(v: Array, e: Array, alpha: Any, F: Any, x_0: float) -> Array:
+    """The imprint depth on a curve, by (6), (7) and (9)."""
+    A = alpha + 1
+    found: Array = x_0 * (A * MASS * v**2 / (2 * F * x_0)) ** (1 / A) * (1 - e**2 * (BETA + 1) / A)
+    return found
+
+
+def by_scipy(
+    v: Array, e: Array, x_p: Array, u_v: Array, u_e: Array, u_x: Array
+) -> tuple[float, float, float]:
+    """Exponent, sum of squares and standard uncertainty, with all true values as unknowns of their own."""
+    n, x_0 = v.size, float(x_p.mean())
+
+    def deviations(z: Array) -> Array:
+        dv, de = z[2 : 2 + n], z[2 + n :]
+        true = depth(v + u_v * dv, e + u_e * de, z[0], np.exp(z[1]), x_0)
+        return np.concatenate([dv, de, (x_p - true) / u_x])
+
+    start = np.concatenate([[1.3, np.log(MASS * v.mean() ** 2 / x_0)], np.zeros(2 * n)])
+    found = least_squares(deviations, start, method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15)
+    covariance = np.linalg.inv(found.jac.T @ found.jac)
+    return float(found.x[0]), 2 * float(found.cost), float(np.sqrt(covariance[0, 0]))
+
+
+# --- known digits ------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def report() -> Report:
+    return Study(FOLDER).computed
+
+
+def test_the_paper_has_one_curve_only_if_its_digits_are_worse_than_printed(report: Report) -> None:
+    names = ("alpha_eiv", "chi2_eiv", "u_alpha_eiv", "birge_eiv")
+    found = [f"{report.values.scalar(name):.8g}" for name in names]
+    assert found == ["1.3013045", "55.190784", "0.003053929", "4.289164"]
+    # By propagation the uncertainty is another one in its third digit: the weights move with the data.
+    assert f"{report.uncertain().u['alpha_eiv'][0]:.5g}" == "0.0030676"
+
+
+def test_other_least_squares_find_the_same() -> None:
+    values = fitted(V, E, X, *U)
+    alpha, chi2, u = by_scipy(V, E, X, *U)
+    # It stops a hair's breadth from the least sum, by differences: ours may not be larger.
+    assert values.scalar("alpha_eiv") == pytest.approx(alpha, abs=1e-7)
+    assert chi2 - 1e-6 <= values.scalar("chi2_eiv") <= chi2
+    assert values.scalar("u_alpha_eiv") == pytest.approx(u, rel=1e-5)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(3, 8), st.floats(0.002, 0.02), st.integers(0, 10**6), st.tuples(*[st.floats(0.2, 3)] * 3))
+def test_other_least_squares_find_the_same_of_any_campaign(
+    tests: int, noise: float, seed: int, parts: tuple[float, ...]
+) -> None:
+    rng = np.random.default_rng(seed)
+    v = np.linspace(2, 6, tests)
+    e = 0.62 * v**-0.2
+    true = [v, e, depth(v, e, ALPHA, C * 4e-5**ALPHA, 4e-5)]
+    us = [noise * part * own for part, own in zip(parts, true, strict=True)]
+    measured = [own + u * rng.standard_normal(tests) for own, u in zip(true, us, strict=True)]
+    values = fitted(*measured, *us)
+    alpha, chi2, u = by_scipy(*measured, *us)
+    assert values.scalar("alpha_eiv") == pytest.approx(alpha, abs=1e-6)
+    assert values.scalar("chi2_eiv") == pytest.approx(chi2, rel=1e-6)
+    assert values.scalar("u_alpha_eiv") == pytest.approx(u, rel=1e-4)
+
+
+def test_two_tests_give_what_their_pair_gives() -> None:
+    two = slice(0, 2)
+    values = fitted(V[two], E[two], X[two], *(u[two] for u in U))
+    assert values.scalar("alpha_eiv") == pytest.approx(values.value["alpha"][0], rel=1e-12)
+    assert values.scalar("C_eiv") == pytest.approx(values.value["C"][0], rel=1e-11)
+    assert abs(values.scalar("chi2_eiv")) < 1e-18
+    assert values.status["birge_eiv"][0] == Status.DOMAIN
+
+
+def test_one_test_has_no_exponent() -> None:
+    values = fitted(V[:1], E[:1], X[:1], *(u[:1] for u in U))
+    assert values.cell("alpha_eiv").reason == "#DOMAIN! alpha_eiv: outside the domain of (L42)"
+    assert values.cell("v_eiv", (1,)).reason.startswith("#NOROOT! v_eiv[1]: (L40) did not settle")
+    assert values.cell("chi2_eiv").culprit is not None
+
+
+def test_a_speed_may_be_exact() -> None:
+    """Its error then takes no part, and its true value is the measured one."""
+    values = fitted(V, E, X, 0 * U[0], U[1], U[2])
+    assert values.value["v_eiv"].tolist() == V.tolist()
+    alpha, chi2, _ = by_scipy(V, E, X, 1e-9 * U[0], U[1], U[2])
+    assert values.scalar("alpha_eiv") == pytest.approx(alpha, abs=1e-7)
+    assert chi2 - 1e-6 <= values.scalar("chi2_eiv") <= chi2
+
+
+def test_a_test_without_a_depth_is_left_out() -> None:
+    x = X.copy()
+    x[2] = np.nan
+    some = [0, 1, 3, 4]
+    whole, rest = fitted(V, E, x, *U), fitted(V[some], E[some], X[some], *(u[some] for u in U))
+    assert whole.scalar("alpha_eiv") == pytest.approx(rest.scalar("alpha_eiv"), rel=1e-13)
+    assert whole.status["v_eiv"].tolist() == [0, 0, Status.INPUT, 0, 0]
+    assert whole.counted["chi2_eiv"] == {"tests": 4}
+    assert whole.cell("v_eiv", (3,)).reason.startswith("#INPUT! v_eiv[3] needs x_p[3]: the datum is missing")
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.floats(0.1, 10), st.floats(0.1, 10))
+def test_scales_of_speed_and_depth_cancel(speed: float, scale: float) -> None:
+    """A clock or a gauge that is wrong by a factor leaves the exponent, and its uncertainty."""
+    one = fitted(V, E, X, *U)
+    other = fitted(speed * V, E, scale * X, speed * U[0], U[1], scale * U[2])
+    for name in ("alpha_eiv", "chi2_eiv", "u_alpha_eiv"):
+        assert other.scalar(name) == pytest.approx(one.scalar(name), rel=1e-10)
+
+
+def test_derivatives_are_those_of_the_fit_at_fifty_digits(report: Report) -> None:
+    """What u rests on: the derivatives of the exponent by all that was measured, by differences."""
+    budget = next(one for one in report.uncertain().budgets if one.cell == "alpha_eiv")
+    told = {each.source.name: each.u / each.source.moves[0][2] for each in budget.contributions}
+    given = {"ball_diameter": 0.0127, "ball_density": 7800.0, "beta": 1.5, "points_per_pair": 2}
+    given |= dict(zip(("u_v", "u_e", "u_x_p"), (u.tolist() for u in U), strict=True))
+    cells = dict(zip(("v", "e", "x_p"), ([Fraction(x) for x in own] for own in (V, E, X)), strict=True))
+
+    def alpha(name: str, row: int, by: Fraction) -> Any:
+        moved = [x + by * (n == row) for n, x in enumerate(cells[name])]
+        found = exact.evaluate(report.sheet, {"tests": range(1, 6)}, {**given, **cells, name: moved})
+        return found.value["alpha_eiv"][0]
+
+    for name, row in (("v", 4), ("e", 0), ("x_p", 1)):
+        step = cells[name][row] / 10**15
+        with mpmath.workdps(60):
+            slope = (alpha(name, row, step) - alpha(name, row, -step)) / (2 * mpmath.mpf(1) * float(step))
+        assert told[f"{name}[{row + 1}]"] == pytest.approx(float(slope), rel=1e-9)
+
+
+# --- campaigns ---------------------------------------------------------------------------------------------
+
+
+def campaigns(v: Array, noise: float, number: int) -> tuple[Values, int]:
+    """Campaigns of normal errors, relative to what was true."""
+    rng = np.random.default_rng(20)
+    e = 0.62 * v**-0.2
+    true = [v, e, depth(v, e, ALPHA, C * 4e-5**ALPHA, 4e-5)]
+    measured = [own * (1 + noise * rng.standard_normal((number, v.size))) for own in true]
+    return fitted(*measured, *(noise * own for own in true)), v.size
+
+
+@pytest.fixture(scope="module")
+def five() -> tuple[Values, int]:
+    return campaigns(np.array([2.334, 2.940, 4.089, 4.504, 4.993]), 0.01, 2000)
+
+
+def test_campaigns_give_back_the_exponent(five: tuple[Values, int]) -> None:
+    alpha = five[0].value["alpha_eiv"][:, 0]
+    assert (five[0].status["alpha_eiv"] == Status.OK).all()
+    assert abs(alpha.mean() - ALPHA) <= 0.005
+    assert alpha.std() <= 0.054
+
+
+def test_intervals_hold_what_they_promise(five: tuple[Values, int]) -> None:
+    """By the stated uncertainties, and by the scatter with Student's t for two degrees of freedom fewer."""
+    values, tests = five
+    off = np.abs(values.value["alpha_eiv"] - ALPHA)
+    stated = (off <= 1.96 * values.value["u_alpha_eiv"]).mean()
+    scattered = (off <= student.ppf(0.975, tests - 2) * values.value["u_birge_eiv"]).mean()
+    assert 0.935 <= stated <= 0.965
+    assert 0.935 <= scattered <= 0.965
+
+
+def test_sums_of_squares_are_distributed_as_they_should(five: tuple[Values, int]) -> None:
+    chi2 = five[0].value["chi2_eiv"]
+    assert chi2.mean() == pytest.approx(3, abs=4 * np.sqrt(6 / 2000))
+    assert chi2.var() == pytest.approx(6, abs=1)
+
+
+def test_twelve_tests_at_four_heights() -> None:
+    values, _ = campaigns(np.repeat([2.0, 3.0, 4.0, 5.0], 3), 0.01, 500)
+    alpha = values.value["alpha_eiv"][:, 0]
+    assert (values.status["alpha_eiv"] == Status.OK).all()
+    assert alpha.std() <= 0.034
