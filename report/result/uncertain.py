@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..distribution import Shape
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from ..inputs.limits import Limits
 
 __all__ = ["Budget", "Conformity", "Contribution", "Decision", "Distributed", "ErrorSource", "Uncertainties"]
