@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from typing import TYPE_CHECKING
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ..derivations.equation import Ledger
     from .cells.grid import Grid
     from .cells.layout import Layout
+    from .cells.marks import Marks
     from .cells.values import Values
     from .charts import Drawn
     from .messages.errors import Diagnostic
@@ -34,6 +35,7 @@ __all__ = [
     "Step",
     "book",
     "compared",
+    "computing",
     "drawn",
     "evaluated",
     "for_a_grid",
@@ -134,6 +136,29 @@ def evaluated(made: Prepared, ledger: Callable[[], Ledger], step: Step) -> Repor
         versions=versions(),
     )
     return replace(report, oddities=oddities(report))
+
+
+def computing(sheet: Sheet, columns: Sequence[Column]) -> Callable[[Inputs], Marks]:
+    """What computes some columns of a sheet, and what they rest on, for one set of inputs after another."""
+    from .cells.marks import Marks, margins, with_margins
+    from .engines.numpy import Program, evaluate
+    from .sheet import Sheet
+
+    whole = with_margins(sheet)
+
+    def below(columns: Iterable[Column]) -> set[str]:
+        return {own.name for column in columns for own in (*whole.ancestors(column), column)}
+
+    limits = tuple(margin for margin in margins(sheet) if margin.of.name in below(columns))
+    wanted = below([*columns, *(margin.column for margin in limits)])
+    part = Sheet(tuple(column for column in whole.columns if column.name in wanted))
+    program = Program.of(part)
+
+    def computed(inputs: Inputs) -> Marks:
+        made = Prepared(inputs, part)
+        return Marks(evaluate(part, made.labels, made.data, program), limits)
+
+    return computed
 
 
 def judged(report: Report, every: bool = True, step: Step = silent) -> Report:

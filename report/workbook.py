@@ -11,9 +11,10 @@ from .quantity import Bounds
 if TYPE_CHECKING:
     from ..derivations.equation import Ledger
     from .charts import Chart, Drawn
+    from .column import Column
     from .sheet import Sheet
 
-__all__ = ["FigureSpec", "Measured", "Parameter", "TableSpec", "Workbook"]
+__all__ = ["Design", "FigureSpec", "Measured", "Parameter", "TableSpec", "Workbook"]
 
 
 @dataclass(frozen=True)
@@ -95,6 +96,29 @@ class FigureSpec:
 
 
 @dataclass(frozen=True)
+class Design:
+    """How rows that are not measured yet are made forward from what is known.
+
+    Parameters
+    ----------
+    chosen : str
+        The measured column that a planner chooses.
+    fitted : tuple of Column
+        What is made of the measured rows first: a sheet whose given columns are measured ones.
+    planned : tuple of Column
+        Another sheet over rows of the same axis: the chosen column and numbers of the workbook's sheet or of
+        `fitted`, given, and formulas for every other measured column.
+    curve : tuple of str
+        The numbers of the workbook's sheet that these rows follow, for the reader.
+    """
+
+    chosen: str
+    fitted: tuple[Column, ...]
+    planned: tuple[Column, ...]
+    curve: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Workbook:
     """One published method, ready to be fed with measurements.
 
@@ -151,6 +175,8 @@ class Workbook:
     drawn: Callable[[Sheet], Drawn] | None = None
     drawings: Callable[[], Mapping[str, Callable[[Any], Any]]] | None = None
     """Returns what draws its figures, by name: each takes the report and returns a matplotlib figure."""
+    design: Callable[[Sheet], Design] | None = None
+    """Takes the sheet; returns how measurements are planned. Without it, they cannot be."""
 
     def __post_init__(self) -> None:
         """Every engine gets what the reader of a folder gets: bounds are declared once."""

@@ -316,6 +316,10 @@ CASES: dict[str, Callable[[], None]] = {
     "LS615": lambda: report_folder() and None,
     "LS616": the_word_for_a_folder,
     "LS617": lambda: _parse(["build", "a", "b"]) and None,
+    "LS618": raises(UsageError, "LS618", text="gum_h1"),
+    "LS619": raises(
+        UsageError, "LS619", reason="at v = 3 m/s the curve gives e = 2, which must be at most 1"
+    ),
     "LS621": raises(OutputError, "LS621", text="out", seconds="60"),
     "LS622": raises(UsageError, "LS622", reason="Too many open files"),
 }

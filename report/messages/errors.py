@@ -413,6 +413,18 @@ CATALOGUE: dict[str, Entry] = {
         "for the shipped campaign, go to another working directory",
     ),
     "LS617": Entry("wrong command line", "{reason}", "{known}", "{suggestion}"),
+    "LS618": Entry(
+        "no design known",
+        "how measurements for the workbook '{text}' are planned is not known",
+        "a workbook that declares a design: of those that are shipped, those of drop tests",
+        "'loopsheet budget CELL' tells how uncertain a number of what was measured is",
+    ),
+    "LS619": Entry(
+        "cannot be planned",
+        "this cannot be planned: {reason}",
+        "measurements that follow the curve of those that were made, within what the workbook allows",
+        "choose values nearer to those that were measured",
+    ),
     "LS621": Entry(
         "another build",
         "another build writes into '{text}', still after {seconds} s",

@@ -3,7 +3,22 @@
 A verb is listed here and imports what it needs when it runs, so that ``--help`` answers at once.
 """
 
-from . import budget, build, check, crate, diff, new, prove, schema, show, validate, verify, watch, why
+from . import (
+    budget,
+    build,
+    check,
+    crate,
+    design,
+    diff,
+    new,
+    prove,
+    schema,
+    show,
+    validate,
+    verify,
+    watch,
+    why,
+)
 
 VERBS = {
     "build": build,
@@ -13,6 +28,7 @@ VERBS = {
     "show": show,
     "why": why,
     "budget": budget,
+    "design": design,
     "new": new,
     "verify": verify,
     "validate": validate,

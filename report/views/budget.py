@@ -13,7 +13,17 @@ from ..result.result import Report
 from ..result.uncertain import Budget, Conformity, Contribution, Distributed
 from . import markdown as md
 
-__all__ = ["FORMATS", "as_json", "as_markdown", "as_text", "sentence"]
+__all__ = [
+    "FORMATS",
+    "aligned",
+    "as_json",
+    "as_markdown",
+    "as_text",
+    "notes",
+    "number",
+    "percent",
+    "sentence",
+]
 
 HEADER = ("source", "estimate", "u", "distribution", "dof", "contribution", "share")
 _NONE = "—"
@@ -45,13 +55,14 @@ def as_text(
     said = [sentence(report, budget), *_of_limits(report, limited)]
     rows = [HEADER, *(_row(report, budget, each) for each in budget.contributions)]
     if len(rows) > 1:
-        widths = [max(len(row[n]) for row in rows) for n in range(len(HEADER))]
-        said += [
-            "",
-            *("  ".join(f"{text:{w}}" for text, w in zip(row, widths, strict=True)).rstrip() for row in rows),
-        ]
-        said.append("")
-    return "\n".join([*said, *_notes(report, budget), *_of_draws(report, budget, drawn)])
+        said += ["", *aligned(rows), ""]
+    return "\n".join([*said, *notes(report, budget), *_of_draws(report, budget, drawn)])
+
+
+def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    """A table as lines, each column as wide as its widest cell."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(f"{text:{w}}" for text, w in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
 def as_markdown(
@@ -59,11 +70,11 @@ def as_markdown(
 ) -> str:
     """The same for a pull request."""
     rows = [[md.cell(text) for text in _row(report, budget, each)] for each in budget.contributions]
-    notes = "".join(
-        f"\n{md.cell(note)}\n" for note in (*_notes(report, budget), *_of_draws(report, budget, drawn))
+    told = "".join(
+        f"\n{md.cell(note)}\n" for note in (*notes(report, budget), *_of_draws(report, budget, drawn))
     )
     said = "\n\n".join(map(md.cell, (sentence(report, budget), *_of_limits(report, limited))))
-    return f"{said}\n\n{md.table(HEADER, rows) if rows else ''}{notes}".rstrip()
+    return f"{said}\n\n{md.table(HEADER, rows) if rows else ''}{told}".rstrip()
 
 
 def as_json(
@@ -77,14 +88,14 @@ def as_json(
             "schema": 1,
             "cell": budget.cell,
             "unit": report.sheet[budget.name].unit,
-            "value": _number(budget.value),
-            "u": _number(budget.u),
-            "dof": _number(budget.dof),
+            "value": number(budget.value),
+            "u": number(budget.u),
+            "dof": number(budget.dof),
             "level": budget.level,
-            "k": _number(budget.factor),
+            "k": number(budget.factor),
             "k_from": budget.because,
-            "U": _number(budget.expanded),
-            "second_order_share": _number(budget.second / budget.u**2) if budget.u else 0.0,
+            "U": number(budget.expanded),
+            "second_order_share": number(budget.second / budget.u**2) if budget.u else 0.0,
             "second_order_unknown": budget.unlooked or None,
             "sources": [_source(each) for each in budget.contributions],
             "correlations": [[*pair, r] for pair, r in budget.correlations.items()],
@@ -112,10 +123,10 @@ def _source(each: Contribution) -> dict[str, object]:
         "unit": each.unit,
         "u": source.u,
         "distribution": source.shape.value,
-        "dof": _number(source.dof),
-        "sensitivity": _number(each.sensitivity),
-        "contribution": _number(each.u),
-        "share": _number(each.share),
+        "dof": number(source.dof),
+        "sensitivity": number(each.sensitivity),
+        "contribution": number(each.u),
+        "share": number(each.share),
     }
 
 
@@ -132,11 +143,12 @@ def _row(report: Report, budget: Budget, each: Contribution) -> tuple[str, ...]:
         source.shape.value,
         "∞" if math.isinf(source.dof) else f"{source.dof:g}",
         f"{contribution.text}{own}",
-        _percent(each.share),
+        percent(each.share),
     )
 
 
-def _notes(report: Report, budget: Budget) -> Iterator[str]:
+def notes(report: Report, budget: Budget) -> Iterator[str]:
+    """What there is to say of a budget besides its numbers, a sentence each."""
     alike: dict[tuple[str, ...], list[str]] = {}
     columns = {each.source.name: each.source.moves[0][0] for each in budget.contributions}
     for pair, r in budget.correlations.items():
@@ -146,7 +158,7 @@ def _notes(report: Report, budget: Budget) -> Iterator[str]:
     if budget.unlooked and budget.is_known:
         yield f"terms of second order were not looked at: {budget.unlooked}; --draws tells more"
     if budget.second:
-        yield f"terms of second order make {_percent(budget.second / budget.u**2)} of the variance"
+        yield f"terms of second order make {percent(budget.second / budget.u**2)} of the variance"
     if budget.is_known and budget.u:
         if not math.isinf(budget.dof) and not math.isnan(budget.dof):
             yield f"{budget.dof:.0f} effective degrees of freedom"
@@ -172,7 +184,7 @@ def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iter
         f", u = {report.sure(budget.name, drawn.u).text}{unit}" if math.isfinite(drawn.u) else ""
     )
     if drawn.lost:
-        share = _percent(drawn.lost / drawn.number)
+        share = percent(drawn.lost / drawn.number)
         yield f"{drawn.lost} of them ({share}) have no value: all this is of the others"
     if math.isnan(drawn.u):
         what = "standard deviation" if math.isfinite(drawn.mean) else "mean and no standard deviation"
@@ -200,15 +212,15 @@ def _drawn(drawn: Distributed) -> dict[str, object]:
     return {
         "draws": drawn.number,
         "without_value": drawn.lost,
-        "median": _number(drawn.median),
-        "mean": _number(drawn.mean),
-        "u": _number(drawn.u),
-        "interval": list(map(_number, drawn.symmetric)),
-        "shortest": list(map(_number, drawn.shortest)),
-        "tail_index": _number(drawn.tail),
+        "median": number(drawn.median),
+        "mean": number(drawn.mean),
+        "u": number(drawn.u),
+        "interval": list(map(number, drawn.symmetric)),
+        "shortest": list(map(number, drawn.shortest)),
+        "tail_index": number(drawn.tail),
         "stable": drawn.stable,
         "tolerance": drawn.tolerance,
-        "differences": list(map(_number, drawn.differences)),
+        "differences": list(map(number, drawn.differences)),
         "validates": drawn.validates,
     }
 
@@ -220,22 +232,23 @@ def _of_limits(report: Report, limited: Iterable[Conformity]) -> Iterator[str]:
 
 def _conformity(found: Conformity) -> dict[str, object]:
     return {
-        "limits": list(map(_number, found.limits.ends)),
+        "limits": list(map(number, found.limits.ends)),
         "level": found.limits.guard.level,
-        "guard": _number(found.guard),
-        "acceptance": list(map(_number, found.acceptance)),
+        "guard": number(found.guard),
+        "acceptance": list(map(number, found.acceptance)),
         "decision": found.decision.value,
         "because": found.because,
         "distribution": found.budget.shape.value,
-        "probability": _number(found.probability),
-        "below": _number(found.below),
-        "above": _number(found.above),
-        "consumer_risk": _number(found.consumer_risk),
-        "producer_risk": _number(found.producer_risk),
+        "probability": number(found.probability),
+        "below": number(found.below),
+        "above": number(found.above),
+        "consumer_risk": number(found.consumer_risk),
+        "producer_risk": number(found.producer_risk),
     }
 
 
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
+    """A share as it is shown."""
     return f"{decimals(100 * share, 1).text} %"
 
 
@@ -244,5 +257,6 @@ def _unit(report: Report, name: str) -> tuple[str, float]:
     return behind(how.unit), how.scale
 
 
-def _number(value: float | None) -> float | None:
+def number(value: float | None) -> float | None:
+    """A number for JSON, which has none that are not finite."""
     return value if value is not None and math.isfinite(value) else None

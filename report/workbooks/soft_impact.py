@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from ..charts import Drawn
     from ..result.result import Report
     from ..sheet import Sheet
+    from ..workbook import Design
 
 __all__ = ["WORKBOOK"]
 
@@ -69,6 +70,12 @@ def _drawn(sheet: Sheet) -> Drawn:
     from .soft_impact_curves import columns
 
     return columns(sheet)
+
+
+def _design(sheet: Sheet) -> Design:
+    from .soft_impact_design import design
+
+    return design(sheet)
 
 
 def _drawings() -> dict[str, Callable[[Report], Any]]:
@@ -182,6 +189,7 @@ WORKBOOK = Workbook(
     example_parameters={"ball_mass": "8.366 g", "beta": "1.5"},
     drawn=_drawn,
     drawings=_drawings,
+    design=_design,
 )
 
 sheet = WORKBOOK.sheet

@@ -1,0 +1,243 @@
+"""Measurements that are not made yet: what the command line says of them, and inputs with their numbers."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from decimal import Decimal, localcontext
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from ..messages.errors import Findings, Location, listing, suggest
+from .number_text import read_value
+from .stated import StatementError, read_statement
+from .unit_text import UnitError, examples, parse_unit
+
+if TYPE_CHECKING:
+    from ..quantity import Printed
+    from .inputs import Inputs
+    from .number_text import Declared
+    from .stated import StatedErrors
+    from .unit_text import ParsedUnit
+
+__all__ = ["Said", "known", "planned", "read_numbers", "read_u"]
+
+Said = Mapping[str, "StatedErrors"]
+"""What is stated of columns and parameters, by name."""
+
+_NUMBER = re.compile(r"(?P<number>[0-9.]*(?:[eE][+-]?[0-9]+)?)\s*(?P<unit>.*)", re.DOTALL)
+_NAMED = re.compile(r"(?P<name>\w+)\s*=\s*")
+_BARE = re.compile(r"[0-9.][^%;,]*")
+_SAYS = "u = "
+_DOUBLES = 1500
+"""Digits: more than any double has, in any unit, up to any last digit that is printed."""
+
+
+def known(inputs: Inputs) -> list[str]:
+    """The columns and parameters that have an uncertainty: what is given, and not counted."""
+    every = inputs.workbook.declared.items()
+    return [name for name, own in every if inputs.printed(name) and not own.bounds.integer]
+
+
+def read_numbers(text: str, option: str, mark: str, like: Declared, unit: str) -> list[float]:
+    """Read numbers of a column from an option: ``2.5, 3.5, 5 m/s``.
+
+    Parameters
+    ----------
+    text, option : str
+        What was written, and for what.
+    mark : str
+        What stands between two.
+    like : Measured
+        What they are.
+    unit : str
+        Of those that name none, if the last one does not name one either.
+
+    Returns
+    -------
+    list of float
+        In SI.
+
+    Raises
+    ------
+    InputError
+        With every finding, each with its place in the option.
+    """
+    findings, found = Findings(), []
+    parts = []
+    for part, start in _split(text, mark):
+        match = _NUMBER.fullmatch(part)
+        number, own = (match["number"], match["unit"]) if match and match["number"] else (part, "")
+        parts.append((number, own, start, start + len(part) - len(own)))
+    common = parts[-1][1] or unit
+    for number, own, start, behind in parts:
+        at = _place(option, text, behind if own else start, len(own or number))
+        size = _unit(own or common, like, at, findings)
+        value = read_value(number, size, like, _place(option, text, start, len(number)), findings)
+        if value is not None:
+            found.append(float(value.value))
+    findings.check()
+    return found
+
+
+def read_u(text: str, option: str, inputs: Inputs) -> Said:
+    """Read uncertainties from an option, ``v = 0.5 %; x_p = 0.1 um``, as [uncertainty] has them.
+
+    A size alone, which would say nothing there, is a standard uncertainty here.
+
+    Parameters
+    ----------
+    text, option : str
+    inputs : Inputs
+        Whose columns and parameters they are of.
+
+    Raises
+    ------
+    InputError
+        With every finding, each with its place in the option.
+    """
+    findings = Findings()
+    names = known(inputs)
+    found: dict[str, StatedErrors] = {}
+    for name, said, begin, start in _statements(text, names):
+        if name not in names or name in found:
+            at = _place(option, text, begin, max(len(name), 1))
+            if name in found:
+                findings.add("LS433", at, name=name, suggestion="several errors stand behind one name")
+            else:
+                words = {"known": listing(names), "suggestion": suggest(name, names)}
+                findings.add("LS604", at, kind="column or parameter", text=name, **words)
+            continue
+        before = _SAYS if _BARE.fullmatch(said) and "digit" not in said else ""
+        readings = inputs.measured.get(name, ())
+        try:
+            found[name] = read_statement(
+                before + said, parse_unit(inputs.printed(name)[0].unit), None, readings
+            )
+        except StatementError as error:
+            at = _place(option, text, start + max(error.start - len(before), 0), max(len(error.text), 1))
+            findings.add(error.code, at, text=error.text, suggestion=error.suggestion)
+    for pair in inputs.uncertainty.correlations:
+        for name in (name for name in pair if name in found and len(found[name].parts) != 1):
+            reason = f"{' and '.join(pair)} are correlated, and {name} would not have one error"
+            at = _place(option, text, text.find(name), len(name))
+            findings.add("LS434", at, reason=reason, suggestion="state one error of it")
+    findings.check()
+    return found
+
+
+def planned(inputs: Inputs, values: Mapping[str, Sequence[float]], like: Sequence[int], said: Said) -> Inputs:
+    """Inputs with rows that are not measured yet.
+
+    Parameters
+    ----------
+    inputs : Inputs
+        Of what was measured.
+    values : mapping of str to sequence of float
+        All measured columns, in SI.
+    like : sequence of int
+        For each row the measured one that it is like: it has as many decimals, its errors, and a share in
+        what that one's group shares.
+    said : mapping of str to StatedErrors
+        What is stated of columns and parameters anew.
+
+    Returns
+    -------
+    Inputs
+        Without all that is about measured rows.
+    """
+    tests = tuple(range(1, len(like) + 1))
+    own = inputs.uncertainty
+    shared = tuple(
+        replace(each, groups=tuple(g for group in each.groups if (g := _again(group, inputs, like))))
+        for each in own.shared
+    )
+    # Where no planned row is like one of a group, nothing is shared; without groups all rows share it.
+    shared = tuple(
+        new for old, new in zip(own.shared, shared, strict=True) if bool(old.groups) == bool(new.groups)
+    )
+    stated = replace(own, columns={**own.columns, **said}, shared=shared)
+    measured = {
+        name: tuple(_like(inputs.measured[name][row], value) for row, value in zip(like, column, strict=True))
+        for name, column in values.items()
+    }
+    parameters = {name: (printed,) for name, printed in inputs.parameters.items()}
+    return replace(
+        inputs,
+        tests=tests,
+        measured=stated.of(measured),
+        parameters={name: printed for name, (printed,) in stated.of(parameters).items()},
+        uncertainty=stated,
+        published=(),
+        published_u=(),
+        aside=(),
+        expected=(),
+        left_out=(),
+        limits=(),
+        errata={},
+        free_at={},
+    )
+
+
+def _again(group: tuple[int, ...], inputs: Inputs, like: Sequence[int]) -> tuple[int, ...]:
+    """The planned tests that are like those of a group."""
+    return tuple(test for test, row in enumerate(like, start=1) if inputs.tests[row] in group)
+
+
+def _like(printed: Printed, value: float) -> Printed:
+    """A number as another is printed: the text is rounded, what is computed from is not."""
+    places = printed.decimals
+    with localcontext(prec=_DOUBLES):
+        size = Decimal(value) * printed.scale.denominator / printed.scale.numerator
+        short = size.quantize(Decimal(1).scaleb(-places))
+    text = f"{short:f}" if places >= 0 else f"{short.scaleb(places):f}e{-places}"
+    return replace(printed, text=text, value=Fraction(value), where="")
+
+
+def _split(text: str, mark: str) -> Iterator[tuple[str, int]]:
+    start = 0
+    for part in text.split(mark):
+        yield part.strip(), start + len(part) - len(part.lstrip())
+        start += len(part) + len(mark)
+
+
+def _statements(text: str, names: Sequence[str]) -> Iterator[tuple[str, str, int, int]]:
+    """Name, statement, and where both begin; what names nothing goes on with what was named before."""
+    name, said, begin, start = "", "", 0, 0
+    for part, at in _split(text, ";"):
+        named = _NAMED.match(part)
+        if named and (named["name"] in names or not name or named["name"] not in _WORDS):
+            if name:
+                yield name, said, begin, start
+            name, begin, start = named["name"], at, at + named.end()
+            said = part[named.end() :]
+        elif name:
+            said = text[start : at + len(part)]
+        else:
+            yield part, "", at, at
+            return
+    yield name, said, begin, start
+
+
+_WORDS = frozenset({"u", "U", "s", "k", "p", "n", "dof", "t"})
+"""What a statement may begin with."""
+
+
+def _unit(text: str, like: Declared, at: Location, findings: Findings) -> ParsedUnit | None:
+    expected = parse_unit(like.unit)
+    try:
+        size = parse_unit(text)
+    except UnitError as error:
+        words = {"text": error.text, "suggestion": error.suggestion, "known": examples(expected)}
+        findings.add(error.code, at, **words)
+        return None
+    if size.dimension != expected.dimension:
+        words = {"name": like.name, "text": text, "unit": like.unit, "known": examples(expected)}
+        findings.add("LS422", at, **words)
+        return None
+    return size
+
+
+def _place(option: str, text: str, start: int, length: int) -> Location:
+    return Location(option, 1, start + 1, max(length, 1), text)

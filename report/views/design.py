@@ -1,0 +1,184 @@
+"""A planned campaign: what it will show, how sure a cell will be, and what that comes from."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping
+
+from ..quantity import behind
+from ..result.design import Planned
+from ..result.numbers import rounded
+from . import markdown as md
+from .budget import aligned, notes, number, percent, sentence
+
+__all__ = ["FORMATS", "as_json", "as_markdown", "as_text"]
+
+_PARTS = ("what", "share")
+
+
+def _header(plan: Planned) -> list[str]:
+    """The names of the columns of the table, each with its unit."""
+    found = ["test"]
+    for name in plan.u:
+        unit = behind(plan.report.shown[name].unit)
+        found += [f"{name}{f' [{unit.strip()}]' if unit else ''}", f"u({name})"]
+    return [*found, "share"]
+
+
+def _rows(plan: Planned) -> Iterator[list[str]]:
+    """The planned tests."""
+    for row, test in enumerate(plan.report.inputs.tests):
+        found = [str(test)]
+        for name, u in plan.u.items():
+            value = float(plan.report.values.value[name][row])
+            if not math.isfinite(u[row]) or not u[row]:
+                found += [rounded(value / plan.report.shown[name].scale, 6).text, "0"]
+            else:
+                found += [figure.text for figure in plan.report.stated(name, value, float(u[row]))]
+        yield [*found, percent(plan.of_tests[test])]
+
+
+def _curve(plan: Planned) -> str:
+    cells = (plan.followed.values.cell(name) for name in plan.curve)
+    told = ", ".join(f"{cell.name} = {plan.followed.text(cell)}" for cell in cells)
+    return f"planned on the curve of '{plan.followed.title}': {told}"
+
+
+def _said(plan: Planned) -> Iterator[str]:
+    """What there is to tell of it, a sentence each."""
+    yield from notes(plan.report, plan.budget)
+    if plan.budget.u > 0 and plan.of_tests:
+        test, share = next(iter(plan.of_tests.items()))
+        if share > 0:
+            yield f"test {test} matters most: {percent(share)} of the variance"
+    if plan.best is not None:
+        yield _best(plan)
+    if plan.needed is not None:
+        yield _needed(plan)
+    yield from (f"warning: {told}" for told in _warnings(plan))
+
+
+def _warnings(plan: Planned) -> list[str]:
+    """What would be odd, and pairs that would tell nothing, of which a report of measurements is silent."""
+    marks = plan.report.marks
+    found = [check.message for check in plan.report.oddities if not check.passed]
+    for margin in (margin for margin in marks.margins if margin.limit.silent):
+        cells = plan.report.values.cells(margin.of.name)
+        near = [cell.address for cell, out in zip(cells, marks.outside(margin), strict=True) if out]
+        if near:
+            found.append(f"{', '.join(near)}: {margin.limit.told}")
+    return found
+
+
+def _best(plan: Planned) -> str:
+    best = plan.best
+    assert best is not None
+    name = plan.budget.name
+    found = f"the best of {best.tried} choices that were tried"
+    if math.isinf(best.u_equal):
+        return f"{found}; with equal steps {plan.budget.cell} has no uncertainty to compare"
+    worse = percent(best.u_equal / best.u - 1)
+    return f"{found}; with equal steps u is {plan.report.sure(name, best.u_equal).text}, {worse} larger"
+
+
+def _needed(plan: Planned) -> str:
+    needed, report = plan.needed, plan.report
+    assert needed is not None
+    cell = plan.budget.cell
+    unit = behind(report.shown[plan.budget.name].unit)
+    wanted = f"u({cell}) = {report.sure(plan.budget.name, needed.wanted).text}{unit}"
+    if needed.is_out_of_reach:
+        if math.isinf(needed.others):
+            return f"no u({needed.of}) gives {wanted}: {cell} has no uncertainty"
+        others = report.sure(plan.budget.name, needed.others).text
+        return f"no u({needed.of}) is small enough for {wanted}: without it the others alone make {others}"
+    if math.isinf(needed.u):
+        return f"any u({needed.of}) is small enough for {wanted}"
+    how = report.shown[needed.of]
+    # Rounded down, so that what is told is small enough.
+    return f"{wanted} needs u({needed.of}) of at most {_floor(needed.u / how.scale)}{behind(how.unit)}"
+
+
+def _floor(value: float) -> str:
+    """Three digits, none of them rounded up."""
+    unit = 10.0 ** (math.floor(math.log10(value)) - 2) if value > 0 else 1.0
+    return rounded(math.floor(value / unit) * unit, 3).text
+
+
+def _parts(plan: Planned) -> list[tuple[str, str]]:
+    return [(name, percent(share)) for name, share in plan.shares.items()]
+
+
+def as_text(plan: Planned) -> str:
+    """The planned tests, the cell, where its uncertainty comes from, and what there is to say."""
+    tests = aligned([_header(plan), *_rows(plan)])
+    lines = [_curve(plan), "", *tests, "", sentence(plan.report, plan.budget)]
+    if parts := _parts(plan):
+        lines += ["", *aligned([list(_PARTS), *map(list, parts)]), ""]
+    return "\n".join([*lines, *_said(plan)])
+
+
+def as_markdown(plan: Planned) -> str:
+    """The same for a pull request."""
+    tests = md.table(list(map(md.cell, _header(plan))), (list(map(md.cell, row)) for row in _rows(plan)))
+    parts = md.table(_PARTS, ([md.cell(text) for text in row] for row in _parts(plan)))
+    said = "".join(f"\n{md.cell(line)}\n" for line in _said(plan))
+    told = md.cell(sentence(plan.report, plan.budget))
+    return f"{md.cell(_curve(plan))}\n\n{tests}\n{told}\n\n{parts}{said}".rstrip()
+
+
+def as_json(plan: Planned) -> str:
+    """All digits, in SI."""
+    report, budget, best, needed = plan.report, plan.budget, plan.best, plan.needed
+    tests = [
+        {
+            "test": test,
+            **{
+                name: {"value": number(float(report.values.value[name][row])), "u": number(float(u[row]))}
+                for name, u in plan.u.items()
+            },
+            "share": number(plan.of_tests[test]),
+        }
+        for row, test in enumerate(report.inputs.tests)
+    ]
+    told = {
+        "schema": 1,
+        "cell": budget.cell,
+        "unit": report.sheet[budget.name].unit,
+        "value": number(budget.value),
+        "u": number(budget.u),
+        "k": number(budget.factor),
+        "U": number(budget.expanded),
+        "level": number(budget.level),
+        "second_order_share": number(budget.second / budget.u**2) if budget.u else 0.0,
+        "curve": {name: number(plan.followed.values.scalar(name)) for name in plan.curve},
+        "tests": tests,
+        "shares": {name: number(share) for name, share in plan.shares.items()},
+        "warnings": _warnings(plan),
+        "best": best
+        and {
+            "between": best.ends,
+            "u": number(best.u),
+            "u_equal_steps": number(best.u_equal),
+            "tried": best.tried,
+        },
+        "needed": needed
+        and {
+            "of": needed.of,
+            "unit": report.sheet[needed.of].unit,
+            "wanted": needed.wanted,
+            "u": number(needed.u),
+            "others": number(needed.others),
+            "out_of_reach": needed.is_out_of_reach,
+        },
+    }
+    return json.dumps(told, indent=1, ensure_ascii=False)
+
+
+FORMATS: Mapping[str, Callable[[Planned], str]] = {
+    "text": as_text,
+    "markdown": as_markdown,
+    "json": as_json,
+}
+"""What renders a plan, by the name of the format."""
