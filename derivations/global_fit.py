@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sympy import Expr, Function, Integer, Matrix, Sum, Symbol, diff, exp, log, sqrt
+from sympy import Expr, Function, Integer, Matrix, Max, Rational, Sum, Symbol, diff, exp, log, sqrt
 from sympy.core.parameters import evaluate
 
 from .equation import Derivation, Equation, Kind, Step
@@ -264,8 +264,8 @@ alpha_step: Expr = ALPHA + _step[0]
 force_step: Expr = F_0 * exp(_A * _step[1])
 """The next force, which stays positive."""
 _ln_v, _ln_x = log(VO[k] / v_0), log(XO[k] / x_0)
-alpha_start: Expr = 2 * Sum(_ln_v**2, _all) / Sum(_ln_v * _ln_x, _all) - 1
-"""Depths rise with the speed to the power 2/(alpha + 1) if the restitution is the same."""
+alpha_start: Expr = Max(2 * Sum(_ln_v**2, _all) / Sum(_ln_v * _ln_x, _all) - 1, Rational(1, 2))
+"""Depths rise with the speed to the power 2/(alpha + 1), and faster where the restitution falls."""
 force_start: Expr = m_red * v_0**2 / x_0
 """A force that stops the mean test within twice its depth."""
 

@@ -220,8 +220,10 @@ class _Exact:
                 self.status[column.name] = self._named(column)[2]
             if all(map(np.array_equal, known, (self.status[column.name] for column in loop))):
                 break
-        begun = {column.name: self._column(column, "start") for column in iterated}
-        self._put(begun)
+        begun = {}
+        for column in iterated:
+            begun[column.name] = self._column(column, "start")
+            self._put({column.name: begun[column.name]})
         last = mpmath.inf
         for _ in range(_PASSES):
             for column in loop[: -len(iterated)]:

@@ -9,8 +9,11 @@ function settle(loop, compute, put, { layouts, value, status }, faulty) {
     for (const column of loop) put(column, compute(column, "errors"));
     now = loop.map(({ name }) => status[name].join()).join();
   }
-  const begun = iterated.map((column) => compute(column, "start"));
-  iterated.forEach((column, n) => put(column, begun[n]));
+  const begun = iterated.map((column) => {
+    const found = compute(column, "start");
+    put(column, found);
+    return found;
+  });
   const pass = () => formulas.forEach((column) => put(column, compute(column)));
   for (let passes = 1, last = Infinity; ; passes++) {
     pass();
