@@ -170,6 +170,13 @@ def test_backwards_inverts_forwards(of: str, part: float, paper: Report, planner
     assert planner.u(planned(base, same, range(4), stated)) == pytest.approx(wanted, rel=1e-9)
 
 
+def test_the_global_fit_is_planned_too_and_may_repeat_speeds() -> None:
+    """It rests on no pair: two tests at one speed are two tests."""
+    own = planner_of(Study(PAPER.parent / "soft_steel_fit").computed, "alpha_eiv")
+    once, twice = (own.u(own.inputs_of(speeds)) for speeds in ([2.5, 3.5, 5.0], [2.5, 2.5, 3.5, 5.0]))
+    assert twice < 0.95 * once
+
+
 def test_what_others_make_no_depth_can_mend(capsys: pytest.CaptureFixture[str]) -> None:
     out = told(capsys, "paper", "--u", "e = 0.01", "--want", "0.005", "--of", "x_p", code=1)
     assert "no u(x_p) is small enough for u(alpha_mean) = 0.0050: without it the others alone make" in out
