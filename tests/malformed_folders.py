@@ -255,9 +255,12 @@ def _section(folder: Folder) -> None:
 
 def _limits(folder: Folder) -> None:
     dice, lines = folder.dice, ["[limits]"]
-    for name in dice.sample(sorted(folder.base.cells), 2):
-        index, unit = dice.choice(INDICES), folder.unit(name)
-        numbers = sorted((folder.number(), folder.number()), reverse=dice.random() < 0.1)
+    for name in dice.sample((*folder.base.given, *folder.base.parameters, *folder.base.cells), 2):
+        scalar, unit = name in folder.base.parameters, folder.unit(name)
+        index = dice.choice(INDICES) if dice.random() < 0.2 else "" if scalar else "1"
+        numbers = sorted(
+            (folder.number(), folder.number()), key=lambda text: text not in WRONG and float(text)
+        )
         said = dice.choice(("{0} .. {1} {2}", "{0} {2} .. {1} {2}", "<= {1} {2}", ">= {0} {2}", "{0} {2}"))
         lines.append(f'"{name}{index and f"[{index}]"}" = "{said.format(*numbers, unit)}"')
     if dice.random() < 0.7:

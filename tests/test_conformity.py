@@ -171,7 +171,7 @@ def test_a_budget_tells_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert told(capsys, "x_p[1]", campaign).splitlines()[1:4] == [
         "limits 22.2 to 23 um, guard band 0.29 um (0.5 U at 99 %), acceptance limits 22.49 to 22.71 um",
         "x_p[1] conforms: it lies within the acceptance limits",
-        "conformance probability 92.22 %, specific consumer's risk 7.78 %, "
+        "conformance probability 92.22 %, specific consumer’s risk 7.78 %, "
         "by a t distribution with 100 degrees of freedom",
     ]
     assert "no decision on x_p[2]: it lies in the guard band" in told(capsys, "x_p[2]", campaign)
@@ -200,7 +200,7 @@ def test_a_check_counts_what_does_not_conform(tmp_path: Path, capsys: pytest.Cap
         "x_p[2]": False,
         "alpha_mean": False,
     }
-    assert "specific producer's risk" in own["alpha_mean"]["message"]
+    assert "specific producer’s risk" in own["alpha_mean"]["message"]
 
 
 def read(tmp_path: Path, more: str) -> Inputs:
@@ -256,3 +256,16 @@ def test_what_is_refused(
     marked = next(row for row in told.splitlines() if "^" in row)
     above = told.splitlines()[told.splitlines().index(marked) - 1]
     assert above[marked.index("^") : marked.rindex("^") + 1] == culprit
+
+
+def test_the_report_tells_it_in_every_form(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    main(["build", folder(tmp_path, LIMITS), "--no-cache", "--out", str(out)])
+    capsys.readouterr()
+    page, tex = ((out / f"report.{form}").read_text(encoding="utf-8") for form in ("html", "tex"))
+    assert "Conformity with limits." in page
+    assert "22.2 to 23" in page
+    assert "<tr class=unexpected>" in page
+    assert "& does not conform & " in tex
+    assert r"\num{0.29}~\unit" in tex
+    assert "a share of U for 99" in tex

@@ -11,10 +11,12 @@ from typing import Any, NamedTuple
 from ..cells.address import index_text
 from ..inputs.measurements import LeftOut
 from ..inputs.published import PublishedValue
+from ..quantity import span
 from ..result import verdict_words as words
+from ..result.conformity import conforming, risk
 from ..result.numbers import Numeral, decimals, is_pure, read, rounded, table_format
 from ..result.result import Comparison
-from ..result.uncertain import Budget, Contribution
+from ..result.uncertain import Budget, Conformity, Contribution, Decision
 from ..result.verdict import ALL, INPUT, UNREACHABLE, TableVerdict
 from ..sheet import Axis
 from ..workbook import TableSpec
@@ -73,6 +75,16 @@ def _table(
     rows = [row.cells for group in listed for row in group.rows]
     columns = tuple(_column(one, [cells[n] for cells in rows]) for n, one in enumerate(made))
     return Table(name, caption, columns, listed, **more)
+
+
+def _whole(told: str) -> str:
+    """A percentage that stays on its line."""
+    return told.replace(" %", "\u00a0%")
+
+
+def _in(unit: str) -> Inlines:
+    """A unit behind a number."""
+    return () if is_pure(unit) else ("\u00a0", Unit(unit))
 
 
 def _run(said: Any) -> Any:
@@ -177,6 +189,38 @@ class Tables:
         level = f"{100 * self.material.budgets[0].level:.12g}\u00a0%"
         caption = (Strong(("Uncertainty of the results.",)), f" U is the expanded one, for {level}")
         return _table("uncertain", caption, made, [((), self.material.budgets)], look="list", wide=True)
+
+    def conformity(self) -> Table:
+        """The cells that have limits, and what the decision rule says of each."""
+
+        def row(found: Conformity) -> dict[str, str]:
+            return {"state": "" if found.decision is Decision.CONFORMS else "unexpected"}
+
+        made = (
+            _Made("result", lambda found: Code(found.budget.cell), "words"),
+            _Made("limits", self._tolerance, "words", 0.16),
+            _Made("guard band", self._guard, "words"),
+            _Made("decision", lambda found: str(found.decision), "words"),
+            _Made("conformance probability", lambda found: _whole(conforming(found)), "words", 0.12),
+            _Made("specific risk", lambda found: _whole(risk(found)), "words", 0.14),
+        )
+        every = self.report.uncertain().conformities
+        rule = every[0].limits.guard
+        drawn = "acceptance limits are the limits, drawn in by the guard band"
+        told = "simple acceptance, without a guard band" if not rule.times and rule.width is None else drawn
+        of_share = f", a share of U for {100 * rule.level:.12g}\u00a0%" if rule.times else ""
+        caption = (Strong(("Conformity with limits.",)), f" Decision rule (JCGM 106): {told}{of_share}")
+        return _table("conformity", caption, made, [((), every)], row, look="list", wide=True)
+
+    def _tolerance(self, found: Conformity) -> Inlines:
+        low, high = ("" if end is None else end.text for end in (found.limits.low, found.limits.high))
+        units = {end.unit for end in (found.limits.low, found.limits.high) if end is not None}
+        return (str(found.limits),) if len(units) > 1 else (span(low, high), *_in(units.pop()))
+
+    def _guard(self, found: Conformity) -> Inlines:
+        if not found.guard > 0:
+            return ("not known",) if math.isnan(found.guard) else ("none",)
+        return Number(self.report.sure(found.budget.name, found.guard)), *_in(self._of(found.budget).unit)
 
     def published_u(self) -> Table:
         """What is published of uncertainties, beside what is computed."""

@@ -24,7 +24,7 @@ from ..quantity import behind, span
 from .expected import check_expected
 from .number_text import NumberError, read_number, read_printed
 from .published import convertible
-from .stated import StatementError
+from .stated import LARGEST, StatementError
 from .unit_text import UnitError, parse_open
 
 if TYPE_CHECKING:
@@ -146,13 +146,16 @@ def _ends(text: str) -> tuple[Printed | None, Printed | None]:
 def _number(text: str, start: int, code: str) -> Printed:
     digits, _, unit = text.partition(" ")
     try:
-        return read_printed(digits, parse_open(unit.strip() or "1"))
+        number = read_printed(digits, parse_open(unit.strip() or "1"))
     except NumberError as error:
         hint = error.fields["suggestion"] or "a number, a space and a unit"
         raise StatementError(code, digits, start, hint) from None
     except UnitError as error:
         at = start + text.find(unit) + error.start
         raise StatementError(code, error.text, at, error.suggestion) from None
+    if abs(number.value) > LARGEST:
+        raise StatementError(code, digits, start, "a limit is a number up to 1e60")
+    return number
 
 
 def _rule(tables: TomlTables) -> Guard:

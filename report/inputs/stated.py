@@ -23,7 +23,16 @@ if TYPE_CHECKING:
     from ..quantity import Printed
     from .unit_text import ParsedUnit
 
-__all__ = ["EXAMPLE", "SCATTER", "SHAPES", "StatedErrors", "StatementError", "covariance", "read_statement"]
+__all__ = [
+    "EXAMPLE",
+    "LARGEST",
+    "SCATTER",
+    "SHAPES",
+    "StatedErrors",
+    "StatementError",
+    "covariance",
+    "read_statement",
+]
 
 EXAMPLE = "U = 0.03, k = 2"
 SCATTER = "scatter"
@@ -46,7 +55,7 @@ _RELATIVE = re.compile(r"%\s*(?:of\s+(?:the\s+)?(?:reading|value))?")
 _DIGITS = re.compile(r"digits?")
 _KEYS = {"u": {"dof"}, "U": {"k", "p", "dof"}, "s": {"n", "dof"}, "t scale": {"dof"}, "t sd": {"dof"}}
 """What may stand behind each beginning."""
-_LARGEST = 10**60
+LARGEST = 10**60
 """Of whatever unit: its square, and that of what follows from it, shall be numbers still."""
 _LIMIT_KEYS = {"k", "p", "dof"}
 
@@ -271,7 +280,7 @@ def _amount(text: str, start: int, unit: ParsedUnit) -> tuple[Fraction, Fraction
             number = read_number(match["number"]) if match else Fraction(-1)
         except NumberError:
             match = None
-        if match is None or number > _LARGEST:
+        if match is None or number > LARGEST:
             raise StatementError(
                 "LS431", term or text, at, "a size is a number from 0 to 1e60, with its unit"
             )

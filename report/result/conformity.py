@@ -13,7 +13,7 @@ from .uncertain import Conformity, Decision
 if TYPE_CHECKING:
     from .result import Report
 
-__all__ = ["accepted", "lines", "probabilities", "sentence"]
+__all__ = ["conforming", "lines", "probabilities", "risk", "sentence"]
 
 
 def sentence(found: Conformity) -> str:
@@ -33,14 +33,23 @@ def lines(report: Report, found: Conformity) -> Iterator[str]:
 
 def probabilities(found: Conformity) -> Iterator[str]:
     """The conformance probability and the risk that is taken, where a distribution is known."""
-    if math.isnan(found.probability):
-        return
-    without = found.below + found.above
-    yield f"conformance probability {chance(found.probability, without)}"
-    if found.consumer_risk is not None:
-        yield f"specific consumer's risk {chance(without, found.probability)}"
-    if found.producer_risk is not None:
-        yield f"specific producer's risk {chance(found.probability, without)}"
+    if told := conforming(found):
+        yield f"conformance probability {told}"
+    if told := risk(found):
+        yield f"specific {told}"
+
+
+def conforming(found: Conformity) -> str:
+    """The conformance probability; empty if no distribution is known."""
+    return "" if math.isnan(found.probability) else chance(found.probability, found.below + found.above)
+
+
+def risk(found: Conformity) -> str:
+    """The specific risk that is taken: ``consumer’s risk 1.37 %``; empty where nothing was decided."""
+    told = conforming(found)
+    if told and found.consumer_risk is not None:
+        return f"consumer’s risk {chance(found.consumer_risk, found.probability)}"
+    return f"producer’s risk {told}" if told and found.producer_risk is not None else ""
 
 
 def _rule(report: Report, found: Conformity) -> str:
@@ -56,10 +65,10 @@ def _rule(report: Report, found: Conformity) -> str:
     if not found.guard:
         return f", guard band 0{unit}{of}"
     width = report.stated(name, found.budget.value, found.guard)[1].text
-    return f", guard band {width}{unit}{of}, {accepted(report, found)}"
+    return f", guard band {width}{unit}{of}, {_accepted(report, found)}"
 
 
-def accepted(report: Report, found: Conformity) -> str:
+def _accepted(report: Report, found: Conformity) -> str:
     """The acceptance limits, with as many digits as the guard band has."""
     name, (low, high) = found.budget.name, found.acceptance
     if low > high:

@@ -65,9 +65,9 @@ def conformity(budget: Budget, limits: Limits) -> Conformity:
 
     below, above = more(value - low), more(high - value)
     if below > 0.5:  # a difference of small ones, where that of 1 and nearly 1 would have lost its digits
-        probability = more(low - value) - more(high - value)
+        probability = more(low - value) - above
     elif above > 0.5:
-        probability = more(value - high) - more(value - low)
+        probability = more(value - high) - below
     else:
         probability = 1 - (below + above)
     rule = limits.guard

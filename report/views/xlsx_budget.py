@@ -17,6 +17,7 @@ from ..quantity import behind
 from ..result.numbers import rounded
 from ..result.result import Report
 from ..result.uncertain import Budget, Contribution
+from .xlsx_limits import MOST_DOF, SHAPES, write_limits
 from .xlsx_style import Style, height, number_format
 
 __all__ = ["write_budgets"]
@@ -35,8 +36,6 @@ _COLUMNS = (
 _UNLIMITED = 10.0**15
 """Stands for infinitely many degrees of freedom."""
 _DOF = '[>=1000000000]"∞";General'
-_MOST = 10**9
-"""Degrees of freedom that every spreadsheet's t distribution takes."""
 _FACTORS = {
     "rectangular": "{p}*SQRT(3)",
     "triangular": "(1-SQRT(1-{p}))*SQRT(6)",
@@ -140,7 +139,7 @@ class _Written:
         sizes = sorted(abs(each.u) / scale for each in budget.contributions) or [0.0]
         first = f"SUMSQ({own}){self.pairs}"
         ratio = f"({first})^2/{self.below(own, dof)}"
-        freedom = f"IF({ratio}>{_MOST},{_UNLIMITED:.0f},MAX(1,INT(ROUND({ratio},2))))"
+        freedom = f"IF({ratio}>{MOST_DOF},{_UNLIMITED:.0f},MAX(1,INT(ROUND({ratio},2))))"
         lines: tuple[tuple[str, str, float, str], ...] = (
             (
                 "value",
@@ -195,7 +194,17 @@ class _Written:
                 self.style.formula(self.sheet, line, 1, formula, value, self.style("number", form))
             else:
                 self.sheet.write_number(line, 1, value, self.style("input", form))
-        return self.statement(row + len(lines), at)
+        return self.limits(self.statement(row + len(lines), at), own, at)
+
+    def limits(self, row: int, own: str, at: Mapping[str, str]) -> int:
+        """The decision rule, where the cell has limits."""
+        for found in self.report.uncertain().conformities:
+            if found.budget.cell == self.budget.cell:
+                plain = f'IF({at["dof"]}>{MOST_DOF},"normal","t")'
+                formulas = lambda p: self.factor(own, {**at, "p": p}), self.by_shape(own, at, SHAPES, plain)
+                form = self.form(found.guard or self.budget.u)
+                row = write_limits(self.sheet, self.style, found, self.scale, form, row, dict(at), formulas)
+        return row
 
     def below(self, own: str, dof: str) -> str:
         """What stands below in the formula of Welch and Satterthwaite: sources of one estimate are one."""
@@ -226,14 +235,19 @@ class _Written:
     def factor(self, own: str, at: Mapping[str, str]) -> str:
         """The coverage factor: of the shape of a source that dominates, else of t or normal."""
         p, dof = at["p"], at["dof"]
-        otherwise = f"IF({dof}>{_MOST},NORMSINV((1+{p})/2),TINV(1-{p},MIN({dof},{_MOST})))"
+        otherwise = f"IF({dof}>{MOST_DOF},NORMSINV((1+{p})/2),TINV(1-{p},MIN({dof},{MOST_DOF})))"
+        factors = {name: factor.format(p=p) for name, factor in _FACTORS.items()}
+        return self.by_shape(own, at, factors, otherwise)
+
+    def by_shape(self, own: str, at: Mapping[str, str], formulas: Mapping[str, str], otherwise: str) -> str:
+        """The formula of the shape of a source that dominates; another one if none does."""
         place = f"IF(MAX({own})>=-MIN({own}),MATCH(MAX({own}),{own},0),MATCH(MIN({own}),{own},0))"
         shape, sure = (f"INDEX({own.replace('H', column)},{place})" for column in "EF")
         told = otherwise
-        for name, factor in _FACTORS.items():
-            told = f'IF({shape}="{name}",{factor.format(p=p)},{told})'
+        for name, formula in formulas.items():
+            told = f'IF({shape}="{name}",{formula},{told})'
         # Where nothing is of first order there is no line to look at.
-        dominant = f"IF({sure}>{_MOST},{told},{otherwise})"
+        dominant = f"IF({sure}>{MOST_DOF},{told},{otherwise})"
         return (
             f"IF({at['largest']}=0,{otherwise},"
             f"IF({at['others']}<={DOMINANT}*{at['largest']},{dominant},{otherwise}))"
