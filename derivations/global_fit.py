@@ -226,7 +226,7 @@ with evaluate(False):
 
     birge = Equation(
         "(L46)",
-        (R_B, sqrt(chi2 / (n_tests - 2))),
+        (R_B, sqrt(Sum(LAM[k] * R[k], _all) / (n_tests - 2))),
         "how many times larger the deviations are than the standard uncertainties say",
         Kind.DEFINITION,
         "Birge ratio",

@@ -144,6 +144,7 @@ def test_a_test_without_a_depth_is_left_out() -> None:
     assert whole.scalar("alpha_eiv") == pytest.approx(rest.scalar("alpha_eiv"), rel=1e-13)
     assert whole.status["v_eiv"].tolist() == [0, 0, Status.INPUT, 0, 0]
     assert whole.counted["chi2_eiv"] == {"tests": 4}
+    assert whole.scalar("birge_eiv") == pytest.approx(rest.scalar("birge_eiv"), rel=1e-9)
     assert whole.cell("v_eiv", (3,)).reason.startswith("#INPUT! v_eiv[3] needs x_p[3]: the datum is missing")
 
 

@@ -117,7 +117,10 @@ class Said:
     def _tail(self, what: str) -> float | None:
         """``chi2 tests 2``: how likely so large a sum of squares is, of all tests but 2; None without one."""
         name, axis, fewer = what.split()
-        value, dof = self.report.values.scalar(self._column(name)), self.material.count(axis) - int(fewer)
+        value, dof = (
+            self.report.values.scalar(self._column(name)),
+            self.material.counted(name, axis) - int(fewer),
+        )
         return tail(value, dof) if dof > 0 and value == value else None
 
     def _printed(self, cell: str) -> Inlines:

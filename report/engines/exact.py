@@ -38,7 +38,10 @@ _GUARD = 15
 _CLOSE = mpmath.mpf(f"1e-{DIGITS + 5}")
 _NEAR = mpmath.mpf("1e-30")
 _PASSES = 400
-"""How many passes a loop gets; nearer than that, one that does not halve the way moves by rounding only."""
+"""How many passes a loop gets; nearer than that, one that moves no less than the one before the last moves by
+rounding only."""
+_OF_DOUBLES, _ENOUGH = 100, 2.0**-44
+"""How many passes doubles get, to come so near."""
 _ROUGHLY = 1e-12
 """As parts of a root: how close it is sought, and how close doubles should come."""
 
@@ -224,8 +227,8 @@ class _Exact:
         for column in iterated:
             begun[column.name] = self._column(column, "start")
             self._put({column.name: begun[column.name]})
-        last = mpmath.inf
-        for _ in range(_PASSES):
+        before = last = mpmath.inf
+        for number in range(1, _PASSES + 1):
             for column in loop[: -len(iterated)]:
                 self._put({column.name: self._column(column)})
             after = {column.name: self._column(column) for column in iterated}
@@ -240,10 +243,12 @@ class _Exact:
                 ),
                 default=mpmath.mpf(0),
             )
-            if moved <= _CLOSE or (moved <= _NEAR and moved >= last / 2):
+            if number == _OF_DOUBLES and moved > _ENOUGH:
+                break
+            if moved <= _CLOSE or (moved <= _NEAR and moved >= before):
                 return
             self._put(after)
-            last = moved
+            before, last = last, moved
         for name, (values, status) in begun.items():
             status[status == Status.OK] = Status.NOROOT
             self._put({name: ([None] * len(values), status)})

@@ -17,9 +17,10 @@ __all__ = ["MOST", "NEAR", "STILL", "LoopProgram", "Settling"]
 Codes = NDArray[np.uint8]
 
 MOST = 100
-"""How many passes a loop gets."""
+"""How many passes a loop gets, to come so near as this:"""
+ENOUGH = 2.0**-44
 NEAR = 2.0**-30
-"""Nearer than this, relatively, a pass that moves more than half of what the last did moves by rounding."""
+"""Nearer than this, relatively, a pass that moves no less than the one before the last moves by rounding."""
 STILL = 2.0**-51
 """What a pass may move and still be the last."""
 
@@ -72,7 +73,7 @@ class Settling:
         self.begun = begun
         self.values: dict[str, Array] = {}
         self.passes = 0
-        self.moved: Any = np.inf
+        self.moved: tuple[Any, Any] = np.inf, np.inf
         self.done: Any = np.zeros(1, dtype=bool)
         self.failed: Any = np.zeros(1, dtype=bool)
 
@@ -109,8 +110,9 @@ class Settling:
                 step = np.where(takes_part & (after[name] != before[name]), step, 0.0)
                 moved = np.maximum(moved, step.max(axis=-1, keepdims=True, initial=0.0))
                 lost = lost | (takes_part & (status[name] != Status.OK)).any(axis=-1, keepdims=True)
-        still = (moved <= STILL) | ((moved <= NEAR) & (moved >= self.moved / 2))
+        last = self.passes >= MOST
+        still = (moved <= (ENOUGH if last else STILL)) | ((moved <= NEAR) & (moved >= self.moved[0]))
         self.values = {name: np.where(self.done, before[name], after[name]) for name in self.begun}
-        self.failed = self.failed | (~self.done & (lost | (not self.passes < MOST) & ~still))
-        self.done = self.done | still | lost | (self.passes >= MOST)
-        self.moved = moved
+        self.failed = self.failed | (~self.done & (lost | (~still & last)))
+        self.done = self.done | still | lost | last
+        self.moved = self.moved[1], moved

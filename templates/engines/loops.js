@@ -15,7 +15,7 @@ function settle(loop, compute, put, { layouts, value, status }, faulty) {
     return found;
   });
   const pass = () => formulas.forEach((column) => put(column, compute(column)));
-  for (let passes = 1, last = Infinity; ; passes++) {
+  for (let passes = 1, last = Infinity, before = last; ; passes++) {
     pass();
     const after = iterated.map((column) => compute(column));
     let moved = 0, lost = false;
@@ -23,7 +23,7 @@ function settle(loop, compute, put, { layouts, value, status }, faulty) {
       if (codes[row] !== begun[n][1][row]) lost = true;
       else if (!codes[row]) moved = Math.max(moved, Math.abs((now - value[iterated[n].name][row]) / now) || 0);
     }));
-    const still = moved <= 2 ** -51 || (moved <= 2 ** -30 && moved >= last / 2);
+    const still = moved <= 2 ** (passes === 100 ? -44 : -51) || (moved <= 2 ** -30 && moved >= before);
     if (lost || (!still && passes === 100)) {
       for (const [n, column] of iterated.entries()) {
         faulty[column.name] = true;
@@ -33,6 +33,7 @@ function settle(loop, compute, put, { layouts, value, status }, faulty) {
     }
     iterated.forEach((column, n) => put(column, after[n]));
     if (still) return pass();
+    before = last;
     last = moved;
   }
 }
