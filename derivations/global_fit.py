@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sympy import Expr, Function, Integer, Matrix, Max, Rational, Sum, Symbol, diff, exp, log, sqrt
+from sympy import Expr, Function, Integer, Matrix, Max, Piecewise, Rational, Sum, Symbol, diff, exp, log, sqrt
 from sympy.core.parameters import evaluate
 
 from .equation import Derivation, Equation, Kind, Step
@@ -25,7 +25,6 @@ __all__ = [
     "EO",
     "LEDGER",
     "VO",
-    "alpha_start",
     "alpha_step",
     "approach",
     "birge",
@@ -39,6 +38,7 @@ __all__ = [
     "depth_scale",
     "deviation",
     "exponent",
+    "first_exponent",
     "force",
     "force_start",
     "force_step",
@@ -61,8 +61,8 @@ VO, EO, XO, UV, UE, UX, D, BV, BE, W, R, LAM = (
     VOCABULARY[name]
     for name in ("v_obs", "e_obs", "x_obs", "u_v", "u_e", "u_x", "D", "B_v", "B_e", "W", "R", "lam")
 )
-ALPHA, beta, m_red, C, F_0, x_0, v_0, chi2, u_alpha, R_B, u_B, G_alpha, G_F = VOCABULARY.plain(
-    "alpha beta m_red C F_0 x_0 v_0 chi2 u_alpha R_B u_B G_alpha G_F"
+ALPHA, alpha_0, beta, m_red, C, F_0, x_0, v_0, chi2, u_alpha, R_B, u_B, G_alpha, G_F = VOCABULARY.plain(
+    "alpha alpha_0 beta m_red C F_0 x_0 v_0 chi2 u_alpha R_B u_B G_alpha G_F"
 )
 # fmt: on
 n_tests = Symbol("n_tests", integer=True, positive=True)
@@ -208,8 +208,8 @@ with evaluate(False):
 
     squares = Equation(
         "(L44)",
-        (chi2, Sum(LAM[k] * R[k], _all)),
-        "the squares of a test's deviations, each over its variance, add up to this",
+        (chi2, Piecewise((Sum(LAM[k] * R[k], _all), n_tests > 2), (Integer(0), True))),
+        "the squares of a test's deviations, each over its variance, add up to this; two have none",
         Kind.DEFINITION,
         "global fit: sum of squares",
         defines=chi2,
@@ -251,6 +251,27 @@ with evaluate(False):
         defines=Z[k],
     )
 
+    _ln_v, _ln_x = log(VO[k] / v_0), log(XO[k] / x_0)
+    _mean_e2 = Sum(EO[k] ** 2, _all) / n_tests
+
+    first_exponent = Equation(
+        "(L49)",
+        (
+            alpha_0,
+            Max(
+                2 * Sum(_ln_v**2, _all) / Sum(_ln_v * _ln_x, _all),
+                Rational(3, 2),
+                Rational(6, 5) * (beta + 1) * _mean_e2,
+            )
+            - 1,
+        ),
+        "depths rise with the speed to the power 2/(alpha + 1), if the restitution is the same; a test "
+        "of the mean restitution has to leave an imprint",
+        Kind.DEFINITION,
+        "first exponent of the search",
+        defines=alpha_0,
+    )
+
 # --- what leads there --------------------------------------------------------------------------------------
 
 speed_step: Expr = VO[k] + V[k] - speed.value
@@ -263,12 +284,10 @@ alpha_step: Expr = ALPHA + _step[0]
 """The next exponent, by least squares along the tangents: it stays where (L42) and (L43) are 0."""
 force_step: Expr = F_0 * exp(_A * _step[1])
 """The next force, which stays positive."""
-_ln_v, _ln_x = log(VO[k] / v_0), log(XO[k] / x_0)
-alpha_start: Expr = Max(2 * Sum(_ln_v**2, _all) / Sum(_ln_v * _ln_x, _all) - 1, Rational(1, 2))
-"""Depths rise with the speed to the power 2/(alpha + 1), and faster where the restitution falls."""
-force_start: Expr = m_red * v_0**2 / x_0
-"""A force that stops the mean test within twice its depth."""
-
+force_start: Expr = (
+    (alpha_0 + 1) * m_red * v_0**2 / (2 * x_0) * (1 - (beta + 1) / (alpha_0 + 1) * _mean_e2) ** (alpha_0 + 1)
+)
+"""The force with which the mean test lies on a curve of the first exponent."""
 least = {G_alpha: Integer(0), G_F: Integer(0)}
 """What holds at the least sum of squares."""
 
@@ -362,6 +381,7 @@ def _entries() -> tuple[Equation | Derivation, ...]:
         birge,
         by_scatter,
         deviation,
+        first_exponent,
     )
 
 

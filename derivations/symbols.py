@@ -89,6 +89,7 @@ VOCABULARY = Vocabulary(
     # The fit to all tests at once: what was measured beside the values that lie on one curve.
     Quantity("x_0", "mean imprint depth, at which the curve has the force F_0", "m", "x_{0%s}", (1e-5, 9e-5)),
     Quantity("v_0", "mean impact speed", "m/s", "v_{0%s}", (0.5, 8.0)),
+    Quantity("alpha_0", "exponent at which the global fit begins", "1", r"\alpha_{0%s}", (0.5, 2.0)),
     Quantity("F_0", "force at the mean imprint depth", "N", "F_{0%s}", (100.0, 5000.0)),
     Quantity("v_obs", "impact speed, as measured", "m/s", r"\tilde{v}'%s", (0.5, 8.0), text="v'~%s"),
     Quantity("e_obs", "coefficient of restitution, as measured", "1", r"\tilde{e}%s", (0.05, 0.9)),

@@ -86,6 +86,8 @@ class Said:
             "sym": Role(lambda name: (self.material.sentences.symbol(name),)),
             "table": Role(lambda name: _links("table", self._table(name)), self._table),
             "tail": Role(self._probability),
+            "has": Role(lambda name: not self.report.values.status[self._column(name)].any()),
+            "likely": Role(lambda what: (p := self._tail(what)) is not None and p >= SIGNIFICANT),
             "unlikely": Role(lambda what: (p := self._tail(what)) is not None and p < SIGNIFICANT),
         }
 

@@ -349,7 +349,14 @@ class _Writing:
         )
         settled = f"ABS({last}-{before})*{_SETTLED}<=ABS({last})"
         found = f"IF({settled},{last},{_UNSETTLED})"
-        return f"IF(ISNUMBER({start}),IF(ISNUMBER({last}),{found},{_CODE[Status.NOROOT]}),{start})"
+        lost = f"OR({last}={_CODE[Status.DOMAIN]},{last}={_CODE[Status.OVERFLOW]})"
+        found = f"IF(ISNUMBER({last}),{found},IF({lost},{_CODE[Status.NOROOT]},{last}))"
+        for each in self.sheet.loop_of[self.column.name]:
+            # All rows rest on a single number, and on its error.
+            if isinstance(each.rule, Iterated) and each.axis is None and each.name != self.column.name:
+                other = self.address(Leaf("cells", pass_name(each.name, 0)))
+                found = f"IF(ISNUMBER({other}),{found},{other})"
+        return f"IF(ISNUMBER({start}),{found},{start})"
 
     def drawn(self, node: Map) -> str:
         """A cell for a chart: its value, or what charts leave out."""

@@ -306,12 +306,12 @@ class _Along(Along):
 
     def ended(self, node: Local) -> None:
         """What may have no value may have any derivative by what it rests on."""
-        if node.over is not None or self.cells.sure[node.name].all():
+        if node.over is not None or self.cells.sure[node.of].all():
             return
         cells = self.chain.patterns[node.name]
         own = self.entries[cells.entries]
         nothing = (own.low == 0) & (own.high == 0)
-        self.entries[cells.entries] = own.where(self.cells.sure[node.name][cells.rows] | nothing)
+        self.entries[cells.entries] = own.where(self.cells.sure[node.of][cells.rows] | nothing)
 
 
 def _shares(terms: Intervals) -> Intervals:

@@ -358,13 +358,19 @@ class Problem:
         """Whether a cell of each column rests on an unknown (unknowns, rows)."""
         number, layouts = len(self.unknowns), self.campaign.values.layouts
         rests: dict[str, NDArray[np.bool_]] = {}
-        for column in self.sheet.order:
+        for column in self.sheet.columns:
             size = 1 if column.axis is None else layouts[column.axis.name].size
-            found = np.zeros((number, size), dtype=bool)
+            rests[column.name] = np.zeros((number, size), dtype=bool)
             for row, n in enumerate(self.rows.get(column.name, ())):
-                found[n, row] = True
-            for precedent in precedents(self.sheet, layouts, column):
-                theirs = precedent.take(rests[precedent.column.name])
-                found |= theirs if precedent.over is None else theirs.any(axis=-1, keepdims=True)
-            rests[column.name] = found
+                rests[column.name][n, row] = True
+        again = True
+        while again:  # once, but for columns that rest on one another
+            again = False
+            for column in self.sheet.order:
+                found = rests[column.name]
+                for precedent in precedents(self.sheet, layouts, column):
+                    theirs = precedent.take(rests[precedent.column.name]).astype(bool)
+                    found = found | (theirs if precedent.over is None else theirs.any(axis=-1, keepdims=True))
+                again |= bool(self.sheet.loops) and not np.array_equal(found, rests[column.name])
+                rests[column.name] = found
         return rests

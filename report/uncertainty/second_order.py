@@ -84,6 +84,11 @@ class SecondOrder:
         alone = np.count_nonzero(root, axis=0) == 1  # what is mixed of several is taken as normal
         self.fourth = np.where(alone, own, 3.0)
         self.width = 2 * len(sources) * max(1, chain.number)
+        self.jumping: set[str] = set()
+        """What rests on a median: its derivatives jump where two rows change places, and hardly bend."""
+        for node in chain.made.nodes:
+            if node.median or any(slope.by in self.jumping for slope in node.slopes):
+                self.jumping.add(node.name)
         self._along = Numbers(chain, _beside(values, sources, root)).go()
 
     @staticmethod
@@ -119,7 +124,9 @@ class SecondOrder:
             own = np.sum(first**2, axis=1)
             # A sum that would be negative is no variance: then the terms of the fourth order count too.
             more = np.where(own + bent + turned > 0, bent + turned, bent)
-            found: Array = np.where(np.maximum(bent, np.abs(more)) <= COUNTS * own, 0.0, more)
+            little = np.maximum(bent, np.abs(more)) <= COUNTS * own
+            jumping = np.array([name in self.jumping for name, _ in cells], dtype=bool)
+            found: Array = np.where(little | jumping, 0.0, more)
         return found
 
 

@@ -24,11 +24,11 @@ _CALLED = {
     "x_p": "x_p_eiv", "D": "D_eiv", "B_v": "B_v_eiv", "B_e": "B_e_eiv", "W": "W_eiv", "R": "R_eiv",
     "lam": "lambda_eiv", "x_0": "x_0", "v_0": "v_0", "F_0": "F_eiv", "alpha": "alpha_eiv",
     "C": "C_eiv", "chi2": "chi2_eiv", "u_alpha": "u_alpha_eiv", "R_B": "birge_eiv", "u_B": "u_birge_eiv",
-    "z_R": "z_eiv",
+    "z_R": "z_eiv", "alpha_0": "alpha_0",
 }  # fmt: skip
 """What the quantities of the derivations are called in the sheet, those of the tests first."""
-_SCALARS = ("x_0", "v_0", "F_0", "alpha", "C", "chi2", "u_alpha", "R_B", "u_B")
-_ZERO = ("u_v", "u_e", "u_x", "chi2")
+_SCALARS = ("x_0", "v_0", "F_0", "alpha", "C", "chi2", "u_alpha", "R_B", "u_B", "alpha_0")
+_ZERO = ("u_v", "u_e", "u_x", "chi2", "e")
 """What may be zero."""
 _LATEX = {
     "v": r"\hat{v}'%s", "e": r"\hat{e}%s", "x_p": r"\hat{x}_{p%s}", "x_m": r"\hat{x}_{m%s}",
@@ -61,6 +61,7 @@ def _columns() -> tuple[Column, ...]:
         ),
         made("x_0", fit.depth_scale, display="like x_p"),
         made("v_0", fit.speed_scale, display="like v"),
+        made("alpha_0", fit.first_exponent),
         made("x_m", fit.approach, display="like x_p", meaning="approach on the common curve"),
         made("x_p", fit.depth, display="like x_p", meaning="adjusted imprint depth"),
         made("D", fit.by_exponent, display="like x_p"),
@@ -71,7 +72,11 @@ def _columns() -> tuple[Column, ...]:
         made("lam", fit.multiplier),
         made("v", (fit.speed, fit.speed_step, fit.VO[k]), display="like v", meaning="adjusted impact speed"),
         made("e", (fit.restitution, fit.restitution_step, fit.EO[k]), meaning="adjusted restitution"),
-        made("alpha", (fit.exponent, fit.alpha_step, fit.alpha_start), meaning="exponent of the global fit"),
+        made(
+            "alpha",
+            (fit.exponent, fit.alpha_step, VOCABULARY["alpha_0"].symbol),
+            meaning="exponent of the global fit",
+        ),
         made("F_0", (fit.force, fit.force_step, fit.force_start)),
         made("C", fit.coefficient, unit="N/m^alpha_eiv", meaning="coefficient of the global fit"),
         made("chi2", fit.squares, meaning="sum of squares of the global fit"),
@@ -112,4 +117,7 @@ def _making(tests: Axis, measured: tuple[Column, ...]) -> Callable[..., Column]:
     return made
 
 
-_NONE = "no law C x^alpha with a positive exponent comes near to all tests"
+_NONE = (
+    "no law C x^alpha with a positive exponent comes near to all tests, or a test has speed, restitution and "
+    "depth without uncertainty, which weighs more than all others"
+)
