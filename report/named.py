@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from functools import cached_property
 
 from sympy import And, Basic, Eq, Expr, Indexed, Rational, Symbol, floor
@@ -72,7 +72,7 @@ class Named:
                         column.name,
                     )
 
-    def check_in_loop(self, column: Column, names: set[str]) -> None:
+    def check_in_loop(self, column: Column, names: Set[str]) -> None:
         """A loop begins somewhere, and each of its columns is a formula or iterated.
 
         Parameters

@@ -43,6 +43,7 @@ __all__ = [
     "Given",
     "Iterated",
     "Limit",
+    "Loop",
     "PairAxis",
     "Reference",
     "RepeatAxis",
@@ -60,6 +61,45 @@ class CycleError(SheetError):
     def __init__(self, path: tuple[str, ...]) -> None:
         self.path = path
         super().__init__("columns depend on one another in a circle: " + " -> ".join(path), *path)
+
+
+@dataclass(frozen=True)
+class Loop:
+    """Columns that rest on one another, in the order of a pass.
+
+    Parameters
+    ----------
+    formulas : tuple of Column
+        Computed from the last values of those that are iterated.
+    iterated : tuple of Column
+        Given their next values, all at once.
+    """
+
+    formulas: tuple[Column, ...]
+    iterated: tuple[Column, ...]
+
+    @classmethod
+    def of(cls, columns: Iterable[Column]) -> Loop:
+        """Tell both kinds apart."""
+        kinds: tuple[list[Column], list[Column]] = [], []
+        for column in columns:
+            kinds[isinstance(column.rule, Iterated)].append(column)
+        return cls(*map(tuple, kinds))
+
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """All of them."""
+        return (*self.formulas, *self.iterated)
+
+    @property
+    def name(self) -> str:
+        """What it is called: as the first that is iterated."""
+        return self.iterated[0].name
+
+    @cached_property
+    def names(self) -> frozenset[str]:
+        """What its columns are called."""
+        return frozenset(column.name for column in self.columns)
 
 
 @dataclass(frozen=True)
@@ -83,8 +123,8 @@ class Sheet:
     by_name: Mapping[str, Column] = field(init=False, repr=False)
     order: tuple[Column, ...] = field(init=False, repr=False)
     """Order of evaluation; ties break by declaration. A loop's columns stand together, the iterated last."""
-    loops: tuple[tuple[Column, ...], ...] = field(init=False, repr=False)
-    """Columns that rest on one another by way of iterated ones, in their order."""
+    loops: tuple[Loop, ...] = field(init=False, repr=False)
+    """Columns that rest on one another by way of iterated ones."""
     _named: Mapping[str, tuple[Reference, ...]] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -103,10 +143,12 @@ class Sheet:
         object.__setattr__(self, "_named", {c.name: tuple(self._read(c)) for c in self.columns})
         groups = tuple(self._sorted())
         object.__setattr__(self, "order", tuple(column for group in groups for column in group))
-        object.__setattr__(self, "loops", tuple(group for group in groups if _iterated(group)))
+        object.__setattr__(
+            self, "loops", tuple(loop for group in groups if (loop := Loop.of(group)).iterated)
+        )
         for column in self.columns:
             if column.mentioned is None and column.name in self.loop_of:
-                self.algebra.check_in_loop(column, {each.name for each in self.loop_of[column.name]})
+                self.algebra.check_in_loop(column, self.loop_of[column.name].names)
 
     def __getitem__(self, name: str) -> Column:
         return self.by_name[name]
@@ -291,19 +333,15 @@ class Sheet:
             done.add(column.name)
             yield column
 
-        declared = [column for column in self.columns if column.name in names]
-        for column in (c for c in declared if not isinstance(c.rule, Iterated)):
+        declared = Loop.of(column for column in self.columns if column.name in names)
+        for column in declared.formulas:
             yield from visit(column)
-        yield from (c for c in declared if isinstance(c.rule, Iterated))
+        yield from declared.iterated
 
     @cached_property
-    def loop_of(self) -> dict[str, tuple[Column, ...]]:
+    def loop_of(self) -> dict[str, Loop]:
         """The loop that a column is part of, by its name, if it is."""
-        return {column.name: loop for loop in self.loops for column in loop}
-
-
-def _iterated(group: Sequence[Column]) -> bool:
-    return any(isinstance(column.rule, Iterated) for column in group)
+        return {column.name: loop for loop in self.loops for column in loop.columns}
 
 
 def with_parents(axes: Iterable[Axis | None]) -> Iterator[Axis]:

@@ -285,13 +285,16 @@ class Values:
     def _culprit(self, column: Column, row: int) -> Cell | None:
         """The cell where the error of a cell began; None if it is this one."""
         other, its_row = self._origin(column, row, set()) or (column, row)
-        loop = {each.name for each in self.sheet.loop_of.get(column.name, ())}
-        if (other.name, its_row) == (column.name, row) or (
-            isinstance(column.rule, Iterated) and other.name in loop
-        ):
+        iterated = isinstance(column.rule, Iterated) and other.name in self._loop(column)
+        if (other.name, its_row) == (column.name, row) or iterated:
             return None  # of what a loop iterates, none is to blame for the others
         label, status = self.labels(other)[its_row], Status(int(self.status[other.name][its_row]))
         return Cell(other.name, label, None, status, None, self._why(other, its_row, status))
+
+    def _loop(self, column: Column) -> frozenset[str]:
+        """The names of the columns of its loop; none if it is in none."""
+        loop = self.sheet.loop_of.get(column.name)
+        return frozenset() if loop is None else loop.names
 
     def _origin(self, column: Column, row: int, seen: set[tuple[str, int]]) -> tuple[Column, int] | None:
         """Follow the first precedents that are in error to where it began; None if that leads in a circle."""
@@ -308,7 +311,7 @@ class Values:
         A loop that did not settle is where it began.
         """
         named, kept = self._named(column)
-        loop = {each.name for each in self.sheet.loop_of.get(column.name, ())}
+        loop = self._loop(column)
         failed = isinstance(column.rule, Iterated) and self.status[column.name][row] == Status.NOROOT
         for precedent in sorted(named, key=lambda each: each.column.name in loop):
             other, over = precedent.column, precedent.over

@@ -24,11 +24,12 @@ from ..cells.layout import Layout, lay_out, precedents
 from ..cells.values import Status, Values, how_many, inherited, rows_kept
 from ..plan.kept import of_sheet
 from ..quantity import LARGEST, SMALLEST, Bounds
-from ..sheet import Column, Given, Iterated, Sheet
+from ..sheet import Column, Given, Loop, Sheet
 from .exact_roots import Enclose, brackets, of_arrays, of_mpmath
 from .intervals import Intervals
 from .isolation import Doubtful
 from .kernels import Enclosing, function_of
+from .numpy_loop import ENOUGH, MOST
 
 __all__ = ["DIGITS", "ExactValues", "evaluate", "laid_out"]
 
@@ -40,8 +41,6 @@ _NEAR = mpmath.mpf("1e-30")
 _PASSES = 400
 """How many passes a loop gets; nearer than that, one that moves no less than the one before the last moves by
 rounding only."""
-_OF_DOUBLES, _ENOUGH = 100, 2.0**-44
-"""How many passes doubles get, to come so near."""
 _ROUGHLY = 1e-12
 """As parts of a root: how close it is sought, and how close doubles should come."""
 
@@ -191,7 +190,7 @@ class _Exact:
             loop = self.sheet.loop_of.get(column.name)
             if loop is None:
                 self.value[column.name], self.status[column.name] = self._column(column)
-            elif column is loop[-1]:
+            elif column is loop.columns[-1]:
                 self._loop(loop)
         codes = {name: [Status(code) for code in status.tolist()] for name, status in self.status.items()}
         return ExactValues(self.value, codes, self.roots, self.layouts, self.counted, self.broken)
@@ -210,28 +209,27 @@ class _Exact:
     def _rows_of(self, column: Column) -> int:
         return 1 if column.axis is None else self.layouts[column.axis.name].size
 
-    def _loop(self, loop: Sequence[Column]) -> None:
+    def _loop(self, loop: Loop) -> None:
         """Columns that rest on one another: passes until 50 digits stay."""
-        iterated = [column for column in loop if isinstance(column.rule, Iterated)]
-        for column in loop:
+        for column in loop.columns:
             # Nothing is in error because of what is not there yet.
             self.value[column.name] = [None] * self._rows_of(column)
             self.status[column.name] = np.zeros(self._rows_of(column), dtype=np.uint8)
         while True:  # until all know of the errors before the loop that reach them
-            known = [self.status[column.name] for column in loop]
-            for column in loop:
+            known = [self.status[column.name] for column in loop.columns]
+            for column in loop.columns:
                 self.status[column.name] = self._named(column)[2]
-            if all(map(np.array_equal, known, (self.status[column.name] for column in loop))):
+            if all(map(np.array_equal, known, (self.status[column.name] for column in loop.columns))):
                 break
         begun = {}
-        for column in iterated:
+        for column in loop.iterated:
             begun[column.name] = self._column(column, "start")
             self._put({column.name: begun[column.name]})
         before = last = mpmath.inf
         for number in range(1, _PASSES + 1):
-            for column in loop[: -len(iterated)]:
+            for column in loop.formulas:
                 self._put({column.name: self._column(column)})
-            after = {column.name: self._column(column) for column in iterated}
+            after = {column.name: self._column(column) for column in loop.iterated}
             if any((status != begun[name][1]).any() for name, (_, status) in after.items()):
                 break  # a value got lost on the way
             moved = max(
@@ -243,8 +241,8 @@ class _Exact:
                 ),
                 default=mpmath.mpf(0),
             )
-            if number == _OF_DOUBLES and moved > _ENOUGH:
-                break
+            if number == MOST and moved > ENOUGH:
+                break  # it has no value in doubles
             if moved <= _CLOSE or (moved <= _NEAR and moved >= before):
                 return
             self._put(after)
@@ -252,7 +250,7 @@ class _Exact:
         for name, (values, status) in begun.items():
             status[status == Status.OK] = Status.NOROOT
             self._put({name: ([None] * len(values), status)})
-        for column in loop[: -len(iterated)]:
+        for column in loop.formulas:
             self._put({column.name: self._column(column)})
 
     def _put(self, found: Mapping[str, tuple[list[Any], NDArray[np.uint8]]]) -> None:

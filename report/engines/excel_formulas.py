@@ -351,9 +351,9 @@ class _Writing:
         found = f"IF({settled},{last},{_UNSETTLED})"
         lost = f"OR({last}={_CODE[Status.DOMAIN]},{last}={_CODE[Status.OVERFLOW]})"
         found = f"IF(ISNUMBER({last}),{found},IF({lost},{_CODE[Status.NOROOT]},{last}))"
-        for each in self.sheet.loop_of[self.column.name]:
+        for each in self.sheet.loop_of[self.column.name].iterated:
             # All rows rest on a single number, and on its error.
-            if isinstance(each.rule, Iterated) and each.axis is None and each.name != self.column.name:
+            if each.axis is None and each.name != self.column.name:
                 other = self.address(Leaf("cells", pass_name(each.name, 0)))
                 found = f"IF(ISNUMBER({other}),{found},{other})"
         return f"IF(ISNUMBER({start}),{found},{start})"

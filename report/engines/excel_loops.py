@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from ..column import Column, Formula, Iterated
-from ..sheet import Sheet
+from ..column import Column, Formula
+from ..sheet import Loop, Sheet
 
 if TYPE_CHECKING:
     from sympy import Basic
@@ -41,11 +41,9 @@ def passes_of(sheet: Sheet) -> dict[str, tuple[str, str, int]]:
     """
     found: dict[str, tuple[str, str, int]] = {}
     for loop in sheet.loops:
-        iterated = [column.name for column in loop if isinstance(column.rule, Iterated)]
         for number in range(PASSES + 1):
-            for column in loop:
-                if number or column.name in iterated:
-                    found[pass_name(column.name, number)] = iterated[0], column.name, number
+            for column in loop.columns if number else loop.iterated:
+                found[pass_name(column.name, number)] = loop.name, column.name, number
     return found
 
 
@@ -59,16 +57,20 @@ def pass_columns(sheet: Sheet) -> tuple[Column, ...]:
     return tuple(column for loop in sheet.loops for column in _of_loop(loop))
 
 
-def _of_loop(loop: tuple[Column, ...]) -> Iterator[Column]:
-    iterated = {column.name for column in loop if isinstance(column.rule, Iterated)}
-    for column in loop:
-        if isinstance(column.rule, Iterated):
-            yield _passed(column, 0, column.rule.start, {})
+def _of_loop(loop: Loop) -> Iterator[Column]:
+    for column in loop.iterated:
+        yield _passed(column, 0, _rule(column).start, {})
+    before = {column.name for column in loop.iterated}
     for number in range(1, PASSES + 1):
-        now = {c.name: pass_name(c.name, number - (c.name in iterated)) for c in loop}
-        for column in loop:
-            rule: Any = column.rule
-            yield _passed(column, number, rule.step if column.name in iterated else rule.expression, now)
+        now = {name: pass_name(name, number - (name in before)) for name in loop.names}
+        for column in loop.formulas:
+            yield _passed(column, number, _rule(column).expression, now)
+        for column in loop.iterated:
+            yield _passed(column, number, _rule(column).step, now)
+
+
+def _rule(column: Column) -> Any:
+    return column.rule
 
 
 def _passed(column: Column, number: int, value: Basic, now: Mapping[str, str]) -> Column:

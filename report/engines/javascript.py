@@ -316,7 +316,7 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
         if kernels:
             parts.append(f"kernels: {kernels}")
         if column.name in sheet.loop_of:
-            parts.append(f'loop: "{sheet.loop_of[column.name][0].name}"')
+            parts.append(f'loop: "{sheet.loop_of[column.name].name}"')
         if column.name in begun:
             parts.append(f"start: {_kernels(sheet, plan, begun[column.name])}")
         columns.append(f"  {{{', '.join(parts)}}}")

@@ -20,7 +20,7 @@ from ..cells.layout import Layout, lay_out, precedents
 from ..cells.values import Status, Values, how_many, inherited, rows_kept
 from ..plan.kept import of_sheet
 from ..quantity import SMALLEST
-from ..sheet import Column, Sheet
+from ..sheet import Column, Loop, Sheet
 from .kernels import SAME, Array, Function, Kernel, compiled
 from .numpy_loop import LoopProgram, Settling
 from .numpy_root import RootProgram
@@ -236,10 +236,10 @@ class Laid:
         found: dict[str, tuple[int, ...]] = {name: own.shape for name, own in data.items()}
         for column in self.sheet.order:
             if column.name not in found:
-                loop = self.sheet.loop_of.get(column.name, (column,))
-                named = set().union(*(self.names[each.name] for each in loop)) - {each.name for each in loop}
+                loop = self.sheet.loop_of.get(column.name) or Loop.of([column])
+                named = set().union(*(self.names[name] for name in loop.names)) - loop.names
                 leading = np.broadcast_shapes(*(found[name][:-1] for name in named))
-                found |= {each.name: (*leading, self.size(each)) for each in loop}
+                found |= {each.name: (*leading, self.size(each)) for each in loop.columns}
         return found
 
     def size(self, column: Column) -> int:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..cells.values import Status
 from .kernels import SAME, Array, Function, compiled
 
-__all__ = ["MOST", "NEAR", "STILL", "LoopProgram", "Settling"]
+__all__ = ["ENOUGH", "MOST", "NEAR", "STILL", "LoopProgram", "Settling"]
 
 Codes = NDArray[np.uint8]
 

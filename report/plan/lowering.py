@@ -148,20 +148,17 @@ class Lowering:
 
     def nodes(self, column: Column) -> list[Node]:
         """The nodes of a column, or those of its loop, which come with the last column of that."""
-        loop = self.sheet.loop_of.get(column.name, ())
-        if not loop:
+        loop = self.sheet.loop_of.get(column.name)
+        if loop is None:
             return self.column(column)
-        if column.name != loop[-1].name:
+        if column.name != loop.columns[-1].name:
             return []
-        iterated, starts, body = list[Column](), list[Node](), list[Node]()
-        for each in loop:
-            if isinstance(each.rule, Iterated):
-                iterated.append(each)
-                starts += self.iterated(each, each.rule.start)
-                body += self.iterated(each, each.rule.step)
-            else:
-                body += self.column(each)
-        return [LoopNode(tuple(iterated), tuple(starts), tuple(body))]
+        starts, body = list[Node](), [node for each in loop.formulas for node in self.column(each)]
+        for each in loop.iterated:
+            assert isinstance(each.rule, Iterated)
+            starts += self.iterated(each, each.rule.start)
+            body += self.iterated(each, each.rule.step)
+        return [LoopNode(loop.iterated, tuple(starts), tuple(body))]
 
     def iterated(self, column: Column, expression: Expr) -> list[Node]:
         """The nodes of a value of an iterated column: where it has none, the loop as a whole has failed."""
