@@ -7,10 +7,11 @@ derivatives of their sum of squares to zero.
 
 from __future__ import annotations
 
-from sympy import Expr, Integer, Sum, Symbol, diff, exp, log
+from sympy import Integer, Sum, Symbol, diff, exp, log
 from sympy.core.parameters import evaluate
 
 from .equation import Derivation, Equation, Kind, Step
+from .normal_equation import normal_equation
 from .symbols import VOCABULARY, q
 
 __all__ = [
@@ -44,16 +45,10 @@ _squares_at_ref = Sum((F[q] - _F_0 * (x[q] / x_ref) ** alpha) ** 2, _all).xrepla
 """The same with the force at the reference approach: only of pure numbers has an exponent a logarithm."""
 
 
-def _normal(derivative: Expr, name: str, given: str = "") -> Equation:
-    """The sum of squares is least where its derivative by a parameter vanishes."""
-    because = f"the sum of squares is least where its derivative by the {name} vanishes{given}"
-    return Equation("", (derivative, Integer(0)), because, Kind.DEFINITION, f"normal equation of the {name}")
-
-
-_normal_a = _normal(diff(_squares_log, a), "intercept")
-_normal_b = _normal(diff(_squares_log, b), "slope")
-_normal_C = _normal(diff(_squares_lin, C), "coefficient")
-_normal_alpha = _normal(
+_normal_a = normal_equation(diff(_squares_log, a), "intercept")
+_normal_b = normal_equation(diff(_squares_log, b), "slope")
+_normal_C = normal_equation(diff(_squares_lin, C), "coefficient")
+_normal_alpha = normal_equation(
     diff(_squares_at_ref, alpha).xreplace({_F_0: C * x_ref**alpha}),
     "exponent",
     ", for a given force at the reference approach",

@@ -6,10 +6,11 @@ cancel; here the means are taken out first.
 
 from __future__ import annotations
 
-from sympy import Expr, IndexedBase, Integer, Sum, Symbol, diff
+from sympy import Expr, IndexedBase, Sum, Symbol, diff
 from sympy.core.parameters import evaluate
 
 from .equation import Derivation, Equation, Kind, Ledger
+from .normal_equation import normal_equation
 
 __all__ = ["LEDGER", "a", "b", "k", "n", "w", "x", "x_mean", "y", "y_mean"]
 
@@ -28,13 +29,8 @@ def _total(term: Expr) -> Expr:
 _squares = _total(w[k] * (y[k] - a - b * x[k]) ** 2)
 
 
-def _normal(parameter: Symbol, name: str) -> Equation:
-    because = f"the sum of squares is least where its derivative by the {name} vanishes"
-    vanishing = (diff(_squares, parameter), Integer(0))
-    return Equation("", vanishing, because, Kind.DEFINITION, f"normal equation of the {name}")
-
-
-_normal_a, _normal_b = _normal(a, "intercept"), _normal(b, "slope")
+_normal_a = normal_equation(diff(_squares, a), "intercept")
+_normal_b = normal_equation(diff(_squares, b), "slope")
 
 with evaluate(False):
     _mean_x = Equation(

@@ -6,13 +6,13 @@ A width is kept exactly as it was said; the standard uncertainty is made of it w
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from types import MappingProxyType
 
-__all__ = ["DIVISORS", "DOMINANT", "LEVEL", "Error", "Shape"]
+__all__ = ["DIVISORS", "DOMINANT", "LEVEL", "PARTS", "SHARES", "Error", "Shape"]
 
 LEVEL = 0.95
 """The coverage probability that is stated where nobody asks for another; 0.9545 is another one."""
@@ -43,6 +43,22 @@ DIVISORS: Mapping[Shape, float] = MappingProxyType(
     }
 )
 """The width over the standard uncertainty (JCGM 100, 4.3.7, 4.3.9; JCGM 101, 6.4.6)."""
+SHARES: Mapping[Shape, Callable[[float], float]] = MappingProxyType(
+    {
+        Shape.RECTANGULAR: lambda x: x,
+        Shape.TRIANGULAR: lambda x: 1 - (1 - x) ** 2,
+        Shape.ARCSINE: lambda x: 2 / math.pi * math.asin(x),
+    }
+)
+"""The share of a distribution with ends that lies within a part of its width."""
+PARTS: Mapping[Shape, Callable[[float], float]] = MappingProxyType(
+    {
+        Shape.RECTANGULAR: lambda p: p,
+        Shape.TRIANGULAR: lambda p: 1 - math.sqrt(1 - p),
+        Shape.ARCSINE: lambda p: math.sin(p * math.pi / 2),
+    }
+)
+"""The other way round: which part of the width holds the middle share p."""
 
 
 @dataclass(frozen=True)

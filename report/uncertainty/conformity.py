@@ -3,20 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
 
-from ..distribution import DIVISORS, Shape
+from ..distribution import DIVISORS, SHARES, Shape
 from ..inputs.limits import Limits
 from ..result.uncertain import Budget, Conformity, Decision
 
 __all__ = ["beyond", "conformity"]
-
-_SHARES: Mapping[Shape, Callable[[float], float]] = {
-    Shape.RECTANGULAR: lambda x: x,
-    Shape.TRIANGULAR: lambda x: 1 - (1 - x) ** 2,
-    Shape.ARCSINE: lambda x: 2 / math.pi * math.asin(x),
-}
-"""The share of a distribution with ends that lies within a part of its width."""
 
 
 def beyond(z: float, shape: Shape, dof: float) -> float:
@@ -35,8 +27,8 @@ def beyond(z: float, shape: Shape, dof: float) -> float:
     >>> beyond(math.sqrt(3) / 2, Shape.RECTANGULAR, math.inf), round(beyond(1.4, Shape.NORMAL, math.inf), 4)
     (0.25, 0.0808)
     """
-    if shape in _SHARES:
-        share = _SHARES[shape](min(abs(z) / DIVISORS[shape], 1.0))
+    if shape in SHARES:
+        share = SHARES[shape](min(abs(z) / DIVISORS[shape], 1.0))
         return (1 - share) / 2 if z > 0 else (1 + share) / 2
     if shape is Shape.NORMAL:
         return math.erfc(z / math.sqrt(2)) / 2

@@ -3,23 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from statistics import NormalDist
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..distribution import DIVISORS, DOMINANT, LEVEL, Shape
+from ..distribution import DIVISORS, DOMINANT, LEVEL, PARTS, Shape
 from ..result.uncertain import ErrorSource
 
 __all__ = ["assigned", "coverage", "effective"]
-
-_QUANTILES: dict[Shape, Callable[[float], float]] = {
-    Shape.RECTANGULAR: lambda p: p,
-    Shape.TRIANGULAR: lambda p: 1 - math.sqrt(1 - p),
-    Shape.ARCSINE: lambda p: math.sin(p * math.pi / 2),
-}
-"""Which part of the width holds the middle share p of a distribution with ends."""
 
 
 def effective(u: float, contributions: NDArray[np.float64], dof: Sequence[float]) -> float:
@@ -57,7 +50,7 @@ def assigned(
         largest = int(sizes.argmax())
         rest = math.sqrt(float(np.sum(np.delete(sizes, largest) ** 2)) + abs(second))
         shape, sure = sources[largest].shape, math.isinf(sources[largest].dof)
-        if sure and sizes[largest] and shape in _QUANTILES and rest <= DOMINANT * sizes[largest]:
+        if sure and sizes[largest] and shape in PARTS and rest <= DOMINANT * sizes[largest]:
             return shape
     return Shape.NORMAL if math.isinf(dof) else Shape.STUDENT
 
@@ -91,8 +84,8 @@ def coverage(
     if math.isnan(dof):
         return math.nan, "nothing: correlated sources have finite degrees of freedom"
     shape = assigned(sources, contributions, dof, second)
-    if shape in _QUANTILES:
-        return DIVISORS[shape] * _QUANTILES[shape](level), f"the {shape} source that dominates"
+    if shape in PARTS:
+        return DIVISORS[shape] * PARTS[shape](level), f"the {shape} source that dominates"
     if shape is Shape.NORMAL:
         return NormalDist().inv_cdf((1 + level) / 2), "a normal distribution"
     from scipy.special import stdtrit  # a quarter of a second, for those who have degrees of freedom

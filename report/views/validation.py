@@ -11,6 +11,7 @@ from ..quantity import behind
 from ..result.result import Comparison
 from ..result.validation import Example, Validation
 from . import markdown as md
+from .budget import aligned
 from .checks import as_json, as_junit
 
 __all__ = ["FORMATS"]
@@ -81,9 +82,7 @@ def _lines(block: tuple[int, str] | str | _Table) -> list[str]:
     if isinstance(block, tuple):
         level, heading = block
         return [heading, ("=" if level == 1 else "-") * len(heading)]
-    rows = [row for row in (block.header, *block.rows) if any(row)]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
+    return aligned([row for row in (block.header, *block.rows) if any(row)])
 
 
 def as_markdown(record: Validation) -> str:

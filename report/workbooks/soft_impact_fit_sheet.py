@@ -26,7 +26,7 @@ _CALLED = {
     "C": "C_eiv", "chi2": "chi2_eiv", "u_alpha": "u_alpha_eiv", "R_B": "birge_eiv", "u_B": "u_birge_eiv",
     "z_R": "z_eiv", "alpha_0": "alpha_0",
 }  # fmt: skip
-"""What the quantities of the derivations are called in the sheet, those of the tests first."""
+"""What the quantities of the derivations are called in the sheet."""
 _SCALARS = ("x_0", "v_0", "F_0", "alpha", "C", "chi2", "u_alpha", "R_B", "u_B", "alpha_0")
 _ZERO = ("u_v", "u_e", "u_x", "chi2", "e")
 """What may be zero."""
