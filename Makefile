@@ -25,7 +25,7 @@ help:
 	@echo 'make report      build the report of the shipped paper into $(OUT)/'
 	@echo 'make test        ruff, mypy and all tests, with a few of the campaigns that are drawn at random'
 	@echo 'make campaigns   all of these campaigns, and what was found in them (SEED=7: others)'
-	@echo "make seen        the shipped paper's report has changed, and was looked at: it is right as it is"
+	@echo "make seen        the page's scripts or the paper's report were changed and looked at: they are right"
 	@echo 'make mutants     one spot of the sources changed at a time: what no test notices (SEED=7, EACH=40, PART=plan)'
 	@echo 'make bench       the benchmarks'
 	@echo 'make wheel       loopsheet as one file in dist/, to be installed without this folder'
@@ -48,7 +48,7 @@ campaigns: $(VENV)/.test
 	$(PYTEST) -m campaigns --campaigns all
 
 seen: $(VENV)/.test
-	$(BIN)/python -m pytest -q --seen tests/paper/test_paper_issued.py
+	$(BIN)/python -m pytest -q --seen tests/outside/page/test_shortened.py tests/paper/test_paper_issued.py
 
 mutants: $(VENV)/.test
 	$(BIN)/python tests/mutants.py $(if $(SEED),--seed $(SEED)) $(if $(EACH),--each $(EACH)) $(PART)

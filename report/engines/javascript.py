@@ -24,9 +24,10 @@ from .javascript_intervals import enclose, needed
 
 __all__ = ["LOOPS", "RUNTIME", "program"]
 
-RUNTIME = Path(__file__).resolve().parents[2] / "templates" / "engines" / "runtime.js"
+_TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
+RUNTIME = _TEMPLATES / "minified" / "runtime.js"
 """What runs a program."""
-LOOPS = RUNTIME.with_name("loops.js")
+LOOPS = _TEMPLATES / "engines" / "loops.js"
 """What a program with loops brings along."""
 
 _NULL = Symbol("null", real=True)

@@ -185,7 +185,7 @@ def write(made: Issued, stage: Path) -> None:
 
 
 def _script(report: Report, program: str) -> str:
-    return live.script(program, _text("engines/runtime.js"), bool(report.workbook.charts))
+    return live.script(program, _text("minified/runtime.js"), bool(report.workbook.charts))
 
 
 _BETWEEN = re.compile(

@@ -52,7 +52,7 @@ SCRIPTS = (
     "panel.js",
     "main.js",
 )
-"""The scripts of the page in the order in which they are read."""
+"""The scripts of the page in the order in which they are read; people read them in templates/live."""
 
 DRAWING = frozenset({"drawing.js", "charts.js"})
 """The scripts that only a page with charts has."""
@@ -79,9 +79,9 @@ def script(program: str, runtime: str, drawings: bool = True) -> str:
         The text would end the element that it stands in.
     """
     names = (name for name in SCRIPTS if drawings or name not in DRAWING)
-    own = [(TEMPLATES / "live" / name).read_text(encoding="utf-8") for name in names]
-    whole = "\n".join(["(() => {", runtime, f"const PROGRAM = {program};", *own, "})();", ""])
-    text: str = kept("script of the page", [whole], lambda: short_script(whole))
+    own = [(TEMPLATES / "minified" / name).read_text(encoding="utf-8") for name in names]
+    short: str = kept("program of the page", [program], lambda: short_script(program))
+    text = "".join(["(()=>{", runtime, f"const PROGRAM={short};\n", *own, "})();\n"])
     if re.search(r"</script|<!--|<script", text, re.IGNORECASE):
         raise ValueError("the script of the page must not hold the end of its element")
     return text
