@@ -67,6 +67,15 @@ def test_all_ways_to_fit_find_the_same(bench: Callable[[str], ModuleType]) -> No
         assert way() == pytest.approx(one.certified, rel=1e-8)
 
 
+def test_all_ways_to_draw_tell_the_same(bench: Callable[[str], ModuleType]) -> None:
+    measured = bench("bench_monte_carlo")
+    alone, *told = (way() for way in measured.ways(20_000).values())
+    assert alone.shape == (20_000, 15)
+    for other in told:
+        assert other.number == 20_000
+        assert other.symmetric == pytest.approx(told[0].symmetric, rel=1e-12)
+
+
 def test_every_command_that_is_measured_is_one(bench: Callable[[str], ModuleType], tmp_path: Path) -> None:
     measured = bench("bench_build")
     assert measured.answers(tmp_path)["--help"]() > 0

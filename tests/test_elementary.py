@@ -57,6 +57,31 @@ def test_as_exact_as_promised(case: str) -> None:
             assert abs(cell - true) <= ULPS * float(np.spacing(abs(float(true)))), at
 
 
+@pytest.mark.parametrize("name", ["exp", "log"])
+@pytest.mark.parametrize("width", [0.0, 1e-12, 1e-4, 0.01, 0.03, 2.0])
+def test_neighbours_are_as_exact_as_promised(name: str, width: float) -> None:
+    rng = np.random.default_rng(7)
+    given = rng.uniform(0.02, 3, 10) * (1 + width * rng.uniform(-0.5, 0.5, (100, 10)))
+    found = getattr(elementary, f"{name}_beside")(given)
+    with mpmath.workdps(50):
+        of = {"exp": mpmath.exp, "log": mpmath.log}[name]
+        for cell, at in zip(found.reshape(-1).tolist(), given.reshape(-1).tolist(), strict=True):
+            true = of(mpmath.mpf(at))
+            assert abs(cell - true) <= ULPS * float(np.spacing(abs(float(true)))), at
+
+
+@pytest.mark.parametrize("name", ["exp", "log"])
+def test_what_has_no_near_neighbour_is_computed_by_itself(name: str) -> None:
+    own, beside = (getattr(elementary, each) for each in (name, f"{name}_beside"))
+    with np.errstate(all="ignore"):
+        for given in (
+            np.array([[1.0, 2.0], [np.nan, 2.0]]),
+            np.array([[1.0], [5.0]]),
+            np.array([1.0, 1.001]),
+        ):
+            np.testing.assert_array_equal(beside(given), own(given))
+
+
 def test_the_constants_are_what_they_are_called() -> None:
     with mpmath.workdps(60):
         first, second = (mpmath.mpf(float(part)) for part in elementary._LN2)
@@ -65,6 +90,8 @@ def test_the_constants_are_what_they_are_called() -> None:
         assert float(1 / mpmath.ln2) == elementary._PER_LN2
         coth = [mpmath.bernoulli(2 * k) / mpmath.factorial(2 * k) for k in range(1, 7)]
         assert tuple(map(float, coth)) == elementary._COTH
+        inverse = [1 / mpmath.factorial(k) for k in range(len(elementary._PER_FACTORIALS))]
+        assert tuple(map(float, inverse)) == elementary._PER_FACTORIALS
 
 
 SPECIAL = np.array([0.0, -0.0, 1.0, -1.0, 2.0, -2.5, 0.5, np.inf, -np.inf, np.nan, 5e-324, 1e308, -1e-310])
@@ -113,7 +140,10 @@ for module in (elementary, np):
     print(hashlib.sha256(b"".join(each.tobytes() for each in found)).hexdigest())
 paper = Study(PAPER).prepared
 values = engine.evaluate(paper.sheet, paper.labels, paper.data).value
-print(hashlib.sha256(b"".join(values[name].tobytes() for name in sorted(values))).hexdigest())
+near = 1 + x[:10] * (1 + y.reshape(-1, 10) / 1000)
+found = [each.tobytes() for each in (elementary.exp_beside(near), elementary.log_beside(near))]
+found += [values[name].tobytes() for name in sorted(values)]
+print(hashlib.sha256(b"".join(found)).hexdigest())
 print(processor())
 """
 """What NumPy is told to compute, what it would by itself, and what it makes of the shipped paper."""

@@ -8,12 +8,13 @@ bit may be wrong, as in NumPy's: an error is at most 2 units of it. It takes lon
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import factorial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["exp", "log", "power"]
+__all__ = ["exp", "exp_beside", "log", "log_beside", "power"]
 
 Array = NDArray[np.float64]
 
@@ -36,6 +37,12 @@ _LARGE, _FAINT = _numbers(-(2.0**64), 2.0**64), _numbers(-(2.0**-40), 2.0**-40)
 _BEYOND = _numbers(-750.0, 750.0)
 """Exponentials of more, and of less than its opposite, are no positive double."""
 _SPLIT = np.array(2.0**27 + 1)
+_FEW = 2.0**-6
+"""How far numbers may be from one, relatively for logarithms, to be computed from what that one has."""
+_FAINTER = 2.0**-57
+"""What is this small beside 1 is left out."""
+_PER_FACTORIALS = _numbers(*(1 / factorial(k) for k in range(10)))
+"""The series of exp(r), as many terms as doubles tell for r up to _FEW."""
 _BLOCK = 1 << 13
 """How many numbers are computed at a time: what is written down on the way then stays in the processor's
 cache."""
@@ -92,6 +99,62 @@ def power(x: Any, y: Any) -> Any:
     found = _in_blocks(_power, np.where(known, np.abs(x), 1.0), np.where(known, y, 0.0))
     found = np.where((x < 0) & (np.abs(np.fmod(np.where(known, y, 0.0), 2)) == 1), -found, found)
     return np.where(known, found, np.power(np.where(known, 1.0, x), y))
+
+
+def exp_beside(x: Any) -> Any:
+    """The exponential of a batch that lies close together: a few terms beside that of its first element.
+
+    Parameters
+    ----------
+    x : float array (batch, ...)
+        As for :func:`exp`. The last bits of an element hang on which is the first of the batch.
+    """
+    if not _is_plain(x) or np.ndim(x) < 2:
+        return exp(x)
+    r = x - x[:1]
+    reach = max(float(r.max()), -float(r.min()))
+    if not reach <= _FEW:
+        return exp(x)
+    terms, left = 1, reach
+    while left > _FAINTER:
+        terms += 1
+        left *= reach / terms
+    first = exp(x[:1])
+    found = _series(_PER_FACTORIALS[1 : max(terms, 3)], r)
+    found *= r
+    found *= first
+    found += first
+    return found
+
+
+def log_beside(x: Any) -> Any:
+    """The natural logarithm of a batch that lies close together: a few terms beside its first element's.
+
+    Parameters
+    ----------
+    x : float array (batch, ...)
+        As for :func:`exp_beside`.
+    """
+    if not _is_plain(x) or np.ndim(x) < 2:
+        return log(x)
+    first = x[:1]
+    s = x - first
+    s /= x + first
+    reach, begun = max(float(s.max()), -float(s.min())), log(first)
+    # A sum that cancels would lose digits of what it is made of.
+    if not (reach <= _FEW and reach <= float(np.abs(begun).min()) / 8):
+        return log(x)
+    terms, left = 1, reach * reach
+    while left > _FAINTER:
+        terms += 1
+        left *= reach * reach
+    square = s * s
+    found = _series(_ATANH[: max(terms, 2)], square)
+    found *= square
+    found += _TWO
+    found *= s
+    found += begun
+    return found
 
 
 def _is_plain(x: Any) -> bool:

@@ -42,12 +42,15 @@ class FoundRoots:
         the unknown's interval where it was not decided.
     bisected : int
         How many rows the steps did not settle.
+    unknown : float array
+        Where the equation vanishes; anything where there is not one root.
     """
 
     value: Array
     status: NDArray[np.uint8]
     several: Mapping[int, tuple[float, ...]]
     bisected: int
+    unknown: Array
 
 
 _BODIES = ("at", "newton", "step", "check", "value")
@@ -74,6 +77,8 @@ class RootProgram:
     fixed : Kernel
         What does not change with the unknown: low, high, start, the sign at each end (a number only where
         the rule gives it), the turning points, then the constants of the functions below.
+    constants : Kernel
+        Of these, the constants alone.
     totals : tuple of str
         The axes that these sum over; they are called with the unknown, the constants and the totals.
     at : callable
@@ -101,6 +106,7 @@ class RootProgram:
     turning: int
     steps: int
     fixed: Kernel
+    constants: Kernel
     totals: tuple[str, ...]
     at: Function
     newton: Function
@@ -121,7 +127,8 @@ class RootProgram:
         parts = (f"# {name}\n{text}" for name, text in zip(_BODIES, bodies, strict=True))
         return cls(
             texts["arguments"], frozenset(texts["terms_of"]), (low, high), texts["turning"], texts["steps"],
-            fixed, tuple(texts["totals"]), at, newton, step, check, value,
+            fixed, Kernel.of_plain(texts["constants"], functions), tuple(texts["totals"]),
+            at, newton, step, check, value,
             "\n".join([f"# fixed\n{fixed.source}", *parts]),
             None if texts["enclosing"] is None else Enclosing.of_plain(texts["enclosing"]),
         )  # fmt: skip
@@ -156,7 +163,8 @@ class RootProgram:
             stretches, doubts = self._isolated(ends, cells, odd)
         if len(stretches) == 1 and not doubts and stretches[0].crosses.all():
             found, bisected = rows.narrow(stretches[0], ends[_START], stretches[0].crosses)
-            return FoundRoots(rows.call(self.value, found), np.zeros(shape, dtype=np.uint8), {}, bisected)
+            value = rows.call(self.value, found)
+            return FoundRoots(value, np.zeros(shape, dtype=np.uint8), {}, bisected, found)
         doubtful = np.zeros(odd.size, dtype=bool)
         doubtful[list(doubts)] = True
         # One sign change a stretch at most: the stretches that cross are the roots.
@@ -179,7 +187,7 @@ class RootProgram:
         if len(shape) == 1:
             several |= self._several(stretches, rows, ends[_START], status == Status.TWOROOTS)
             several |= {row: doubts[row] for row in np.flatnonzero(status == Status.UNDECIDED).tolist()}
-        return FoundRoots(value, status.astype(np.uint8), several, bisected)
+        return FoundRoots(value, status.astype(np.uint8), several, bisected, found)
 
     def _stretches(self, ends: Sequence[Array], rows: RootRows) -> tuple[list[Stretch], Mask]:
         """The stretches between turning points, and where the equation has no sign at one of their ends."""

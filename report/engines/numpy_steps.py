@@ -118,6 +118,12 @@ class RootRows:
 
     def _quickly(self, stretch: Stretch, start: Array) -> tuple[Array, Mask]:
         """Steps that nobody watches, and where they led to a root: near to it, and inside the bracket."""
+        here, near = self.unwatched(start)
+        inside = (here >= stretch.left) & (here <= stretch.right)
+        return here, inside & near & self._settled(here)
+
+    def unwatched(self, start: Array) -> tuple[Array, Mask]:
+        """Steps that nobody watches, and where the last was so small that it left less than rounding does."""
         here, near, most = start, np.zeros(1, dtype=bool), self.program.steps
         # One step of fourth order, and Newton's polish what it leaves: cheaper than watching a bracket.
         if not self.totals:
@@ -129,9 +135,7 @@ class RootRows:
             near = near | self._near(here, back, NEAR[1])
             if near.all():
                 break
-        here = np.broadcast_to(here, self.shape)
-        inside = (here >= stretch.left) & (here <= stretch.right)
-        return here, inside & near & self._settled(here)
+        return np.broadcast_to(here, self.shape), near
 
     def _near(self, here: Array, back: Array, enough: float) -> Mask:
         """Where a step was so small that the next one would be nothing."""

@@ -95,6 +95,7 @@ def root_texts(sheet: Sheet, plan: Plan, node: RootNode) -> dict[str, Any]:
         "turning": len(node.turning),
         "steps": node.steps,
         "fixed": fixed.plain,
+        "constants": kernel([*constants, *cells]).plain,
         "totals": totals,
         "at": write(arguments, totals, [f]),
         "newton": write(arguments, totals, [f, f / diff(f, unknown)]),

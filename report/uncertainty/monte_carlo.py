@@ -8,16 +8,24 @@ tails let them exist, and an interval only if nearly all draws have a value.
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+import os
+from collections import Counter, deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..cells.values import Status, Values
-from ..distribution import DIVISORS, Shape
-from ..engines.numpy import Program, evaluate
+from ..distribution import DIVISORS, PARTS, Shape
+from ..engines.elementary import log
+from ..engines.intervals import Intervals
+from ..engines.numpy import Laid, Program, evaluate
+from ..engines.numpy_beside import BESIDE, Beside
 from ..inputs.inputs import Inputs
+from ..judge.enclosure import Enclosure
+from ..quantity import SMALLEST
 from ..result.uncertain import Budget, Distributed, ErrorSource
 from ..sheet import Sheet
 from .second_order import root_of
@@ -26,11 +34,15 @@ from .sources import correlated, given, sources
 __all__ = ["MOST", "draw"]
 
 Array = NDArray[np.float64]
+Part = TypeVar("Part")
+Made = TypeVar("Made")
 
 MOST = 1_000_000
 """Draws, at most, where nobody asks for another number."""
 FEWEST = 10
 """Batches before it is asked whether they are enough."""
+FAR = 5.0
+"""In standard uncertainties: what is drawn farther out, where an error has no end, is asked for by itself."""
 WITHOUT = 0.025
 """Of so many draws without a value no interval of 95 % is told: it might as well lie there."""
 NO_MEAN, NO_DEVIATION = 1.1, 2.2
@@ -77,16 +89,36 @@ def draw(
     found: list[Array] = []
     told: list[tuple[float, ...]] = []
     lost, tolerance = 0, _tolerance(budget.u) if tolerance is None else tolerance
-    for number, batch in enumerate(drawn.batches(size, most), start=1):
-        step(f"drawing {number * size} times")
+
+    def computed(batch: dict[str, Array]) -> tuple[Array, int, tuple[float, ...]]:
         own, status = drawn.of(batch, row)
-        lost += int(np.count_nonzero(status != Status.OK))
-        found.append(own[status == Status.OK])
-        if found[-1].size:
-            told.append(_told(np.sort(found[-1]), budget.level))
+        ordered = np.sort(own[status == Status.OK])
+        return ordered, own.size - ordered.size, _told(ordered, budget.level)
+
+    for number, (ordered, missing, own) in enumerate(
+        _side_by_side(computed, drawn.batches(size, most)), start=1
+    ):
+        step(f"drawing {number * size} times")
+        lost += missing
+        found.append(ordered)
+        if ordered.size:
+            told.append(own)
         if number >= FEWEST and len(told) == number and _is_enough(told, tolerance):
             break
     return _distributed(np.sort(np.concatenate(found)), lost, budget, tolerance, told)
+
+
+def _side_by_side(work: Callable[[Part], Made], parts: Iterable[Part]) -> Iterator[Made]:
+    """What is made of parts, in their order: as many at a time as there are processors, and a few ahead."""
+    threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    waiting: deque[Future[Made]] = deque()
+    with ThreadPoolExecutor(threads) as pool:
+        for part in parts:
+            waiting.append(pool.submit(work, part))
+            if len(waiting) > 2 * threads:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
 
 
 class _Draws:
@@ -112,6 +144,27 @@ class _Draws:
         self.mixed = {n for a, b, _ in pairs for n in (a, b)}
         estimated = Counter(source.sample for source in self.sources if source.shape is Shape.STUDENT)
         self.samples = {sample for sample, number in estimated.items() if sample and number > 1}
+        self.beside = self._beside(values)
+
+    def _beside(self, values: Values) -> Beside | None:
+        """What computes nearly all draws, if every cell has a value wherever they are."""
+        program = Program.of(self.sheet, functions=BESIDE)
+        if not Beside.serves(program):
+            return None
+        reach = {name: np.zeros(own.shape) for name, own in self.base.items()}
+        for source in self.sources:
+            for name, row, u in source.moves:
+                if name in reach:
+                    ends = source.shape in PARTS
+                    reach[name][row] += u * (DIVISORS[source.shape] * (1 + 2.0**-40) if ends else FAR)
+        box = {name: Intervals(own - reach[name], own + reach[name]) for name, own in self.base.items()}
+        laid = Laid(self.sheet, dict(values.layouts))
+        cells = Enclosure(self.sheet, self.program, laid.layouts, box)
+        for column in self.sheet.columns:
+            held = cells.value[column.name].low >= SMALLEST if column.positive else True
+            if not np.all(cells.sure[column.name] & held):
+                return None
+        return Beside(program, laid, self.base, cells.value)
 
     def batches(self, size: int, most: int) -> Iterator[dict[str, Array]]:
         """What was given, one batch after another (size, rows)."""
@@ -124,7 +177,7 @@ class _Draws:
             for name, row, u in source.moves:
                 if name in self.base:
                     if name not in moved:
-                        moved[name] = np.tile(self.base[name], (size, 1))
+                        moved[name] = np.repeat(self.base[name][:, None], size, axis=1).T
                     moved[name][:, row] += u * errors
         return moved
 
@@ -156,10 +209,21 @@ class _Draws:
             return DIVISORS[shape] * (draws.random(size) - draws.random(size))
         if shape is Shape.ARCSINE:
             return DIVISORS[shape] * np.sin(2 * np.pi * draws.random(size))
-        return DIVISORS[shape] * draws.uniform(-1, 1, size)
+        return DIVISORS[shape] * (2 * draws.random(size) - 1)
 
     def of(self, batch: dict[str, Array], row: int) -> tuple[Array, NDArray[np.uint8]]:
         """The values and statuses of a row of the column (size,)."""
+        if self.beside is None or not batch:
+            return self._asked(batch, row)
+        own, known = self.beside.column(self.name, row, batch)
+        status = np.full(own.size, Status.OK, dtype=np.uint8)
+        if not known.all():
+            left = {name: each[~known] for name, each in batch.items()}
+            own[~known], status[~known] = self._asked(left, row)
+        return own, status
+
+    def _asked(self, batch: dict[str, Array], row: int) -> tuple[Array, NDArray[np.uint8]]:
+        """The same, asked of every draw whether it has a value."""
         values = evaluate(self.sheet, self.labels, self.base | batch, self.program)
         size = max((len(own) for own in batch.values()), default=1)
         own, status = values.value[self.name], values.status[self.name]
@@ -175,14 +239,19 @@ def _tolerance(u: float) -> float:
 
 
 def _told(ordered: Array, level: float) -> tuple[float, float, float, float]:
-    """Mean, standard deviation and the ends of the interval with equal tails."""
-    low, high = np.quantile(ordered, [(1 - level) / 2, (1 + level) / 2])
-    return (
-        float(ordered.mean()),
-        float(ordered.std(ddof=1)) if ordered.size > 1 else 0.0,
-        float(low),
-        float(high),
-    )
+    """Mean, standard deviation and the ends of the interval with equal tails; NaN if there are no draws."""
+    if not ordered.size:
+        return (math.nan,) * 4
+    u = float(ordered.std(ddof=1)) if ordered.size > 1 else 0.0
+    low, high = (_quantile(ordered, (1 + side * level) / 2) for side in (-1, 1))
+    return float(ordered.mean()), u, low, high
+
+
+def _quantile(ordered: Array, share: float) -> float:
+    """Below which such a share of the draws lies, between two of them in proportion."""
+    beyond, below = math.modf(share * (ordered.size - 1))
+    low, high = ordered[int(below)], ordered[min(int(below) + 1, ordered.size - 1)]
+    return float(low + beyond * (high - low))
 
 
 def _is_enough(told: Sequence[tuple[float, ...]], tolerance: float) -> bool:
@@ -203,8 +272,9 @@ def _tail(ordered: Array) -> float:
     number = math.isqrt(ordered.size)
     if number < 10:
         return math.inf
-    out = np.sort(np.abs(ordered - np.median(ordered)))[-number - 1 :]
-    slope = float(np.mean(np.log(out[1:] / out[0]))) if out[0] > 0 else 0.0
+    ends = np.concatenate([ordered[: number + 1], ordered[-number - 1 :]])
+    out = np.sort(np.abs(ends - _quantile(ordered, 0.5)))[-number - 1 :]
+    slope = float(np.mean(log(out[1:] / out[0]))) if out[0] > 0 else 0.0
     return 1 / slope if slope > 0 else math.inf
 
 
@@ -213,8 +283,8 @@ def _distributed(
 ) -> Distributed:
     number, nothing = ordered.size + lost, math.nan
     tail = _tail(ordered)
-    median = float(np.median(ordered)) if ordered.size else nothing
-    mean, u, low, high = _told(ordered, budget.level) if ordered.size else (nothing,) * 4
+    median = _quantile(ordered, 0.5) if ordered.size else nothing
+    mean, u, low, high = _told(ordered, budget.level)
     stated = ordered.size > 1 and lost <= WITHOUT * number
     ends = (low, high) if stated else (nothing, nothing)
     return Distributed(

@@ -1,0 +1,56 @@
+"""A million draws of the paper's ten pairs, from the errors of its digits to both intervals.
+
+Against drawing alone: NumPy that fills one array with all errors. Beside it the same draws on one processor,
+and asked of each draw whether every cell has a value. Ratios of medians of one run. Nothing here is a test.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+from bench_engine import medians
+
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.study import Study
+from loopsheet.report.uncertainty import monte_carlo
+from loopsheet.report.uncertainty.propagation import Spread
+
+DRAWS = 1_000_000
+ALONE = "drawing the inputs alone"
+
+
+def ways(draws: int = DRAWS) -> dict[str, Callable[[], Any]]:
+    """The mean of the exponents in several ways; and an array of as many errors."""
+    report = Study(PAPER).computed
+    budget = Spread(report.inputs, report.values).budget("alpha_mean", 0)
+    sources = monte_carlo._Draws(report.inputs, report.values, "alpha_mean", 1).sources
+    errors, generator = np.empty((draws, len(sources))), np.random.default_rng(1)
+
+    def drawn() -> Any:
+        return monte_carlo.draw(report.inputs, report.values, budget, draws, tolerance=0.0)
+
+    def on_one() -> Any:
+        with patch.object(os, "sched_getaffinity", lambda _: {0}, create=True):
+            return drawn()
+
+    def each_asked() -> Any:
+        with patch.object(monte_carlo._Draws, "_beside", lambda *_: None):
+            return on_one()
+
+    return {
+        ALONE: lambda: generator.random(out=errors),
+        "all of it": drawn,
+        "the same on one processor": on_one,
+        "the same, each draw asked whether it has a value": each_asked,
+    }
+
+
+if __name__ == "__main__":
+    found = medians(ways())
+    print(f"{DRAWS} draws of ten pairs on {os.cpu_count()} processors: ms, ratio to {ALONE}")
+    for name, seconds in found.items():
+        print(f"  {seconds * 1e3:9.1f}  {seconds / found[ALONE]:6.2f}  {name}")

@@ -1,0 +1,186 @@
+"""A sheet beside a point around which every cell is certain to have a value: for draws by the million.
+
+Where it is known for a whole box of given cells that all formulas have a value and all equations one root,
+nothing is asked of single rows. A root is sought from where it lies for the given cells of the point, along
+its derivatives. What a few steps do not bring to rounding, within what encloses the root for all of the box,
+is told: it is to be computed as any sheet is.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import elementary
+from .intervals import Intervals
+from .kernels import SAME, Array
+from .numpy import Laid, Program
+from .numpy_root import RootProgram
+from .numpy_rows import Kept
+from .numpy_steps import RootRows
+
+__all__ = ["BESIDE", "Beside"]
+
+Mask = NDArray[np.bool_]
+
+BESIDE: Any = ModuleType("numpy")
+vars(BESIDE).update(vars(SAME), exp=elementary.exp_beside, log=elementary.log_beside)
+"""What a program calls here: a batch of what lies close together takes fewer operations."""
+BLOCK = 1 << 16
+"""How many cells the widest column has, at most, of what is computed at a time: more do not stay in the
+cache, and of fewer calling takes longer than computing."""
+STEP = 2.0**-20
+"""What is changed, relatively, to see how a root moves: its steps begin there, and nothing rests on it."""
+
+
+@dataclass(frozen=True)
+class _Guess:
+    """About where a root is, by the constants of its equation, and between what its value certainly is."""
+
+    base: Array
+    slopes: Sequence[Array]
+    value: Intervals
+
+    @classmethod
+    def of(cls, program: RootProgram, unknown: Array, constants: Sequence[Array], value: Intervals) -> _Guess:
+        """That of constants near to some."""
+
+        def change(n: int) -> Array:
+            """Of the equation, by the unknown or a constant."""
+            at = [unknown, *constants]
+            by = STEP * np.where(at[n] == 0, 1.0, np.abs(at[n]))
+            up, down = (program.at(*at[:n], at[n] + way * by, *at[n + 1 :])[0] for way in (1, -1))
+            return np.asarray((up - down) / (2 * by))
+
+        steepness = change(0)
+        slopes = [-change(n) / steepness for n in range(1, len(constants) + 1)]
+        moved = sum(slope * own for slope, own in zip(slopes, constants, strict=True))
+        return cls(unknown - moved, slopes, value)
+
+    def at(self, constants: Sequence[Array]) -> Array:
+        """Of other constants."""
+        found = self.base
+        for slope, own in zip(self.slopes, constants, strict=True):
+            found = found + slope * own
+        return found
+
+
+class Beside:
+    """The cells of a sheet for batches of given cells in a box.
+
+    Parameters
+    ----------
+    program : Program
+        With the functions :data:`BESIDE`.
+    laid : Laid
+        Its sheet over the rows.
+    point : mapping of column name to float array (rows,)
+        The given columns in SI, somewhere in the box.
+    cells : mapping of column name to Intervals (rows,)
+        What every column is for all of the box; all cells are certain to have a value.
+    """
+
+    def __init__(
+        self, program: Program, laid: Laid, point: Mapping[str, Array], cells: Mapping[str, Intervals]
+    ) -> None:
+        self.program, self.laid, self.point, self.cells = program, laid, point, cells
+        self.guesses: dict[str, _Guess] = {}
+        self._run(point)
+
+    @staticmethod
+    def serves(program: Program) -> bool:
+        """Whether it can compute the sheet of a program: no loops, and no equations of sums."""
+        return not program.loops and not any(root.totals for root in program.roots.values())
+
+    def column(self, name: str, row: int, batch: Mapping[str, Array]) -> tuple[Array, Mask]:
+        """A row of a column for a batch, and of which of its elements it is known (batch,).
+
+        Parameters
+        ----------
+        name, row
+        batch : mapping of column name to float array (batch, rows)
+            Given columns that are others than in the point; best in memory row by row.
+        """
+        (size,) = {len(each) for each in batch.values()}
+        found, known = np.empty(size), np.empty(size, dtype=bool)
+        widest = max(map(self.laid.size, self.program.sheet.columns))
+        for some in np.array_split(np.arange(size), math.ceil(size * widest / BLOCK)):
+            block = slice(some[0], some[-1] + 1)
+            rows = self._run({**self.point, **{name: each[block] for name, each in batch.items()}})
+            found[block], known[block] = rows.value[name][..., row], rows.known
+        return found, known
+
+    def _run(self, data: Mapping[str, Array]) -> _Rows:
+        rows = _Rows(self, data)
+        with np.errstate(all="ignore"):
+            self.program.function(rows)
+        return rows
+
+
+class _Rows:
+    """What the printed function calls."""
+
+    def __init__(self, beside: Beside, data: Mapping[str, Array]) -> None:
+        self.beside, self.data, self.laid = beside, data, beside.laid
+        self.value: dict[str, Array] = {}
+        self.known: Mask = np.ones(1, dtype=bool)
+
+    def rows(self, name: str, axis: str, index: str) -> Array:
+        """The cells of a column that the rows of an axis name by an index."""
+        # Row by row in memory: then a batch of one row is copied as a whole.
+        return self.value[name].T.take(self.laid.layouts[axis].rows[index], axis=0).T
+
+    def ordinal(self, axis: str, index: str) -> Array:
+        """A running number of the rows of an axis."""
+        return self.laid.layouts[axis].ordinals[index]
+
+    def size(self, axis: str) -> Array:
+        """How many rows an axis has."""
+        return self.laid.every[axis].number
+
+    def kept(self, _: str, axis: str) -> Kept:
+        """All rows of an axis."""
+        return self.laid.every[axis]
+
+    def given(self, name: str, value: Array, _: Any = True) -> Array:
+        """The data of a column: what is outside the box is not known."""
+        ends = self.beside.cells[name]
+        if not ((value.min(axis=0) >= ends.low).all() and (value.max(axis=0) <= ends.high).all()):
+            self.known = self.known & ((value >= ends.low) & (value <= ends.high)).all(axis=-1)
+        self.value[name] = value
+        return value
+
+    def formula(self, name: str, value: Any, *_: Any) -> Array:
+        """A column by its formula."""
+        size = (self.laid.size(self.beside.program.sheet[name]),)
+        if np.shape(value)[-1:] != size:
+            value = np.broadcast_to(value, np.broadcast_shapes(np.shape(value), size))
+        self.value[name] = value
+        return self.value[name]
+
+    def root(self, name: str, arguments: Sequence[Array], requires: Sequence[Any] = ()) -> Array:
+        """A column by its root."""
+        program = self.beside.program.roots[name]
+        named = dict(zip(program.arguments, arguments, strict=True))
+        found = program.constants.run(*(named[each] for each in program.constants.arguments))
+        constants = [np.atleast_1d(np.asarray(each, dtype=np.float64)) for each in found]
+        size = self.laid.size(self.beside.program.sheet[name])
+        if name not in self.beside.guesses:
+            unknown = program.solve(named, self.laid.every, (size,)).unknown
+            own = self.beside.cells[name]
+            self.beside.guesses[name] = _Guess.of(program, unknown, constants, own)
+        guess = self.beside.guesses[name]
+        start = guess.at(constants)
+        here, settled = RootRows(program, constants, (), start.shape).unwatched(start)
+        (value,) = program.value(here, *constants)
+        settled = settled & (value >= guess.value.low) & (value <= guess.value.high)
+        if not settled.all():
+            self.known = self.known & settled.all(axis=-1)
+        self.value[name] = value
+        return value
