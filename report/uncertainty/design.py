@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TypeVar
 
@@ -73,6 +73,8 @@ class Planner:
     compute: Callable[[Inputs], Marks]
     cell: tuple[str, tuple[int, ...]]
     said: Said
+    _asked: list[Spread] = field(default_factory=list, init=False, repr=False)
+    """The last one: all are of one sheet, of which not everything is made again."""
 
     @cached_property
     def _known(self) -> dict[str, Array]:
@@ -144,7 +146,9 @@ class Planner:
         marks = self.compute(inputs)
         values, (name, label) = marks.values, self.cell
         failed = sum(int(np.count_nonzero(status != Status.OK)) for status in values.status.values())
-        u = float(Spread(inputs, values).u(name)[values.row(values.sheet[name], label)])
+        spread = Spread(inputs, values, next(iter(self._asked), None))
+        self._asked[:] = [spread]
+        u = float(spread.u(name)[values.row(values.sheet[name], label)])
         odd = failed + sum(marks.count(margin).number for margin in marks.margins)
         return odd, u if math.isfinite(u) else math.inf
 

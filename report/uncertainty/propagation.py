@@ -17,6 +17,7 @@ from ..cells.address import address
 from ..cells.layout import how_large
 from ..cells.values import Status, Values
 from ..distribution import LEVEL
+from ..engines.numpy import Program
 from ..inputs.inputs import Inputs
 from ..inputs.limits import Limits
 from ..judge.chain import Chain, Made
@@ -50,13 +51,15 @@ class Spread:
     inputs : Inputs
     values : Values
         All columns, without a batch.
+    like : Spread, optional
+        Of other values of the same sheet: what is made of the sheet alone is then taken from it.
 
     Attributes
     ----------
     sources : tuple of ErrorSource
     """
 
-    def __init__(self, inputs: Inputs, values: Values) -> None:
+    def __init__(self, inputs: Inputs, values: Values, like: Spread | None = None) -> None:
         self.values = values
         self.sources = sources(inputs, values)
         self._pairs = correlated(self.sources, inputs, values)
@@ -70,14 +73,16 @@ class Spread:
         self._u = np.array([u for *_, u in moves])
         self._first = np.searchsorted([n for n, *_ in moves], np.arange(len(self.sources)))
         self._known = _known(values)
-        made = Made.of(values.sheet).only(self._known)
-        chain = Chain(made, values.layouts, numbers)
+        self._made: Made = like._made if like else Made.of(values.sheet)
+        self._program: Program | None = like._program if like else None
+        chain = Chain(self._made.only(self._known), values.layouts, numbers)
         self._along = Numbers(chain, values).go()
         self.second: SecondOrder | None = None
         """What is of second order; None for a sheet that is too large."""
         if self.sources and SecondOrder.is_small(values, self.sources):
+            self._program = self._program or Program.of(values.sheet)
             root = root_of(len(self.sources), self._pairs)
-            self.second = SecondOrder(chain, values, self.sources, root, self._by_source)
+            self.second = SecondOrder(chain, values, self._program, self.sources, root, self._by_source)
 
     def contributions(self, cells: Sequence[tuple[str, int]]) -> Array:
         """What each source contributes to some cells, with its sign.

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..cells.layout import how_large
 from ..cells.values import Values
 from ..distribution import Shape
-from ..engines.numpy import evaluate
+from ..engines.numpy import Program, evaluate
 from ..judge.chain import Chain
 from ..judge.sensitivity import Numbers
 from ..result.uncertain import ErrorSource
@@ -63,6 +63,8 @@ class SecondOrder:
     chain : Chain
         From the given numbers to all cells.
     values : Values
+    program : Program
+        Of their sheet.
     sources : sequence of ErrorSource
     root : float array (sources, sources)
         What makes the errors of independent ones: its product with its transpose is their correlation matrix.
@@ -75,6 +77,7 @@ class SecondOrder:
         self,
         chain: Chain,
         values: Values,
+        program: Program,
         sources: Sequence[ErrorSource],
         root: Array,
         by_source: Callable[[Array], Array],
@@ -89,7 +92,7 @@ class SecondOrder:
         for node in chain.made.nodes:
             if node.median or any(slope.by in self.jumping for slope in node.slopes):
                 self.jumping.add(node.name)
-        self._along = Numbers(chain, _beside(values, sources, root)).go()
+        self._along = Numbers(chain, _beside(values, program, sources, root)).go()
 
     @staticmethod
     def is_small(values: Values, sources: Sequence[ErrorSource]) -> bool:
@@ -130,7 +133,7 @@ class SecondOrder:
         return found
 
 
-def _beside(values: Values, sources: Sequence[ErrorSource], root: Array) -> Values:
+def _beside(values: Values, program: Program, sources: Sequence[ErrorSource], root: Array) -> Values:
     """The sheet a step up and a step down along every independent error (2 errors, rows)."""
     sheet = values.sheet
     moved = {
@@ -141,4 +144,4 @@ def _beside(values: Values, sources: Sequence[ErrorSource], root: Array) -> Valu
         for name, row, u in source.moves:
             moved[name][:, row] += STEP * u * np.concatenate([along, -along])
     given = {name: values.value[name] for name in sheet.bounds if name in values.value}
-    return evaluate(sheet, values.given_labels, given | moved)
+    return evaluate(sheet, values.given_labels, given | moved, program)
