@@ -11,6 +11,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .laws import Law
 
 __all__ = ["DIVISORS", "DOMINANT", "LEVEL", "PARTS", "SHARES", "Error", "Shape"]
 
@@ -23,7 +27,8 @@ DOMINANT = 0.3
 class Shape(StrEnum):
     """How an error is distributed; its width is half of what it may be, without ends its standard deviation.
 
-    A Student t has the width s / sqrt(n) of JCGM 100 (4.2.3): the scale, not the standard deviation.
+    A Student t has the width s / sqrt(n) of JCGM 100 (4.2.3): the scale, not the standard deviation. What the
+    word does not tell whole, from the truncated normal on, has a law.
     """
 
     NORMAL = "normal"
@@ -31,6 +36,9 @@ class Shape(StrEnum):
     RECTANGULAR = "rectangular"
     TRIANGULAR = "triangular"
     ARCSINE = "arcsine"
+    TRUNCATED = "truncated normal"
+    EXPONENTIAL = "exponential"
+    SAMPLES = "samples"
 
 
 DIVISORS: Mapping[Shape, float] = MappingProxyType(
@@ -40,6 +48,9 @@ DIVISORS: Mapping[Shape, float] = MappingProxyType(
         Shape.RECTANGULAR: math.sqrt(3),
         Shape.TRIANGULAR: math.sqrt(6),
         Shape.ARCSINE: math.sqrt(2),
+        Shape.TRUNCATED: 1.0,
+        Shape.EXPONENTIAL: 1.0,
+        Shape.SAMPLES: 1.0,
     }
 )
 """The width over the standard uncertainty (JCGM 100, 4.3.7, 4.3.9; JCGM 101, 6.4.6)."""
@@ -77,6 +88,8 @@ class Error:
     sample : str
         What its standard uncertainty was estimated from, by a name that others of the same estimate have:
         their degrees of freedom are the same ones. Empty for an estimate of its own.
+    law : Law or None
+        How it is distributed, where the shape does not tell it whole.
     """
 
     width: Fraction
@@ -84,6 +97,7 @@ class Error:
     dof: float = math.inf
     said: str = ""
     sample: str = ""
+    law: Law | None = None
 
     @property
     def u(self) -> float:

@@ -64,7 +64,9 @@ def test_how_far_from_a_limit_a_value_has_to_lie(z: float, probability: float) -
     assert f"{judged(-z, 1.0, high='0').probability:.2f}" == f"{probability:.2f}"
 
 
-SHAPES = st.sampled_from(list(Shape))
+TOLD_WHOLE = [s for s in Shape if s not in (Shape.TRUNCATED, Shape.EXPONENTIAL, Shape.SAMPLES)]
+"""By their word; what has a law is in test_laws.py."""
+SHAPES = st.sampled_from(TOLD_WHOLE)
 SIZES = st.floats(-8, 8)
 
 
@@ -87,7 +89,7 @@ def density(x: mpmath.mpf, shape: Shape) -> mpmath.mpf:
     )
 
 
-@pytest.mark.parametrize("shape", Shape)
+@pytest.mark.parametrize("shape", TOLD_WHOLE)
 @pytest.mark.parametrize("z", [0.0, 0.3, 1.1, 1.39])
 def test_a_probability_is_the_integral_of_its_density(shape: Shape, z: float) -> None:
     whole = mpmath.quad(lambda x: density(x, shape), [0, z])

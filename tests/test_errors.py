@@ -163,6 +163,11 @@ def unreadable() -> None:
         load(Path(), find_workbook)
 
 
+def few_draws() -> None:
+    Path("mass.csv").write_text("ball_mass [g]\n8.365\n8.367\n")
+    campaign(toml=TOML.replace("8.366 g", "8.366 g, samples = mass.csv"))
+
+
 def huge() -> None:
     with Path("huge.csv").open("wb") as file:
         file.truncate(50_000_001)  # a hole: no disk is used
@@ -280,6 +285,7 @@ CASES: dict[str, Callable[[], None]] = {
     "LS433": toml("8.366 g", "8.366(4) g, u = 0.02"),
     "LS434": toml("[published]", '[uncertainty.correlation]\n"v, e" = "1.2"\n[published]'),
     "LS435": toml("[published]", "[uncertainty]\ndigits = 3\n[published]"),
+    "LS436": few_draws,
     "LS441": toml("[published]", '[limits]\nalpha_mean = "1.3"\n[published]'),
     "LS442": toml("[published]", '[limits.rule]\nguard = "V"\n[published]'),
     "LS501": published("1-2", "2-Jan"),

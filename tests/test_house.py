@@ -49,7 +49,7 @@ def rooms(*names: str) -> set[str]:
 
 
 # What an author of a workbook writes with, and what becomes of it.
-AUTHOR = PROVER | rooms("messages", "distribution", "quantity", "column", "named", "partly", "sheet")
+AUTHOR = PROVER | rooms("messages", "laws", "distribution", "quantity", "column", "named", "partly", "sheet")
 AUTHOR |= rooms("charts", "workbook")
 DECLARED = AUTHOR | rooms("cells")
 
@@ -63,7 +63,8 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.files": (rooms("files", "messages"), {"msgspec"}),
     "report.machine": (rooms("files", "machine", "messages"), set()),
     "report.machine.provenance": (set(), {"numpy"}),
-    "report.distribution": (set(), set()),
+    "report.laws": (set(), {"numpy", "scipy"}),
+    "report.distribution": (rooms("laws"), set()),
     "report.quantity": (rooms("distribution"), set()),
     "report.content": (set(), ALGEBRA),
     "report.partly": (set(), set()),
@@ -75,7 +76,8 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.workbook": (DECLARED, ALGEBRA),
     "report.inputs": (
         rooms(
-            "cells.address", "charts", "distribution", "inputs", "messages", "quantity", "sheet", "workbook"
+            *("cells.address", "charts", "distribution", "inputs", "laws", "messages", "quantity", "sheet"),
+            "workbook",
         ),
         set(),
     ),

@@ -19,6 +19,7 @@ from ..messages.errors import (
     listing,
     suggest,
 )
+from .draws import read_draws
 from .expected import EXAMPLE, Expectation, check_expected
 from .limits import Limits, check_limits, read_limits
 from .measurements import MODES, LeftOut, Measurements, read_measurements
@@ -26,16 +27,17 @@ from .number_text import NumberError, read_printed
 from .parameters import read_parameters, wrong_type
 from .published import PublishedValue, check_published, read_published
 from .sources import Source, open_source, read_bytes
+from .stated import Conventions
 from .tables import TomlTables
 from .tomlfile import TomlFile, read_toml
 from .uncertainty import Stated, read_bare, read_uncertainty
 from .unit_text import parse_unit
 
 if TYPE_CHECKING:
-    from ..distribution import Shape
     from ..messages.errors import Diagnostic
     from ..quantity import Printed
     from ..workbook import Workbook
+    from .number_text import Declared
 
 __all__ = ["Find", "Inputs", "PublishedValue", "check_cells", "load"]
 
@@ -243,7 +245,7 @@ class _Reader:
         self.workbook: Workbook | None = None
         self.free: dict[str, Location] = {}
         self.by_source = False
-        self.bare: Shape | None = None
+        self.said = Conventions()
 
     def read(self) -> Inputs:
         toml = self.open_toml()
@@ -253,7 +255,7 @@ class _Reader:
         self.toml, self.tables = toml, TomlTables(toml, self.findings)
         sections = ("parameters", "measurements", "uncertainty", "limits", "expected", "published")
         self.tables.keys((), ("title", "workbook", *sections))
-        self.bare = read_bare(self.tables)
+        self.said = Conventions(read_bare(self.tables), self.draws)
         self.workbook = self.open_workbook()
         title = self.title()
         parameters, given = self.parameters()
@@ -360,7 +362,7 @@ class _Reader:
         declared = {parameter.name: parameter for parameter in self.workbook.parameters}
         before = len(self.findings.found)
         written = self.tables.keys(("parameters",), declared)
-        printed = read_parameters(self.toml, written, self.workbook.parameters, self.findings, self.bare)
+        printed = read_parameters(self.toml, written, self.workbook.parameters, self.findings, self.said)
         given = frozenset(written)
         # A misspelt name would also be missing from its combination: that is one problem, not two.
         above = self.toml.data
@@ -401,14 +403,20 @@ class _Reader:
         self, parameters: dict[str, Printed], measurements: Measurements
     ) -> tuple[Stated, dict[str, Printed], Measurements]:
         """Read what is stated of columns and parameters, and state it of their numbers."""
-        declared = self.workbook.declared.items() if self.workbook else ()
-        counted = {name for name, each in declared if each.bounds.integer}
+        declared = self.workbook.declared if self.workbook else {}
         single = {name: (printed,) for name, printed in parameters.items()}
         numbers = {name: column for name, column in measurements.measured.items() if column}
         tests = (*measurements.tests, *(each.test for each in measurements.left_out))
-        stated = read_uncertainty(self.tables, numbers | single, counted, tests, self.bare)
+        stated = read_uncertainty(self.tables, numbers | single, declared, tests, self.said)
         parameters = {name: printed for name, (printed,) in stated.of(single).items()}
         return stated, parameters, replace(measurements, measured=stated.of(measurements.measured))
+
+    def draws(self, name: str, of: Declared, at: Location) -> tuple[float, ...] | None:
+        """Read draws that somebody else made of a parameter."""
+        source = self.source(
+            name, LARGEST_TABLE, "a first line with names and units, then one row a draw", at
+        )
+        return read_draws(source, of, self.findings) if source else None
 
     def modes(self, of: str, known: list[str] | None) -> dict[str, str]:
         """How the columns of a file were shortened, where it was not by rounding."""

@@ -17,9 +17,19 @@ if TYPE_CHECKING:
     from ..messages.errors import Findings, Location
     from ..quantity import Printed
     from ..workbook import Measured
+    from .number_text import Declared
     from .sources import Source
 
-__all__ = ["LEFT_OUT", "MODES", "LeftOut", "Measurements", "read_measurements"]
+__all__ = [
+    "LEFT_OUT",
+    "MODES",
+    "ColumnHead",
+    "LeftOut",
+    "Measurements",
+    "read_head",
+    "read_measurements",
+    "read_unit",
+]
 
 MODES = ("rounded", "truncated")
 """How a printed number may have been shortened."""
@@ -70,7 +80,7 @@ class Measurements:
 
 
 @dataclass(frozen=True)
-class _Head:
+class ColumnHead:
     """What a field of the first line says: a column (or its uncertainty) and a unit, if it names one."""
 
     name: str
@@ -102,7 +112,7 @@ def read_measurements(
     table = read_table(source, list(required.values()), findings)
     if table is None:
         return None
-    heads = [_head(table, field, columns, findings) for field in table.header]
+    heads = [read_head(table, field, columns, findings) for field in table.header]
     names = [head.name if head else "" for head in heads]
     if measured is None:
         places = {"test": names.index("test")} if "test" in names else {}
@@ -121,8 +131,8 @@ def read_measurements(
     values: dict[str, tuple[Printed, ...]] = {}
     units: dict[str, str] = {}
     for name, column in columns.items():
-        head, unit = _unit(table, heads, places.get(name), column, findings)
-        _, unit_of_u = _unit(table, heads, places.get(f"u({name})"), column, findings)
+        head, unit = read_unit(table, heads, places.get(name), column, findings)
+        _, unit_of_u = read_unit(table, heads, places.get(f"u({name})"), column, findings)
         if head is not None and head.unit is not None:
             units[name] = head.unit.strip() or "1"  # empty brackets: a pure number
         if name in places:
@@ -164,26 +174,28 @@ def _last(table: CsvTable) -> Location:
     return table.at(row.fields[0]) if row else table.end_of_header()
 
 
-def _head(table: CsvTable, field: Field, columns: Mapping[str, Measured], findings: Findings) -> _Head | None:
+def read_head(
+    table: CsvTable, field: Field, columns: Mapping[str, Declared], findings: Findings
+) -> ColumnHead | None:
     """Read a field of the first line; a column that should name its unit and does not is a finding."""
     match = _HEAD.fullmatch(field.text)
     meant = None if match and match["name"] in columns else _meant(field.text, columns)
     if match is None or meant is not None:
         if not field.text:
-            return _Head("", None, 0)
+            return ColumnHead("", None, 0)
         column, unit = meant or (None, "um")
         example = f"{column.name if column else 'x_p'} [{unit}]"
         findings.add("LS305", table.at(field), text=field.text, example=example)
-        return _Head(column.name, None, 0) if column else None
+        return ColumnHead(column.name, None, 0) if column else None
     name = re.sub(r"\s", "", match["name"]) if match["name"].startswith("u(") else match["name"]
     column = columns.get(name.removeprefix("u(").removesuffix(")"))
     if match["unit"] is None and column is not None:
         example = f"{name} [{column.unit}]"
         findings.add("LS304", table.at(field), text=name, unit=column.unit, example=example)
-    return _Head(name, match["unit"], match.start("unit"))
+    return ColumnHead(name, match["unit"], match.start("unit"))
 
 
-def _meant(text: str, columns: Mapping[str, Measured]) -> tuple[Measured, str] | None:
+def _meant(text: str, columns: Mapping[str, Declared]) -> tuple[Declared, str] | None:
     """The column that a text begins with, and the unit that follows somehow: ``x_p (mm)``, ``x_p_mm``.
 
     What follows and is no unit of that column leaves the column's own unit, if it stands in brackets of any
@@ -203,9 +215,13 @@ def _meant(text: str, columns: Mapping[str, Measured]) -> tuple[Measured, str] |
     return None
 
 
-def _unit(
-    table: CsvTable, heads: Sequence[_Head | None], place: int | None, column: Measured, findings: Findings
-) -> tuple[_Head | None, ParsedUnit | None]:
+def read_unit(
+    table: CsvTable,
+    heads: Sequence[ColumnHead | None],
+    place: int | None,
+    column: Declared,
+    findings: Findings,
+) -> tuple[ColumnHead | None, ParsedUnit | None]:
     """Return what the first line says of a column, and its unit if that is one of the right dimension."""
     head = None if place is None else heads[place]
     if place is None or head is None or head.unit is None:

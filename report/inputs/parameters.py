@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any
 from ..messages.errors import Findings, Location
 from ..quantity import behind
 from .number_text import read_printed, read_value
-from .stated import SHAPES, StatementError, read_statement
+from .stated import SHAPES, Conventions, Of, StatementError, read_statement
 from .unit_text import ParsedUnit, UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from ..distribution import Shape
     from ..quantity import Printed
     from ..workbook import Parameter
     from .tomlfile import TomlFile
@@ -45,7 +44,7 @@ def read_parameters(
     written: Mapping[str, object],
     declared: Iterable[Parameter],
     findings: Findings,
-    bare: Shape | None,
+    said: Conventions,
 ) -> dict[str, Printed]:
     """Read the parameters that were given, and fill in the defaults of the others.
 
@@ -59,14 +58,14 @@ def read_parameters(
         What the workbook wants.
     findings : Findings
         Where findings go.
-    bare : Shape or None
-        What limits without a word mean.
+    said : Conventions
+        What the folder says of all uncertainties.
     """
     printed: dict[str, Printed] = {}
     for parameter in declared:
         number = None
         if parameter.name in written:
-            number = _Reader(toml, parameter, findings, bare).read(written[parameter.name])
+            number = _Reader(toml, parameter, findings, said).read(written[parameter.name])
         elif parameter.default is not None:
             digits, _, unit = parameter.default.partition(" ")
             number = read_printed(digits, parse_unit(unit or "1"))
@@ -88,8 +87,8 @@ def wrong_type(toml: TomlFile, findings: Findings, path: tuple[str, ...], wanted
 class _Reader:
     """Reads one parameter."""
 
-    def __init__(self, toml: TomlFile, parameter: Parameter, findings: Findings, bare: Shape | None) -> None:
-        self.toml, self.bare = toml, bare
+    def __init__(self, toml: TomlFile, parameter: Parameter, findings: Findings, said: Conventions) -> None:
+        self.toml, self.said = toml, said
         self.parameter = parameter
         self.findings = findings
         self.path = ("parameters", parameter.name)
@@ -137,10 +136,12 @@ class _Reader:
                 "LS433", self.part(begins, len(text)), name=self.parameter.name, suggestion=hint
             )
             return None
+        read, at = self.said.draws, self.toml.value(*self.path)
+        draws = None if read is None else lambda name: read(name, self.parameter, at)
+        of = Of((printed,), self.parameter.bounds, draws)
         try:
-            return replace(
-                printed, stated=read_statement(text, parse_unit(printed.unit), self.bare).of(printed)
-            )
+            found = read_statement(text, parse_unit(printed.unit), self.said.bare, of)
+            return replace(printed, stated=found.of(printed))
         except StatementError as error:
             at = self.part(begins + error.start, max(len(error.text), 1))
             self.findings.add(error.code, at, text=error.text, suggestion=error.suggestion)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from ..messages.errors import Findings, Location, listing, suggest
 from .number_text import read_value
-from .stated import StatementError, read_statement
+from .stated import Of, StatementError, read_statement
 from .unit_text import UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
@@ -110,11 +110,9 @@ def read_u(text: str, option: str, inputs: Inputs) -> Said:
                 findings.add("LS604", at, kind="column or parameter", text=name, **words)
             continue
         before = _SAYS if _BARE.fullmatch(said) and "digit" not in said else ""
-        readings = inputs.measured.get(name, ())
+        of = Of(inputs.printed(name), inputs.workbook.declared[name].bounds)
         try:
-            found[name] = read_statement(
-                before + said, parse_unit(inputs.printed(name)[0].unit), None, readings
-            )
+            found[name] = read_statement(before + said, parse_unit(inputs.printed(name)[0].unit), None, of)
         except StatementError as error:
             at = _place(option, text, start + max(error.start - len(before), 0), max(len(error.text), 1))
             findings.add(error.code, at, text=error.text, suggestion=error.suggestion)

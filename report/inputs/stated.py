@@ -1,33 +1,43 @@
 """Uncertainties as text: what is stated of a number, or of a whole column.
 
 ``u = 0.02``, ``U = 0.03, k = 2``, ``+-0.1 rect``, ``0.5 % of reading + 2 digits``, ``s = 0.02, n = 5``,
-``exact``, or ``scatter`` of a column of readings; several errors of one number stand one after another, with
-a semicolon between them.
+``exact``, or ``scatter`` of a column of readings; ``u = 0.02, min = 0`` or ``u = 0.02, truncated`` of a
+normal error that leaves no bounds, ``exponential`` of an estimate that is all that is known of a quantity
+which is not negative, ``samples = mass.csv`` of draws that somebody else made; several errors of one number
+stand one after another, with a semicolon between them.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import inf, isqrt
 from statistics import NormalDist
 from typing import TYPE_CHECKING
 
 from ..distribution import Error, Shape
+from ..quantity import Bounds, behind, span
 from .number_text import NumberError, read_number
 from .unit_text import UnitError, parse_unit
 
 if TYPE_CHECKING:
+    from ..messages.errors import Location
     from ..quantity import Printed
+    from .number_text import Declared
     from .unit_text import ParsedUnit
+
+    Draws = tuple[float, ...]
+    Read = Callable[[str, Declared, Location], Draws | None]
 
 __all__ = [
     "EXAMPLE",
     "LARGEST",
     "SCATTER",
     "SHAPES",
+    "Conventions",
+    "Of",
     "StatedErrors",
     "StatementError",
     "covariance",
@@ -49,11 +59,16 @@ SHAPES = {
 
 _LIMITS = re.compile(r"(?:±|\+-|\+/-)\s*")
 _SHAPE = re.compile(rf"\s+(?P<shape>{'|'.join(SHAPES)})\s*$")
-_NAMED = re.compile(r"(?P<name>t scale|t sd|dof|[uUkpsn])\s*=\s*")
+_NAMED = re.compile(r"(?P<name>t scale|t sd|dof|samples|[uUkpsn])\s*=\s*")
+_END = re.compile(r"(?P<name>min|max)\s*=\s*(?P<sign>[+-]?)|(?P<bounds>truncated)")
+_EXPONENTIAL = "exponential"
 _TERM = re.compile(r"(?P<number>[0-9.][0-9.]*(?:[eE][+-]?[0-9]+)?)\s*(?P<unit>.*)")
 _RELATIVE = re.compile(r"%\s*(?:of\s+(?:the\s+)?(?:reading|value))?")
 _DIGITS = re.compile(r"digits?")
 _KEYS = {"u": {"dof"}, "U": {"k", "p", "dof"}, "s": {"n", "dof"}, "t scale": {"dof"}, "t sd": {"dof"}}
+_ANYWHERE = Bounds()
+_CUT = {"u", "U"}
+"""What may be cut off."""
 """What may stand behind each beginning."""
 LARGEST = 10**60
 """Of whatever unit: its square, and that of what follows from it, shall be numbers still."""
@@ -79,11 +94,89 @@ class _Part:
     shape: Shape
     dof: float
     said: str
+    ends: tuple[Fraction | None, Fraction | None] = (None, None)
+    """Of what is cut off, in SI."""
+    table: str = ""
+    draws: Draws | None = None
+    """In SI, from the table of that name."""
 
     def of(self, printed: Printed, sample: str) -> Error:
         """The error of a number; what has no unit of its own has the number's."""
         size = self.absolute + self.relative * abs(printed.value) + self.digits * 2 * printed.half_unit
-        return Error(size / self.divisor, self.shape, self.dof, self.said, sample if self.dof < inf else "")
+        sample = sample if self.dof < inf else ""
+        error = Error(size / self.divisor, self.shape, self.dof, self.said, sample)
+        return self._with_law(error, printed.value) if error.width or self.table else error
+
+    def _with_law(self, error: Error, value: Fraction) -> Error:
+        """What is more than a word and a width; asked for only where it is stated."""
+        if self.shape is Shape.EXPONENTIAL:
+            from ..laws import Exponential
+
+            return replace(error, law=Exponential())
+        if self.shape is Shape.TRUNCATED:
+            from ..laws import TruncatedNormal
+
+            low, high = (None if end is None else float((end - value) / error.width) for end in self.ends)
+            cut = TruncatedNormal(-inf if low is None else low, inf if high is None else high)
+            return replace(error, width=error.width * Fraction(cut.sd), law=cut)
+        if self.draws:
+            from ..laws import Samples
+
+            sd, law = Samples.around(float(value), self.draws, self.table)
+            return replace(error, width=Fraction(sd), law=law)
+        return error
+
+    def why_not(self, number: Printed) -> str:
+        """Why it cannot be the error of a number; empty if it can."""
+        low, high = self.ends
+        if self.draws:
+            low, high = Fraction(min(self.draws)), Fraction(max(self.draws))
+        value = number.value
+        if self.shape is Shape.EXPONENTIAL and value <= 0:
+            return (
+                f"of {number.text} nothing can be exponential: its standard uncertainty is the number itself"
+            )
+        if (low is not None and value < low) or (high is not None and value > high):
+            ends = span(*("" if end is None else f"{float(end / number.scale):.6g}" for end in (low, high)))
+            return f"{number.text} is not {ends}{behind(number.unit)}, as it would have to be"
+        return ""
+
+
+@dataclass(frozen=True)
+class Conventions:
+    """What a folder says once for all uncertainties in it.
+
+    Parameters
+    ----------
+    bare : Shape or None
+        What limits without a word mean; None: they are refused.
+    draws : callable, optional
+        Takes the name of a table of draws, what quantity they are of, and where it is named; returns them in
+        SI, or None with a finding.
+    """
+
+    bare: Shape | None = None
+    draws: Read | None = None
+
+
+@dataclass(frozen=True)
+class Of:
+    """What an uncertainty is stated of.
+
+    Parameters
+    ----------
+    numbers : sequence of Printed
+        All numbers of the column, or the one of a parameter; none of an error that tests share.
+    bounds : Bounds
+        Between which the quantity lies, in SI.
+    draws : callable, optional
+        Takes the name of a table; returns the draws of the quantity in it, in SI, or None with a finding of
+        its own. There is none where it is more than one quantity.
+    """
+
+    numbers: Sequence[Printed] = ()
+    bounds: Bounds = _ANYWHERE
+    draws: Callable[[str], Draws | None] | None = None
 
 
 @dataclass(frozen=True)
@@ -110,9 +203,10 @@ class StatedErrors:
         return tuple(part.of(printed, of and f"{of} {n}") for n, part in enumerate(self.parts))
 
 
-def read_statement(
-    text: str, unit: ParsedUnit, bare: Shape | None = None, readings: Sequence[Printed] = ()
-) -> StatedErrors:
+_NOTHING = Of()
+
+
+def read_statement(text: str, unit: ParsedUnit, bare: Shape | None = None, of: Of = _NOTHING) -> StatedErrors:
     """Read what is stated of a number.
 
     Parameters
@@ -123,8 +217,8 @@ def read_statement(
         The unit of the number: that of every size that names no other.
     bare : Shape, optional
         What ``+-0.1`` without a word means; it is refused without.
-    readings : sequence of Printed
-        The numbers of the column that it is stated of, whose standard deviation is their ``scatter``.
+    of : Of
+        What it is stated of: the standard deviation of its numbers is their ``scatter``.
 
     Raises
     ------
@@ -138,10 +232,12 @@ def read_statement(
     """
     if text.strip() == "exact":
         return StatedErrors(())
-    parts = (
-        _scatter(readings, start) if part == SCATTER else _part(part, start, unit, bare)
-        for part, start in _split(text, ";")
-    )
+    parts = []
+    for part, start in _split(text, ";"):
+        read = _scatter(of.numbers, start) if part == SCATTER else _part(part, start, unit, bare, of)
+        if why := next(filter(None, map(read.why_not, of.numbers)), ""):
+            raise StatementError("LS431", part, start, why)
+        parts.append(read)
     return StatedErrors(tuple(parts))
 
 
@@ -169,10 +265,16 @@ def _split(text: str, mark: str) -> Iterator[tuple[str, int]]:
         start += len(part) + 1
 
 
-def _part(text: str, start: int, unit: ParsedUnit, bare: Shape | None) -> _Part:
+def _part(text: str, start: int, unit: ParsedUnit, bare: Shape | None, of: Of) -> _Part:
     (first, _), *others = [(field, start + place) for field, place in _split(text, ",")]
     begin = _NAMED.match(first)
     name = begin["name"] if begin else ""
+    if text == _EXPONENTIAL or name == "samples":
+        if not of.numbers:
+            raise StatementError(
+                "LS431", text, start, "what cells share is an error around 0: state its size"
+            )
+        return _itself(text) if text == _EXPONENTIAL else _drawn(text, start, of)
     if begin and name not in _KEYS:
         raise StatementError("LS431", first, start, f"begin with the uncertainty itself: {EXAMPLE}")
     limits = _LIMITS.match(first)
@@ -183,12 +285,58 @@ def _part(text: str, start: int, unit: ParsedUnit, bare: Shape | None) -> _Part:
     begins = opened.end() if opened else 0
     size = first[begins : word.start() if word else None]
     absolute, relative, digits = _amount(size, start + begins, unit)
+    cut = [(field, place) for field, place in others if name in _CUT and _END.match(field)]
+    others = [each for each in others if each not in cut]
     keys = dict(_keys(others, _KEYS[name] if begin else _LIMIT_KEYS))
     shape, divisor = _meant(first, start, name, word and SHAPES[word["shape"]], keys, bare)
     dof = float(keys.get("dof", keys["n"] - 1 if name == "s" else inf))
     if shape is Shape.NORMAL and dof < inf:
         shape = Shape.STUDENT  # JCGM 101, 6.4.9
-    return _Part(absolute, relative, digits, divisor, shape, dof, text)
+    part = _Part(absolute, relative, digits, divisor, shape, dof, text)
+    return _cut(part, cut, unit, of) if cut else part
+
+
+def _itself(text: str) -> _Part:
+    """The error of a number of which nothing is known but that it is the best estimate (JCGM 101, 6.4.10)."""
+    nothing, one = Fraction(0), Fraction(1)
+    return _Part(nothing, one, nothing, one, Shape.EXPONENTIAL, inf, text)
+
+
+def _drawn(text: str, start: int, of: Of) -> _Part:
+    """The error that draws have."""
+    name = text.partition("=")[2].strip()
+    if of.draws is None or not name:
+        why = "say the name of a file" if of.draws else "draws are of one number: state them of a parameter"
+        raise StatementError("LS431", text, start, why)
+    nothing, one = Fraction(0), Fraction(1)
+    return _Part(nothing, nothing, nothing, one, Shape.SAMPLES, inf, text, table=name, draws=of.draws(name))
+
+
+def _cut(part: _Part, fields: list[tuple[str, int]], unit: ParsedUnit, of: Of) -> _Part:
+    """A normal error that is cut off."""
+    ends: dict[str, Fraction] = {}
+    for text, start in fields:
+        match = _END.match(text)
+        if part.dof < inf:
+            raise StatementError("LS431", text, start, "with degrees of freedom it is no normal error")
+        if match is None or not of.numbers:
+            raise StatementError("LS431", text, start, "what cells share has no bounds: they have")
+        if match["bounds"]:
+            if match.end() != len(text) or len(fields) > 1:
+                raise StatementError("LS431", text, start, "say 'truncated', or the bounds: min = 0")
+            known = {"min": of.bounds.low, "max": of.bounds.high}
+            ends = {name: Fraction(repr(float(end))) for name, end in known.items() if end is not None}
+            if not ends:
+                raise StatementError("LS431", text, start, "the quantity has no bounds: say min = or max =")
+            continue
+        absolute, relative, digits = _amount(text[match.end() :], start + match.end(), unit)
+        if relative or digits or match["name"] in ends:
+            raise StatementError("LS431", text, start, "a bound is a number with its unit, said once")
+        ends[match["name"]] = -absolute if match["sign"] == "-" else absolute
+    low, high = ends.get("min"), ends.get("max")
+    if low is not None and high is not None and low >= high:
+        raise StatementError("LS431", *fields[-1], "the smaller bound is min")
+    return replace(part, shape=Shape.TRUNCATED, ends=(low, high))
 
 
 def _meant(

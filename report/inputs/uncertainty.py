@@ -28,12 +28,14 @@ from ..messages.errors import listing, suggest
 from .number_text import NumberError, read_number
 from .parameters import wrong_type
 from .readings import correlations_of, read_paired
-from .stated import SCATTER, SHAPES, StatedErrors, StatementError, read_statement
+from .stated import SCATTER, SHAPES, Conventions, Of, StatedErrors, StatementError, read_statement
 from .unit_text import parse_unit
 
 if TYPE_CHECKING:
     from ..distribution import Error, Shape
+    from ..messages.errors import Location
     from ..quantity import Printed
+    from .number_text import Declared
     from .tables import TomlTables
 
 __all__ = ["SharedError", "Stated", "read_bare", "read_uncertainty"]
@@ -123,9 +125,9 @@ def read_bare(tables: TomlTables) -> Shape | None:
 def read_uncertainty(
     tables: TomlTables,
     numbers: Numbers,
-    counted: Collection[str],
+    declared: Mapping[str, Declared],
     tests: Collection[int],
-    bare: Shape | None,
+    said: Conventions,
 ) -> Stated:
     """Read the section; what is wrong with it is told where it stands.
 
@@ -135,20 +137,20 @@ def read_uncertainty(
         Of report.toml.
     numbers : mapping of str to tuple of Printed
         What was given, by column and parameter.
-    counted : collection of str
-        Those that are whole numbers by their nature.
+    declared : mapping of str to Declared
+        What the workbook says of them.
     tests : collection of int
-    bare : Shape or None
-        From :func:`read_bare`.
+    said : Conventions
+        What the folder says of all uncertainties.
     """
-    reader = _Reader(tables, numbers, counted, tests)
+    reader = _Reader(tables, numbers, declared, tests, said)
     written = tables.keys((SECTION,), (*numbers, "plus_minus", "digits", "paired", "shared", "correlation"))
     paired = read_paired(tables, SECTION, numbers) if "paired" in written else ()
-    columns = {name: reader.column(name, bare) for name in written if name in numbers}
+    columns = {name: reader.column(name) for name in written if name in numbers}
     columns |= {name: reader.of_readings(name, name in columns) for name in paired}
-    shared = [reader.shared(name, bare) for name in reader.names("shared")]
+    shared = [reader.shared(name) for name in reader.names("shared")]
     own = {name: found for name, found in columns.items() if found is not None}
-    several = {name for name, found in own.items() if len(found.parts) != 1}
+    several = {name for name, found in own.items() if len(found.parts) != 1 or found.parts[0].table}
     correlations = reader.possible(dict(reader.correlations(several, paired)))
     if paired and not tables.findings.found:
         correlations |= correlations_of({name: numbers[name] for name in paired})
@@ -160,9 +162,15 @@ class _Reader:
     """Reads one section."""
 
     def __init__(
-        self, tables: TomlTables, numbers: Numbers, counted: Collection[str], tests: Collection[int]
+        self,
+        tables: TomlTables,
+        numbers: Numbers,
+        declared: Mapping[str, Declared],
+        tests: Collection[int],
+        said: Conventions,
     ) -> None:
-        self.tables, self.numbers, self.counted, self.tests = tables, numbers, counted, tests
+        self.tables, self.numbers, self.declared, self.tests = tables, numbers, declared, tests
+        self.said = said
         self.findings, self.toml = tables.findings, tables.toml
 
     def digits(self) -> int:
@@ -184,30 +192,37 @@ class _Reader:
             return ()
         return tuple(found)
 
-    def statement(self, path: tuple[str, ...], of: str, bare: Shape | None) -> StatedErrors | None:
+    def statement(self, path: tuple[str, ...], of: str) -> StatedErrors | None:
         """What a text says of a column, whose unit is that of what has none."""
         text = self.tables.text(path[:-1], path[-1], "U = 0.03, k = 2", required=True)
         if text is None:
             return None
-        if of in self.counted:
+        if self.declared[of].bounds.integer:
             hint = f"{of} is a whole number that the method counts with: it has none"
             self.findings.add("LS431", self.toml.value(*path), text=text, suggestion=hint)
             return None
         try:
-            readings = self.numbers[of] if len(path) == 2 else ()
-            return read_statement(text, parse_unit(self.numbers[of][0].unit), bare, readings)
+            own = self.of(of, self.toml.value(*path)) if len(path) == 2 else Of()
+            return read_statement(text, parse_unit(self.numbers[of][0].unit), self.said.bare, own)
         except StatementError as error:
             at = self.toml.value(*path, start=error.start, length=max(len(error.text), 1))
             self.findings.add(error.code, at, text=error.text, suggestion=error.suggestion)
             return None
 
-    def column(self, name: str, bare: Shape | None) -> StatedErrors | None:
+    def of(self, name: str, at: Location) -> Of:
+        """A column or a parameter, as what something is stated of."""
+        numbers, declared, read = self.numbers[name], self.declared[name], self.said.draws
+        if read is None or len(numbers) != 1:
+            return Of(numbers, declared.bounds)
+        return Of(numbers, declared.bounds, lambda table: read(table, declared, at))
+
+    def column(self, name: str) -> StatedErrors | None:
         """What is said of a column or a parameter, which says nothing itself."""
         if any(number.stated is not None for number in self.numbers[name]):
             hint = "leave out what stands in [uncertainty], or what stands beside the numbers"
             self.findings.add("LS433", self.toml.key(SECTION, name), name=name, suggestion=hint)
             return None
-        return self.statement((SECTION, name), name, bare)
+        return self.statement((SECTION, name), name)
 
     def of_readings(self, name: str, is_stated: bool) -> StatedErrors | None:
         """What paired readings say of a column, of which nothing else is said."""
@@ -216,9 +231,9 @@ class _Reader:
             at = self.toml.value(SECTION, "paired")
             self.findings.add("LS433", at, name=name, suggestion=hint)
             return None
-        return read_statement(SCATTER, parse_unit("1"), readings=self.numbers[name])
+        return read_statement(SCATTER, parse_unit("1"), of=Of(self.numbers[name]))
 
-    def shared(self, name: str, bare: Shape | None) -> SharedError | None:
+    def shared(self, name: str) -> SharedError | None:
         """An error that cells share."""
         path = (SECTION, "shared", name)
         written = self.tables.keys(path, ("of", "stated", "groups"))
@@ -229,7 +244,7 @@ class _Reader:
                 at = self.toml.value(*path, "of")
                 self.findings.add("LS505", at, text=of, known=known, suggestion=suggestion)
             return None
-        statement = self.statement((*path, "stated"), of, bare)
+        statement = self.statement((*path, "stated"), of)
         groups: tuple[tuple[int, ...], ...] | None = ()
         if "groups" in written and len(self.numbers[of]) == 1:
             known = f"no groups: {of} is one number"

@@ -267,7 +267,7 @@ CATALOGUE: dict[str, Entry] = {
         "not an uncertainty",
         "'{text}' is not understood as an uncertainty",
         "u = 0.02; U = 0.03, k = 2; +-0.1 rect (tri, arcsine); 0.5 % of reading + 2 digits; s = 0.02, n = 5; "
-        "exact; scatter of a column",
+        "exact; scatter of a column; u = 0.02, min = 0 (or truncated); exponential; samples = mass.csv",
         "{suggestion}",
     ),
     "LS432": Entry(
@@ -290,6 +290,11 @@ CATALOGUE: dict[str, Entry] = {
         "this is not how many digits an uncertainty may have",
         "digits = 1 or digits = 2",
         "more digits of an uncertainty would say nothing; values.json has all of them",
+    ),
+    "LS436": Entry(
+        "not a table of draws",
+        "{number} draws of {name} say nothing of its distribution",
+        "{fewest} draws or more that are not all the same",
     ),
     "LS441": Entry(
         "not limits",

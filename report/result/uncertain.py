@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..inputs.limits import Limits
+    from ..laws import Law
 
 __all__ = ["Budget", "Conformity", "Contribution", "Decision", "Distributed", "ErrorSource", "Uncertainties"]
 
@@ -34,7 +35,7 @@ class ErrorSource:
         Columns and rows that it is an error of, and its standard uncertainty there, in SI.
     said : str
         How it was stated; empty if it follows from printed digits.
-    sample : str
+    sample, law
         As of :class:`~loopsheet.report.distribution.Error`.
     """
 
@@ -44,12 +45,18 @@ class ErrorSource:
     moves: tuple[tuple[str, int, float], ...]
     said: str = ""
     sample: str = ""
+    law: Law | None = None
 
     @property
     def u(self) -> float | None:
         """Its standard uncertainty in SI; None if it is larger in one cell than in another."""
         sizes = {u for _, _, u in self.moves}
         return sizes.pop() if len(sizes) == 1 else None
+
+    @property
+    def table(self) -> str:
+        """The table of draws that it is of; empty if there is none."""
+        return self.law.table if self.law else ""
 
 
 @dataclass(frozen=True)
@@ -113,6 +120,8 @@ class Budget:
         Why nothing is known of second order; empty if it was looked at.
     shape : Shape
         The distribution that is assigned to it: normal, Student's t, or that of a source which dominates.
+    law : Law or None
+        As of :class:`~loopsheet.report.distribution.Error`: of what the quantity is more than the value.
     """
 
     cell: str
@@ -129,6 +138,7 @@ class Budget:
     second: float = 0.0
     unlooked: str = ""
     shape: Shape = Shape.NORMAL
+    law: Law | None = None
 
     @property
     def expanded(self) -> float:

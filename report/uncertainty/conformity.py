@@ -6,12 +6,13 @@ import math
 
 from ..distribution import DIVISORS, SHARES, Shape
 from ..inputs.limits import Limits
+from ..laws import Law
 from ..result.uncertain import Budget, Conformity, Decision
 
 __all__ = ["beyond", "conformity"]
 
 
-def beyond(z: float, shape: Shape, dof: float) -> float:
+def beyond(z: float, shape: Shape, dof: float, law: Law | None = None) -> float:
     """The probability that an error is larger than z standard uncertainties.
 
     Parameters
@@ -21,12 +22,16 @@ def beyond(z: float, shape: Shape, dof: float) -> float:
         That the budget assigns; a width is such that the standard uncertainty is 1, of Student's t the scale.
     dof : float
         Of Student's t.
+    law : Law, optional
+        Where the shape does not tell it whole.
 
     Examples
     --------
     >>> beyond(math.sqrt(3) / 2, Shape.RECTANGULAR, math.inf), round(beyond(1.4, Shape.NORMAL, math.inf), 4)
     (0.25, 0.0808)
     """
+    if law is not None:
+        return 1 - law.below(z)
     if shape in SHARES:
         share = SHARES[shape](min(abs(z) / DIVISORS[shape], 1.0))
         return (1 - share) / 2 if z > 0 else (1 + share) / 2
@@ -48,18 +53,20 @@ def conformity(budget: Budget, limits: Limits) -> Conformity:
     """
     (low, high), value = limits.ends, budget.value
 
-    def more(distance: float) -> float:
-        """The probability that the error is larger."""
+    over, under = budget.law, budget.law and budget.law.turned()
+
+    def more(distance: float, law: Law | None) -> float:
+        """The probability that the error is larger; `over` the value or `under` it."""
         if math.isnan(distance) or (math.isnan(budget.factor) and budget.u != 0):
             return math.nan
         z = distance / budget.u if budget.u else math.copysign(math.inf, distance)
-        return beyond(z, budget.shape, budget.dof)
+        return beyond(z, budget.shape, budget.dof, law)
 
-    below, above = more(value - low), more(high - value)
+    below, above = more(value - low, under), more(high - value, over)
     if below > 0.5:  # a difference of small ones, where that of 1 and nearly 1 would have lost its digits
-        probability = more(low - value) - above
+        probability = more(low - value, over) - above
     elif above > 0.5:
-        probability = more(value - high) - below
+        probability = more(value - high, under) - below
     else:
         probability = 1 - (below + above)
     rule = limits.guard

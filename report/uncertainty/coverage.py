@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..distribution import DIVISORS, DOMINANT, LEVEL, PARTS, Shape
+from ..laws import Law
 from ..result.uncertain import ErrorSource
 
 __all__ = ["assigned", "coverage", "effective"]
@@ -43,16 +44,19 @@ def effective(u: float, contributions: NDArray[np.float64], dof: Sequence[float]
 
 def assigned(
     sources: Sequence[ErrorSource], contributions: NDArray[np.float64], dof: float, second: float = 0.0
-) -> Shape:
-    """The distribution of a sum; parameters as for :func:`coverage`."""
+) -> tuple[Shape, Law | None]:
+    """The distribution of a sum, and its law if it has one; parameters as for :func:`coverage`."""
     sizes = np.abs(contributions)
     if sizes.size:
         largest = int(sizes.argmax())
         rest = math.sqrt(float(np.sum(np.delete(sizes, largest) ** 2)) + abs(second))
-        shape, sure = sources[largest].shape, math.isinf(sources[largest].dof)
-        if sure and sizes[largest] and shape in PARTS and rest <= DOMINANT * sizes[largest]:
-            return shape
-    return Shape.NORMAL if math.isinf(dof) else Shape.STUDENT
+        one, sure = sources[largest], math.isinf(sources[largest].dof)
+        dominates = bool(sizes[largest]) and rest <= DOMINANT * sizes[largest]
+        if sure and dominates and one.law is not None:
+            return one.shape, one.law if contributions[largest] > 0 else one.law.turned()
+        if sure and dominates and one.shape in PARTS:
+            return one.shape, None
+    return Shape.NORMAL if math.isinf(dof) else Shape.STUDENT, None
 
 
 def coverage(
@@ -83,9 +87,10 @@ def coverage(
     """
     if math.isnan(dof):
         return math.nan, "nothing: correlated sources have finite degrees of freedom"
-    shape = assigned(sources, contributions, dof, second)
-    if shape in PARTS:
-        return DIVISORS[shape] * PARTS[shape](level), f"the {shape} source that dominates"
+    shape, law = assigned(sources, contributions, dof, second)
+    if law is not None or shape in PARTS:
+        factor = DIVISORS[shape] * PARTS[shape](level) if law is None else law.half(level)
+        return factor, f"the {shape} source that dominates"
     if shape is Shape.NORMAL:
         return NormalDist().inv_cdf((1 + level) / 2), "a normal distribution"
     from scipy.special import stdtrit  # a quarter of a second, for those who have degrees of freedom

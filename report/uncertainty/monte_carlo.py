@@ -141,7 +141,7 @@ class _Draws:
         ]
         pairs = correlated(self.sources, inputs, values)
         self.root = root_of(len(self.sources), pairs)
-        self.mixed = {n for a, b, _ in pairs for n in (a, b)}
+        self.mixed = {n for a, b, _ in pairs for n in (a, b) if not self.sources[n].table}
         estimated = Counter(source.sample for source in self.sources if source.shape is Shape.STUDENT)
         self.samples = {sample for sample, number in estimated.items() if sample and number > 1}
         self.beside = self._beside(values)
@@ -190,7 +190,14 @@ class _Draws:
         if self.mixed:
             together = self.generator.standard_normal((size, len(self.sources))) @ self.root.T
         scales: dict[str, Array] = {}
+        rows: dict[str, Array] = {}
         for n, source in enumerate(self.sources):
+            if source.law is not None and n not in self.mixed:
+                table = source.table or source.name
+                if table not in rows:  # what stands in one row of a table of draws is drawn together
+                    rows[table] = self.generator.random(size)
+                yield source.law.quantile(rows[table])
+                continue
             if source.sample not in self.samples or source.shape is not Shape.STUDENT:
                 yield together[:, n] if n in self.mixed else self._error(source, size)
                 continue

@@ -181,7 +181,7 @@ class Spread:
         shares = own / u * (together / u) if u > 0 else np.zeros(len(own))
         dof = self._effective(math.sqrt(first), own, together)
         factor, because = coverage(self.sources, own, dof, level, second)
-        shape = assigned(self.sources, own, dof, second)
+        shape, law = assigned(self.sources, own, dof, second)
         order = [
             int(n)
             for n in np.argsort(-np.abs(shares), kind="stable")
@@ -191,7 +191,7 @@ class Spread:
         pairs = {
             (self.sources[a].name, self.sources[b].name): r for a, b, r in self._pairs if {a, b} <= set(order)
         }
-        known = value, u, told, pairs, dof, level, factor, because, second, unlooked, shape
+        known = value, u, told, pairs, dof, level, factor, because, second, unlooked, shape, law
         return Budget(address(name, label), name, label, *known)
 
     def conformity(self, limits: Limits) -> Conformity:

@@ -83,9 +83,10 @@ class SecondOrder:
         by_source: Callable[[Array], Array],
     ) -> None:
         self.sources, self.root, self.by_source = sources, root, by_source
-        own = np.array([_FOURTH.get(source.shape, 3.0) for source in sources])
+        own = np.array([s.law.kurtosis if s.law else _FOURTH.get(s.shape, 3.0) for s in sources])
+        leans = np.array([s.law.skewness if s.law else 0.0 for s in sources])
         alone = np.count_nonzero(root, axis=0) == 1  # what is mixed of several is taken as normal
-        self.fourth = np.where(alone, own, 3.0)
+        self.fourth, self.third = np.where(alone, own, 3.0), np.where(alone, leans, 0.0)
         self.width = 2 * len(sources) * max(1, chain.number)
         self.jumping: set[str] = set()
         """What rests on a median: its derivatives jump where two rows change places, and hardly bend."""
@@ -123,6 +124,7 @@ class SecondOrder:
             itself = np.eye(len(self.sources), dtype=bool)
             bends = second**2 * np.where(itself, (self.fourth - 1) / 4, 1 / 2)
             turns = first[:, :, None] * third * np.where(itself, self.fourth / 3, 1.0)
+            turns += first[:, :, None] * second * np.where(itself, self.third, 0.0)
             bent, turned = bends.sum(axis=(1, 2)), turns.sum(axis=(1, 2))
             own = np.sum(first**2, axis=1)
             # A sum that would be negative is no variance: then the terms of the fourth order count too.

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import combinations
 
 from ..cells.address import address
 from ..cells.values import Values
 from ..inputs.inputs import Inputs
+from ..laws import Samples
 from ..result.uncertain import ErrorSource
 from ..sheet import Column, Given
 
@@ -37,7 +39,9 @@ def _own(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
                 if error.width:
                     told = f"{name}, {error.said}" if len(errors) > 1 else name
                     moves = ((column.name, row, error.u),)
-                    yield ErrorSource(told, error.shape, error.dof, moves, error.said, error.sample)
+                    yield ErrorSource(
+                        told, error.shape, error.dof, moves, error.said, error.sample, error.law
+                    )
 
 
 def _shared(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
@@ -54,7 +58,9 @@ def _shared(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
             named = f" (test{'s' * (len(group) > 1)} {', '.join(map(str, group))})" if each.groups else ""
             if any(u for _, _, u in moves):
                 one = next(iter(errors.values()))
-                yield ErrorSource(f"{each.name}{named}", one.shape, one.dof, moves, one.said, one.sample)
+                yield ErrorSource(
+                    f"{each.name}{named}", one.shape, one.dof, moves, one.said, one.sample, one.law
+                )
 
 
 def given(values: Values) -> tuple[Column, ...]:
@@ -70,7 +76,7 @@ def given(values: Values) -> tuple[Column, ...]:
 def correlated(
     every: Sequence[ErrorSource], inputs: Inputs, values: Values
 ) -> tuple[tuple[int, int, float], ...]:
-    """The correlation coefficients that were stated, with the places of their two sources."""
+    """The correlation coefficients that were stated or drawn, with the places of their two sources."""
     place = {source.name: n for n, source in reversed(tuple(enumerate(every)))}  # own ones are first
     found = []
     for (one, other), coefficient in inputs.uncertainty.correlations.items():
@@ -78,4 +84,8 @@ def correlated(
         for names in ((address(one, label), address(other, label)) for label in labels):
             if place.keys() >= set(names):
                 found.append((place[names[0]], place[names[1]], coefficient))
+    drawn = [(n, source.law) for n, source in enumerate(every) if isinstance(source.law, Samples)]
+    for (a, first), (b, second) in combinations(drawn, 2):
+        if first.table == second.table:
+            found.append((a, b, first.correlation(second)))
     return tuple(found)

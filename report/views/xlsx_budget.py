@@ -17,7 +17,7 @@ from ..quantity import behind
 from ..result.numbers import rounded
 from ..result.result import Report
 from ..result.uncertain import Budget, Contribution
-from .xlsx_limits import MOST_DOF, SHAPES, write_limits
+from .xlsx_limits import MOST_DOF, SHAPES, as_issued, write_limits
 from .xlsx_style import Style, height, number_format
 
 __all__ = ["write_budgets"]
@@ -37,6 +37,7 @@ _UNLIMITED = 10.0**15
 """Stands for infinitely many degrees of freedom."""
 _DOF = '[>=1000000000]"∞";General'
 _FACTORS = {
+    "exponential": "IF({p}>1-EXP(-2),-LN(1-{p})-1,ASINH({p}*EXP(1)/2))",
     "rectangular": "{p}*SQRT(3)",
     "triangular": "(1-SQRT(1-{p}))*SQRT(6)",
     "arcsine": "SIN({p}*PI()/2)*SQRT(2)",
@@ -178,7 +179,7 @@ class _Written:
                 _DOF,
             ),
             ("coverage probability", "", budget.level, "0.##%"),
-            ("coverage factor k", f"={self.factor(own, at)}", budget.factor, "0.000"),
+            ("coverage factor k", f"={self.factor(own, at, budget.level)}", budget.factor, "0.000"),
             (
                 "expanded uncertainty U",
                 f"={at['k']}*{at['u']}",
@@ -201,7 +202,9 @@ class _Written:
         for found in self.report.uncertain().conformities:
             if found.budget.cell == self.budget.cell:
                 plain = f'IF({at["dof"]}>{MOST_DOF},"normal","t")'
-                formulas = lambda p: self.factor(own, {**at, "p": p}), self.by_shape(own, at, SHAPES, plain)
+                level = found.limits.guard.level
+                named = self.by_shape(own, at, SHAPES, plain)
+                formulas = lambda p, level=level: self.factor(own, {**at, "p": p}, level), named
                 form = self.form(found.guard or self.budget.u)
                 row = write_limits(self.sheet, self.style, found, self.scale, form, row, dict(at), formulas)
         return row
@@ -232,11 +235,17 @@ class _Written:
             for (one, other), r in self.budget.correlations.items()
         )
 
-    def factor(self, own: str, at: Mapping[str, str]) -> str:
-        """The coverage factor: of the shape of a source that dominates, else of t or normal."""
+    def factor(self, own: str, at: Mapping[str, str], level: float) -> str:
+        """The coverage factor: of the shape of a source that dominates, else of t or normal.
+
+        Of a truncated normal source and of draws no spreadsheet has the formula: it is known for the level as
+        issued, and for no other.
+        """
         p, dof = at["p"], at["dof"]
         otherwise = f"IF({dof}>{MOST_DOF},NORMSINV((1+{p})/2),TINV(1-{p},MIN({dof},{MOST_DOF})))"
         factors = {name: factor.format(p=p) for name, factor in _FACTORS.items()}
+        if (law := self.budget.law) and self.budget.shape.value not in factors:
+            factors[self.budget.shape.value] = as_issued(p, level, law.half(level))
         return self.by_shape(own, at, factors, otherwise)
 
     def by_shape(self, own: str, at: Mapping[str, str], formulas: Mapping[str, str], otherwise: str) -> str:

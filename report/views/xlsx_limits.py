@@ -10,7 +10,7 @@ from ..distribution import Shape
 from ..result.uncertain import Conformity, Decision
 from .xlsx_style import Style
 
-__all__ = ["MOST_DOF", "SHAPES", "write_limits"]
+__all__ = ["MOST_DOF", "SHAPES", "as_issued", "write_limits"]
 
 MOST_DOF = 10**9
 """Degrees of freedom that every spreadsheet's t distribution takes."""
@@ -21,9 +21,15 @@ _SHARES = {
     Shape.ARCSINE: "(ASIN(MIN(ABS({z})/SQRT(2),1))*2/PI())",
 }
 """The share within z standard uncertainties, of the shapes that have ends."""
-SHAPES = {shape.value: f'"{shape.value}"' for shape in _SHARES}
+_LAWS = (Shape.TRUNCATED, Shape.EXPONENTIAL, Shape.SAMPLES)
+SHAPES = {shape.value: f'"{shape.value}"' for shape in (*_SHARES, *_LAWS)}
 """Their names in a formula."""
 CHANCE = "0.00%"
+
+
+def as_issued(cell: str, at: float, value: float) -> str:
+    """A number that is known where a cell is as it was issued, and not when somebody has changed it."""
+    return f"IF(ABS({cell}-({at:.15f}))<0.000001,{value:.15f},NA())" if math.isfinite(at) else "0"
 
 
 class _Written:
@@ -115,11 +121,15 @@ def write_limits(
     to.end("z high", "below the upper limit, over u", "({high}-{value})/{u}", z[1], "0.00")
     for name, said, now in (("low", "below", found.below), ("high", "above", found.above)):
         end = f"{{z {name}}}"
-        formula = f"IF(ISNUMBER({end}),{to.tail(end)},0)"
-        to.line(said, f"probability that it lies {said}", formula, now, CHANCE)
+        tail = to.tail(end) if budget.law is None else as_issued(end, z[name == "high"], now)
+        to.line(said, f"probability that it lies {said}", f"IF(ISNUMBER({end}),{tail},0)", now, CHANCE)
     inside = (
-        f"IF({{below}}>0.5,{to.tail('-N({z low})')}-{{above}},"
-        f"IF({{above}}>0.5,{to.tail('-N({z high})')}-{{below}},1-({{below}}+{{above}})))"
+        "1-({below}+{above})"
+        if budget.law
+        else (
+            f"IF({{below}}>0.5,{to.tail('-N({z low})')}-{{above}},"
+            f"IF({{above}}>0.5,{to.tail('-N({z high})')}-{{below}},1-({{below}}+{{above}})))"
+        )
     )
     to.line("inside", "conformance probability", inside, found.probability, CHANCE)
     no, yes, open_ = (f'"{each.value}"' for each in (Decision.DOES_NOT, Decision.CONFORMS, Decision.NONE))

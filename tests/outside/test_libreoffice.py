@@ -288,6 +288,10 @@ BUDGETS: dict[str, dict[str, str]] = {
     "limits that are not certain": {"l_S": "50.000623 mm, +-0.1 um rect, dof = 2"},
     "no one dominates": {"l_S": "50.000623 mm, +-0.1 um rect", "dtheta": "0 K, +-0.2 rect"},
     "few readings": {"l_S": "50.000623 mm, s = 0.1 um, n = 5", "dtheta": "0 K, u = 0.02"},
+    "cut off": {"l_S": "50.000623 mm, u = 0.1 um, min = 50.00055 mm"},
+    "an estimate alone": {"dtheta": "0.2 K, exponential"},
+    "an estimate alone, to the other side": {"dalpha": "1e-8 K^-1, exponential", "theta": "-9 K, exact"},
+    "draws": {"l_S": "50.000623 mm, samples = draws.csv"},
     "correlated": {"l_S": "50.000623 mm, u = 0.1 um", "dtheta": "0 K, u = 0.1"},
     "second order alone": {"dalpha": "0 K^-1, +-1e-6 rect", "cycle": "0 K, u = 0.2", "theta": "0 K, exact"},
     "second order beside": {
@@ -315,6 +319,8 @@ def test_a_budget_is_recalculated_to_the_same(require: Callable[..., str], tmp_p
         toml = f'workbook = "workbook.py"\n[parameters]\n{given}[measurements]\nfile = "d.csv"\n'
         rule = LIMITS[n % len(LIMITS)]
         end_gauge(folder, report=f'{toml}[uncertainty]\nd = "exact"\n{more}[limits]\n{rule}')
+        drawn = "".join(f"{50.0005 + 0.0002 * (k / 400) ** 2:.9f}\n" for k in range(401))
+        (folder / "draws.csv").write_text(f"l_S [mm]\n{drawn}", encoding="utf-8")
         books[name] = spreadsheets.deliver(folder).content
     shipped = [PAPER.parent / name for name in ("gum_h1", "gum_h2", "gum_h3")]
     books |= {folder.name: spreadsheets.deliver(folder).content for folder in shipped}

@@ -1,0 +1,251 @@
+"""Distributions of an error that the word for a shape does not tell whole, in standard uncertainties.
+
+The error is what the quantity is more than the number that was given, which need not be its expectation: a
+normal distribution that is cut off at one end has its mean on the other side.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Exponential", "Law", "Samples", "TruncatedNormal"]
+
+Array = NDArray[np.float64]
+
+_HALVINGS = 200
+_NODES = 200
+_FAR = 12.0
+"""Beyond so many standard deviations a normal distribution holds less than a double can tell of 1."""
+
+
+class Law(ABC):
+    """A distribution with the standard deviation 1.
+
+    Attributes
+    ----------
+    table : str
+        What else is drawn with it, row by row; empty if it is drawn for itself.
+    """
+
+    table: str = ""
+
+    @property
+    @abstractmethod
+    def skewness(self) -> float:
+        """The third central moment."""
+
+    @property
+    @abstractmethod
+    def kurtosis(self) -> float:
+        """The fourth central moment."""
+
+    @abstractmethod
+    def below(self, z: float) -> float:
+        """The probability that the error is at most z."""
+
+    @abstractmethod
+    def quantile(self, shares: Array) -> Array:
+        """The errors that so many are below: of random numbers from 0 to 1, draws."""
+
+    def half(self, level: float) -> float:
+        """The half-width of the interval around the given number that holds so much.
+
+        >>> round(Exponential().half(0.95), 4)
+        1.9957
+        """
+        low, high = 0.0, 1.0
+        while self.below(high) - self.below(-high) < level:
+            low, high = high, 2 * high
+        for _ in range(_HALVINGS):
+            middle = (low + high) / 2
+            if self.below(middle) - self.below(-middle) < level:
+                low = middle
+            else:
+                high = middle
+        return high
+
+    def turned(self) -> Law:
+        """That of the error with the other sign."""
+        return _Turned(self)
+
+
+@dataclass(frozen=True)
+class _Turned(Law):
+    of: Law
+
+    @property
+    def skewness(self) -> float:
+        return -self.of.skewness
+
+    @property
+    def kurtosis(self) -> float:
+        return self.of.kurtosis
+
+    def below(self, z: float) -> float:
+        return 1 - self.of.below(-z)
+
+    def quantile(self, shares: Array) -> Array:
+        return -self.of.quantile(1 - shares)
+
+
+@dataclass(frozen=True)
+class Exponential(Law):
+    """A quantity that is not negative and of which its best estimate alone is known (JCGM 101, 6.4.10).
+
+    The standard uncertainty is the estimate, and the error at least minus that.
+    """
+
+    skewness = 2.0
+    kurtosis = 9.0
+
+    def below(self, z: float) -> float:
+        """As above.
+
+        >>> Exponential().below(-1.0), round(Exponential().below(0.0), 4)
+        (0.0, 0.6321)
+        """
+        return -math.expm1(-(z + 1)) if z > -1 else 0.0
+
+    def quantile(self, shares: Array) -> Array:
+        """As above."""
+        return -np.log1p(-shares) - 1
+
+
+@dataclass(frozen=True)
+class TruncatedNormal(Law):
+    """A normal distribution around the given number that is cut off.
+
+    Parameters
+    ----------
+    low, high : float
+        The ends, in standard deviations of the normal distribution from the number, which lies between them.
+        Either may be infinite.
+    """
+
+    low: float
+    high: float
+
+    @cached_property
+    def _moments(self) -> tuple[float, float, float, float]:
+        """Mean and standard deviation in those of the normal distribution, and both other moments.
+
+        By Gauss and Legendre: the closed forms are differences that have no digits left between near ends.
+        """
+        near = min(max(self.low, 0.0), self.high)
+        low, high = max(self.low, near - _FAR), min(self.high, near + _FAR)
+        nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+        x = (high - low) / 2 * nodes + (high + low) / 2
+        weights = weights * np.exp((near**2 - x**2) / 2)
+        weights /= weights.sum()
+        mean = float(weights @ x)
+        sd = math.sqrt(float(weights @ (x - mean) ** 2))
+        z = (x - mean) / sd
+        return mean, sd, float(weights @ z**3), float(weights @ z**4)
+
+    @property
+    def sd(self) -> float:
+        """Its standard deviation over that of the normal distribution.
+
+        >>> round(TruncatedNormal(0.0, math.inf).sd ** 2, 12) == round(1 - 2 / math.pi, 12)
+        True
+        """
+        return self._moments[1]
+
+    @property
+    def mean(self) -> float:
+        """How far the expectation is from the given number, in its standard deviation."""
+        return self._moments[0] / self.sd
+
+    @property
+    def skewness(self) -> float:
+        """The third central moment."""
+        return self._moments[2]
+
+    @property
+    def kurtosis(self) -> float:
+        """The fourth central moment."""
+        return self._moments[3]
+
+    @property
+    def _ends(self) -> tuple[float, float]:
+        return _normal(self.low), _normal(self.high)
+
+    def below(self, z: float) -> float:
+        """As above."""
+        least, most = self._ends
+        return min(max((_normal(z * self.sd) - least) / (most - least), 0.0), 1.0)
+
+    def quantile(self, shares: Array) -> Array:
+        """As above."""
+        from scipy.special import ndtri
+
+        least, most = self._ends
+        found = np.clip(ndtri(least + shares * (most - least)), self.low, self.high)
+        drawn: Array = found / self.sd
+        return drawn
+
+
+@dataclass(frozen=True)
+class Samples(Law):
+    """Draws that somebody else made: each is as likely as any other.
+
+    Parameters
+    ----------
+    errors : float array (draws,)
+        Each minus the given number, over the standard deviation of all; row by row as in the table.
+    table : str
+        Its name: what stands in one row of it belongs together.
+    """
+
+    errors: Array = field(compare=False, repr=False)
+    table: str = ""
+
+    @classmethod
+    def around(cls, value: float, draws: Sequence[float], table: str) -> tuple[float, Samples]:
+        """The standard deviation of draws, which differ, and what they say of a number (JCGM 101, 7.6)."""
+        drawn = np.array(draws)
+        sd = float(drawn.std(ddof=1))
+        return sd, cls((drawn - value) / sd, table)
+
+    @cached_property
+    def _ordered(self) -> Array:
+        return np.sort(self.errors)
+
+    def _moment(self, power: int) -> float:
+        return float(np.mean((self.errors - self.errors.mean()) ** power))
+
+    @property
+    def skewness(self) -> float:
+        """The third central moment."""
+        return self._moment(3)
+
+    @property
+    def kurtosis(self) -> float:
+        """The fourth central moment."""
+        return self._moment(4)
+
+    def below(self, z: float) -> float:
+        """As above."""
+        return float(np.searchsorted(self._ordered, z, side="right")) / self.errors.size
+
+    def quantile(self, shares: Array) -> Array:
+        """As above: the same share is the same row of the table, for every column of it."""
+        rows = np.minimum((shares * self.errors.size).astype(np.intp), self.errors.size - 1)
+        return self.errors[rows]
+
+    def correlation(self, other: Samples) -> float:
+        """That with another column of the same table."""
+        products = (self.errors - self.errors.mean()) * (other.errors - other.errors.mean())
+        return min(max(float(products.sum()) / (self.errors.size - 1), -1.0), 1.0)
+
+
+def _normal(z: float) -> float:
+    """The share of a normal distribution below z standard deviations."""
+    return math.erfc(-z / math.sqrt(2)) / 2
