@@ -168,6 +168,11 @@ def few_draws() -> None:
     campaign(toml=TOML.replace("8.366 g", "8.366 g, samples = mass.csv"))
 
 
+def nothing_to_take() -> None:
+    Path("values.json").write_text("{}")
+    campaign(toml=TOML.replace('"8.366 g"', '{ from = "values.json", cell = "m" }'))
+
+
 def huge() -> None:
     with Path("huge.csv").open("wb") as file:
         file.truncate(50_000_001)  # a hole: no disk is used
@@ -286,6 +291,7 @@ CASES: dict[str, Callable[[], None]] = {
     "LS434": toml("[published]", '[uncertainty.correlation]\n"v, e" = "1.2"\n[published]'),
     "LS435": toml("[published]", "[uncertainty]\ndigits = 3\n[published]"),
     "LS436": few_draws,
+    "LS437": nothing_to_take,
     "LS441": toml("[published]", '[limits]\nalpha_mean = "1.3"\n[published]'),
     "LS442": toml("[published]", '[limits.rule]\nguard = "V"\n[published]'),
     "LS501": published("1-2", "2-Jan"),

@@ -76,10 +76,10 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.workbook": (DECLARED, ALGEBRA),
     "report.inputs": (
         rooms(
-            *("cells.address", "charts", "distribution", "inputs", "laws", "messages", "quantity", "sheet"),
-            "workbook",
+            *("cells.address", "charts", "distribution", "files", "inputs", "laws", "messages", "quantity"),
+            *("sheet", "workbook"),
         ),
-        set(),
+        {"msgspec"},
     ),
     "report.inputs.unit_text": (rooms("messages"), {"pint"}),
     "report.plan": (DECLARED | rooms("content", "machine.kept", "plan"), ALGEBRA | {"msgspec"}),

@@ -21,6 +21,7 @@ __all__ = [
     "Schema",
     "Text",
     "alike",
+    "decoded",
     "indented",
     "load",
     "read",
@@ -72,6 +73,11 @@ def load(path: Path, form: type[F]) -> F:
         content = path.read_bytes()
     except OSError as error:
         raise Malformed(error.strerror or str(error)) from error
+    return decoded(content, form)
+
+
+def decoded(content: bytes, form: type[F]) -> F:
+    """The form of a file's content; raises as :func:`load`."""
     try:
         return msgspec.json.decode(content, type=form)
     except msgspec.ValidationError as error:

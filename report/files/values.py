@@ -16,11 +16,13 @@ __all__ = [
     "Erratum",
     "Explanation",
     "Fit",
+    "Influences",
     "Marked",
     "Oddity",
     "Published",
     "Referee",
     "Result",
+    "Source",
     "Table",
     "Tried",
     "Witness",
@@ -264,6 +266,58 @@ class Referee(Form, frozen=True, kw_only=True):
     misprints: list[Explanation]
 
 
+class Source(Form, frozen=True, kw_only=True):
+    """An error that is independent of all others, unless a correlation says otherwise.
+
+    Parameters
+    ----------
+    name : str
+        In the report where it was stated.
+    report : str
+        The sha256 of that report's inputs; empty if it is this one.
+    distribution : str
+    dof : number or null
+        Degrees of freedom; null where its standard uncertainty is known.
+    sample : str
+        What its standard uncertainty was estimated from, where others were too.
+    """
+
+    name: Text
+    report: Text = ""
+    distribution: Text
+    dof: Annotated[float, Meta(gt=0)] | None = None
+    sample: Text = ""
+
+
+class Influences(Form, frozen=True, kw_only=True):
+    """Where the uncertainty of cells comes from, for reports that take their values from here.
+
+    Parameters
+    ----------
+    inputs : str
+        The sha256 of all that the report was made from.
+    sources : list of Source
+    cells : table of lists
+        By how much the standard uncertainty of each source moves a cell, in SI, with its sign.
+    second : table of number
+        The standard uncertainty that terms of second order add to a cell.
+    correlations : list
+        Two places in `sources`, and their coefficient.
+    """
+
+    inputs: Text
+    sources: list[Source]
+    cells: dict[Text, list[float]]
+    second: dict[Text, float] = field(default_factory=dict)
+    correlations: list[tuple[int, int, float]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        number = len(self.sources)
+        rows = all(len(moved) == number for moved in self.cells.values())
+        if not rows or not all(0 <= n < number for a, b, _ in self.correlations for n in (a, b)):
+            raise ValueError("its sources do not fit together")
+
+
 class Result(Form, frozen=True, kw_only=True):
     """What a report was computed to.
 
@@ -280,6 +334,8 @@ class Result(Form, frozen=True, kw_only=True):
         What each proved equation finally rests on.
     errata : list of Erratum
     published : list of Published
+    influences : Influences
+        Missing where nothing is known of them.
     referee : Referee
         Missing where nothing is published.
     """
@@ -293,6 +349,7 @@ class Result(Form, frozen=True, kw_only=True):
     rests_on: dict[Text, list[Text]] = field(default_factory=dict)
     errata: list[Erratum] = field(default_factory=list)
     published: list[Published]
+    influences: Influences | UnsetType = UNSET
     referee: Referee | UnsetType = UNSET
 
 

@@ -29,11 +29,13 @@ from .published import PublishedValue, check_published, read_published
 from .sources import Source, open_source, read_bytes
 from .stated import Conventions
 from .tables import TomlTables
+from .taken import Taken, open_result, read_taken
 from .tomlfile import TomlFile, read_toml
 from .uncertainty import Stated, read_bare, read_uncertainty
 from .unit_text import parse_unit
 
 if TYPE_CHECKING:
+    from ..files.values import Result
     from ..messages.errors import Diagnostic
     from ..quantity import Printed
     from ..workbook import Workbook
@@ -100,6 +102,8 @@ class Inputs:
         What report.toml states of the errors of whole columns, of what they share, and of correlations.
     limits : tuple of Limits
         Where cells have to lie.
+    taken : mapping of str to Taken
+        The parameters whose numbers were taken from other reports.
     """
 
     folder: Path
@@ -121,6 +125,7 @@ class Inputs:
     uncertainty: Stated = field(default_factory=lambda: Stated({}))
     published_u: tuple[PublishedValue, ...] = ()
     limits: tuple[Limits, ...] = ()
+    taken: Mapping[str, Taken] = field(default_factory=dict)
 
     @property
     def about_source(self) -> bool:
@@ -246,6 +251,8 @@ class _Reader:
         self.free: dict[str, Location] = {}
         self.by_source = False
         self.said = Conventions()
+        self.taken: dict[str, Taken] = {}
+        self.results: dict[str, Result | None] = {}
 
     def read(self) -> Inputs:
         toml = self.open_toml()
@@ -255,7 +262,7 @@ class _Reader:
         self.toml, self.tables = toml, TomlTables(toml, self.findings)
         sections = ("parameters", "measurements", "uncertainty", "limits", "expected", "published")
         self.tables.keys((), ("title", "workbook", *sections))
-        self.said = Conventions(read_bare(self.tables), self.draws)
+        self.said = Conventions(read_bare(self.tables), self.draws, self.take, self.taken)
         self.workbook = self.open_workbook()
         title = self.title()
         parameters, given = self.parameters()
@@ -290,6 +297,7 @@ class _Reader:
             uncertainty=uncertainty,
             published_u=tuple(value for value in published if value.about is not None),
             limits=limits,
+            taken=self.taken,
         )
         if self.findings.found:
             self.findings.found.extend(self.more(inputs))
@@ -410,6 +418,22 @@ class _Reader:
         stated = read_uncertainty(self.tables, numbers | single, declared, tests, self.said)
         parameters = {name: printed for name, (printed,) in stated.of(single).items()}
         return stated, parameters, replace(measurements, measured=stated.of(measurements.measured))
+
+    def take(self, said: Mapping[str, object], of: Declared) -> Printed | None:
+        """Take a parameter from the result of another report."""
+        path = ("parameters", of.name)
+        found = read_taken(said, path, of, self.toml, self.findings, self.result)
+        if found is None:
+            return None
+        self.taken[of.name] = found
+        return found.printed
+
+    def result(self, name: str, at: Location) -> Result | None:
+        """Open the result of another report, once: what is wrong with it is one problem."""
+        if name not in self.results:
+            data = self.bytes_of(name, LARGEST_TABLE, at)
+            self.results[name] = None if data is None else open_result(data, name, at, self.findings)
+        return self.results[name]
 
     def draws(self, name: str, of: Declared, at: Location) -> tuple[float, ...] | None:
         """Read draws that somebody else made of a parameter."""

@@ -102,6 +102,8 @@ class _Reader:
             digits = (at.source or "")[(at.column or 1) - 1 :][: at.length]
             self.findings.add("LS206", at, text=name, example=f'"{digits}{self.suffix}"')
             return None
+        if isinstance(value, dict) and self.said.take:
+            return self.said.take(value, self.parameter)
         if not isinstance(value, str):
             wanted = "a number as printed and its unit, in quotes"
             wrong_type(self.toml, self.findings, self.path, wanted, f'{name} = "1.5{self.suffix}"')

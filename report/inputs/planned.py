@@ -175,6 +175,7 @@ def planned(inputs: Inputs, values: Mapping[str, Sequence[float]], like: Sequenc
         limits=(),
         errata={},
         free_at={},
+        taken={name: taken for name, taken in inputs.taken.items() if name not in said},
     )
 
 

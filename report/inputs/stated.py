@@ -10,7 +10,7 @@ stand one after another, with a semicolon between them.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import inf, isqrt
@@ -153,10 +153,17 @@ class Conventions:
     draws : callable, optional
         Takes the name of a table of draws, what quantity they are of, and where it is named; returns them in
         SI, or None with a finding.
+    take : callable, optional
+        Takes what says where the number of a parameter is to be taken from; returns it, or None with a
+        finding.
+    taken : collection of str
+        The parameters of which it did.
     """
 
     bare: Shape | None = None
     draws: Read | None = None
+    take: Callable[[Mapping[str, object], Declared], Printed | None] | None = None
+    taken: Collection[str] = ()
 
 
 @dataclass(frozen=True)

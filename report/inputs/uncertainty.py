@@ -151,6 +151,7 @@ def read_uncertainty(
     shared = [reader.shared(name) for name in reader.names("shared")]
     own = {name: found for name, found in columns.items() if found is not None}
     several = {name for name, found in own.items() if len(found.parts) != 1 or found.parts[0].table}
+    several |= set(said.taken)
     correlations = reader.possible(dict(reader.correlations(several, paired)))
     if paired and not tables.findings.found:
         correlations |= correlations_of({name: numbers[name] for name in paired})

@@ -296,6 +296,12 @@ CATALOGUE: dict[str, Entry] = {
         "{number} draws of {name} say nothing of its distribution",
         "{fewest} draws or more that are not all the same",
     ),
+    "LS437": Entry(
+        "nothing to take",
+        "'{file}' {reason}",
+        "{known}",
+        "build that report again, and take what its result tells",
+    ),
     "LS441": Entry(
         "not limits",
         "'{text}' is not understood as limits",

@@ -15,9 +15,19 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..inputs.limits import Limits
+    from ..inputs.taken import Origin
     from ..laws import Law
 
-__all__ = ["Budget", "Conformity", "Contribution", "Decision", "Distributed", "ErrorSource", "Uncertainties"]
+__all__ = [
+    "Budget",
+    "Conformity",
+    "Contribution",
+    "Decision",
+    "Distributed",
+    "ErrorSource",
+    "Influence",
+    "Uncertainties",
+]
 
 
 @dataclass(frozen=True)
@@ -37,6 +47,8 @@ class ErrorSource:
         How it was stated; empty if it follows from printed digits.
     sample, law
         As of :class:`~loopsheet.report.distribution.Error`.
+    origin : tuple of str or None
+        What it is in the report that stated it, where that is another one.
     """
 
     name: str
@@ -46,11 +58,12 @@ class ErrorSource:
     said: str = ""
     sample: str = ""
     law: Law | None = None
+    origin: Origin | None = None
 
     @property
     def u(self) -> float | None:
         """Its standard uncertainty in SI; None if it is larger in one cell than in another."""
-        sizes = {u for _, _, u in self.moves}
+        sizes = {abs(u) for _, _, u in self.moves}
         return sizes.pop() if len(sizes) == 1 else None
 
     @property
@@ -256,6 +269,27 @@ class Conformity:
 
 
 @dataclass(frozen=True)
+class Influence:
+    """What every source does to some cells, for reports that take their values.
+
+    Parameters
+    ----------
+    sources : tuple of ErrorSource
+    cells : mapping of str to tuple of float
+        By the address of a cell, what a standard uncertainty of each source moves it by, in SI.
+    second : mapping of str to float
+        The standard uncertainty that terms of second order add, where they count.
+    correlations : tuple of (int, int, float)
+        Places of two sources, and their coefficient.
+    """
+
+    sources: tuple[ErrorSource, ...]
+    cells: Mapping[str, tuple[float, ...]]
+    second: Mapping[str, float]
+    correlations: tuple[tuple[int, int, float], ...]
+
+
+@dataclass(frozen=True)
 class Uncertainties:
     """The standard uncertainty of every cell, and the budgets of the result.
 
@@ -267,8 +301,11 @@ class Uncertainties:
         Of the cells of the headline.
     conformities : tuple of Conformity
         Of the cells that have limits.
+    influence : Influence or None
+        On those cells and all scalars.
     """
 
     u: Mapping[str, NDArray[np.float64]]
     budgets: tuple[Budget, ...] = ()
     conformities: tuple[Conformity, ...] = ()
+    influence: Influence | None = None

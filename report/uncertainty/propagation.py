@@ -22,7 +22,7 @@ from ..inputs.inputs import Inputs
 from ..inputs.limits import Limits
 from ..judge.chain import Chain, Made
 from ..judge.sensitivity import Numbers
-from ..result.uncertain import Budget, Conformity, Contribution, Uncertainties
+from ..result.uncertain import Budget, Conformity, Contribution, Influence, Uncertainties
 from ..sheet import Given, RepeatAxis
 from .conformity import conformity
 from .coverage import assigned, coverage, effective
@@ -101,6 +101,10 @@ class Spread:
             dead = [self.values.status[name][row] != Status.OK for name, row in cells]
             return np.where(np.array(dead, dtype=bool)[:, None], np.nan, np.zeros((len(cells), 1)))
         return self._by_source(self._along.at(cells))
+
+    def knows(self, name: str) -> bool:
+        """Whether anything is told of a column."""
+        return name in self._known
 
     def _by_source(self, derivatives: Array) -> Array:
         """From derivatives by the given numbers to what a standard uncertainty of each source does."""
@@ -200,6 +204,19 @@ class Spread:
         row = self.values.row(self.values.sheet[name], label)
         return conformity(self.budget(name, row, limits.guard.level), limits)
 
+    def influence(self, cells: Sequence[tuple[str, int]]) -> Influence:
+        """What every source does to some cells; those without a value are left out."""
+        found = self.contributions(cells)[:, : len(self.sources)]
+        second = np.nan_to_num(self._more(cells, self.contributions(cells)))
+        at = [address(name, self.values.labels(self.values.sheet[name])[row]) for name, row in cells]
+        known = [n for n, moved in enumerate(found) if np.all(np.isfinite(moved))]
+        return Influence(
+            self.sources,
+            {at[n]: tuple(found[n].tolist()) for n in known},
+            {at[n]: math.sqrt(second[n]) for n in known if second[n] > 0},
+            self._pairs,
+        )
+
     def _contribution(self, n: int, u: float, share: float) -> Contribution:
         source = self.sources[n]
         name, row, _ = source.moves[0]
@@ -253,8 +270,11 @@ def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Un
         c.name for c in sheet.columns if not isinstance(c.axis, RepeatAxis) or isinstance(c.rule, Given)
     ]
     budgets = (spread.budget(name, row) for name, row in cells[:MOST_BUDGETS])
+    scalars = [(c.name, 0) for c in sheet.columns if c.axis is None]
+    passed_on = [cell for cell in dict.fromkeys((*cells[:MOST_BUDGETS], *scalars)) if spread.knows(cell[0])]
     return Uncertainties(
         {name: spread.u(name) for name in listed},
         tuple(budgets),
         tuple(map(spread.conformity, inputs.limits)),
+        spread.influence(passed_on),
     )

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 
 from ..cells.address import address
 from ..cells.values import Values
 from ..inputs.inputs import Inputs
+from ..inputs.taken import Origin, Taken, TakenError
 from ..laws import Samples
 from ..result.uncertain import ErrorSource
 from ..sheet import Column, Given
@@ -16,7 +18,7 @@ __all__ = ["correlated", "given", "sources"]
 
 
 def sources(inputs: Inputs, values: Values) -> tuple[ErrorSource, ...]:
-    """All errors of what was given, in the order of the sheet, then those that are shared.
+    """All errors of what was given, in the order of the sheet, then what is shared, and what was taken.
 
     A number that the workbook declares exact has none unless one was stated.
 
@@ -26,11 +28,13 @@ def sources(inputs: Inputs, values: Values) -> tuple[ErrorSource, ...]:
     values : Values
         Of the sheet; they tell what rows are called.
     """
-    return (*_own(inputs, values), *_shared(inputs, values))
+    return (*_own(inputs, values), *_shared(inputs, values), *_taken(inputs, values))
 
 
 def _own(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
     for column in given(values):
+        if column.name in inputs.taken:
+            continue
         printed = inputs.printed(column.name)
         for row, (label, number) in enumerate(zip(values.labels(column), printed, strict=True)):
             errors = () if column.exact and number.stated is None else number.errors
@@ -63,6 +67,24 @@ def _shared(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
                 )
 
 
+def _taken(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
+    """The errors of other reports: one that two numbers share moves both."""
+    every = [(name, taken) for name, taken in inputs.taken.items() if name in values.sheet]
+    moves: dict[Origin, list[tuple[str, int, float]]] = {}
+    first: dict[Origin, tuple[Taken, TakenError]] = {}
+    for name, taken in every:
+        for each in taken.errors:
+            moves.setdefault(each.origin, []).append((name, 0, each.moved))
+            first.setdefault(each.origin, (taken, each))
+    names = Counter((origin[1], taken.file) for origin, (taken, _) in first.items())
+    for origin, (taken, each) in first.items():
+        more = f", {origin[0][:8]}" if names[origin[1], taken.file] > 1 else ""
+        told, error = f"{origin[1]} ({taken.file}{more})", each.error
+        yield ErrorSource(
+            told, error.shape, error.dof, tuple(moves[origin]), "taken", error.sample, origin=origin
+        )
+
+
 def given(values: Values) -> tuple[Column, ...]:
     """The given columns of a sheet that are measured: not counted, and no standard uncertainties."""
     sheet = values.sheet
@@ -84,6 +106,9 @@ def correlated(
         for names in ((address(one, label), address(other, label)) for label in labels):
             if place.keys() >= set(names):
                 found.append((place[names[0]], place[names[1]], coefficient))
+    origins = {source.origin: n for n, source in enumerate(every) if source.origin}
+    both = {pair: r for taken in inputs.taken.values() for pair, r in taken.correlations.items()}
+    found += [(origins[a], origins[b], r) for (a, b), r in both.items() if {a, b} <= origins.keys()]
     drawn = [(n, source.law) for n, source in enumerate(every) if isinstance(source.law, Samples)]
     for (a, first), (b, second) in combinations(drawn, 2):
         if first.table == second.table:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from msgspec import UNSET
+from msgspec import UNSET, UnsetType
 
 from ..cells.marks import MarkCount
 from ..cells.values import Status
@@ -20,6 +20,7 @@ from ..files.manifest import Manifest
 from ..machine.staging import put
 from ..result import verdict_data
 from ..result.result import Comparison, Report
+from ..result.uncertain import ErrorSource
 from ..result.verdict import Verdict
 from ..sheet import Column, Formula, RepeatAxis
 from .issued import Issued
@@ -53,6 +54,7 @@ def values(report: Report) -> str:
             rests_on=proof_grounds(report),
             errata=[alike(erratum, form.Erratum) for erratum in report.errata],
             published=[_published(comparison) for comparison in report.comparisons],
+            influences=_influences(report),
             referee=UNSET if report.referee.joint is None else verdict_data.data(report.referee),
         )
     )
@@ -114,6 +116,33 @@ def _rule(report: Report, column: Column) -> str:
     if column.equation is None:
         return "given"
     return f"{column.source} {text_of(column.equation, report.ledger.vocabulary)}"
+
+
+def _influences(report: Report) -> form.Influences | UnsetType:
+    """What other reports need, so that what they take shares errors with all else that rests on them."""
+    found = report.uncertain().influence
+    if found is None or not found.sources:
+        return UNSET
+    files = "".join(
+        f"{name}\n{hashlib.sha256(content).hexdigest()}\n"
+        for name, content in sorted(report.inputs.files.items())
+    )
+    return form.Influences(
+        inputs=hashlib.sha256(files.encode()).hexdigest(),
+        sources=[_error(source) for source in found.sources],
+        cells={name: [float(f"{each:.15g}") for each in moved] for name, moved in found.cells.items()},
+        second={name: float(f"{each:.15g}") for name, each in found.second.items()},
+        correlations=list(found.correlations),
+    )
+
+
+def _error(source: ErrorSource) -> form.Source:
+    """A source, by its name where it was stated."""
+    report, name = source.origin or ("", source.name)
+    dof = None if math.isinf(source.dof) else source.dof
+    return form.Source(
+        name=name, report=report, distribution=source.shape.value, dof=dof, sample=source.sample
+    )
 
 
 def _short(u: float) -> float | None:
