@@ -270,7 +270,7 @@ def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
     from .sheet import Given
 
     unit = column.display or column.unit
-    like = column.name if isinstance(column.rule, Given) else ""
+    like = (column.rule.u_of or column.name) if isinstance(column.rule, Given) else ""
     if unit.startswith("like "):
         like = like or unit.removeprefix("like ")
     if printed := inputs.printed(like):

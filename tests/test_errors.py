@@ -21,7 +21,7 @@ from loopsheet.report.files.manifest import read_manifest
 from loopsheet.report.files.values import read_result
 from loopsheet.report.inputs.folders import built_from, report_folder
 from loopsheet.report.inputs.inputs import check_cells, load
-from loopsheet.report.machine.staging import replaced
+from loopsheet.report.machine.staging import own, replaced
 from loopsheet.report.messages import errors
 from loopsheet.report.messages.errors import (
     CATALOGUE,
@@ -41,6 +41,7 @@ from loopsheet.report.messages.errors import (
 )
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.verbs import check
+from loopsheet.report.views.validation import TITLE
 from loopsheet.report.workbook import Measured, Parameter, Workbook
 
 MESSAGES = Path(__file__).parent / "hostile" / "messages.txt"
@@ -171,6 +172,11 @@ def few_draws() -> None:
 def nothing_to_take() -> None:
     Path("values.json").write_text("{}")
     campaign(toml=TOML.replace('"8.366 g"', '{ from = "values.json", cell = "m" }'))
+
+
+def record_over_notes() -> None:
+    Path("notes.txt").write_text("mine\n")
+    own(Path("notes.txt"), TITLE.encode())
 
 
 def huge() -> None:
@@ -334,6 +340,7 @@ CASES: dict[str, Callable[[], None]] = {
     ),
     "LS621": raises(OutputError, "LS621", text="out", seconds="60"),
     "LS622": raises(UsageError, "LS622", reason="Too many open files"),
+    "LS623": record_over_notes,
 }
 
 

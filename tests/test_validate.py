@@ -100,3 +100,35 @@ def test_what_cannot_be_written_leaves_what_is_there(gauge: Path, capsys: pytest
     assert main(["validate", "gauge", "--out", "gauge"]) == 2
     assert "'gauge' cannot be written: it is a folder" in capsys.readouterr().err
     assert sorted(path.name for path in gauge.iterdir()) == ["published.csv", "report.toml", "workbook.py"]
+
+
+@pytest.mark.parametrize("kind", ["text", "markdown", "json", "junit"])
+def test_a_record_replaces_a_record_and_nothing_else(
+    gauge: Path, kind: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    order = ["validate", "gauge", "--format", kind, "--out", "record"]
+    Path("record").write_text("my own notes\n", encoding="utf-8")
+    assert main(order) == 2
+    assert "'record' is there already, and is no 'Validation of loopsheet'" in capsys.readouterr().err
+    assert Path("record").read_text(encoding="utf-8") == "my own notes\n"
+    Path("record").unlink()
+    assert main(order) == main(order) == 0
+    capsys.readouterr()
+
+
+def test_where_nothing_is_published_nothing_was_validated(
+    gauge: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    copytree("gauge", "silent")
+    edit(Path("silent/report.toml"), '[published]\nfile = "published.csv"\n', "")
+    assert main(["validate", "silent"]) == 0
+    told = capsys.readouterr().out
+    assert "NOTHING TO COMPARE: no value is published; " in told
+    assert "NOTHING TO COMPARE: JCGM 100" in told
+    assert "PASS" not in told
+    assert main(["validate", "silent", "gauge"]) == 0
+    told = capsys.readouterr().out
+    assert "; nothing to compare in silent\n" in told
+    assert "PASS: JCGM 100" in told
+    main(["validate", "silent", "--format", "json"])
+    assert json.loads(capsys.readouterr().out)["examples"][0]["passed"] is None

@@ -10,14 +10,18 @@ from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
 
-from ..messages.errors import EXHAUSTED, Location, OutputError, diagnose
+from ..messages.errors import EXHAUSTED, Diagnostic, Location, OutputError, diagnose
 from .scratch import left_over, locked, scratch
 from .stopping import unstoppable
 
-__all__ = ["half_moved", "put", "replaced", "staged", "written"]
+__all__ = ["half_moved", "own", "put", "replaced", "staged", "written"]
 
 PATIENCE = 60.0
 """Seconds to wait for somebody else who builds into the same folder."""
+
+
+_HEAD = 1000
+"""Bytes in which a file of ours says what it is."""
 
 
 def put(path: Path, content: str | bytes) -> None:
@@ -56,15 +60,55 @@ def replaced(path: Path, before: bytes, after: bytes) -> None:
     _replaced(path, before, after)
 
 
-def written(path: Path, content: bytes) -> None:
-    """Write a file of the user's choice as a whole, whether there is one already or not.
+def own(path: Path, mark: bytes) -> bytes | None:
+    """What a file of the user's choice holds that may be written anew; None if there is none yet.
+
+    Parameters
+    ----------
+    path : Path
+    mark : bytes
+        What a file of ours says in its first lines.
+
+    Raises
+    ------
+    OutputError
+        It is somebody else's, or cannot be read.
+    """
+    try:
+        if not path.exists():
+            return None
+        if path.is_dir():
+            raise IsADirectoryError("it is a folder")
+        content = path.read_bytes()
+    except OSError as error:
+        raise OutputError(_unwritable(path, error)) from error
+    if mark not in content[:_HEAD]:
+        raise OutputError(diagnose("LS623", Location(path.as_posix()), text=path.name, what=mark.decode()))
+    return content
+
+
+def written(path: Path, before: bytes | None, content: bytes) -> None:
+    """Write a file of the user's choice as a whole.
+
+    Parameters
+    ----------
+    path : Path
+    before : bytes or None
+        What :func:`own` found there.
+    content : bytes
 
     Raises
     ------
     OutputError
         It cannot be written; what is there is as it was then.
     """
-    _replaced(path, None, content)
+    if before is None and path.exists():
+        raise OutputError(_unwritable(path, PermissionError("somebody has put a file there meanwhile")))
+    _replaced(path, before, content)
+
+
+def _unwritable(path: Path, error: OSError) -> Diagnostic:
+    return diagnose("LS613", Location(path.as_posix()), text=path.name, reason=error.strerror or str(error))
 
 
 def _replaced(path: Path, before: bytes | None, after: bytes) -> None:
@@ -85,10 +129,7 @@ def _replaced(path: Path, before: bytes | None, after: bytes) -> None:
                 raise PermissionError("somebody has changed it meanwhile")
             os.replace(draft, target)
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise OutputError(
-            diagnose("LS613", Location(path.as_posix()), text=path.name, reason=reason)
-        ) from error
+        raise OutputError(_unwritable(path, error)) from error
 
 
 @contextmanager

@@ -448,6 +448,12 @@ CATALOGUE: dict[str, Entry] = {
         "free space on the disk, memory, and files that may be open at once",
         "nothing was half-written; 'df', 'free' and 'ulimit -a' tell what is short",
     ),
+    "LS623": Entry(
+        "a file of something else",
+        "'{text}' is there already, and is no '{what}'",
+        "a file that does not exist yet, or one that this command has written",
+        "nothing was written; choose another name",
+    ),
 }
 
 

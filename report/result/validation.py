@@ -15,6 +15,10 @@ if TYPE_CHECKING:
 __all__ = ["Example", "Validation"]
 
 
+NOTHING = "NOTHING TO COMPARE"
+"""Said where nothing is published, so that no number was held against another."""
+
+
 @dataclass(frozen=True)
 class Example:
     """One report folder, with all that is checked of it.
@@ -50,6 +54,16 @@ class Example:
             replace(check, name=f"{self.name}: {check.name}", at=replace(check.at, path=""))
             for check in checks(self.report)
         )
+
+    @property
+    def compares(self) -> bool:
+        """Whether anything is published of it: without, nothing was validated."""
+        return bool(self.report.every_comparison)
+
+    @property
+    def word(self) -> str:
+        """What came of it."""
+        return "FAIL" if self.failed else "PASS" if self.compares else NOTHING
 
     @property
     def failed(self) -> tuple[Check, ...]:
@@ -89,4 +103,10 @@ class Validation:
         number = len(self.examples)
         some = f"{len(found)} checks of {number} example{'s' * (number != 1)}"
         rest = f", {skipped} not checked: a program is not installed" if skipped else ""
-        return f"PASS: {some}{rest}" if self.passed else f"FAIL: {failed} of {some}{rest}"
+        if not self.passed:
+            return f"FAIL: {failed} of {some}{rest}"
+        silent = [example.name for example in self.examples if not example.compares]
+        if len(silent) == number:
+            return f"{NOTHING}: no value is published; {some}{rest} pass"
+        more = f"; nothing to compare in {', '.join(silent)}" if silent else ""
+        return f"PASS: {some}{rest}{more}"

@@ -19,21 +19,24 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     folders_argument(parser)
     format_argument(parser, "text", "markdown", "json", "junit")
-    said = "write the record into this file too (ISO/IEC 17025, 7.11.2): the same bytes whenever it is run"
+    said = "write the record into this file too (ISO/IEC 17025, 7.11.2), which is new or such a record: the "
+    said += "same bytes whenever it is run"
     parser.add_argument("--out", metavar="FILE", type=named, help=said)
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the record; exit code 1 if anything fails. Nothing that was kept before is believed."""
     from ..machine.kept import nothing_kept
-    from ..machine.staging import written
-    from ..views.validation import FORMATS
+    from ..machine.staging import own, written
+    from ..views.validation import FORMATS, TITLE
 
+    out, mark = options.out and Path(options.out), TITLE.encode()
+    before = None if out is None else own(out, mark)
     with nothing_kept(), Progress(sys.stderr) as progress:
         record = _validation(options.folders, progress)
     told = FORMATS[options.format](record)
-    if options.out is not None:
-        written(Path(options.out), told.encode())
+    if out is not None:
+        written(out, before, told.encode())
     print(told, end="")
     return outcome(record.checks)
 

@@ -14,7 +14,7 @@ from . import markdown as md
 from .budget import aligned
 from .checks import as_json, as_junit
 
-__all__ = ["FORMATS"]
+__all__ = ["FORMATS", "TITLE"]
 
 TITLE = "Validation of loopsheet"
 SIGNED = ("Date", "Place and machine", "Name and signature")
@@ -43,7 +43,7 @@ def _blocks(record: Validation) -> Iterator[tuple[int, str] | str | _Table]:
 def _of_example(example: Example) -> Iterator[tuple[int, str] | str | _Table]:
     report, failed = example.report, example.failed
     yield 2, f"{example.name}: {report.title}"
-    yield f"{'FAIL' if failed else 'PASS'}: {report.workbook.source}"
+    yield f"{example.word}: {report.workbook.source}"
     passed = sum(proof.status.passes for proof in report.proofs)
     rows = [("proofs", f"{passed} of {len(report.proofs)} equations stand")]
     rows += [("engine", " ".join(agreement.line.split())) for agreement in report.engines]
@@ -114,7 +114,7 @@ def _details_of(example: Example) -> Mapping[str, Any]:
         "name": example.name,
         "title": report.title,
         "source": report.workbook.source,
-        "passed": not example.failed,
+        "passed": not example.failed and (example.compares or None),
         "engines": [agreement.data for agreement in report.engines],
         "published": [dict(zip(names, _row(each), strict=True)) for each in report.every_comparison],
     }
