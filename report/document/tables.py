@@ -16,6 +16,7 @@ from ..result import verdict_words as words
 from ..result.conformity import conforming, risk
 from ..result.numbers import Numeral, decimals, is_pure, read, rounded, table_format
 from ..result.result import Comparison
+from ..result.statements import of_column
 from ..result.uncertain import Budget, Conformity, Contribution, Decision
 from ..result.verdict import ALL, INPUT, UNREACHABLE, TableVerdict
 from ..sheet import Axis
@@ -135,7 +136,8 @@ class Tables:
             _Made("from", lambda item: _refers(item.head, ", ") or "given", "words"),
         )
         items = [self.material.item(name) for name in spec.columns]
-        legend, limits = self.rich(spec.note), self._limits(item.head for item in items)
+        heads = [item.head for item in items]
+        legend, limits = (*self.rich(spec.note), *self._known(heads)), self._limits(heads)
         told: dict[str, Any] = {"number": spec.number, "look": "list", "legend": legend, "limits": limits}
         return _table(spec.name, self.rich(spec.title), made, [((), items)], **told)
 
@@ -159,7 +161,7 @@ class Tables:
             (TableColumn((axis.row,)), *map(_headed, heads)),
             (Rows(tuple(shown)),),
             spec.number,
-            legend=(*legend, ".", *((" ", *self.rich(spec.note)) if spec.note else ())),
+            legend=(*legend, ".", *((" ", *self.rich(spec.note)) if spec.note else ()), *self._known(heads)),
             limits=self._limits(heads),
             cut=cut if len(labels) > most else "",
             wide=len(heads) > 5,
@@ -168,6 +170,15 @@ class Tables:
     def _legend(self, head: Head) -> Inlines:
         sources = ", given" if head.given else ", from " if head.sources else ""
         return (Math(head.latex), "\u00a0", *self.rich(head.meaning), sources, *_refers(head, ", solved as "))
+
+    def _known(self, heads: Iterable[Head]) -> Inlines:
+        """What is stated of the errors of given columns."""
+        told = [
+            (Math(head.latex), "\u00a0", said)
+            for head in heads
+            if head.given and (said := of_column(self.report, head.name))
+        ]
+        return (" Stated uncertainties: ", *joined(told, "; "), ".") if told else ()
 
     def _limits(self, heads: Iterable[Head]) -> Inlines:
         told = self.material.limits(heads)

@@ -12,7 +12,7 @@ from typing import Any
 
 from ..cells.grid import FIRST_ROW, SCALARS, CellBlock, Grid, Place, checked, letters
 from ..cells.values import CODES, Status
-from ..quantity import Printed
+from ..quantity import Printed, behind
 from ..result.result import Report
 from .xlsx_style import Style, open_format, said
 
@@ -74,7 +74,11 @@ class GivenCells:
         given = (
             f"Given as {printed.text} {printed.unit} in {printed.where}." if printed.where else "The default."
         )
-        return "\n".join([f"{block.name}: {block.meaning}.", f"{self.allowed(block)}.", given])
+        told = [f"{block.name}: {block.meaning}.", f"{self.allowed(block)}.", given]
+        if printed.stated is not None:
+            u = self.report.sure(block.name, printed.u).text
+            told.append(f"Its stated standard uncertainty is {u}{behind(printed.unit)}.")
+        return "\n".join(told)
 
     def validation(self, block: CellBlock) -> dict[str, Any]:
         """What Excel is to accept in the cells of a column."""

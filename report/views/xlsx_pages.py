@@ -10,6 +10,7 @@ from ..cells.address import index_text
 from ..cells.grid import CHECKED, SCALARS, CellBlock, Grid, checked, factors, letters
 from ..document.material import Material
 from ..result.result import Comparison, Report
+from ..result.statements import statements
 from .json import proof_grounds, proof_statuses
 from .xlsx_inputs import GivenCells
 from .xlsx_marks import TITLE, counted
@@ -122,7 +123,9 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
         f"Source: {report.workbook.source}.",
         "Computed with " + ", ".join(f"{name} {version}" for name, version in report.versions.items()) + ".",
     ]
-    for title, lines in (("The data as they were given", odd), ("How to use it", notes)):
+    known = [f"{name}: {said}." for name, said in statements(report)]
+    parts = ("The data as they were given", odd), ("Stated uncertainties", known), ("How to use it", notes)
+    for title, lines in parts:
         if lines:
             row = _write_lines(sheet, style, row, title, lines) + 2
 
