@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from small_report import judged, pure
+from small_report import found, judged, pure
 from sympy import Symbol
 
 from loopsheet.derivations.equation import Equation, Kind
@@ -24,7 +24,8 @@ from loopsheet.report.quantity import Printed
 from loopsheet.report.referee import print_as, prints_same
 from loopsheet.report.result.findings import checks
 from loopsheet.report.result.result import Report
-from loopsheet.report.result.verdict import REACHABLE, UNREACHABLE, WITHIN, Referee
+from loopsheet.report.result.verdict import EXACT, REACHABLE, UNREACHABLE, WITHIN, Referee
+from loopsheet.report.result.verdict_words import lines
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
 from loopsheet.report.stages import refereed
 from loopsheet.report.study import Study
@@ -273,7 +274,7 @@ def test_uncertainties_combine_in_quadrature_and_cover_twice(text: str, verdict:
     total = Formula(Equation("", (Symbol("y"), a[k] + b[k]), "for a test", Kind.DEFINITION))
     sheet = Sheet((a, b, Column("y", a.axis, total)))
     measured = {
-        name: [replace(pure(digits), stated=(Error(Fraction(u)),))]
+        name: [replace(pure(digits), stated=(Error(Fraction(u), said=f"u = {u}"),))]
         for name, digits, u in (("a", "10.000", "0.3"), ("b", "20.000", "0.4"))
     }
     (comparison,) = judged(sheet, measured, {}, lambda _: [PublishedValue("Table", "y", (1,), pure(text))])
@@ -335,3 +336,74 @@ def test_a_published_column_may_be_truncated(tmp_path: Path) -> None:
             "[published.errata]",
             '[published.printed]\nalpha = "cut"\n\n[published.errata]',
         )
+
+
+def asked_of_sums(*texts: str, u: str = "0.3") -> Referee:
+    """What the referee says of published values of a + b, 2 a + b and a + 2 b: a is 10.000, b 20.000."""
+    k, n = (Symbol(name, integer=True, positive=True) for name in "kn")
+    a, b = (Column(name, Axis("rows", k, n), Given()) for name in "ab")
+    right = {"y": a[k] + b[k], "z": 2 * a[k] + b[k], "w": a[k] + 2 * b[k]}
+    equations = {
+        name: Equation("", (Symbol(name), r), "a test", Kind.DEFINITION) for name, r in right.items()
+    }
+    sheet = Sheet((a, b, *(Column(name, a.axis, Formula(eq)) for name, eq in equations.items())))
+    stated = None if u == "digits" else (Error(Fraction(u), said=f"u = {u}"),)
+    measured = {name: [replace(pure(x), stated=stated)] for name, x in (("a", "10.000"), ("b", "20.000"))}
+    published = [
+        PublishedValue("Table", name, (1,), pure(text)) for name, text in zip(right, texts, strict=False)
+    ]
+    return found(sheet, measured, published)
+
+
+@pytest.mark.parametrize(
+    ("texts", "alone", "together"),
+    [
+        (("30.300", "40.400", "50.500"), {WITHIN}, WITHIN),  # of 10.1 and 20.2, which nobody has printed
+        (("30.300", "40.400", "50.600"), {WITHIN}, UNREACHABLE),  # each is near, all of them fit no input
+        (("30.300", "40.400", "55.500"), {WITHIN, UNREACHABLE}, UNREACHABLE),
+        (("30.000", "40.000", "50.000"), {EXACT}, EXACT),
+    ],
+)
+def test_stated_uncertainties_explain_what_digits_do_not(
+    texts: tuple[str, ...], alone: set[str], together: str
+) -> None:
+    referee = asked_of_sums(*texts)
+    assert {verdict.verdict for verdict in referee.values} == alone
+    assert referee.joint is not None
+    assert [table.verdict for table in (*referee.tables, referee.joint)] == [together] * 2
+    said = list(lines(referee, str))
+    told = "the stated uncertainties explain it, the digits do not" in said[0]
+    assert told == (together == WITHIN)
+    # nobody is accused of what is explained, and of what is not still somebody is asked for
+    assert referee.asked_why == (together == UNREACHABLE)
+    assert len(said) == 2 or referee.asked_why
+
+
+def test_without_a_statement_the_digits_have_to_explain_it() -> None:
+    referee = asked_of_sums("30.300", "40.400", "50.500", u="digits")
+    assert {verdict.verdict for verdict in referee.values} == {UNREACHABLE}
+    assert referee.joint is not None
+    assert (referee.joint.verdict, referee.asked_why) == (UNREACHABLE, True)
+
+
+def test_an_error_that_tests_share_reaches_as_far_as_it_is_stated(tmp_path: Path) -> None:
+    """A table that was made with the datum 0.3 um deeper: no digits allow it, and the statement does."""
+    header = "source,cell,index,value,unit\n"
+    report = changed(tmp_path, "measurements.csv", "23.5", "23.8")
+    moved = "".join(
+        f"Table,alpha,{i}-{j},{report.values.cell('alpha', (i, j)).value:.4f},1\n"
+        for i, j in [(1, 2), (1, 3)]
+    )
+    (tmp_path / "measurements.csv").write_bytes((PAPER / "measurements.csv").read_bytes())
+    (tmp_path / "published.csv").write_text(header + moved, encoding="utf-8")
+    toml = (PAPER / "report.toml").read_text(encoding="utf-8").partition("[published")[0]
+    toml += '[published]\nfile = "published.csv"\n'
+    for more, word in (("", UNREACHABLE), (SHARED, WITHIN)):
+        (tmp_path / "report.toml").write_text(toml + more, encoding="utf-8")
+        referee = refereed(Study(tmp_path).computed).referee
+        assert referee.joint is not None
+        assert referee.joint.verdict == word
+        assert referee.asked_why == (word == UNREACHABLE)
+
+
+SHARED = '[uncertainty.shared.datum]\nof = "x_p"\nstated = "u = 0.2 um"\ngroups = [[1]]\n'

@@ -17,11 +17,14 @@ from ..judge.chain import Made
 from ..quantity import Bounds, Printed
 from ..result.verdict import Witness
 from ..sheet import Given, Sheet
+from ..uncertainty.propagation import Spread
 
-__all__ = ["Array", "Campaign", "Unknown"]
+__all__ = ["COVERAGE", "Array", "Campaign", "Unknown"]
 
 Array = NDArray[np.float64]
 
+COVERAGE = 2.0
+"""How many standard uncertainties a number may be off (JCGM 100:2008, 6.3.3)."""
 FREE = 1e15
 """What is not printed is looked for between its recomputed value over and times so much."""
 
@@ -42,6 +45,8 @@ class Unknown:
         Its value in SI as printed, or as recomputed.
     allowed : Bounds
         What it may be, whatever is printed.
+    reach : float
+        How far from what is printed it may be all the same, in SI.
     """
 
     column: str
@@ -50,6 +55,7 @@ class Unknown:
     printed: Printed | None
     start: float
     allowed: Bounds = field(default_factory=Bounds)
+    reach: float = 0.0
 
     def interval(self, mode: str = "") -> tuple[float, float]:
         """Where it may lie, in SI; under another manner of printing than was declared."""
@@ -57,8 +63,8 @@ class Unknown:
             ends = (self.start / FREE, self.start * FREE)
             return self.allowed.clip(min(ends), max(ends))
         printed = replace(self.printed, mode=mode) if mode else self.printed
-        low, high = printed.interval
-        return self.allowed.clip(float(low), float(high))
+        low, high = map(float, printed.interval)
+        return self.allowed.clip(min(low, self.start - self.reach), max(high, self.start + self.reach))
 
     @cached_property
     def scale(self) -> float:
@@ -95,6 +101,8 @@ class Campaign:
         Columns that the publication does not print: given or computed, they may have any value.
     made : Programs
         Of the sheet; campaigns with other inputs share them.
+    stated : bool
+        Whether an input may be as far from its print as the uncertainties reach that are stated of it.
     """
 
     sheet: Sheet
@@ -103,6 +111,27 @@ class Campaign:
     data: Mapping[str, Any]
     free: tuple[str, ...] = ()
     made: Programs = field(default_factory=Programs, repr=False)
+    stated: bool = False
+
+    @cached_property
+    def spread(self) -> Spread:
+        """How the errors of the inputs spread."""
+        return Spread(self.inputs, self.values)
+
+    @cached_property
+    def reaches(self) -> dict[tuple[str, int], float]:
+        """What is stated of given cells, by column and row: so many standard uncertainties, in SI."""
+        found: dict[tuple[str, int], list[float]] = {}
+        for source in self.spread.sources if self.states else ():
+            for name, row, u in source.moves if source.said else ():
+                found.setdefault((name, row), []).append(u)
+        return {place: COVERAGE * float(np.hypot.reduce(sizes)) for place, sizes in found.items()}
+
+    @property
+    def states(self) -> bool:
+        """Whether any uncertainty is stated."""
+        given = (*self.inputs.measured.values(), self.inputs.parameters.values())
+        return bool(self.inputs.uncertainty.shared) or any(p.stated for column in given for p in column)
 
     @cached_property
     def labels(self) -> dict[str, tuple[int, ...]]:
@@ -160,7 +189,8 @@ class Campaign:
         for column in sheet.columns:
             if not isinstance(column.rule, Given):
                 continue
-            if column.exact and (column.name not in (*cut, *asked) or sheet.bounds[column.name].integer):
+            known = (*cut, *asked, *(name for name, _ in self.reaches if self.stated))
+            if column.exact and (column.name not in known or sheet.bounds[column.name].integer):
                 continue
             printed = self.inputs.printed(column.name)
             values = np.broadcast_to(self.values.value[column.name], (len(self.values.labels(column)),))
@@ -170,4 +200,5 @@ class Campaign:
                 text = None if column.name in cut else printed[row]
                 start = value if np.isfinite(value) else 1.0
                 start = start if text is None else float(text.value)
-                yield Unknown(column.name, row, index, text, start, sheet.bounds[column.name])
+                reach = self.reaches.get((column.name, row), 0.0) if self.stated else 0.0
+                yield Unknown(column.name, row, index, text, start, sheet.bounds[column.name], reach)

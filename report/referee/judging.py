@@ -19,6 +19,7 @@ from ..result.verdict import (
     NOT_FOUND,
     REACHABLE,
     UNREACHABLE,
+    WITHIN,
     Change,
     Explanation,
     Fit,
@@ -40,6 +41,8 @@ from .values import verdicts
 
 __all__ = ["referee"]
 
+NEAR = (EXACT, REACHABLE, WITHIN)
+"""Of values that are not out of reach by themselves."""
 MORE = 1.01
 """How much more certain a table must make it than all tables together, to be named."""
 
@@ -92,13 +95,17 @@ def referee(
     joint, found = _together(ALL, whole, list(range(len(checkable))), certificate, alone, published, tables)
     if joint.mismatch is None:
         return Referee(alone, tuple(tables), joint, free=inputs.free)
+    if campaign.states:
+        near = [value for value, verdict in zip(published, alone, strict=True) if verdict.verdict in NEAR]
+        tables = [_allowed(campaign, table, checkable, near) for table in tables]
+        joint = _allowed(campaign, joint, checkable, near)
     explained: tuple[Explained, ...] = ()
     tried: Tried | None = None
     if len(checkable) < len(published):
         # What was published once had a value: a change must give it one.
         whole = Problem.of(campaign, published)
         found = meet(whole)
-    if found.mismatch > 1:
+    if found.mismatch > 1 and joint.verdict != WITHIN:
         step("refereeing what would explain the difference")
         explained, tried = explanations(whole)
     first = explained[0] if explained else None
@@ -114,6 +121,27 @@ def referee(
         alone, tuple(tables), joint, tuple(each.explanation for each in explained), tried, named, fit,
         inputs.free, _known(inputs), amended, misprints,
     )  # fmt: skip
+
+
+def _allowed(
+    campaign: Campaign,
+    table: TableVerdict,
+    checkable: Sequence[PublishedValue],
+    near: Sequence[PublishedValue],
+) -> TableVerdict:
+    """A table, with another word if the digits do not allow it and the stated uncertainties do.
+
+    Each value by itself has to be as near as its own uncertainty says, and all of them have to come out of
+    one input, each number of which is as near to its print as is stated of it.
+    """
+    asked = [value for value in checkable if table.source in (ALL, value.source)]
+    if table.possible or not all(value in near for value in asked):
+        return table
+    problem = Problem.of(replace(campaign, stated=True), asked)
+    found = counted(problem, meet(problem))
+    if found.mismatch > 1:
+        return table
+    return replace(table, verdict=WITHIN, witness=problem.witness(found.point), because="", out=0)
 
 
 def _numbers(sheet: Sheet, inputs: Inputs) -> Numbers:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..inputs.published import PublishedValue
 from ..result.verdict import EXACT, NOT_CHECKABLE, NOT_FOUND, REACHABLE, UNREACHABLE, WITHIN, Verdict
-from .campaign import Array, Campaign
+from .campaign import COVERAGE, Array, Campaign
 from .certificate import Certificate
 from .comparison import prints_same
 from .minimax import best
@@ -17,8 +17,6 @@ from .problem import Problem
 
 __all__ = ["COVERAGE", "verdicts"]
 
-COVERAGE = 2.0
-"""How many standard uncertainties a value may be off (JCGM 100:2008, 6.3.3)."""
 HALVINGS = 50
 MOST = 1 << 24
 """Cells that are computed at once in search of what is furthest."""
@@ -163,13 +161,15 @@ class _Alone:
         return UNREACHABLE if bound_high < low or bound_low > high else NOT_FOUND
 
     def _u(self, n: int) -> float | None:
-        """Combined standard uncertainty, first order, if some input has one that was stated."""
-        printed = [unknown.printed for unknown in self.problem.unknowns]
-        if not any(p is not None and p.stated is not None for p in printed):
+        """Combined standard uncertainty, if something that is stated moves the value."""
+        campaign, (name, row) = self.problem.campaign, self.problem.places[n]
+        if not campaign.states:
             return None
-        own = np.array([0.0 if p is None else p.u for p in printed])
-        with np.errstate(over="ignore", invalid="ignore"):
-            return _number(np.sqrt(np.sum((self.slopes[n] * own) ** 2)))
+        own = campaign.spread.contributions([(name, row)])[0]
+        moving = zip(campaign.spread.sources, own.tolist(), strict=False)
+        if not any(source.said for source, moved in moving if moved):
+            return None
+        return _number(campaign.spread.budget(name, row).u)
 
 
 def _number(value: Any) -> float | None:

@@ -136,7 +136,7 @@ class TableVerdict:
     values : int
         How many were asked for together.
     verdict : str
-        ``exact``, ``reachable``, ``unreachable``, ``not found`` or ``not-checkable``.
+        ``exact``, ``reachable``, ``within-uncertainty``, ``unreachable``, ``not found`` or ``not-checkable``.
     mismatch : float or None
         The worst of the values, for the best input that was found.
     at_least : float or None
@@ -164,7 +164,7 @@ class TableVerdict:
     @property
     def possible(self) -> bool:
         """Whether one input yields them all, or nothing can be said of it."""
-        return self.verdict in (EXACT, REACHABLE, NOT_CHECKABLE)
+        return self.verdict in (EXACT, REACHABLE, WITHIN, NOT_CHECKABLE)
 
 
 @dataclass(frozen=True)

@@ -174,6 +174,12 @@ def together(table: TableVerdict) -> str:
             return f"{whose} {come} out as printed, from the inputs exactly as they are printed"
         case "reachable":
             return f"{whose} can come out of one input that prints as given, with a worst mismatch of {off}"
+        case "within-uncertainty":
+            return (
+                f"{whose} {come} out of an input that is as near as the stated uncertainties say. None was "
+                f"found that prints as given, the best leaves a mismatch of {off}: the stated uncertainties "
+                "explain it, the digits do not"
+            )
         case "unreachable":
             because = f". {table.because} alone makes that certain" if table.because else ""
             return f"{contradiction(table)}: {evidence(table)}{because}"

@@ -156,7 +156,7 @@ class _Draws:
             for name, row, u in source.moves:
                 if name in reach:
                     ends = source.shape in PARTS
-                    reach[name][row] += u * (DIVISORS[source.shape] * (1 + 2.0**-40) if ends else FAR)
+                    reach[name][row] += abs(u) * (DIVISORS[source.shape] * (1 + 2.0**-40) if ends else FAR)
         box = {name: Intervals(own - reach[name], own + reach[name]) for name, own in self.base.items()}
         laid = Laid(self.sheet, dict(values.layouts))
         cells = Enclosure(self.sheet, self.program, laid.layouts, box)
