@@ -331,3 +331,38 @@ def test_each_cause_is_told_of_its_own_cells(tmp_path: Path, monkeypatch: pytest
     said = checks(tmp_path)["data cells"].message
     assert "; and 2 other causes" in said
     assert [cause in said for cause in causes] == [True, False, False]
+
+
+WEIGHED = """\
+from sympy import Sum, Symbol
+from loopsheet.derivations.equation import Equation, Kind, Ledger
+from loopsheet.report.quantity import Bounds
+from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
+from loopsheet.report.workbook import Measured, Parameter, Workbook
+
+k, n = (Symbol(s, integer=True, positive=True) for s in ("k", "n"))
+d = Column("d", Axis("tests", k, n), Given("measured"), "m", "a length", positive=False)
+u = Column("u_d", d.axis, Given("uncertainty", Bounds(low=0), "d"), "m", "its u", exact=True)
+eq = Equation("(1)", (Symbol("w"), Sum(1 / u[k] ** 2, (k, 1, n))), "definition", Kind.DEFINITION, "weight")
+w = Column("w", None, Formula(eq), "m^-2", "all weights")
+WORKBOOK = Workbook(
+    name="weighed", title="Weighed", source="none", ledger=lambda: Ledger((eq,)),
+    measured=(Measured("d", "m", "a length"),), parameters=(),
+    sheet=lambda names: Sheet((d, u, w)), headline=("w",),
+)
+"""
+
+
+@pytest.mark.parametrize(("first", "named"), [("0", True), ("1", False)])
+def test_a_test_that_is_exact_is_named_where_tests_are_weighed(
+    tmp_path: Path, first: str, named: bool
+) -> None:
+    (tmp_path / "workbook.py").write_text(WEIGHED, encoding="utf-8")
+    (tmp_path / "d.csv").write_text(f"test,d [nm],u(d) [nm]\n3,215,{first}\n5,204,2\n", encoding="utf-8")
+    (tmp_path / "report.toml").write_text(
+        'workbook = "workbook.py"\n[measurements]\nfile = "d.csv"\n', encoding="utf-8"
+    )
+    report = Study(tmp_path).computed
+    said = "; ".join(check.message for check in report.oddities)
+    assert ("test 3 has d without uncertainty, so that no other test would count beside it" in said) == named
+    assert "test 5 has" not in said

@@ -117,8 +117,16 @@ class _Oddities:
         by_column: dict[str, list[Cell]] = {}
         for cell in self.failed.told:
             by_column.setdefault(cell.name, []).append(cell)
-        said = "; ".join(self.without_value(self.sheet[name], cells) for name, cells in by_column.items())
-        return self.check(DATA, CELLS, said, self.failed)
+        said = [self.without_value(self.sheet[name], cells) for name, cells in by_column.items()]
+        return self.check(DATA, CELLS, "; ".join((*self.exact(), *said)), self.failed)
+
+    def exact(self) -> Iterator[str]:
+        """The tests whose numbers are all stated to be exact, where a fit weighs by what is stated."""
+        weighed = [c for c in self.sheet.columns if isinstance(c.rule, Given) and c.rule.u_of]
+        of = _some([c.rule.u_of for c in weighed if isinstance(c.rule, Given)])
+        for row, test in enumerate(self.inputs.tests):
+            if weighed and not any(self.values.value[c.name][row] for c in weighed):
+                yield f"test {test} has {of} without uncertainty, so that no other test would count beside it"
 
     def without_value(self, column: Column, cells: Sequence[Cell]) -> str:
         """``alpha: 4 of 10 pairs have no value: alpha[1-2] and alpha[2-3] #NOROOT!: ...``."""
