@@ -38,6 +38,11 @@ class Law(ABC):
 
     @property
     @abstractmethod
+    def mean(self) -> float:
+        """How far the expectation is from the given number."""
+
+    @property
+    @abstractmethod
     def skewness(self) -> float:
         """The third central moment."""
 
@@ -81,6 +86,10 @@ class _Turned(Law):
     of: Law
 
     @property
+    def mean(self) -> float:
+        return -self.of.mean
+
+    @property
     def skewness(self) -> float:
         return -self.of.skewness
 
@@ -102,6 +111,7 @@ class Exponential(Law):
     The standard uncertainty is the estimate, and the error at least minus that.
     """
 
+    mean = 0.0
     skewness = 2.0
     kurtosis = 9.0
 
@@ -160,7 +170,7 @@ class TruncatedNormal(Law):
 
     @property
     def mean(self) -> float:
-        """How far the expectation is from the given number, in its standard deviation."""
+        """As above."""
         return self._moments[0] / self.sd
 
     @property
@@ -218,8 +228,13 @@ class Samples(Law):
     def _ordered(self) -> Array:
         return np.sort(self.errors)
 
+    @property
+    def mean(self) -> float:
+        """As above."""
+        return float(self.errors.mean())
+
     def _moment(self, power: int) -> float:
-        return float(np.mean((self.errors - self.errors.mean()) ** power))
+        return float(np.mean((self.errors - self.mean) ** power))
 
     @property
     def skewness(self) -> float:
@@ -242,7 +257,7 @@ class Samples(Law):
 
     def correlation(self, other: Samples) -> float:
         """That with another column of the same table."""
-        products = (self.errors - self.errors.mean()) * (other.errors - other.errors.mean())
+        products = (self.errors - self.mean) * (other.errors - other.mean)
         return min(max(float(products.sum()) / (self.errors.size - 1), -1.0), 1.0)
 
 

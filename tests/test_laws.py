@@ -43,6 +43,7 @@ def test_a_law_is_that_of_scipy(name: str) -> None:
     law, known = LAWS[name]
     skewness, kurtosis = (float(each) for each in known.stats(moments="sk"))
     assert float(known.std()) == pytest.approx(1, rel=1e-9)
+    assert law.mean == pytest.approx(float(known.mean()), abs=1e-9)
     assert (law.skewness, law.kurtosis) == pytest.approx((skewness, kurtosis + 3), rel=1e-7, abs=1e-9)
     shares = np.linspace(0.001, 0.999, 21)
     assert law.quantile(shares) == pytest.approx(known.ppf(shares), rel=1e-9, abs=1e-9)
@@ -274,4 +275,7 @@ def test_the_budget_names_them(made: Make, capsys: pytest.CaptureFixture[str], t
     )
     assert main(["budget", "y", str(tmp_path)]) == 0
     told = capsys.readouterr().out
+    far = float(stats.truncnorm(-0.5, math.inf).mean()) * 2  # of 1, u = 2, min = 0
+    assert f"the expectation of x_2 lies {far:.1f} above the given number: --draws counts it" in told
+    assert "expectation of x_1" not in told
     assert all(f"  {shape}" in told for shape in ("exponential", "truncated normal", "samples"))

@@ -27,6 +27,8 @@ __all__ = [
 
 HEADER = ("source", "estimate", "u", "distribution", "dof", "contribution", "share")
 _NONE = "—"
+SHIFTED = 0.05
+"""In standard uncertainties: so far from its expectation a given number is no estimate of it."""
 
 
 def sentence(report: Report, budget: Budget) -> str:
@@ -155,6 +157,13 @@ def notes(report: Report, budget: Budget) -> Iterator[str]:
         alike.setdefault((*map(columns.__getitem__, pair), f"{r:g}"), []).append(" and ".join(pair))
     for (one, other, told), pairs in alike.items():
         yield f"{pairs[0] if len(pairs) == 1 else f'{one} and {other} of a row'} are correlated: {told}"
+    for each in budget.contributions:
+        law, (name, _, _) = each.source.law, each.source.moves[0]
+        if law is not None and abs(law.mean) >= SHIFTED:
+            off = law.mean * (each.source.u or 0.0)
+            (unit, _), far = _unit(report, name), report.sure(name, abs(off)).text
+            there = f"{far}{unit} {'above' if off > 0 else 'below'} the given number"
+            yield f"the expectation of {each.source.name} lies {there}: --draws counts it"
     if budget.unlooked and budget.is_known:
         yield f"terms of second order were not looked at: {budget.unlooked}; --draws tells more"
     if budget.second:
