@@ -100,6 +100,11 @@ class Error:
     law: Law | None = None
 
     @property
+    def table(self) -> str:
+        """The table of draws that it is of; empty if there is none."""
+        return self.law.table if self.law else ""
+
+    @property
     def u(self) -> float:
         """The standard uncertainty, in SI.
 

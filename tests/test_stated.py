@@ -261,6 +261,7 @@ def test_what_is_shared(read: Read) -> None:
         ('[uncertainty.correlation]\n"v, e" = "0.9"\n"e, v" = "0.3"', "LS433", '"e, v"'),
         ('[uncertainty.correlation]\n"v, ball_mass" = "0.1"', "LS434", '"0.1"'),
         ('e = "u = 1; u = 2"\n[uncertainty.correlation]\n"v, e" = "0.1"', "LS434", '"0.1"'),
+        ('[uncertainty.correlation]\n"beta, ball_mass" = "0.1"', "LS434", '"0.1"'),
         (
             '[uncertainty.correlation]\n"v, e" = "0.9"\n"e, x_p" = "0.9"\n"v, x_p" = "-0.9"',
             "LS434",
@@ -270,7 +271,7 @@ def test_what_is_shared(read: Read) -> None:
 )
 def test_what_is_wrong_is_told_where_it_stands(read: Read, section: str, code: str, culprit: str) -> None:
     with pytest.raises(InputError) as refused:
-        read(section)
+        read(section, mass='8.366 g"\nbeta = "1.5, u = 0.1; +-0.1 rect')
     (found,) = refused.value.diagnostics
     at = found.at
     assert found.code == code

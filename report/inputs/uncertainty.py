@@ -151,12 +151,17 @@ def read_uncertainty(
     shared = [reader.shared(name) for name in reader.names("shared")]
     own = {name: found for name, found in columns.items() if found is not None}
     several = {name for name, found in own.items() if len(found.parts) != 1 or found.parts[0].table}
-    several |= set(said.taken)
+    several |= set(said.taken) | {name for name, column in numbers.items() if not all(map(_is_one, column))}
     correlations = reader.possible(dict(reader.correlations(several, paired)))
     if paired and not tables.findings.found:
         correlations |= correlations_of({name: numbers[name] for name in paired})
     known = tuple(found for found in shared if found is not None)
     return Stated(own, known, correlations, paired, reader.digits())
+
+
+def _is_one(number: Printed) -> bool:
+    """Whether a number has one error by itself, as far as it says."""
+    return number.stated is None or (len(number.stated) == 1 and not number.stated[0].table)
 
 
 class _Reader:
