@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sympy import Expr, Function, Integer, Matrix, Max, Piecewise, Rational, Sum, Symbol, diff, exp, log, sqrt
+from sympy import Expr, Function, Integer, Max, Piecewise, Rational, Sum, Symbol, diff, exp, log, sqrt
 from sympy.core.parameters import evaluate
 
 from .equation import Derivation, Equation, Kind, Step
@@ -36,7 +36,7 @@ __all__ = [
     "coefficient",
     "depth",
     "depth_scale",
-    "deviation",
+    "determinant",
     "exponent",
     "first_exponent",
     "force",
@@ -45,18 +45,20 @@ __all__ = [
     "least",
     "misfit",
     "multiplier",
+    "products",
     "restitution",
     "restitution_step",
     "speed",
     "speed_scale",
     "speed_step",
     "squares",
+    "squares_D",
+    "squares_X",
     "weight",
 ]
 
 # fmt: off
 V, E, XM, XP = (VOCABULARY[name] for name in ("v", "e", "x_m", "x_p"))
-Z = VOCABULARY["z_R"]
 VO, EO, XO, UV, UE, UX, D, BV, BE, W, R, LAM = (
     VOCABULARY[name]
     for name in ("v_obs", "e_obs", "x_obs", "u_v", "u_e", "u_x", "D", "B_v", "B_e", "W", "R", "lam")
@@ -64,6 +66,7 @@ VO, EO, XO, UV, UE, UX, D, BV, BE, W, R, LAM = (
 ALPHA, alpha_0, beta, m_red, C, F_0, x_0, v_0, chi2, u_alpha, R_B, u_B, G_alpha, G_F = VOCABULARY.plain(
     "alpha alpha_0 beta m_red C F_0 x_0 v_0 chi2 u_alpha R_B u_B G_alpha G_F"
 )
+S_DD, S_DX, S_XX, Delta = VOCABULARY.plain("S_DD S_DX S_XX Delta")
 # fmt: on
 n_tests = Symbol("n_tests", integer=True, positive=True)
 """How many tests there are; the sums run over all of them."""
@@ -73,11 +76,6 @@ _A = ALPHA + 1
 
 def _sum(terms: Expr) -> Expr:
     return Sum(terms, _all)
-
-
-def _determinant() -> Expr:
-    """Of the normal matrix of the exponent and of the force."""
-    return _sum(W[k] * D[k] ** 2) * _sum(W[k] * XP[k] ** 2) - _sum(W[k] * D[k] * XP[k]) ** 2
 
 
 with evaluate(False):
@@ -188,6 +186,31 @@ with evaluate(False):
         title="adjusted coefficient of restitution",
     )
 
+    squares_D, products, squares_X = (
+        Equation(
+            number,
+            (own, _sum(terms)),
+            "definition",
+            Kind.DEFINITION,
+            f"normal matrix: {name}",
+            defines=own,
+        )
+        for number, own, terms, name in (
+            ("(L50)", S_DD, W[k] * D[k] ** 2, "exponent"),
+            ("(L51)", S_DX, W[k] * D[k] * XP[k], "exponent and force"),
+            ("(L52)", S_XX, W[k] * XP[k] ** 2, "force"),
+        )
+    )
+
+    determinant = Equation(
+        "(L53)",
+        (Delta, S_DD * S_XX - S_DX**2),
+        "zero if a larger exponent does to every depth what a smaller force does",
+        Kind.DEFINITION,
+        "determinant of the normal matrix",
+        defines=Delta,
+    )
+
     exponent = Equation(
         "(L42)",
         (G_alpha, Sum(LAM[k] * D[k], _all)),
@@ -217,7 +240,7 @@ with evaluate(False):
 
     by_adjusted = Equation(
         "(L45)",
-        (u_alpha, sqrt(_sum(W[k] * XP[k] ** 2) / _determinant())),
+        (u_alpha, sqrt(S_XX / Delta)),
         "the inverse of the normal matrix at the adjusted points, for errors as stated",
         Kind.DEFINITION,
         "standard uncertainty of the exponent by the adjusted points",
@@ -240,15 +263,6 @@ with evaluate(False):
         Kind.DEFINITION,
         "standard uncertainty of the exponent by the scatter",
         defines=u_B,
-    )
-
-    deviation = Equation(
-        "(L48)",
-        (Z[k], R[k] * sqrt(W[k])),
-        "the misfit over its standard deviation",
-        Kind.DEFINITION,
-        "misfit in standard deviations",
-        defines=Z[k],
     )
 
     _ln_v, _ln_x = log(VO[k] / v_0), log(XO[k] / x_0)
@@ -277,12 +291,10 @@ with evaluate(False):
 speed_step: Expr = VO[k] + V[k] - speed.value
 restitution_step: Expr = EO[k] + E[k] - restitution.value
 """The next true values: they stay where (L38) and (L39) hold."""
-_normal = Matrix(2, 2, lambda i, j: _sum(W[k] * (D[k], -XP[k])[i] * (D[k], -XP[k])[j]))
-_step = _normal.adjugate() * Matrix([_sum(LAM[k] * D[k]), -_sum(LAM[k] * XP[k])]) / _determinant()
-
-alpha_step: Expr = ALPHA + _step[0]
+_more_alpha, _less_force = exponent.sides[1], force.sides[1]
+alpha_step: Expr = ALPHA + (S_XX * _more_alpha - S_DX * _less_force) / Delta
 """The next exponent, by least squares along the tangents: it stays where (L42) and (L43) are 0."""
-force_step: Expr = F_0 * exp(_A * _step[1])
+force_step: Expr = F_0 * exp(_A * (S_DX * _more_alpha - S_DD * _less_force) / Delta)
 """The next force, which stays positive."""
 force_start: Expr = (
     (alpha_0 + 1) * m_red * v_0**2 / (2 * x_0) * (1 - (beta + 1) / (alpha_0 + 1) * _mean_e2) ** (alpha_0 + 1)
@@ -374,13 +386,16 @@ def _entries() -> tuple[Equation | Derivation, ...]:
             (XO[k], EO[k]),
             "Solve the normal equation of the restitution.",
         ),
+        squares_D,
+        products,
+        squares_X,
+        determinant,
         exponent,
         force,
         squares,
         by_adjusted,
         birge,
         by_scatter,
-        deviation,
         first_exponent,
     )
 

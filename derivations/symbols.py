@@ -117,6 +117,45 @@ VOCABULARY = Vocabulary(
     Quantity("W", "weight of the test", "1/m^2", "W%s", (1e10, 1e20)),
     Quantity("R", "misfit of the test", "m", "R%s", (-1e-6, 1e-6), positive=False),
     Quantity("lam", "multiplier: how hard the test pulls", "1/m", r"\lambda%s", (-1e9, 1e9), positive=False),
+    # The normal matrix of exponent and force.
+    Quantity("S_DD", "sum of the weighted squares of D", "1", "S_{DD%s}", (1e13, 1e15)),
+    Quantity(
+        "S_DX", "sum of the weighted products of D and x_p", "1", "S_{DX%s}", (-1e4, 1e4), positive=False
+    ),
+    Quantity("S_XX", "sum of the weighted squares of x_p", "1", "S_{XX%s}", (1e13, 1e15)),
+    Quantity("Delta", "determinant of the normal matrix", "1", r"\Delta%s", (1e27, 1e30)),
+    Quantity("h", "leverage of the test: how far the curve follows it", "1", "h%s", (0.01, 0.99)),
+    Quantity("alpha_k", "exponent without the test, to first order", "1", r"\alpha_{(%s)}", (1.0, 1.5)),
+    Quantity("phi", "step of the force that goes with it", "1", r"\varphi%s", (-0.1, 0.1), positive=False),
+    # The exponent may go with the depth: alpha + tau ln(x/x_0).
+    Quantity(
+        "tau",
+        "trend: what the exponent gains as the depth grows e-fold",
+        "1",
+        r"\tau%s",
+        (-1.0, 1.0),
+        positive=False,
+    ),
+    Quantity("u_tau", "standard uncertainty of the trend", "1", r"u(\tau%s)", (1e-3, 1.0)),
+    Quantity(
+        "gamma",
+        "relative change of the maximum force with the trend",
+        "1",
+        r"\gamma%s",
+        (-1.0, 1.0),
+        positive=False,
+    ),
+    Quantity("G", "change of the approach with the trend", "m", "G%s", (-1e-4, 1e-4), positive=False),
+    Quantity("T", "change of the imprint depth with the trend", "m", "T%s", (-1e-4, 1e-4), positive=False),
+    Quantity("S_TT", "sum of the weighted squares of T", "1", "S_{TT%s}", (1e13, 1e15)),
+    Quantity(
+        "S_TD", "sum of the weighted products of T and D", "1", "S_{TD%s}", (-1e12, 1e12), positive=False
+    ),
+    Quantity(
+        "S_TX", "sum of the weighted products of T and x_p", "1", "S_{TX%s}", (-1e12, 1e12), positive=False
+    ),
+    Quantity("Q", "what of S_TT exponent and force do not make up for", "1", "Q%s", (1e12, 1e15)),
+    Quantity("dchi2", "sum of squares that the trend takes off", "1", r"\Delta\chi^2%s", (0.1, 100.0)),
     Quantity(
         "G_alpha",
         "half of what a larger exponent takes off the sum of squares; zero at the least sum",

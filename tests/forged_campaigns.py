@@ -18,6 +18,8 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from uncertain_data import uncertain
+
 from loopsheet.report.cells.values import Values
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
@@ -138,7 +140,7 @@ class Campaign:
             "ball_mass": float(self.mass.value),
         }
         data |= {name: [float(p.value) for p in column] for name, column in self.measured.items()}
-        values = engine.evaluate(sheet, {"tests": tests}, data, program())
+        values = engine.evaluate(sheet, {"tests": tests}, uncertain(data), program())
         inputs = Inputs(
             Path(), "", WORKBOOK,
             {
@@ -229,7 +231,7 @@ def _computed(rng: random.Random, number: int, habits: Habits) -> Truth:
     while True:
         measured, mass = _model(rng, number)
         data = {**measured, "beta": habits.beta, "points_per_pair": float(habits.points), "ball_mass": mass}
-        values = engine.evaluate(program().sheet, {"tests": range(1, number + 1)}, data, program())
+        values = engine.evaluate(program().sheet, {"tests": range(1, number + 1)}, uncertain(data), program())
         cells = [values.value[name] for _, name in (*TABLES, *FIT)]
         if all((cell == cell).all() for cell in cells) and cells[0].min() > 0.5 and cells[0].max() < 3:
             return Truth(measured, mass, values)

@@ -8,6 +8,7 @@ import subprocess
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -112,7 +113,7 @@ def campaigns(
     # The rows that were left out leave gaps in the numbers of the others.
     tests = sorted(draw(st.permutations(range(1, 16)))[:size])
     data = {"v": v, "e": e, "x_p": x_p, "beta": exponent, **parameters, "points_per_pair": number}
-    return Campaign(variant, tests, data)
+    return Campaign(variant, tests, data | digits_of(variant, data))
 
 
 NO_DATUM = (math.nan, math.inf, -math.inf)
@@ -127,6 +128,19 @@ REFUSED = {
 }
 """What no column of that name allows."""
 MEASURED = ("v", "e", "x_p")
+UNCERTAIN = tuple(f"u_{name}" for name in MEASURED)
+
+
+def digits_of(variant: int, data: dict[str, list[float]]) -> dict[str, list[float]]:
+    """The standard uncertainties of what is measured, by the last of a double's digits: as the page does."""
+
+    def u(name: str, x: float) -> float:
+        if not math.isfinite(x) or not SHEETS[variant].bounds[name].allow(x):
+            return math.nan
+        exponent = Decimal(repr(x)).as_tuple().exponent
+        return float(f"1e{exponent}") / 2 / math.sqrt(3)
+
+    return {f"u_{name}": [u(name, x) for x in data[name]] for name in MEASURED}
 
 
 def _refused(draw: st.DrawFn, data: dict[str, list[float]]) -> None:
@@ -169,7 +183,7 @@ def _degenerate(draw: st.DrawFn, data: dict[str, list[float]]) -> None:
 def spoiled(draw: st.DrawFn, size: int, **how: Any) -> Campaign:
     """One campaign with input that is refused, or that is allowed and says little; a single test does."""
     campaign = draw(campaigns(max(size, 2), **how))
-    data = {name: list(column) for name, column in campaign.data.items()}
+    data = {name: list(column) for name, column in campaign.data.items() if name not in UNCERTAIN}
     for name in MEASURED:
         data[name] = data[name][:size]
     which = draw(st.sampled_from(("refused", "degenerate", "both")))
@@ -177,6 +191,7 @@ def spoiled(draw: st.DrawFn, size: int, **how: Any) -> Campaign:
         _degenerate(draw, data)
     if which != "degenerate":
         _refused(draw, data)
+    data |= digits_of(campaign.variant, data)
     return Campaign(campaign.variant, campaign.tests[:size], data)
 
 
@@ -240,9 +255,15 @@ def texts(column: Sequence[float]) -> list[str]:
 
 def on_the_page(campaign: Campaign) -> tuple[dict[str, Any], dict[str, Any]]:
     """What the page knows of the given columns, and what somebody has typed into it."""
-    sheet, typed = SHEETS[campaign.variant], {name: texts(each) for name, each in campaign.data.items()}
+    sheet, typed = (
+        SHEETS[campaign.variant],
+        {name: texts(each) for name, each in campaign.data.items() if name not in UNCERTAIN},
+    )
     bounds = {name: live.limits(own) for name, own in sheet.bounds.items()}
-    given = {name: {"given": {"scale": ["1", "1"], "bounds": bounds[name], "allowed": ""}} for name in bounds}
+    given: dict[str, Any] = {
+        name: {"given": {"scale": ["1", "1"], "bounds": bounds[name], "allowed": ""}} for name in bounds
+    }
+    given |= {f"u_{name}": {"of": name, "stated": {}} for name in MEASURED}
     tests = [
         {"label": label, "used": True, "cells": {name: typed[name][row] for name in MEASURED}}
         for row, label in enumerate(campaign.tests)

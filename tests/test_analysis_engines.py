@@ -25,7 +25,7 @@ from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.views import xlsx
 
-CELLS = 2117
+CELLS = 2228
 
 
 @pytest.fixture(scope="module")

@@ -172,7 +172,7 @@ def test_backwards_inverts_forwards(of: str, part: float, paper: Report, planner
 
 def test_the_global_fit_is_planned_too_and_may_repeat_speeds() -> None:
     """It rests on no pair: two tests at one speed are two tests."""
-    own = planner_of(Study(PAPER.parent / "soft_steel_fit").computed, "alpha_eiv")
+    own = planner_of(Study(PAPER).computed, "alpha_eiv")
     once, twice = (own.u(own.inputs_of(speeds)) for speeds in ([2.5, 3.5, 5.0], [2.5, 2.5, 3.5, 5.0]))
     assert twice < 0.95 * once
 

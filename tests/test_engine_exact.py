@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from mpmath import mpf
 from sympy import Expr, Integer, Rational, Sum, Symbol, cos, log
+from uncertain_data import uncertain
 
 from loopsheet.derivations.equation import Equation
 from loopsheet.report.cells.values import Status
@@ -125,7 +126,7 @@ PROGRAM = engine.Program.of(SHEET)
 
 def test_the_comparison_of_engines_finds_what_differs() -> None:
     data = {"v": [2.0, 3.0], "e": [0.5, 0.48], "x_p": [2e-5, 3e-5], "beta": 1.5, "ball_mass": 8e-3}
-    labels, data = {"tests": [1, 2]}, {**data, "points_per_pair": 3}
+    labels, data = {"tests": [1, 2]}, uncertain({**data, "points_per_pair": 3})
     values = engine.evaluate(SHEET, labels, data, PROGRAM)
     agreement = engines.compare(values, labels, data)
     assert agreement.findings == ()
@@ -149,12 +150,12 @@ def test_none_and_nan_are_both_missing() -> None:
 
 
 # --- what is written of it --------------------------------------------------------------------------------
-SPOILED = {
+SPOILED = uncertain({
     "ball_diameter": 0.0127, "ball_density": 7800.0, "beta": 1.5, "points_per_pair": 3,
     "v": [2.334, 2.940, 4.089, 4.504, 1.0, 1.5, 2.334],
     "e": [0.530, 0.512, 0.479, 0.467, 0.6, 0.67465466, 0.53],
     "x_p": [30e-6, 29.7e-6, 41.6e-6, np.nan, 8.47722741e-6, 10e-6, 25e-6],
-}  # fmt: skip
+})  # fmt: skip
 """No datum, pairs without a root, with two, and of one speed."""
 
 

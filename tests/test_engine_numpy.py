@@ -29,6 +29,7 @@ from sympy import (
     pi,
     sqrt,
 )
+from uncertain_data import uncertain
 
 from loopsheet.derivations.equation import Equation
 from loopsheet.derivations.reductions import Median
@@ -141,7 +142,7 @@ TESTS = {"tests": [1, 2, 3, 4, 5]}
 
 
 def run(data: Mapping[str, Any]) -> Values:
-    return engine.evaluate(SHEET, TESTS, {**PAPER, **PARAMETERS, **data}, PROGRAM)
+    return engine.evaluate(SHEET, TESTS, uncertain({**PAPER, **PARAMETERS, **data}), PROGRAM)
 
 
 def noisy(shape: tuple[int, ...], seed: int, noise: float = 0.05) -> dict[str, Any]:

@@ -22,10 +22,10 @@ from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
-from loopsheet.report.workbooks.soft_impact_fit import WORKBOOK
+from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 Array = NDArray[np.float64]
-FOLDER = Path(__file__).resolve().parents[1] / "data" / "soft_steel_fit"
+FOLDER = Path(__file__).resolve().parents[1] / "data" / "soft_steel"
 SHEET = WORKBOOK.sheet(frozenset({"ball_mass"}))
 PROGRAM = Program.of(SHEET)
 MASS, BETA, ALPHA, C = 0.008366, 1.5, 1.3, 9.6e8

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from sympy import Float, lambdify
+from uncertain_data import uncertain
 
 from loopsheet.derivations import soft_impact as model
 from loopsheet.report.cells.values import Status, Values
@@ -39,7 +40,7 @@ TABLE_1 = {
 
 def values_of(v: list[float], e: list[float], x_p: list[float], beta: float = 1.5) -> Values:
     data = {"v": v, "e": e, "x_p": x_p, "beta": beta, "ball_mass": MASS, "points_per_pair": 50}
-    return evaluate(SHEET, {"tests": range(1, len(v) + 1)}, data)
+    return evaluate(SHEET, {"tests": range(1, len(v) + 1)}, uncertain(data))
 
 
 def consistent(tests: int, alpha: float, beta: float, C: float = 1.1e9) -> Values:

@@ -9,6 +9,7 @@ import numpy as np
 import openpyxl
 import pytest
 from sympy import And, Basic, Eq, Or, Symbol
+from uncertain_data import uncertain
 
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.equation import Equation, Kind
@@ -247,7 +248,7 @@ def test_a_mark_needs_no_value_of_its_cell() -> None:
         "beta": 1.5,
         "points_per_pair": 5,
     }
-    values = engine.evaluate(sheet, {"tests": [1, 2]}, data)
+    values = engine.evaluate(sheet, {"tests": [1, 2]}, uncertain(data))
     found = margins(sheet)
     marks = Marks(engine.extend(values, [margin.column for margin in found], {}), found)
     (rises,) = (margin for margin in found if margin.limit.says.startswith("e rises"))

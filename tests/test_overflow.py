@@ -8,6 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 from sympy import Piecewise, Sum, Symbol, acos, exp, log, symbols
+from uncertain_data import uncertain
 
 from loopsheet.report.cells.values import Status
 from loopsheet.report.engines import exact
@@ -98,15 +99,17 @@ def test_a_sum_of_positive_terms_is_positive() -> None:
 # --- the paper's workbook --------------------------------------------------------------------------------
 
 PAIRS = WORKBOOK.sheet(frozenset({"ball_mass"}))
-STEEP = {
-    # Tests 1 and 2 have one e and almost one imprint: their exponent is 190, and C is 10 to the 880.
-    "v": [2.334, 1.1 * 2.334, 4.089, 4.504],
-    "e": [0.530, 0.530, 0.479, 0.467],
-    "x_p": [23.5e-6, 1.001 * 23.5e-6, 41.6e-6, 45.97e-6],
-    "beta": 1.5,
-    "ball_mass": 8.366e-3,
-    "points_per_pair": 50,
-}
+STEEP = uncertain(
+    {
+        # Tests 1 and 2 have one e and almost one imprint: their exponent is 190, and C is 10 to the 880.
+        "v": [2.334, 1.1 * 2.334, 4.089, 4.504],
+        "e": [0.530, 0.530, 0.479, 0.467],
+        "x_p": [23.5e-6, 1.001 * 23.5e-6, 41.6e-6, 45.97e-6],
+        "beta": 1.5,
+        "ball_mass": 8.366e-3,
+        "points_per_pair": 50,
+    }
+)
 TESTS = {"tests": [1, 2, 3, 4]}
 
 

@@ -56,7 +56,7 @@ def test_every_check_is_a_test(campaign: Path) -> None:
     assert "steel/report.toml::proof::(11)" in ids
     assert "steel/report.toml::published::alpha[1-2]" in ids
     assert "steel/report.toml::table::Table 2" in ids
-    assert len(ids) == len(set(ids)) == 3 + 46 + 27 + 5 + 3 + 10
+    assert len(ids) == len(set(ids)) == 3 + 82 + 27 + 5 + 3 + 11
 
 
 def test_the_inputs_in_a_crate_are_tests_where_their_folder_is_not(campaign: Path) -> None:
@@ -99,7 +99,7 @@ def test_what_is_odd_about_the_data_fails_or_warns(campaign: Path) -> None:
     edit(campaign / "measurements.csv", "2.334", "0.02334")
     done = run(campaign.parent, "-k", "data or limit", "-W", "default")
     assert done.returncode == 1, done.stdout + done.stderr
-    assert failed(done.stdout) == [f"steel/report.toml::data::{name}" for name in ("cells", "rows")]
+    assert failed(done.stdout) == [f"steel/report.toml::data::{name}" for name in ("cells", "result", "rows")]
     assert "steel/measurements.csv:3:3: alpha: " in done.stdout
     assert "look at test 2 first" in done.stdout
     assert "steel/measurements.csv:2: PytestWarning: v: 1 of 5 tests: a speed of no drop test" in done.stdout

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from mpmath import mpf
 from sympy import Abs, Expr, Integer, Rational, Symbol, diff, exp, log, simplify
+from uncertain_data import uncertain
 
 from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.engines import exact
@@ -97,7 +98,7 @@ SMALL_PROGRAM = Program.of(SMALL)
 def solve(beta: Array, v: Array, e: Array, x_p: Array) -> Values:
     """All pairs in one call: a batch of campaigns of two tests."""
     data = {"v": v, "e": e, "x_p": x_p, "beta": beta[:, None], "ball_mass": 8e-3, "points_per_pair": 2}
-    return engine.evaluate(SHEET, {"tests": [1, 2]}, data, PROGRAM)
+    return engine.evaluate(SHEET, {"tests": [1, 2]}, uncertain(data), PROGRAM)
 
 
 def pairs(count: int, least: float, most: float, seed: int) -> tuple[Array, Array, Array, Array]:

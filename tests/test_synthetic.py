@@ -14,6 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
+from uncertain_data import uncertain
 
 from loopsheet.report.cells.values import Values
 from loopsheet.report.engines import exact
@@ -55,7 +56,8 @@ def campaign(
         assert min(x_p) > 0
     masses = {"ball_mass": 0.0084, "target_mass": 1.5}
     measured = {"v": list(v), "e": list(e), "x_p": [float(x) for x in x_p]}
-    return Campaign(a, c, {**measured, **masses, "beta": beta, "points_per_pair": points}, x_m, force)
+    given = uncertain({**measured, **masses, "beta": beta, "points_per_pair": points})
+    return Campaign(a, c, given, x_m, force)
 
 
 def labels(made: Campaign) -> dict[str, range]:

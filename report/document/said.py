@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 from ...derivations.equation import Derivation, Equation, Step
 from ...derivations.proved import IDENTITY, Proof
+from ..cells.address import index_text
 from ..messages.errors import suggest
 from ..result import verdict_words as words
 from ..result.agreement import Agreement
-from ..result.chi_square import SIGNIFICANT, tail
+from ..result.chi_square import SIGNIFICANT, largest, tail
 from ..result.numbers import is_pure, rounded
 from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
 from ..workbook import FigureSpec
@@ -85,6 +86,8 @@ class Said:
             "say": Role(lambda name: SAID[_known("sentence", name, SAID)](self)),
             "sym": Role(lambda name: (self.material.sentences.symbol(name),)),
             "table": Role(lambda name: _links("table", self._table(name)), self._table),
+            "farthest": Role(self._test),
+            "chance": Role(self._chance),
             "tail": Role(self._probability),
             "has": Role(lambda name: not self.report.values.status[self._column(name)].any()),
             "likely": Role(lambda what: (p := self._tail(what)) is not None and p >= SIGNIFICANT),
@@ -124,6 +127,24 @@ class Said:
             self.material.counted(name, axis) - int(fewer),
         )
         return tail(value, dof) if dof > 0 and value == value else None
+
+    def _farthest(self, name: str) -> tuple[str, float] | None:
+        """The row whose deviation, in standard deviations, is too large for chance, and that chance."""
+        values, column = self.report.values, self.report.sheet[self._column(name)]
+        known = [(abs(x), row) for row, x in enumerate(values.value[column.name]) if x == x]
+        if not known:
+            return None
+        most, row = max(known)
+        chance = largest(most, len(known), len(self.report.inputs.left_out))
+        return (index_text(values.labels(column)[row]), chance) if chance < SIGNIFICANT else None
+
+    def _test(self, name: str) -> Inlines:
+        found = self._farthest(name)
+        return self.sentence(found[0]) if found else ()
+
+    def _chance(self, name: str) -> Inlines:
+        found = self._farthest(name)
+        return self.sentence(rounded(found[1], 1).plain) if found else ()
 
     def _printed(self, cell: str) -> Inlines:
         self._column(cell)

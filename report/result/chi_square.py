@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 import mpmath
 
-__all__ = ["SIGNIFICANT", "tail"]
+__all__ = ["SIGNIFICANT", "largest", "tail"]
 
 SIGNIFICANT = 0.05
 """A sum of squares that is less likely than this is not taken for chance."""
@@ -25,3 +27,25 @@ def tail(chi2: float, dof: int) -> float:
     ('0.050000', '6.25e-12')
     """
     return float(mpmath.gammainc(mpmath.mpf(dof) / 2, mpmath.mpf(chi2) / 2, regularized=True))
+
+
+def largest(deviation: float, number: int, left_out: int = 0) -> float:
+    """The probability that the largest of so many normal deviations is at least so large, by either sign.
+
+    Parameters
+    ----------
+    deviation : float
+        In standard deviations.
+    number : int
+        Of deviations.
+    left_out : int
+        How many were left out before: whoever looks for the worst again has had as many tries as there are
+        ways to choose those and this one (Bonferroni).
+
+    Examples
+    --------
+    >>> f"{largest(2.8, 5):.4f}", f"{largest(2.8, 5, 1):.4f}"
+    ('0.0253', '0.0740')
+    """
+    one, tries = tail(deviation**2, 1), math.comb(number + left_out, left_out + 1)
+    return -math.expm1(tries * math.log1p(-one)) if one < 1 else 1.0

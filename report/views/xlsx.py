@@ -19,7 +19,7 @@ from ..machine.staging import put
 from ..result.result import Report
 from .issued import Issued
 from .xlsx_budget import write_budgets
-from .xlsx_charts import write_charts
+from .xlsx_charts import charted, write_charts
 from .xlsx_columns import ColumnwiseSheet
 from .xlsx_inputs import GivenCells
 from .xlsx_marks import mark_outside
@@ -65,7 +65,7 @@ def render(report: Report, grid: Grid) -> bytes:
 def _write(book: Any, report: Report, grid: Grid) -> None:
     """Make the worksheets in the order in which they are read, then fill them."""
     style, inputs = Style(book), GivenCells(report, grid)
-    names = [SCALARS, *([_FIGURES] if grid.drawn and report.workbook.charts else []), *grid.axes]
+    names = [SCALARS, *([_FIGURES] if charted(report, grid) else []), *grid.axes]
     names += [STEPS] if grid.on(STEPS) else []
     names += [_PUBLISHED] if report.comparisons else []
     names += [_UNCERTAINTY] if any(budget.u > 0 for budget in report.uncertain().budgets) else []

@@ -11,9 +11,10 @@ from ..charts import Series, copied, shade
 from ..document.charted import Words, plain
 from ..quantity import behind
 from ..result.result import Report
+from ..workbook import FigureSpec
 from .xlsx_style import Style, number_format
 
-__all__ = ["write_charts"]
+__all__ = ["charted", "write_charts"]
 
 _SIZE = {"width": 900, "height": 540}
 _ROWS = 29
@@ -21,9 +22,18 @@ _ROWS = 29
 _INK, _GRID = "#1F2A36", "#E3E8ED"
 
 
+def charted(report: Report, grid: Grid) -> list[FigureSpec]:
+    """The figures whose columns are all on the grid: some have columns that are made for them alone."""
+    return [
+        figure
+        for figure in report.workbook.figures
+        if figure.chart and all({each.x, each.y} <= grid.by_name.keys() for each in figure.chart.series)
+    ]
+
+
 def write_charts(book: Any, sheet: Any, style: Style, report: Report, grid: Grid) -> None:
     """Draw every chart, one below the other."""
-    figures = [figure for figure in report.workbook.figures if figure.chart]
+    figures = charted(report, grid)
     words = Words(report)
     sheet.hide_gridlines(2)
     sheet.set_landscape()

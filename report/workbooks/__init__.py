@@ -4,6 +4,5 @@ from __future__ import annotations
 
 SHIPPED = {
     "soft_impact": "loopsheet.report.workbooks.soft_impact",
-    "soft_impact_fit": "loopsheet.report.workbooks.soft_impact_fit",
 }
 """Name in report.toml -> module that has it as ``WORKBOOK``."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..quantity import Bounds
 from ..workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook
-from .soft_impact_charts import EXPONENTS, LOOPS
+from .soft_impact_charts import EXPONENTS, LOOPS, MISFITS
 
 if TYPE_CHECKING:
     from ...derivations.equation import Ledger
@@ -55,7 +55,7 @@ def _masses_given(given: frozenset[str]) -> str | None:
 
 
 def _ledger() -> Ledger:
-    from ...derivations.soft_impact import LEDGER
+    from ...derivations.fit_checks import LEDGER
 
     return LEDGER
 
@@ -95,7 +95,10 @@ WORKBOOK = Workbook(
     check_parameters=_masses_given,
     sheet=_sheet,
     fits=("alpha_mean", "alpha_log", "alpha_lin"),
-    headline=("alpha_mean", "alpha_median", "alpha_log", "C_log", "alpha_lin", "C_lin"),
+    headline=(
+        *("alpha_eiv", "C_eiv", "chi2_eiv"),
+        *("alpha_mean", "alpha_median", "alpha_log", "C_log", "alpha_lin", "C_lin"),
+    ),
     prose="soft_impact",
     tables=(
         TableSpec("measured", "Impact parameters, as measured", ("v", "e", "x_p"), number="1"),
@@ -135,6 +138,36 @@ WORKBOOK = Workbook(
             ),
             number="L3",
         ),
+        TableSpec(
+            "common",
+            "The curve nearest to all tests",
+            (
+                *(
+                    "alpha_eiv",
+                    "u_alpha_eiv",
+                    "u_birge_eiv",
+                    "F_eiv",
+                    "x_0",
+                    "C_eiv",
+                    "chi2_eiv",
+                    "birge_eiv",
+                ),
+                *("trend_eiv", "u_trend_eiv", "dchi2_trend"),
+            ),
+            number="L4",
+        ),
+        TableSpec(
+            "adjusted",
+            "Each test on that curve: adjusted values, and how far off it was measured",
+            ("v_eiv", "e_eiv", "x_p_eiv", "x_m_eiv", "R_eiv", "leverage", "z_eiv", "alpha_without"),
+            number="L5",
+        ),
+        TableSpec(
+            "estimates",
+            "Exponent of one curve for all tests, by five estimates",
+            ("alpha_eiv", "alpha_mean", "alpha_median", "alpha_log", "alpha_lin"),
+            number="L6",
+        ),
     ),
     figures=(
         FigureSpec(
@@ -172,6 +205,14 @@ WORKBOOK = Workbook(
             alt="One mark for each pair of tests, its exponent over its mean speed; a line marks the mean "
             "exponent.",
             chart=EXPONENTS,
+        ),
+        FigureSpec(
+            "misfits",
+            "L2",
+            "Misfit of each test: how far its measured depth lies beside the one that follows from its speed "
+            "and its restitution on the common curve, in standard deviations.",
+            alt="One mark for each test, its misfit over its impact speed.",
+            chart=MISFITS,
         ),
     ),
     published_as={

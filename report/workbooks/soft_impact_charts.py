@@ -1,10 +1,10 @@
-"""The charts of the soft-impact paper's data: figure 4, and the exponent of every pair."""
+"""The charts of the soft-impact paper's data: figure 4, exponents of pairs, misfits of tests."""
 
 from __future__ import annotations
 
 from ..charts import BLUE, VERMILION, Chart, Series
 
-__all__ = ["EXPONENTS", "LOOPS"]
+__all__ = ["EXPONENTS", "LOOPS", "MISFITS"]
 
 LOOPS = Chart(
     "generated points, fitted curve, hysteresis loops",
@@ -29,3 +29,9 @@ EXPONENTS = Chart(
 )
 """One power law for all speeds would scatter the pairs about a level. The mean speed is the one that a pair
 speaks for: on the paper's data the exponents climb with it without exception."""
+MISFITS = Chart(
+    "misfit of each test",
+    "impact speed of the test",
+    "misfit in standard deviations",
+    (Series("v", "z_eiv", "%s", "points", BLUE, named=True),),
+)

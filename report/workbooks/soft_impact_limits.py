@@ -36,7 +36,7 @@ def limits(columns: tuple[Column, ...], where: Cells) -> dict[str, tuple[Limit, 
         The cells that the symbols of the two tests stand for.
     """
     by_name = {column.name: column for column in columns}
-    exponents = ("alpha", "alpha_mean", "alpha_median", "alpha_log", "alpha_lin")
+    exponents = ("alpha", "alpha_mean", "alpha_median", "alpha_log", "alpha_lin", "alpha_eiv")
     found: dict[str, tuple[Limit, ...]] = {
         name: (Limit.of(model.eq4.at({model.alpha: by_name[name].cell})),) for name in exponents
     }

@@ -15,6 +15,7 @@ from ...derivations.equation import Equation
 from ...derivations.soft_impact import CP, XM, XP, E, V
 from ...derivations.symbols import VOCABULARY, p, q, s
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
+from . import soft_impact_fit
 from .soft_impact_limits import limits
 from .soft_impact_root import alpha_rule, two_tests
 
@@ -103,6 +104,7 @@ def sheet(given: frozenset[str]) -> Sheet:
                 meaning="median exponent", latex=r"\tilde{\alpha}",
             ),
             x, F, *_log_fit(x, where), *_lin_fit(), *_tests_after_fit(),
+            *soft_impact_fit.columns(TESTS, (v, e, x_p)),
     )  # fmt: skip
     return Sheet(columns).limited(limits(columns, where))
 

@@ -105,6 +105,7 @@ function evaluateSheet(program, labels, inputs) {
     const size = axis === null ? 1 : layouts[axis].size;
     const out = new Float64Array(size), codes = new Uint8Array(size);
     const note = (list, row, what) => ((sheet[list][name] ??= {})[row] = what);
+    for (const list of ["counted", "broken", "roots"]) delete sheet[list][name]; // of the pass before, in a loop
     if (kind === "given") {
       faulty[name] = fill(out, codes, (row) => data[name][row], 0, () => STATUS.INPUT);
       return [out, codes];

@@ -24,17 +24,9 @@ SMALL = ("R_eiv", "z_eiv", "chi2_eiv", "birge_eiv", "u_birge_eiv")
 """What is left of differences."""
 
 
-def folder(path: Path, tests: driving.Tests) -> Path:
-    """A report folder with the fit."""
-    toml = driving.write(path, tests) / "report.toml"
-    text = toml.read_text(encoding="utf-8").replace('"soft_impact"', '"soft_impact_fit"')
-    toml.write_text(text, encoding="utf-8")
-    return path
-
-
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    place = folder(tmp_path_factory.mktemp("fit") / "paper", driving.paper())
+    place = driving.write(tmp_path_factory.mktemp("fit") / "paper", driving.paper())
     build(Study(place), place / "out", ("html",))
     return place / "out" / "report.html"
 
@@ -50,7 +42,7 @@ def test_the_edited_page_is_what_a_rebuild_gives(
     for test in left_out:
         live.page.locator(f'[data-use="{test}"]').click()
     tests = {test: row for test, row in driving.edited(edits).items() if test not in left_out}
-    values = Study(folder(tmp_path / "edited", tests)).computed.values
+    values = Study(driving.write(tmp_path / "edited", tests)).computed.values
     cells = [cell for cell in live.cells() if cell.status or cell.value]
     assert driving.differences([cell for cell in cells if cell.name not in SMALL], values) == []
     for cell in cells:
