@@ -70,6 +70,7 @@ def test_page_and_workbook_say_it_and_the_page_says_nothing_of_digits(folder: Pa
         told = (folder / "out" / name).read_text(encoding="utf-8")
         assert "Stated uncertainties: " in told
         assert "height datum: " in told
+        assert "their digits say how well they are known" not in " ".join(told.split())
     with zipfile.ZipFile(io.BytesIO((folder / "out/report.xlsx").read_bytes())) as book:
         texts = book.read("xl/sharedStrings.xml").decode()
         notes = "".join(book.read(n).decode() for n in book.namelist() if "comments" in n)

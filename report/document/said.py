@@ -13,6 +13,7 @@ from ..result import verdict_words as words
 from ..result.agreement import Agreement
 from ..result.chi_square import SIGNIFICANT, largest, tail
 from ..result.numbers import is_pure, rounded
+from ..result.statements import statements
 from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
 from ..workbook import FigureSpec
 from .material import Material
@@ -350,6 +351,7 @@ SAID: dict[str, Callable[[Said], Answer]] = {
     "oddities": Said.oddities,
     "data": Said.data,
     "left_out": Said.left_out,
+    "stated": lambda s: any(name in s.report.inputs.measured for name, _ in statements(s.report)),
     "missing": lambda s: (s.tables.missing(),) if s.material.remarks else (),
     "tally": Said.tally,
     "groups": lambda s: _listed(map(s.group, s.material.groups)),
