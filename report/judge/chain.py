@@ -79,6 +79,18 @@ class Pattern:
     by: Numbered
     entries: Numbered
 
+    def of_scalars(self, sources: int) -> tuple[tuple[int, Numbered, Numbered], ...]:
+        """For each scalar: its number behind the sources, its rows, and the places of its entries."""
+        if sources not in self._of_scalars:
+            every = np.unique(self.by[self.by >= sources]).tolist()
+            found = ((number - sources, self.by == number) for number in every)
+            self._of_scalars[sources] = tuple((n, self.rows[own], self.entries[own]) for n, own in found)
+        return self._of_scalars[sources]
+
+    @cached_property
+    def _of_scalars(self) -> dict[int, tuple[tuple[int, Numbered, Numbered], ...]]:
+        return {}
+
     def only(self, rows: Numbered) -> Pattern:
         """That of some rows, one after another, numbered anew; a row may come twice."""
         first, last = (np.searchsorted(self.rows, rows, side) for side in ("left", "right"))

@@ -86,10 +86,8 @@ class Along:
         found, sources = self.nothing((*self.batch, number, self.chain.number)), self.chain.number
         direct = cells.by < sources
         found[..., cells.rows[direct], cells.by[direct]] = self.entries[..., cells.entries[direct]]
-        for scalar in np.unique(cells.by[~direct]).tolist():
-            own = cells.by == scalar
-            rows, slopes = cells.rows[own], self.entries[..., cells.entries[own]]
-            theirs = self.whole[..., scalar - sources, :]
+        for scalar, rows, entries in cells.of_scalars(sources):
+            slopes, theirs = self.entries[..., entries], self.whole[..., scalar, :]
             found[..., rows, :] = found[..., rows, :] + slopes[..., None] * theirs[..., None, :]
         return found
 

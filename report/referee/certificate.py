@@ -120,6 +120,12 @@ class Certificate:
         return self._of_published(enclosed.over_box.value), self._of_published(enclosed.at_point.value)
 
     @cached_property
+    def _sure(self) -> NDArray[np.bool_]:
+        """Which published cells have a value wherever in the box."""
+        places = (self.problem.places[n] for n in self._plain)
+        return np.array([self._enclosed.over_box.sure[name][row] for name, row in places], dtype=bool)
+
+    @cached_property
     def _slopes(self) -> Intervals:
         """Derivatives (published, unknowns) over the box."""
         return self._of_published(self._enclosed.slopes)
@@ -130,9 +136,10 @@ class Certificate:
         nothing = np.full(len(self.problem.published), np.inf)
         low, high = -nothing, nothing.copy()
         try:
-            over, middle = self._cells
-            mean_value = middle + (self._slopes * self._enclosed.offsets).total(axis=1, keepdims=False)
-            found = over.within(mean_value)
+            found, middle = self._cells
+            if self._sure.any():
+                mean_value = middle + (self._slopes * self._enclosed.offsets).total(axis=1, keepdims=False)
+                found = found.within(mean_value)
             low[self._plain], high[self._plain] = found.low, found.high
         except _NOT_POSSIBLE:
             pass
@@ -154,6 +161,8 @@ class Certificate:
         if not which.size:
             return 0.0
         try:
+            if not self._sure[which].all():
+                return 0.0  # what may have no value may change in any way
             slopes = self._slopes[which]
             moves = (self._enclosed.offsets.low < 0) | (self._enclosed.offsets.high > 0)
             if (np.isinf(slopes.low) & np.isinf(slopes.high) & moves).any():
