@@ -83,7 +83,7 @@ def test_where_a_root_may_be_missing_all_are_asked(tmp_path: Path) -> None:
 
 
 def test_loops_are_not_run_beside_a_point() -> None:
-    assert draws(Study(PAPER.parent / "soft_steel_fit").computed, "alpha_eiv").beside is None
+    assert draws(Study(PAPER).computed, "alpha_eiv").beside is None
 
 
 @pytest.mark.parametrize("share", [0.05, 10.0])
