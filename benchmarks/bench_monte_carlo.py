@@ -1,12 +1,11 @@
 """A million draws of the paper's ten pairs, from the errors of its digits to both intervals.
 
-Against drawing alone: NumPy that fills one array with all errors. Beside it the same draws on one processor,
-and asked of each draw whether every cell has a value. Ratios of medians of one run. Nothing here is a test.
+Against drawing alone: NumPy that fills one array with all errors. Beside it the same draws, each asked for
+its statuses. Ratios of medians of one run. Nothing here is a test.
 """
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from typing import Any
 from unittest.mock import patch
@@ -33,24 +32,19 @@ def ways(draws: int = DRAWS) -> dict[str, Callable[[], Any]]:
     def drawn() -> Any:
         return monte_carlo.draw(report.inputs, report.values, budget, draws, tolerance=0.0)
 
-    def on_one() -> Any:
-        with patch.object(os, "sched_getaffinity", lambda _: {0}, create=True):
-            return drawn()
-
     def each_asked() -> Any:
         with patch.object(monte_carlo._Draws, "_beside", lambda *_: None):
-            return on_one()
+            return drawn()
 
     return {
         ALONE: lambda: generator.random(out=errors),
         "all of it": drawn,
-        "the same on one processor": on_one,
         "the same, each draw asked whether it has a value": each_asked,
     }
 
 
 if __name__ == "__main__":
     found = medians(ways())
-    print(f"{DRAWS} draws of ten pairs on {os.cpu_count()} processors: ms, ratio to {ALONE}")
+    print(f"{DRAWS} draws of ten pairs: ms, ratio to {ALONE}")
     for name, seconds in found.items():
         print(f"  {seconds * 1e3:9.1f}  {seconds / found[ALONE]:6.2f}  {name}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,6 @@ from loopsheet.report.judge.bounds import EPS, bounds
 from loopsheet.report.result.agreement import LIMIT
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty import monte_carlo
-from loopsheet.report.uncertainty.propagation import Spread
 
 WITHOUT_ENDS = """test,v [m/s],e [1],x_p [um]
 1,2.200(9),0.535(2),21.5(2)
@@ -105,14 +103,3 @@ def test_a_guess_that_leads_elsewhere_is_noticed(share: float) -> None:
     assert known.any()
     assert (found[known] <= narrow.high[0]).all()
     assert not known.all()
-
-
-def test_any_number_of_processors_tells_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    report = Study(PAPER).computed
-    budget = Spread(report.inputs, report.values).budget("alpha_mean", 0)
-    told = []
-    for number in (1, 2, 7):
-        monkeypatch.setattr(os, "sched_getaffinity", lambda _, own=number: set(range(own)), raising=False)
-        told.append(monte_carlo.draw(report.inputs, report.values, budget, 150_000, tolerance=1e-9))
-    assert told[0] == told[1] == told[2]
-    assert told[0].number == 150_000

@@ -11,7 +11,6 @@ import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -32,8 +31,6 @@ __all__ = ["Laid", "Program", "evaluate", "extend", "parts"]
 Codes = NDArray[np.uint8]
 Masks = Mapping[str, NDArray[np.bool_]]
 
-_PRINTING = Lock()
-"""Batches may run beside one another: what one of them prints is waited for by the others."""
 BLOCK = 1 << 13
 """How many roots are sought at a time: their intermediate results then stay in the processor's cache."""
 WIDEST = 1 << 16
@@ -171,12 +168,10 @@ class Program:
     def laid(self, labels: Mapping[str, Sequence[int]], counts: Mapping[str, int]) -> Laid:
         """The sheet over rows; that of the last ones is kept."""
         key = tuple((name, tuple(own)) for name, own in labels.items()), tuple(counts.items())
-        laid = self._laid.get(key)
-        if laid is None:
-            laid = Laid(self.sheet, lay_out(self.sheet, labels, counts))
+        if key not in self._laid:
             self._laid.clear()
-            self._laid[key] = laid
-        return laid
+            self._laid[key] = Laid(self.sheet, lay_out(self.sheet, labels, counts))
+        return self._laid[key]
 
     @cached_property
     def guessing(self) -> Program:
@@ -187,19 +182,18 @@ class Program:
 
     def conditions(self, name: str) -> tuple[_Condition, _Condition]:
         """Where a formula is positive although no double may hold it, and where it has a value at all."""
+        if name not in self._conditions:
 
-        def make() -> list[Any]:
-            from ..plan.lowering import lowered
-            from .numpy_texts import condition_texts
+            def make() -> list[Any]:
+                from ..plan.lowering import lowered
+                from .numpy_texts import condition_texts
 
-            return condition_texts(lowered(self.sheet, self.known), name)
+                return condition_texts(lowered(self.sheet, self.known), name)
 
-        with _PRINTING:
-            if name not in self._conditions:
-                texts = of_sheet(self.sheet, "conditions of a value", [name, *sorted(self.known)], make)
-                positive, defined = (_Condition.of(each, self.functions) for each in texts)
-                self._conditions[name] = positive, defined
-            return self._conditions[name]
+            texts = of_sheet(self.sheet, "conditions of a value", [name, *sorted(self.known)], make)
+            positive, defined = (_Condition.of(each, self.functions) for each in texts)
+            self._conditions[name] = positive, defined
+        return self._conditions[name]
 
     @cached_property
     def _conditions(self) -> dict[str, tuple[_Condition, _Condition]]:

@@ -8,11 +8,8 @@ tails let them exist, and an interval only if nearly all draws have a value.
 from __future__ import annotations
 
 import math
-import os
-from collections import Counter, deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
-from typing import TypeVar
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,8 +31,6 @@ from .sources import correlated, given, sources
 __all__ = ["MOST", "draw"]
 
 Array = NDArray[np.float64]
-Part = TypeVar("Part")
-Made = TypeVar("Made")
 
 MOST = 1_000_000
 """Draws, at most, where nobody asks for another number."""
@@ -90,35 +85,17 @@ def draw(
     told: list[tuple[float, ...]] = []
     lost, tolerance = 0, _tolerance(budget.u) if tolerance is None else tolerance
 
-    def computed(batch: dict[str, Array]) -> tuple[Array, int, tuple[float, ...]]:
+    for number, batch in enumerate(drawn.batches(size, most), start=1):
+        step(f"drawing {number * size} times")
         own, status = drawn.of(batch, row)
         ordered = np.sort(own[status == Status.OK])
-        return ordered, own.size - ordered.size, _told(ordered, budget.level)
-
-    for number, (ordered, missing, own) in enumerate(
-        _side_by_side(computed, drawn.batches(size, most)), start=1
-    ):
-        step(f"drawing {number * size} times")
-        lost += missing
+        lost += own.size - ordered.size
         found.append(ordered)
         if ordered.size:
-            told.append(own)
+            told.append(_told(ordered, budget.level))
         if number >= FEWEST and len(told) == number and _is_enough(told, tolerance):
             break
     return _distributed(np.sort(np.concatenate(found)), lost, budget, tolerance, told)
-
-
-def _side_by_side(work: Callable[[Part], Made], parts: Iterable[Part]) -> Iterator[Made]:
-    """What is made of parts, in their order: as many at a time as there are processors, and a few ahead."""
-    threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    waiting: deque[Future[Made]] = deque()
-    with ThreadPoolExecutor(threads) as pool:
-        for part in parts:
-            waiting.append(pool.submit(work, part))
-            if len(waiting) > 2 * threads:
-                yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
 
 
 class _Draws:
