@@ -180,7 +180,9 @@ def test_the_global_fit_is_planned_too_and_may_repeat_speeds() -> None:
 
 
 def test_what_others_make_no_depth_can_mend(capsys: pytest.CaptureFixture[str]) -> None:
-    out = told(capsys, "paper", "--u", "e = 0.01", "--want", "0.005", "--of", "x_p", code=1)
+    out = told(
+        capsys, "paper", "--cell", "alpha_mean", "--u", "e = 0.01", "--want", "0.005", "--of", "x_p", code=1
+    )
     assert "no u(x_p) is small enough for u(alpha_mean) = 0.0050: without it the others alone make" in out
 
 
@@ -198,7 +200,7 @@ def test_what_a_cell_does_not_hang_on_may_be_as_uncertain_as_it_will(
 
 
 def test_it_says_what_a_newcomer_asks(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ("paper", "--speeds", "2, 2.05, 5 m/s", "--u", "x_p = 0.5 um; v = 0.01")
+    words = ("paper", "--cell", "alpha_mean", "--speeds", "2, 2.05, 5 m/s", "--u", "x_p = 0.5 um; v = 0.01")
     out = told(capsys, *words)
     assert out.startswith("planned on the curve of 'Soft steel, ball drop': alpha_log = 1.3023")
     for line in (

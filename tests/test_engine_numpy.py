@@ -237,10 +237,10 @@ def test_the_blocks_in_which_roots_are_sought_do_not_show(monkeypatch: pytest.Mo
         "e": rng.uniform(0.45, 0.6, 30),
         "x_p": np.sort(rng.uniform(1e-5, 6e-5, 30)),
     }
-    long_campaign = engine.evaluate(SHEET, rows, {**PARAMETERS, **long}, PROGRAM)
+    long_campaign = engine.evaluate(SHEET, rows, uncertain({**PARAMETERS, **long}), PROGRAM)
     monkeypatch.setattr(engine, "BLOCK", 37)
     blocks = run(data)
-    small = engine.evaluate(SHEET, rows, {**PARAMETERS, **long}, PROGRAM)
+    small = engine.evaluate(SHEET, rows, uncertain({**PARAMETERS, **long}), PROGRAM)
     np.testing.assert_array_equal(whole_batch.value["alpha"], blocks.value["alpha"])
     np.testing.assert_array_equal(long_campaign.value["alpha"], small.value["alpha"])
     assert long_campaign.roots == small.roots
@@ -249,7 +249,7 @@ def test_the_blocks_in_which_roots_are_sought_do_not_show(monkeypatch: pytest.Mo
 
 def test_columns_that_come_later_are_those_of_the_whole_sheet() -> None:
     """Errors, and rows that sums leave out, included; what is there is not computed again."""
-    data = {**PARAMETERS, **PAPER, "x_p": [30e-6, 29.7e-6, 41.6e-6, 45.97e-6, np.nan]}
+    data = uncertain({**PARAMETERS, **PAPER, "x_p": [30e-6, 29.7e-6, 41.6e-6, 45.97e-6, np.nan]})
     order = SHEET.order
     whole_sheet = engine.evaluate(Sheet(order), TESTS, data)
     assert whole_sheet.counted
@@ -302,7 +302,7 @@ def test_whatever_the_data_nothing_is_ok_without_a_number_and_nothing_warns(
     rows: list[tuple[float, float, float]], beta: float
 ) -> None:
     v, e, x_p = zip(*rows, strict=True)
-    data = {**PARAMETERS, "v": v, "e": e, "x_p": x_p, "beta": beta}
+    data = uncertain({**PARAMETERS, "v": v, "e": e, "x_p": x_p, "beta": beta})
     values = engine.evaluate(SHEET, {"tests": range(1, len(rows) + 1)}, data, PROGRAM)
     for name, status in values.status.items():
         assert (np.isfinite(values.value[name]) == (status == Status.OK)).all(), name
@@ -358,7 +358,7 @@ def test_a_large_batch_needs_little_more_memory_than_its_values() -> None:
 @pytest.mark.parametrize("shape", [(), (60,), (7, 3)])
 def test_results_go_where_they_are_wanted(monkeypatch: pytest.MonkeyPatch, shape: tuple[int, ...]) -> None:
     """Into parts of arrays that hold more, block by block; the same bits, of these columns alone."""
-    data = {**PAPER, **PARAMETERS, **noisy(shape, seed=13)}
+    data = uncertain({**PAPER, **PARAMETERS, **noisy(shape, seed=13)})
     whole = run(data)
     wanted = ("alpha_log", "m_red", "alpha", "v")
     larger = {name: np.full((2, *whole.value[name].shape), 7.0) for name in wanted}
@@ -408,5 +408,7 @@ def test_batch_after_batch_takes_no_more_memory_than_a_block(monkeypatch: pytest
 def test_what_results_cannot_go_to_is_refused(name: str, array: Any, said: str) -> None:
     before = READ.copy()
     with pytest.raises(ValueError, match=f"^{said}"):
-        engine.evaluate(SHEET, TESTS, {**PAPER, **PARAMETERS, "v": READ}, PROGRAM, {name: array})
+        engine.evaluate(
+            SHEET, TESTS, {**uncertain({**PAPER, **PARAMETERS}), "v": READ}, PROGRAM, {name: array}
+        )
     np.testing.assert_array_equal(READ, before)

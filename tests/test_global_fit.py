@@ -193,8 +193,6 @@ def test_the_referee_says_of_a_published_exponent_what_the_digits_allow(tmp_path
     """It follows what a published cell rests on around the loop, and ends."""
     copied = tmp_path / "fit"
     shutil.copytree(FOLDER, copied)
-    toml = (copied / "report.toml").read_text(encoding="utf-8")
-    (copied / "report.toml").write_text(f'{toml}\n[published]\nfile = "published.csv"\n', encoding="utf-8")
     rows = "source,cell,index,value,unit\nmine,alpha_eiv,,1.25,1\nmine,C_eiv,,1.009e9,N/m^alpha_eiv\n"
     (copied / "published.csv").write_text(rows, encoding="utf-8")
     words = [one.word for one in Study(copied).refereed.comparisons]

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 from campaign_judging import Tally, compare
-from random_campaigns import SHEETS, Campaign, Node, numpy_reads, printed_once
+from random_campaigns import SHEETS, Campaign, Node, digits_of, numpy_reads, printed_once
 
 from loopsheet.report.cells.values import Status
 from loopsheet.report.engines import javascript
@@ -17,15 +17,12 @@ from loopsheet.report.messages.errors import Findings, Location
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 SHEET, GIVEN = SHEETS[1], ("v", "e", "x_p", "beta", "points_per_pair", "ball_diameter", "target_mass")
-PAPER = Campaign(
-    1,
-    [1, 2],
-    {
-        "v": [2.334, 2.940], "e": [0.530, 0.512], "x_p": [23.5e-6, 29.7e-6],
-        "beta": [1.5], "points_per_pair": [2.0],
-        "ball_diameter": [0.0127], "ball_density": [7800.0], "target_mass": [3.0],
-    },
-)  # fmt: skip
+DATA = {
+    "v": [2.334, 2.940], "e": [0.530, 0.512], "x_p": [23.5e-6, 29.7e-6],
+    "beta": [1.5], "points_per_pair": [2.0],
+    "ball_diameter": [0.0127], "ball_density": [7800.0], "target_mass": [3.0],
+}  # fmt: skip
+PAPER = Campaign(1, [1, 2], DATA | digits_of(1, DATA))
 NUMBERS = (
     *(-1e300, -1.0, -1e-9, -0.0, 0.0, 1e-300, 1e-100, 0.5, 1.0, 1 + 2**-52, 1.2),
     *(2.0, 2.5, 30.0, 10000.0, 10001.0, 1e300),
@@ -35,7 +32,8 @@ NOT_FINITE = (math.nan, math.inf, -math.inf)
 
 def edited(name: str, row: int, value: float) -> Campaign:
     column = [value if place == row else datum for place, datum in enumerate(PAPER.data[name])]
-    return replace(PAPER, data=PAPER.data | {name: column})
+    data = PAPER.data | {name: column}
+    return replace(PAPER, data=data | digits_of(1, data))
 
 
 @pytest.fixture(scope="module")

@@ -170,9 +170,8 @@ def test_marks_in_page_and_print(slipped: Path) -> None:
     page, text = (
         (slipped / "out" / name).read_text(encoding="utf-8") for name in ("report.html", "report.tex")
     )
-    assert (
-        page.count('data-mark="outside (4)" title="outside (4)"') == 5
-    )  # two pairs; a fit in text, result, table
+    # Two pairs; a fit in text, result and two tables.
+    assert page.count('data-mark="outside (4)" title="outside (4)"') == 6
     assert page.count("<span class=counted>2 of 3 pairs outside (4)</span>") == 6
     assert "<span data-inside=alpha_margin>1 of 3 pairs</span> lie inside" in page
     assert text.count(r"{\textsuperscript{\textdagger}}") == 2

@@ -67,7 +67,9 @@ def test_one_slipped_decimal_names_its_test(tmp_path: Path, up: bool) -> None:
     assert (cells.at.path, cells.at.line) == ((tmp_path / "measurements.csv").as_posix(), 3)
     assert rows.message.startswith("alpha_mean, alpha_median, x_ref and F_ref are over 6 of 10 pairs; ")
     assert "are over 12 of 20 points" in rows.message
-    assert found["data result"].passed
+    assert found["data result"].message.startswith(
+        "alpha_eiv, C_eiv and chi2_eiv of the result have no value"
+    )
 
 
 @pytest.mark.parametrize("slip", [slip for slip in slips(PAPER) if slip.column != "v"], ids=str)
@@ -79,8 +81,9 @@ def test_a_result_without_a_value_is_a_finding(tmp_path: Path) -> None:
     found = checks(write(tmp_path, BACKWARDS))
     assert "look at" not in found["data cells"].message, "either test may be wrong"
     assert found["data result"].message == (
-        "alpha_mean, alpha_median, alpha_log, C_log, alpha_lin and C_lin of the result have no value, "
-        "for want of alpha[1-2]"
+        "alpha_eiv, C_eiv, chi2_eiv, alpha_mean, alpha_median, alpha_log and 3 more of the result have no "
+        "value, "
+        "for want of alpha_eiv, v_eiv[1] and alpha[1-2]"
     )
 
 
@@ -107,13 +110,13 @@ def test_of_several_tests_that_may_be_wrong_the_one_that_moves_the_result_most(t
         "warning: alpha: 1 of 10 pairs outside (4)",
         "warning: alpha: 1 of 10 pairs: e rises with the speed",
     ]
-    whole, means = Study(tmp_path).computed.values.scalar("alpha_mean"), {}
+    whole, means = Study(tmp_path).computed.values.scalar("alpha_eiv"), {}
     for test in (4, 5):
         left = {name: [n for at, n in enumerate(column, 1) if at != test] for name, column in texts.items()}
         report = Study(write(tmp_path / str(test), left)).computed
-        means[test] = report.values.scalar("alpha_mean")
+        means[test] = report.values.scalar("alpha_eiv")
     worst = max(means, key=lambda test: abs(means[test] - whole))
-    goes = f"without it alpha_mean goes from {whole:.4f} to {means[worst]:.4f}, further than without another"
+    goes = f"without it alpha_eiv goes from {whole:.4f} to {means[worst]:.4f}, further than without another"
     assert all(said.endswith(f"look at test {worst} first: {goes}") for said in both)
 
 
@@ -173,7 +176,8 @@ def test_what_is_expected_of_a_cell_is_of_no_other(tmp_path: Path) -> None:
     assert not found["data cells"].passed
     assert not found["data rows"].passed
     assert all(found[f"expected alpha[{pair}]"].passed for pair in pairs)
-    every = checks(expecting(tmp_path, SLIPPED, *(f'"alpha[{p}]" = "known"' for p in (*pairs, "2-5"))))
+    all_of_them = (*(f"alpha[{pair}]" for pair in (*pairs, "2-5")), "alpha_eiv")
+    every = checks(expecting(tmp_path, SLIPPED, *(f'"{cell}" = "known"' for cell in all_of_them)))
     assert all(check.passed for check in every.values())
 
 
@@ -189,7 +193,13 @@ def test_a_sum_may_be_expected_to_leave_rows_out_by_its_own_name(tmp_path: Path)
 
 def test_a_result_may_be_expected_to_have_no_value(tmp_path: Path) -> None:
     assert not told(write(tmp_path, BACKWARDS))[-1].startswith("expected")
-    found = checks(expecting(tmp_path, BACKWARDS, '"alpha[1-2]" = "swapped, as a demonstration"'))
+    found = checks(
+        expecting(
+            tmp_path,
+            BACKWARDS,
+            *(f'"{cell}" = "swapped, as a demonstration"' for cell in ("alpha[1-2]", "alpha_eiv")),
+        )
+    )
     assert all(check.passed for check in found.values())
 
 

@@ -10,7 +10,6 @@ __all__ = ["uncertain"]
 
 def uncertain(data: Mapping[str, Any], part: float = 2.0**-11) -> dict[str, Any]:
     """The same data, each measured number known to a part of its size."""
-    return {
-        **data,
-        **{f"u_{name}": part * np.abs(np.asarray(data[name], float)) for name in ("v", "e", "x_p")},
-    }
+    us = {name: part * np.abs(np.asarray(data[name], float)) for name in ("v", "e", "x_p")}
+    alike = {name: u if isinstance(data[name], np.ndarray) else u.tolist() for name, u in us.items()}
+    return {**data, **{f"u_{name}": u for name, u in alike.items()}}

@@ -57,7 +57,7 @@ class _Oddities:
     def __init__(self, report: Report) -> None:
         self.report, self.inputs, self.sheet, self.values = report, report.inputs, report.sheet, report.values
         self.met: dict[str, list[str]] = {each.address: [] for each in self.inputs.expected}
-        self.failed = _Odd(self, self.values.errors())
+        self.failed = _Odd(self, self.once(self.values.errors()))
         self.outside = {
             margin.column.name: _Odd(self, self.cells(margin), f"is marked ({margin.limit.mark})")
             for margin in report.marks.margins
@@ -86,6 +86,17 @@ class _Oddities:
         for row in np.flatnonzero(self.report.marks.outside(margin)).tolist():
             yield self.values.cell(margin.of.name, labels[row])
 
+    def once(self, cells: Iterable[Cell]) -> Iterator[Cell]:
+        """The cells, but of a loop that does not settle one column: of the result, if it has one there."""
+        for cell in cells:
+            loop = self.sheet.loop_of.get(cell.name)
+            if loop and cell.status is Status.NOROOT:
+                names = [column.name for column in loop.iterated]
+                told = next((name for name in self.report.workbook.headline if name in names), names[0])
+                if cell.name != told:
+                    continue
+            yield cell
+
     def tests(self, cell: Cell) -> tuple[int, ...]:
         """The numbers of the tests that a row rests on; none of a scalar."""
         column = self.sheet[cell.name]
@@ -100,10 +111,10 @@ class _Oddities:
         return {tests for cell in cells if len(tests := self.tests(cell)) > 1}
 
     def reason(self, cell: Cell, says: str) -> str:
-        """Why somebody expects what is said of a cell; empty if nobody does."""
-        found = ""
+        """Why somebody expects what is said of a cell; empty if nobody does. A loop rests on all tests."""
+        found, tests = "", self.inputs.tests if cell.name in self.sheet.loop_of else self.tests(cell)
         for each in self.inputs.expected:
-            if each.covers(cell.name, cell.label, self.tests(cell)):
+            if each.covers(cell.name, cell.label, tests):
                 self.met[each.address].append(f"{cell.address} {says}")
                 found = found or each.reason
         return found

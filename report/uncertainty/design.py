@@ -42,6 +42,8 @@ DOUBLINGS = 60
 """From the uncertainty that is there, before any is enough."""
 LARGEST = 1e60
 """Of an uncertainty that can be stated."""
+ENDLESS = 1e9
+"""A cell that is sure enough at so many times the number itself does not hang on it but for rounding."""
 
 
 class NotPlanned(ValueError):
@@ -241,6 +243,8 @@ class Planner:
         for _ in range(DOUBLINGS):
             if u(high) > wanted:
                 break
+            if numbers and high > ENDLESS * max(abs(float(each.value)) for each in numbers):
+                return Needed(of, wanted, math.inf, others)
             low, high = high, min(2 * high, LARGEST)
         else:
             return Needed(of, wanted, math.inf, others)

@@ -190,6 +190,10 @@ class _Picture:
         )
         self.frame = Frame(chart, lines, dots)
         axes.set(xlim=self.frame.ends[0], ylim=self.frame.ends[1])
+        if axes.get_xscale() == "linear":
+            written = axes.xaxis.get_major_formatter().format_ticks(list(axes.get_xticks()))
+            if max(map(len, written), default=0) > 6:  # of numbers that are nearly the same
+                axes.locator_params(axis="x", nbins=4)
         self.keys: list[Line2D] = []
         self.taken: list[tuple[Array, float]] = []
         self.names: list[tuple[str, list[tuple[Array, Sequence[Place]]], dict[str, Any]]] = []

@@ -106,7 +106,7 @@ class GivenCells:
         style.text(sheet, first, 0, "left out, and in no formula:", "subtitle")
         for row, each in enumerate(left_out, start=first + 1):
             style.text(sheet, row, 0, str(each.test), "index")
-            for block in blocks:
+            for block in (block for block in blocks if block.name in each.texts):
                 text, unit = each.texts[block.name], self.report.inputs.header_units[block.name]
                 style.text(sheet, row, block.place.column, text + said(unit), "aside")
             style.text(sheet, row, note.column, each.reason, "aside")

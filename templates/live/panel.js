@@ -40,8 +40,10 @@ function placePanel() {
 function makeAround() {
   for (const box of all("main .table")) box.prepend(make("button", { type: "button", class: "copy", "data-copy": true, title: "copy this table" }, "Copy"));
   page.stale = all("[data-issued]").map((chapter) => {
-    const word = make("p", { class: "stale", hidden: true }, "This chapter is as issued, before the edits.");
-    chapter.querySelector("h2").after(word);
+    const head = chapter.querySelector("h2"), what = head ? "chapter" : "note";
+    const word = make("p", { class: "stale", hidden: true }, `This ${what} is as issued, before the edits.`);
+    if (head) head.after(word);
+    else chapter.append(word);
     return word;
   });
   makePanel();
