@@ -22,12 +22,11 @@ from loopsheet.report.cells.address import index_text
 from loopsheet.report.cells.values import Status
 from loopsheet.report.document.material import Material
 from loopsheet.report.inputs.folders import PAPER
-from loopsheet.report.result.numbers import at, order
 from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Given, RepeatAxis
 from loopsheet.report.study import Study
 from loopsheet.report.verbs.build import summary
-from loopsheet.report.views import html, latex, live
+from loopsheet.report.views import html, latex
 
 TOML = """\
 workbook = "soft_impact"
@@ -185,20 +184,6 @@ def test_the_terminal_shows_what_the_page_shows(of: Shown) -> None:
         label = tuple(map(int, index.split("-"))) if index else ()
         told = of.report.text(of.report.values.cell(name, label))
         assert plain(told.removesuffix(f" {of.report.shown[name].unit}")) == text
-
-
-def test_the_page_gets_the_digits_of_every_cell(of: Shown) -> None:
-    document = Material(of.report)
-    for column in of.report.sheet.columns:
-        digits = live.digits(of.report, column)
-        if isinstance(column.rule, Given) or isinstance(column.axis, RepeatAxis):
-            continue
-        values = of.report.in_unit(column.name)
-        every = [digits] * len(values) if isinstance(digits, int) else digits
-        for value, own, item in zip(values, every, document.items(column.name)[1], strict=True):
-            if value is not None and item.figure is not None:
-                place = order(value) - own + 1
-                assert at(value, place, item.figure.exponent is not None) == item.figure
 
 
 def test_the_key_sets_the_number_of_digits(tmp_path: Path) -> None:

@@ -31,7 +31,6 @@ from loopsheet.report.quantity import Bounds
 from loopsheet.report.referee import print_as, prints_same
 from loopsheet.report.result.numbers import Numeral, at, decimals, last_place, order, shown
 from loopsheet.report.result.result import Report
-from loopsheet.report.sheet import RepeatAxis
 from loopsheet.report.study import Study
 from loopsheet.report.views import compact, figures, html, live, live_files
 
@@ -146,20 +145,13 @@ def test_pieces_of_the_toml_make_the_file_again(known: dict[str, Any], report: R
     assert sorted(places) == sorted(known["parameters"])
 
 
-def test_the_page_has_the_digits_of_every_cell(
-    known: dict[str, Any], report: Report, in_js: Callable[[list[list[Any]]], list[Any]]
-) -> None:
-    """As Python shows them: without an edit, and after one that leaves a cell as it was."""
+def test_only_what_is_of_second_order_keeps_its_digits(known: dict[str, Any], report: Report) -> None:
     for name, column in known["columns"].items():
         assert ("given" in column) != ("digits" in column)
-        if "digits" in column and not isinstance(report.sheet[name].axis, RepeatAxis):
-            digits, values = column["digits"], report.in_unit(name)
-            every = digits if isinstance(digits, list) else [digits] * len(values)
-            cases = [[bits(x), d] for x, d in zip(values, every, strict=True) if x is not None]
-            (told,) = in_js([["column", cases]])
-            assert told == [figure.text for figure in report.figures(name) if figure], name
-    assert known["columns"]["alpha"]["digits"] == [4, 5, 5, 5, 5, 5, 5, 4, 5, 4]
-    assert known["columns"]["Cprime_1"]["digits"] == 4
+        bent = report.uncertain().bent.get(name, ())
+        assert len(column.get("kept", ())) == sum(bent), name
+    assert list(known["columns"]["C"]["kept"].values()) == [3]
+    assert (known["shared"], known["correlated"], known["most"]) == ([], [], 2)
 
 
 def test_published_values_keep_their_digits(known: dict[str, Any]) -> None:
@@ -233,11 +225,7 @@ const hexed = (x) => { const view = new DataView(new ArrayBuffer(8)); view.setFl
 const plain = (f) => [f.negative, f.whole, f.fraction, f.exponent, figureText(f)];
 const does = {
   rounded: (x, place) => plain(rounded(doubled(x), place)),
-  last: (x, digits) => plain(rounded(doubled(x), lastPlace(doubled(x), digits))),
-  column: (cells) => {
-    const values = cells.map(([x]) => doubled(x));
-    return shownColumn(values, (row) => lastPlace(values[row], cells[row][1])).map(figureText);
-  },
+  last: (x, u, digits, most) => plain(rounded(doubled(x), lastPlace(doubled(x), doubled(u), digits, most))),
   decimals: (x, places) => plain(decimals(doubled(x), places)),
   repr: (x) => repr(doubled(x)),
   brief: (x) => brief(doubled(x)),
@@ -302,14 +290,14 @@ def test_numbers_are_printed_as_python_does(in_js: Callable[[list[list[Any]]], l
 
 
 def test_uncertain_numbers_are_printed_as_python_does(in_js: Callable[[list[list[Any]]], list[Any]]) -> None:
-    """The page gets a number of digits for each cell, and shows with that what Python shows."""
+    """With the digits that an uncertainty leaves, one of nothing, and one that is not known."""
     dice, cases, wanted = random.Random(7), [], []
     for x in [*many(), *(dice.uniform(1, 10) * 10.0 ** dice.randint(-250, 250) for _ in range(500))]:
         size = dice.choice((1e-17, 1e-9, 1e-4, 0.01, 0.0996, 0.3, 1, 5, 1e3)) * dice.uniform(0.5, 1)
         u = dice.choice((abs(x) * size, abs(x) * size, abs(x) * size, 0.0, math.nan, 9.96, 0.0996))
-        place = last_place(x, u, dice.randint(1, 7), dice.choice((1, 2)))
-        cases.append(["last", bits(x), order(x) - place + 1])
-        wanted.append(told(at(x, place)))
+        digits, most = dice.randint(1, 7), dice.choice((1, 2))
+        cases.append(["last", bits(x), bits(u), digits, most])
+        wanted.append(told(at(x, last_place(x, u, digits, most))))
     assert in_js(cases) == wanted
 
 

@@ -109,6 +109,21 @@ class Stated:
             for name, column in numbers.items()
         }
 
+    @property
+    def of_readings(self) -> bool:
+        """Whether anything follows from how the numbers of a column scatter, all of them together."""
+        return bool(self.paired) or any(
+            p.said == SCATTER for each in self.columns.values() for p in each.parts
+        )
+
+    @staticmethod
+    def again(error: Error, unit: str) -> StatedErrors | None:
+        """What the text behind a number says; None if it is no statement that stands alone."""
+        try:
+            return read_statement(error.said, parse_unit(unit), error.shape)
+        except StatementError:
+            return None
+
 
 def read_bare(tables: TomlTables) -> Shape | None:
     """What limits without a word mean, here and behind the numbers of parameters; None: it is not said."""

@@ -303,9 +303,12 @@ class Uncertainties:
         Of the cells that have limits.
     influence : Influence or None
         On those cells and all scalars.
+    bent : mapping of column name to bool array (rows,)
+        Whether terms of second order are a part of it.
     """
 
     u: Mapping[str, NDArray[np.float64]]
     budgets: tuple[Budget, ...] = ()
     conformities: tuple[Conformity, ...] = ()
     influence: Influence | None = None
+    bent: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)

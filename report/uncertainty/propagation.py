@@ -115,17 +115,22 @@ class Spread:
 
     def u(self, name: str) -> Array:
         """The combined standard uncertainty of every row of a column (rows,), in SI."""
+        found = np.sqrt(np.sum(self.variances(name), axis=0))
+        return np.where(np.isfinite(found), found, np.nan)
+
+    def variances(self, name: str) -> Array:
+        """The variance of every row of a column, of first order and of second (2, rows), in SI."""
         rows = len(self.values.status[name])
         if name not in self._known:
-            return np.full(rows, np.nan)
+            return np.full((2, rows), np.nan)
         width = max(1, self._along.chain.number, self.second.width if self.second else 0)
         some = max(1, AT_ONCE // width)
-        found = np.empty(rows)
+        found = np.empty((2, rows))
         for first in range(0, rows, some):
             cells = [(name, row) for row in range(first, min(first + some, rows))]
             own = self.contributions(cells)
-            found[first : first + some] = np.sqrt(self._variance(own) + np.nan_to_num(self._more(cells, own)))
-        return np.where(np.isfinite(found), found, np.nan)
+            found[:, first : first + some] = self._variance(own), np.nan_to_num(self._more(cells, own))
+        return found
 
     def _more(self, cells: Sequence[tuple[str, int]], own: Array) -> Array:
         """The variance of second order; NaN where it is not known."""
@@ -272,9 +277,12 @@ def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Un
     budgets = (spread.budget(name, row) for name, row in cells[:MOST_BUDGETS])
     scalars = [(c.name, 0) for c in sheet.columns if c.axis is None]
     passed_on = [cell for cell in dict.fromkeys((*cells[:MOST_BUDGETS], *scalars)) if spread.knows(cell[0])]
+    variances = {name: spread.variances(name) for name in listed}
+    u = {name: np.sqrt(first + second) for name, (first, second) in variances.items()}
     return Uncertainties(
-        {name: spread.u(name) for name in listed},
+        {name: np.where(np.isfinite(found), found, np.nan) for name, found in u.items()},
         tuple(budgets),
         tuple(map(spread.conformity, inputs.limits)),
         spread.influence(passed_on),
+        {name: second != 0 for name, (_, second) in variances.items()},
     )

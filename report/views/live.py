@@ -24,21 +24,23 @@ from ..document.written import placed
 from ..inputs.unit_text import parse_unit
 from ..machine.kept import kept
 from ..quantity import Bounds, Printed
-from ..result.numbers import order
 from ..result.result import Report
 from ..result.verdict import OTHERWISE, UNEXPECTED
-from ..sheet import Column, Given, Iterated, RepeatAxis, Root
+from ..sheet import Column, Given, Iterated, Root
 from .compact import short_script
 from .live_files import given
+from .live_uncertain import digits, errors, uncertain
 from .writer import TEMPLATES
 
-__all__ = ["SCRIPTS", "BarPart", "data", "digits", "drawn", "limits", "parts", "script"]
+__all__ = ["SCRIPTS", "BarPart", "data", "drawn", "limits", "parts", "script"]
 
 SCRIPTS = (
     "page.js",
     "numbers.js",
     "inputs.js",
     "trace.js",
+    "nearby.js",
+    "sure.js",
     "cells.js",
     "tables.js",
     "published.js",
@@ -103,6 +105,7 @@ def data(report: Report, document: Material) -> str:
     known = {
         "columns": {column.name: _column(report, document, column) for column in sheet.columns},
         **given(report),
+        **uncertain(report),
         "rows": next(([axis.name, axis.row] for axis in sheet.axes if not axis.parents), ["rows", "row"]),
         "headline": [name for name in report.workbook.headline if name in sheet],
         "figures": drawn(report),
@@ -177,14 +180,11 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
             for each in limits
         ]
     if isinstance(column.rule, Given) and column.rule.u_of:
-        labels = (label for (label,) in report.values.labels(column))
-        printed = zip(labels, report.inputs.printed(column.rule.u_of), strict=True)
-        stated = {label: number.u for label, number in printed if number.stated is not None}
-        return entry | {"of": column.rule.u_of, "stated": stated, "digits": digits(report, column)}
+        return entry | {"of": column.rule.u_of} | digits(report, column)
     if isinstance(column.rule, Given):
         entry["given"] = _given(report, column)
-        return entry
-    entry["digits"] = digits(report, column)
+        return entry if (stated := errors(report, column)) is None else entry | {"errors": stated}
+    entry |= digits(report, column)
     if head.sources != (column.source,):
         entry["equations"] = head.sources
     if isinstance(column.rule, Iterated):
@@ -201,21 +201,6 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
     if put.latex:
         entry["put"] = put.cells
     return entry
-
-
-def digits(report: Report, column: Column) -> int | list[int]:
-    """How many digits each cell has as issued, from the first of its value on; a number, if all have as many.
-
-    A cell without a value gets the fewest. Rows that no table shows have those that the inputs warrant.
-    """
-    warranted = report.shown[column.name].digits
-    if isinstance(column.axis, RepeatAxis):
-        return warranted
-    cells = zip(report.in_unit(column.name), report.places(column.name), strict=True)
-    found = [None if value is None else order(value) - place + 1 for value, place in cells]
-    least = min((number for number in found if number is not None), default=warranted)
-    told = [number or least for number in found]
-    return told if {*told} - {least} else least
 
 
 def _given(report: Report, column: Column) -> dict[str, Any]:

@@ -76,17 +76,24 @@ function solveRoot(root, row) {
   const brackets = root.isolate
     ? root.isolate(root, row, low, high, [atLow, atHigh])
     : signs.flatMap((sign, n) => (sign * signs[n - 1] < 0 ? [[places[n - 1], places[n], sign]] : []));
-  return brackets[0] === null ? brackets : brackets.map(([left, right, rising]) => root.value(row, bisect(root, row, left, right, rising)));
+  return brackets[0] === null ? brackets : brackets.map(([left, right, rising]) => root.value(row, (root.unknown = bisect(root, row, left, right, rising))));
 }
 
+// Closes a bracket until no double lies within, and gives its upper end. The line through both ends is asked where it
+// crosses zero, and a little beyond, so that the bracket closes from both sides; what twice did not halve it is halved.
 function bisect(root, row, left, right, rising) {
-  for (;;) {
-    const middle = left + (right - left) / 2;
+  for (let below = NaN, above = NaN, idle = 0; ; ) {
+    const wide = right - left, middle = left + wide / 2, size = Math.abs(middle);
     if (!(middle > left && middle < right)) return right;
-    const side = root.at(row, middle) * rising;
+    const crossing = left - (below / (above - below)) * wide, near = Math.min(crossing - left, right - crossing);
+    const beyond = Math.max(size * 2 ** -51, near * Math.min(0.1, wide / size));
+    let at = crossing < middle ? crossing + beyond : crossing - beyond;
+    if (idle > 1 || !(at > left && at < right)) at = middle;
+    const side = root.at(row, at) * rising;
     if (Number.isNaN(side)) return NaN;
-    if (side <= 0) left = middle;
-    else right = middle;
+    if (side <= 0) [left, below] = [at, side];
+    else [right, above] = [at, side];
+    idle = 2 * (right - left) > wide ? idle + 1 : 0;
   }
 }
 
@@ -97,7 +104,7 @@ function evaluateSheet(program, labels, inputs) {
   for (const { name, allows } of program.columns) {
     if (allows) data[name] = data[name].map((x) => (Number.isFinite(x) && allows(x) ? x : NaN));
   }
-  const sheet = { layouts: {}, value: {}, status: {}, roots: {}, counted: {}, broken: {} };
+  const sheet = { layouts: {}, value: {}, status: {}, roots: {}, counted: {}, broken: {}, kept: {} };
   const { layouts, value, status } = sheet, faulty = {};
   for (const axis of program.axes) layouts[axis.name] = layOut(axis, layouts, labels, data);
   // One column, by its kernels or those of its start: its values and codes.
@@ -124,7 +131,8 @@ function evaluateSheet(program, labels, inputs) {
       faulty[name] = codes.some(Boolean);
       return [[], codes];
     }
-    const kernels = column[what](value, layouts, sizes, keep), { requires } = kernels, { positive } = column;
+    const kernels = column[what](value, layouts, sizes, keep), { requires } = kernels, { positive } = column, unknown = [];
+    sheet.kept[name] = { sizes, keep, unknown };
     for (let row = 0; requires && row < size; row++) {
       // What breaks a condition is outside the domain, whatever the rule would make of it.
       const failed = codes[row] ? 0 : requires(row).indexOf(false) + 1;
@@ -134,6 +142,7 @@ function evaluateSheet(program, labels, inputs) {
     }
     const only = (row) => {
       const found = solveRoot(kernels, row);
+      unknown[row] = kernels.unknown;
       if (found?.length === 0) codes[row] = STATUS.NOROOT;
       if (found?.length > 1) {
         const doubt = found[0] === null;

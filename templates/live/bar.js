@@ -1,7 +1,7 @@
 // The formula bar: what a number is, where it comes from, and what is computed from it.
 
 const bar = { name: null, index: "", open: true, hint: byId("bar-hint").textContent };
-const MOST_BUTTONS = 12;
+const MOST_BUTTONS = 12, MOST_SOURCES = 6;
 
 function showCell(name, index) {
   if (!LIVE.columns[name]) return;
@@ -21,7 +21,7 @@ function writeBar(look) {
   box.dataset.index = index;
   byId("bar-hint").hidden = row >= 0;
   byId("bar-cell").hidden = row < 0;
-  for (const id of ["reason", "source", "put", "precedents", "dependents"]) byId(`bar-${id}`).hidden = true;
+  for (const id of ["reason", "sure", "source", "put", "precedents", "dependents"]) byId(`bar-${id}`).hidden = true;
   byId("bar-hint").textContent = name === null ? bar.hint : `${name}[${index}] has no place in the sheet now: its ${ROW} is left out or removed.`;
   if (row >= 0) fillBar(look, name, row, index);
   markCells(look, name, row, index);
@@ -36,11 +36,29 @@ function fillBar(look, name, row, index) {
     const origin = trace.culprit(name, row), itself = origin.name === name && origin.row === row;
     fillLine("bar-reason", itself ? "" : "needs ", ...(itself ? [] : [cellButton(look, origin.name, origin.row), ": "]), trace.why(origin.name, origin.row));
   }
+  fillSure(look, name, row);
   if (column.given) fillLine("bar-source", `given, ${here.axis === null ? "in report.toml" : `in ${LIVE.file}, ${ROW} ${index}`}`);
   else fillLine("bar-source", ...sourceLine(column), ...publishedMath(column, name));
   if (column.put && trace.isOk(name, row)) fillLine("bar-put", ...putIn(look, name, row));
   fillCells(look, "bar-precedents", "rests on", trace.precedents(name, row));
   fillCells(look, "bar-dependents", "used by", trace.dependents(name, row));
+}
+
+// Its uncertainty and what most of it comes from.
+function fillSure(look, name, row) {
+  const known = sureOf(look, name, row), { kept, unit } = LIVE.columns[name];
+  if (!known) {
+    if (kept && look.trace.isOk(name, row)) fillLine("bar-sure", make("span", { class: "says" }, "its uncertainty is as issued"));
+    return;
+  }
+  const [, u, factor, expanded] = known.texts, behind = unit === "1" ? [] : ["\u00a0", ...part(name, "unit")];
+  const from = known.from.slice(0, MOST_SOURCES).map(({ called, share, moves }) => {
+    const bar = make("i", { class: "share" }), goto = moves.length > 1 ? null : look.trace.address(...moves[0]);
+    bar.style.width = `${Math.round(60 * Math.abs(share))}px`;
+    return make(goto ? "button" : "span", { type: goto && "button", "data-goto": goto }, make("code", {}, called), ` ${percent(share)} `, bar);
+  });
+  const wide = expanded && `, U = ${expanded} with k = ${factor} for 95\u00a0%`;
+  fillLine("bar-sure", make("span", { class: "says" }, "sure to"), `u = ${u}${wide}`, ...behind, ...from);
 }
 
 function fillLine(id, ...nodes) {
@@ -179,7 +197,7 @@ function markCells(look, name, row, index) {
 
 // Goes to a cell: to its place in a table if it has one.
 function goTo(address) {
-  const [, name, index = ""] = /^(\w+)(?:\[(.*)\])?$/.exec(address);
+  const [, name, index = ""] = ADDRESS.exec(address);
   const selector = `main [data-cell="${CSS.escape(name)}"][data-index="${CSS.escape(index)}"]`;
   const element = byId(cellId("cell", name, index)) ?? document.querySelector(selector);
   if (!element) {

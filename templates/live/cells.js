@@ -16,12 +16,16 @@ class Look {
     return axis === null ? [this.state.parameters[name]] : this.tests.map((test) => test.cells[name]);
   }
 
-  // The last digit of a computed cell: it has as many as its uncertainty left it as issued, a new one has the fewest
-  // of its column.
+  get sure() {
+    return (this.found ??= new Sure(this));
+  }
+
+  // The power of ten of the last digit of a computed cell: its uncertainty says it. Where that is as issued, so is the
+  // number of digits.
   place(name, row) {
-    const { digits, scale } = LIVE.columns[name], { trace } = this.issued ?? this;
-    const own = digits[digits.length && trace.row(name, this.trace.index(name, row))] ?? Math.min(...[digits].flat());
-    return lastPlace(this.trace.sheet.value[name][row] / scale, own);
+    const { digits, scale, kept } = LIVE.columns[name], value = this.trace.sheet.value[name][row] / scale;
+    const own = kept?.[this.trace.index(name, row)] ?? (LIVE.shared ? 0 : digits);
+    return own ? order(value) - own + 1 : lastPlace(value, this.sure.u(name, row) / scale, digits, LIVE.most);
   }
 
   column(name) {
@@ -74,7 +78,8 @@ function isUnchanged(look, last, name, row, before) {
   const now = look.trace.sheet, then = last.trace.sheet;
   if (now.value[name][row] !== then.value[name][before] || now.status[name][row] || then.status[name][before]) return false;
   const form = look.column(name), old = last.column(name);
-  return form.figures[row].exponent === old.figures[before].exponent && form.places === old.places;
+  const [one, other] = [form.figures[row], old.figures[before]];
+  return one.exponent === other.exponent && one.fraction === other.fraction && form.places === old.places;
 }
 
 // What was last written into an element.

@@ -14,8 +14,6 @@ function shade(part) {
   return `rgb(${SHADES[n].map((from, k) => Math.round(from + (place - n) * (SHADES[n + 1][k] - from))).join(" ")})`;
 }
 
-const axisNamed = (name) => PROGRAM.axes.find((one) => one.name === name);
-
 // What a series shows, in units of these sizes: all rows, or those of each row of the axis that is repeated.
 function tracesOf({ x, y, style }, { log }, { sheet, declared }, sizes) {
   if (style === "level") return [];

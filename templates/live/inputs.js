@@ -18,7 +18,7 @@ const LARGEST = tenTo(300);
 const isLess = (a, b) => a.n * b.d < b.n * a.d;
 const isSane = ({ n, d }) => magnitude(n) <= LARGEST * d && magnitude(n) * LARGEST >= d;
 
-// A printed text as the value of an input in SI: { value }, with u by its last digit, or { why } there is none.
+// A printed text as the value of an input in SI: { value }, with one unit of its last digit, or { why } there is none.
 function readInput(given, text) {
   const allowed = `it must be ${given.allowed}`;
   if (text === "") return { why: `the datum is missing; ${allowed}` };
@@ -29,9 +29,8 @@ function readInput(given, text) {
   const exact = readExact(text), scale = { n: BigInt(given.scale[0]), d: BigInt(given.scale[1]) };
   const value = { n: exact.n * scale.n, d: exact.d * scale.d };
   // Its last digit is asked for, too: from it comes the uncertainty.
-  const places = decimalsOf(text), unit = places < 0 ? { n: scale.n * tenTo(-places), d: scale.d } : { n: scale.n, d: scale.d * tenTo(places) };
-  const u = toDouble(unit) / 2 / Math.sqrt(3);
-  if (!isSane(unit) || (value.n !== 0n && !isSane(value))) return { why: `“${text}” is out of all range; ${allowed}` };
+  const places = decimalsOf(text), digit = places < 0 ? { n: scale.n * tenTo(-places), d: scale.d } : { n: scale.n, d: scale.d * tenTo(places) };
+  if (!isSane(digit) || (value.n !== 0n && !isSane(value))) return { why: `“${text}” is out of all range; ${allowed}` };
   const { low, high, low_open, high_open, integer } = given.bounds;
   const wrong = [
     integer && value.n % value.d !== 0n,
@@ -39,7 +38,17 @@ function readInput(given, text) {
     high !== undefined && (isLess(readExact(high), value) || (high_open && !isLess(value, readExact(high)))),
   ];
   if (wrong.some(Boolean)) return { why: `“${text}” is not allowed; ${allowed}` };
-  return { value: toDouble(value), u };
+  return { value: toDouble(value), digit: toDouble(digit) };
+}
+
+// The errors of a given number, with their standard uncertainties in SI: those that were stated of its column, or of
+// its row alone, else that of its digits. What is a share of the value or of its last digit follows what is typed.
+const OF_DIGITS = [{ digits: 1 / Math.sqrt(12), shape: "rectangular" }];
+
+function errorsOf({ given, errors = {} }, index, text) {
+  const { value, digit } = readInput(given, text), own = (Array.isArray(errors) ? errors : errors[index]) ?? OF_DIGITS;
+  const sized = own.map(({ u = 0, share = 0, digits = 0, ...more }) => ({ ...more, u: u + share * Math.abs(value) + digits * digit }));
+  return sized.filter(({ u }) => u); // none of what is no number
 }
 
 // --- states ----------------------------------------------------------------------------------------------
@@ -100,10 +109,12 @@ function computeSheet(program, columns, state) {
   for (const axis of program.axes) if (axis.kind === "given") labels[axis.name] = tests.map((test) => test.label);
   for (const { name, axis, kind } of program.columns) {
     if (kind !== "given" || program.constants[name]) continue;
-    const { of, stated } = columns[name];
+    const { of } = columns[name];
     if (of) {
-      // What was stated of a test holds for whatever is typed there; of all others the digits tell.
-      data[name] = tests.map(({ label, cells }) => stated[label] ?? readInput(columns[of].given, cells[of]).u ?? NaN);
+      data[name] = tests.map(({ label, cells }) => {
+        const refused = readInput(columns[of].given, cells[of]).why;
+        return refused ? NaN : Math.hypot(...errorsOf(columns[of], label, cells[of]).map(({ u }) => u));
+      });
       continue;
     }
     const texts = axis === null ? [state.parameters[name]] : tests.map((test) => test.cells[name]);

@@ -136,6 +136,7 @@ function writePage(look, last) {
   writeCounted(look);
   writeMissing(look);
   writePublished(look);
+  writeUncertain(look);
   markStale();
   writeFigures(look);
 }

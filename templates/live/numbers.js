@@ -112,8 +112,44 @@ function rounded(value, place, scientific = null) {
   return figureOf((value < 0 ? "-" : "") + (all[0] ?? 0) + rest, Number(first));
 }
 
-// The last of so many digits.
-const lastPlace = (value, digits) => order(value) - digits + 1;
+// An uncertainty as it is told: its digits, and the power of ten of the last. Rounded, but up where rounding would make
+// it smaller by more than a twentieth (JCGM 100, 7.2.6).
+function told(u, most = 2) {
+  let { digits, first } = significant(u, most);
+  if (Number(`${digits}e${first - most + 1}`) < 0.95 * u) {
+    digits = String(Number(digits) + 1);
+    first += digits.length - most;
+    digits = digits.slice(0, most);
+  }
+  return { digits, place: first - most + 1 };
+}
+
+// The power of ten of the last digit that is shown of a number: that of its uncertainty, if that is known; of what is
+// certain, without idle zeros; else the last of so many digits.
+function lastPlace(value, u, digits, most) {
+  if (u > 0 && u < Infinity) return Math.min(Math.max(told(u, most).place, order(Math.max(Math.abs(value), u)) - 14), order(value));
+  let place = order(value) - digits + 1;
+  if (u === 0) {
+    const short = value ? significant(value, digits) : { digits: "", first: -1 };
+    place = Math.max(place, Math.min(0, short.first - short.digits.replace(/0+$/, "").length + 1));
+  }
+  return place > 0 && place <= 2 ? 0 : place;
+}
+
+// A value and its uncertainty: with the same decimals, and the same power of ten.
+function stated(value, u, most) {
+  const { digits, place } = told(u, most), own = lastPlace(value, u, 1, most), short = Number(`${digits}e${place}`);
+  if (place < own) return [rounded(value, own), rounded(short, place)];
+  const { exponent } = rounded(Math.max(Math.abs(value), u), place);
+  return [value, short].map((x) => (exponent === null ? figureOf(fixed(x, -place)) : shifted(fixed(x, -place), place, exponent)));
+}
+
+// A text that ends at a place, with another power of ten.
+function shifted(text, place, exponent) {
+  const plain = text.replace(/[-.]/g, "").replace(/^0+/, ""), behind = exponent - place;
+  const digits = plain.slice(0, place > 0 ? -place : undefined).padStart(behind + 1, "0"), point = digits.length - behind;
+  return figureOf(`${text[0] === "-" ? "-" : ""}${digits.slice(0, point)}.${digits.slice(point)}`, exponent);
+}
 
 const decimals = (value, places) => figureOf(fixed(value, Math.max(0, places)));
 

@@ -16,10 +16,11 @@ function writePanel(look) {
   if (!page.panel) return;
   const rows = LIVE.headline.map((name) => {
     const [before, now] = [page.issued, look].map((one) => one.cell(name, 0).text), same = before === now;
+    const [, u = ""] = sureOf(look, name, 0)?.texts ?? [];
     return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
-      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now));
+      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now), make("td", {}, u));
   });
-  const head = make("tr", {}, ...["result", "as issued", "now"].map((text) => make("th", { scope: "col" }, text)));
+  const head = make("tr", {}, ...["result", "as issued", "now", "u"].map((text) => make("th", { scope: "col" }, text)));
   // The last of the pictures: those before it show steps on the way.
   const [name, chart] = Object.entries(LIVE.figures).at(-1) ?? [], drawn = name && document.querySelector(`#figure-${CSS.escape(name)} svg.picture`);
   const picture = drawn ? drawn.cloneNode(true) : chart && drawChart(chart, look)?.svg;
@@ -39,11 +40,15 @@ function placePanel() {
 // say of themselves that no script can compute again.
 function makeAround() {
   for (const box of all("main .table")) box.prepend(make("button", { type: "button", class: "copy", "data-copy": true, title: "copy this table" }, "Copy"));
-  page.stale = all("[data-issued]").map((chapter) => {
-    const head = chapter.querySelector("h2"), what = head ? "chapter" : "note";
+  // Of a chapter that follows in part, what does not says it.
+  const parts = all("[data-issued]").flatMap((chapter) => {
+    const rest = LIVE.shared && chapter.querySelector("#uncertain") && all(".table:not(#uncertain)", chapter);
+    const head = chapter.querySelector("h2");
+    return rest ? rest.map((table) => [table.firstChild, "table"]) : [[head ?? chapter.lastChild, head ? "chapter" : "note"]];
+  });
+  page.stale = parts.map(([place, what]) => {
     const word = make("p", { class: "stale", hidden: true }, `This ${what} is as issued, before the edits.`);
-    if (head) head.after(word);
-    else chapter.append(word);
+    place.after(word);
     return word;
   });
   makePanel();

@@ -1,0 +1,115 @@
+"""The errors of what was given, for the page that propagates them through its sheet again after an edit."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..cells.address import index_text
+from ..cells.layout import how_large
+from ..distribution import DIVISORS, Error, Shape
+from ..quantity import Printed
+from ..result.numbers import order
+from ..result.result import Report
+from ..sheet import Column, RepeatAxis
+
+__all__ = ["digits", "errors", "follows", "uncertain"]
+
+FOLLOWED = frozenset({Shape.NORMAL, Shape.STUDENT, Shape.RECTANGULAR, Shape.TRIANGULAR, Shape.ARCSINE})
+"""The shapes that a width tells whole."""
+LARGEST = 4_000_000
+"""Given numbers times cells; of a larger sheet the uncertainties stay as issued: they would take too long."""
+
+
+def follows(report: Report) -> bool:
+    """Whether the uncertainties of the page follow its edits.
+
+    Those of readings do not, which follow from how all of them scatter together, nor those of numbers with a law
+    of their own or from another report.
+    """
+    stated, sheet = report.inputs.uncertainty, report.sheet
+    told = [part.shape for each in stated.columns.values() for part in each.parts]
+    numbers = [number for c in sheet.columns for number in report.printed(c.name)]
+    told += [error.shape for number in numbers for error in number.stated or ()]
+    told += [part.shape for each in stated.shared for part in each.statement.parts]
+    known = not (stated.of_readings or report.inputs.taken) and FOLLOWED.issuperset(told)
+    return known and len(numbers) * how_large(sheet, report.values.layouts) <= LARGEST
+
+
+def uncertain(report: Report) -> dict[str, Any]:
+    """What errors share, their correlations, how many digits are shown; nothing, if all stays as issued."""
+    if not follows(report):
+        return {}
+    stated = report.inputs.uncertainty
+    return {
+        "shared": [
+            {"called": each.name, "of": each.of, **_stated(each.statement, each.name)[0]}
+            | ({"groups": each.groups} if each.groups else {})
+            for each in stated.shared
+            if each.of in report.sheet
+        ],
+        "correlated": [
+            [one, other, r]
+            for (one, other), r in stated.correlations.items()
+            if one in report.sheet and other in report.sheet
+        ],
+        "most": stated.digits,
+    }
+
+
+def errors(report: Report, column: Column) -> list[Any] | dict[str, Any] | None:
+    """What is stated of the numbers of a given column: of all, or of each by its label; None: nothing."""
+    said = report.inputs.uncertainty.columns.get(column.name)
+    if said is not None and FOLLOWED.issuperset(part.shape for part in said.parts):
+        return _stated(said, column.name)
+    printed = report.inputs.printed(column.name)
+    found = {
+        index_text(label): [_error(report, each, error) for error in each.stated]
+        for label, each in zip(report.values.labels(column), printed, strict=True)
+        if each.stated is not None
+    }
+    return found or ([] if column.exact else None)
+
+
+def digits(report: Report, column: Column) -> dict[str, Any]:
+    """The digits of a computed column where no uncertainty tells, and those of cells that stay as issued."""
+    warranted = report.shown[column.name].digits
+    if isinstance(column.axis, RepeatAxis):
+        return {"digits": warranted}
+    known, every = report.uncertain(), not follows(report)
+    bent = known.bent.get(column.name, ())
+    name, labels = column.name, report.values.labels(column)
+    issued = {
+        index_text(label): order(value) - place + 1
+        for row, (label, value, place) in enumerate(
+            zip(labels, report.in_unit(name), report.places(name), strict=True)
+        )
+        if value is not None and (every or bent[row])
+    }
+    least = min(issued.values(), default=warranted) if every else warranted
+    kept = {index: number for index, number in issued.items() if not every or number != least}
+    return {"digits": least} | ({"kept": kept} if kept else {})
+
+
+def _stated(said: Any, sample: str) -> list[dict[str, Any]]:
+    """What is stated of a column, part by part: a size, shares of the value, units of the last digit."""
+    found = []
+    for n, part in enumerate(said.parts):
+        by = float(part.divisor) * DIVISORS[part.shape]
+        sizes = {"u": part.absolute, "share": part.relative, "digits": part.digits}
+        told: dict[str, Any] = {name: float(size) / by for name, size in sizes.items() if size}
+        found.append(told | _kind(part.shape, part.dof, part.said, f"{sample} {n}"))
+    return found
+
+
+def _error(report: Report, printed: Printed, error: Error) -> dict[str, Any]:
+    """An error of one number; what its own text says in shares of it follows an edit, all else stays."""
+    said = report.inputs.uncertainty.again(error, printed.unit)
+    part = _stated(said, "")[0] if said else {}
+    sizes = part if "share" in part or "digits" in part else {"u": error.u}
+    return sizes | _kind(error.shape, error.dof, error.said, error.sample)
+
+
+def _kind(shape: Shape, dof: float, said: str, sample: str) -> dict[str, Any]:
+    kind: dict[str, Any] = {"shape": shape.value, "said": said}
+    return kind | ({} if math.isinf(dof) else {"dof": dof} | ({"sample": sample} if sample else {}))

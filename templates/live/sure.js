@@ -1,0 +1,148 @@
+// How sure the cells are: the errors of what was given, and what they do to each cell, by the law of propagation of
+// uncertainty (JCGM 100, 5.1 and 5.2), to first order.
+
+const MOVE = 2 ** -11; // in standard uncertainties, to both sides: far enough for doubles, near enough for a straight line
+const CELLS = PROGRAM.columns.filter(({ name }) => LIVE.columns[name]);
+
+// Every independent error of a state: what it is called, and what it moves, by one standard uncertainty.
+function* errorsIn(look) {
+  for (const { name, axis } of CELLS) {
+    const column = LIVE.columns[name], texts = column.given && !column.given.bounds.integer ? look.texts(name) : [];
+    for (const [row, text] of texts.entries()) {
+      const index = look.trace.index(name, row), own = errorsOf(column, index, text), called = look.trace.address(name, row);
+      for (const error of own) yield { ...error, called: own.length > 1 ? `${called}, ${error.said}` : called, moves: [[name, row, error.u]] };
+    }
+  }
+  for (const { called, of, groups, ...error } of LIVE.shared) {
+    const column = LIVE.columns[of], texts = look.texts(of), every = texts.map((_, row) => look.trace.index(of, row));
+    for (const group of groups ?? [every]) {
+      const rows = group.map((label) => every.indexOf(String(label))).filter((row) => row >= 0);
+      const found = rows.map((row) => errorsOf({ ...column, errors: [error] }, "", texts[row])[0]);
+      const moves = rows.flatMap((row, n) => (found[n] ? [[of, row, found[n].u]] : []));
+      const named = groups ? ` (${group.length > 1 ? ROWS : ROW} ${group.join(", ")})` : "";
+      if (moves.length) yield { ...error, called: called + named, moves };
+    }
+  }
+}
+
+// What is known of the uncertainty of a sheet's cells, computed when asked for.
+class Sure {
+  constructor(look) {
+    this.trace = look.trace;
+    this.errors = [...errorsIn(look)];
+    const place = (called) => this.errors.findIndex((error) => error.called === called);
+    this.pairs = LIVE.correlated.flatMap(([one, other, r]) => {
+      const rows = [...this.trace.sheet.value[one].keys()].map((row) => [one, other].map((name) => place(this.trace.address(name, row))));
+      return rows.filter((both) => !both.includes(-1)).map((both) => [...both, r]);
+    });
+    this.known = {};
+  }
+
+  // The sheet to both sides of where it is, along each error, and how far apart they are in its standard uncertainty.
+  get sides() {
+    const { sheet } = this.trace;
+    return (this.found ??= this.errors.map(({ moves }) => {
+      const [up, down] = [MOVE, -MOVE].map((far) => nearby(CELLS, sheet, moves.map(([name, row, u]) => [name, row, far * u])));
+      const [name, row, u] = moves[0];
+      return { up, down, apart: (up[name][row] - down[name][row]) / u };
+    }));
+  }
+
+  // What each error does to a cell, in SI, with its sign.
+  parts(name, row) {
+    return this.sides.map(({ up, down, apart }) => (up[name] === down[name] ? 0 : (up[name][row] - down[name][row]) / apart));
+  }
+
+  // Each of them times what it makes of the variance, together with those that it is correlated with.
+  variances(parts) {
+    const found = parts.map((part) => part * part);
+    for (const [a, b, r] of this.pairs) {
+      found[a] += r * parts[a] * parts[b];
+      found[b] += r * parts[a] * parts[b];
+    }
+    return found;
+  }
+
+  // The combined standard uncertainty of a cell; NaN where nothing is known of it.
+  u(name, row) {
+    const { axis } = this.trace.declared[name];
+    if (axis !== null && axisNamed(axis).kind === "repeat" || !this.trace.isOk(name, row)) return NaN;
+    return ((this.known[name] ??= [])[row] ??= Math.sqrt(Math.max(0, sum(this.variances(this.parts(name, row))))));
+  }
+
+  // Where the uncertainty of a cell comes from, the largest first, and its coverage factor.
+  budget(name, row) {
+    const parts = this.parts(name, row), u = this.u(name, row), variances = this.variances(parts), least = 1e-12 * Math.max(...parts.map(Math.abs));
+    const from = this.errors.map((error, n) => ({ ...error, part: parts[n], share: variances[n] / u ** 2 }));
+    const factor = this.factor(parts, this.freedom(parts, variances, u));
+    return { u, factor, from: from.filter(({ part }) => Math.abs(part) > least).sort((a, b) => Math.abs(b.share) - Math.abs(a.share)) };
+  }
+
+  // Effective degrees of freedom (JCGM 100, G.2b): errors of one sample are one estimate. NaN if correlated ones have any.
+  freedom(parts, variances, u) {
+    const samples = this.errors.map(({ sample }, n) => sample ?? n), found = new Map();
+    const apart = this.pairs.filter(([a, b]) => parts[a] && parts[b] && samples[a] !== samples[b]);
+    if (apart.some(([a, b]) => this.errors[a].dof || this.errors[b].dof)) return NaN;
+    variances.forEach((one, n) => found.set(samples[n], (found.get(samples[n]) ?? 0) + one));
+    const below = sum(this.errors.map(({ dof }, n) => {
+      const own = found.get(samples[n]);
+      found.delete(samples[n]);
+      return dof && own > 0 ? (own / u ** 2) ** 2 / dof : 0;
+    }));
+    return below ? Math.max(1, Math.floor(Math.round(100 / below) / 100)) : Infinity;
+  }
+
+  // From the shape of an error that dominates (EA-4/02, S9), else from a normal or a t distribution.
+  factor(parts, freedom) {
+    const sizes = parts.map(Math.abs), most = Math.max(...sizes), n = sizes.indexOf(most), { shape, dof } = this.errors[n] ?? {};
+    const rest = Math.hypot(...sizes.filter((_, other) => other !== n));
+    return freedom && !dof && most && rest <= 0.3 * most && FACTORS[shape] ? FACTORS[shape] : studentFactor(freedom);
+  }
+}
+
+// Half of what holds 95 %, in standard uncertainties.
+const FACTORS = { rectangular: 0.95 * Math.sqrt(3), triangular: Math.sqrt(6) * (1 - Math.sqrt(0.05)), arcsine: Math.SQRT2 * Math.sin(0.475 * Math.PI) };
+const NORMAL = 1.959963984540054;
+
+// The same of a t distribution: with t = sqrt(freedom) tan(angle) it is an integral of a power of the cosine.
+function studentFactor(freedom) {
+  if (Number.isNaN(freedom)) return NaN;
+  if (freedom > 1000) return NORMAL * (1 + (NORMAL ** 2 + 1) / (4 * freedom));
+  const upTo = (angle) => {
+    let n = (freedom - 1) % 2, all = n ? Math.sin(angle) : angle;
+    for (n += 2; n < freedom; n += 2) all = (Math.cos(angle) ** (n - 1) * Math.sin(angle) + (n - 1) * all) / n;
+    return all;
+  };
+  let low = 0, high = Math.PI / 2;
+  for (const wanted = 0.95 * upTo(high); high - low > 1e-13; ) [low, high] = upTo((low + high) / 2) < wanted ? [(low + high) / 2, high] : [low, (low + high) / 2];
+  return Math.sqrt(freedom) * Math.tan(low);
+}
+
+// --- told ------------------------------------------------------------------------------------------------
+
+const percent = (share) => `${figureText(decimals(100 * share, 0))}\u00a0%`;
+
+// Value, u, k and U of a cell, as texts, and its budget; nothing where there is none.
+function sureOf(look, name, row) {
+  const { scale, kept } = LIVE.columns[name];
+  if (!LIVE.shared || kept?.[look.trace.index(name, row)] || !(look.sure.u(name, row) > 0)) return null;
+  const { u, factor, from } = look.sure.budget(name, row), value = look.trace.sheet.value[name][row] / scale;
+  const of = (width) => stated(value, width / scale, LIVE.most).map(figureText), known = factor > 0;
+  return { texts: [...of(u), known ? figureText(rounded(factor, order(factor) - 2)) : "", known ? of(factor * u)[1] : ""], from };
+}
+
+// The table of the results with their uncertainties, again.
+function writeUncertain(look) {
+  for (const line of LIVE.shared ? all("#uncertain tbody tr") : []) {
+    const [, name, index = ""] = ADDRESS.exec(line.cells[0].textContent), row = look.trace.row(name, index);
+    const known = row >= 0 && sureOf(look, name, row), shown = row < 0 ? "–" : look.cell(name, row).text;
+    const { texts, from } = known || { texts: [shown, "", "", ""], from: [] };
+    texts.forEach((text, n) => setText(line.cells[n + 1], text));
+    const most = from.slice(0, 3).filter(({ share }) => share >= 0.05);
+    line.cells[6].replaceChildren(...most.flatMap(({ called, share }, n) => [n ? ", " : "", make("code", {}, called), `\u00a0${percent(share)}`]));
+  }
+}
+
+const ADDRESS = /^(\w+)(?:\[(.*)\])?$/;
+const sum = (numbers) => numbers.reduce((all, one) => all + one, 0);
+const axisNamed = (name) => PROGRAM.axes.find((one) => one.name === name);
