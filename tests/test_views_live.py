@@ -29,7 +29,7 @@ from loopsheet.report.inputs.unit_text import parse_unit
 from loopsheet.report.messages.errors import Findings, Location
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.referee import print_as, prints_same
-from loopsheet.report.result.numbers import Numeral, at, decimals, last_place, order, shown
+from loopsheet.report.result.numbers import Numeral, at, decimals, last_place, order, shown, stated
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.views import compact, figures, html, live, live_files
@@ -226,6 +226,8 @@ const plain = (f) => [f.negative, f.whole, f.fraction, f.exponent, figureText(f)
 const does = {
   rounded: (x, place) => plain(rounded(doubled(x), place)),
   last: (x, u, digits, most) => plain(rounded(doubled(x), lastPlace(doubled(x), doubled(u), digits, most))),
+  stepped: (text, by) => stepped(text, by),
+  stated: (x, u, most) => stated(doubled(x), doubled(u), most).map(plain),
   decimals: (x, places) => plain(decimals(doubled(x), places)),
   repr: (x) => repr(doubled(x)),
   brief: (x) => brief(doubled(x)),
@@ -299,6 +301,39 @@ def test_uncertain_numbers_are_printed_as_python_does(in_js: Callable[[list[list
         cases.append(["last", bits(x), bits(u), digits, most])
         wanted.append(told(at(x, last_place(x, u, digits, most))))
     assert in_js(cases) == wanted
+
+
+def test_values_and_uncertainties_are_told_as_python_does(
+    in_js: Callable[[list[list[Any]]], list[Any]],
+) -> None:
+    dice, cases, wanted = random.Random(8), [], []
+    for x in many():
+        u = 10 ** dice.uniform(-9, 1) * abs(x) or dice.choice((0.104, 9.96, 0.95))
+        most = dice.choice((1, 2))
+        cases.append(["stated", bits(x), bits(u), most])
+        wanted.append([told(figure) for figure in stated(x, u, most)])
+    assert in_js(cases) == wanted
+
+
+@pytest.mark.parametrize(
+    ("text", "by", "wanted"),
+    [
+        ("29.7", 1, "29.8"),
+        ("2.940", -1, "2.939"),
+        ("0.0", -1, "-0.1"),
+        ("-0.1", 1, "0.0"),
+        ("9.99", 1, "10.00"),
+        ("12e2", 1, "13e2"),
+        ("1.20E-3", -1, "1.19E-3"),
+        (".5", 1, "0.6"),
+        ("7", 1, "8"),
+        ("abc", 1, "abc"),
+    ],
+)
+def test_a_step_is_one_of_the_last_printed_digit(
+    in_js: Callable[[list[list[Any]]], list[Any]], text: str, by: int, wanted: str
+) -> None:
+    assert in_js([["stepped", text, by]]) == [wanted]
 
 
 @settings(max_examples=25, suppress_health_check=list(HealthCheck))

@@ -5,7 +5,7 @@ const AROUND = [
   [5, 9, "start"], [-5, -5, "end"], [-5, 9, "end"], [5, -5, "start"],
 ];
 const BESIDE_END = [[5, 10, "start"], [-4, -4, "end"], [-6, -14, "end"], [-8, -26, "end"]];
-const MOST_DOTS = 500, MOST_NAMES = 21, SOME_NAMES = 12, ROOM = 0.25, MARGINS = [0.06, 0.1];
+const MOST_DOTS = 500, MOST_NAMES = 21, SOME_NAMES = 12, ROOM = 0.25, MARGINS = [0.06, 0.1], GHOST = "#c4c4c4";
 
 // From dark to middling, as the pictures that were issued.
 const SHADES = [[68, 1, 84], [70, 50, 127], [54, 92, 141], [39, 127, 142], [31, 161, 135]];
@@ -53,6 +53,14 @@ function frameOf({ log, zero }, lines, dots) {
   return { ends, holds };
 }
 
+// The lines of a series: one of each row that is repeated, the lowest first, or one through all points.
+function waysOf({ each }, traces) {
+  if (each) return [...traces].sort((a, b) => a.at(-1).at[1] - b.at(-1).at[1]);
+  return traces.length > 1 ? [traces.flat().sort((a, b) => a.at[0] - b.at[0])] : traces;
+}
+
+const sameTraces = (some, others) => JSON.stringify(some) === JSON.stringify(others);
+
 // A chart, or nothing if no cell that it shows has a value.
 function drawChart(chart, look) {
   const { trace } = look, { value } = trace.sheet, series = chart.series.map((one) => ({ style: "line", colour: INK, ...one }));
@@ -64,11 +72,14 @@ function drawChart(chart, look) {
     return [sign + unit, own];
   });
   const own = series.map((one) => tracesOf(one, chart, trace, units.map(([, size]) => size)));
+  // Under what an edit moved, in grey, what the report has as issued.
+  const issued = look.issued ? series.map((one) => tracesOf(one, chart, look.issued.trace, units.map(([, size]) => size))) : [];
+  const ghosts = issued.map((traces, n) => (sameTraces(traces, own[n]) ? [] : traces)), ghostly = series.map(({ style }, n) => (style === "line" ? ghosts[n]?.flat() ?? [] : [])).flat();
   const [lines, dots] = ["line", "points"].map((style) => own.flatMap((traces, n) => (series[n].style === style ? traces.flat() : [])));
   if (!lines.length && !dots.length) return null;
-  const frame = frameOf(chart, lines, dots), [x, y] = frame.ends, keys = [], names = [];
+  const frame = frameOf(chart, [...lines, ...ghostly], dots), [x, y] = frame.ends, keys = [], names = [];
   const titles = ["x", "y"].map((axis, n) => lettered([...chart[axis].title, ["", units[n][0] && ` / ${units[n][0]}`]]));
-  const picture = new Picture(chart, frame.ends, titles, series.filter(({ style }) => style !== "level").length > 1 || !dots.every(frame.holds) ? 28 : 4);
+  const picture = new Picture(chart, frame.ends, titles, series.filter(({ style }) => style !== "level").length > 1 || !dots.every(frame.holds) || ghosts.some((traces) => traces.length) ? 28 : 4);
   const mark = (d, attributes) => draw("path", { d, ...attributes });
   const key = ({ label, rows, value }, count, more, sign) => {
     const told = label.map(([kind, text]) => [kind, text.replace("%s", `${count} ${rows?.[Number(count === 1)]}`)]);
@@ -83,7 +94,7 @@ function drawChart(chart, look) {
       names.unshift([`${plainOf(one.label)}${look.shownText(one.y, 0)}`, [beside(4, 0), beside(-4, 1)], {}]);
     },
     line(one, traces) {
-      const ways = one.each ? [...traces].sort((a, b) => a.at(-1).at[1] - b.at(-1).at[1]) : [traces.length > 1 ? traces.flat().sort((a, b) => a.at[0] - b.at[0]) : traces[0]];
+      const ways = waysOf(one, traces);
       const colour = (n) => (one.each ? shade(n / Math.max(1, ways.length - 1)) : one.colour);
       const width = one.each ? (ways.length <= SOME_NAMES ? 1.4 : 0.8) : 1.1;
       ways.forEach((way, n) => picture.line(way, colour(n), width));
@@ -108,6 +119,11 @@ function drawChart(chart, look) {
       if (out && one.named) keys.push({ mark: mark("M3 2h6l-3-5z", { fill: LOADING }), text: [["", `outside the frame: ${out} of ${all.length}`]] });
     },
   };
+  ghosts.forEach((traces, n) => {
+    if (series[n].style === "line") for (const way of waysOf(series[n], traces)) picture.line(way, GHOST, 1, null, false);
+    else if (traces.length) picture.dots(traces.flat().filter(frame.holds).map(({ at }) => at), 3, GHOST, false);
+  });
+  if (ghosts.some((traces) => traces.length)) keys.push({ mark: mark("M0 0h13", { stroke: GHOST, "stroke-width": 2 }), text: [["", "as issued"]] });
   series.forEach((one, n) => (own[n].length || one.style === "level") && draws[one.style](one, own[n]));
   for (const [text, places, style] of names) places.some(([at, beside]) => picture.label(text, at, beside, style));
   if (picture.frame.top > 4) picture.key(keys);

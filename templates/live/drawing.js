@@ -82,17 +82,17 @@ class Picture {
   }
 
   // Dots as one path, each a stroke of no length with round ends.
-  dots(points, size, colour) {
+  dots(points, size, colour, keepClear = true) {
     const d = points.map(([x, y]) => `M${this.x(x).toFixed(1)} ${this.y(y).toFixed(1)}h0`).join("");
     this.svg.append(draw("path", { d, stroke: colour, "stroke-width": size, "stroke-linecap": "round", fill: "none" }));
-    for (const [x, y] of points) this.avoid(this.x(x), this.y(y), 2);
+    if (keepClear) for (const [x, y] of points) this.avoid(this.x(x), this.y(y), 2);
   }
 
-  line(points, colour, width, dashes = null) {
+  line(points, colour, width, dashes = null, keepClear = true) {
     const d = points.map(({ at: [x, y] }, n) => `${n ? "L" : "M"}${this.x(x).toFixed(2)} ${this.y(y).toFixed(2)}`).join("");
     const attributes = { d, stroke: colour, "stroke-width": width, fill: "none", "stroke-dasharray": dashes };
     this.svg.append(draw("path", { ...attributes, "stroke-linejoin": "round" }));
-    for (const { at: [x, y] } of points) this.avoid(this.x(x), this.y(y), 1);
+    if (keepClear) for (const { at: [x, y] } of points) this.avoid(this.x(x), this.y(y), 1);
   }
 
   // A triangle at the edge, towards a point that is outside.

@@ -84,10 +84,21 @@ function cancel() {
   element.select();
 }
 
+// Alt and an arrow move an input by its last printed digit; what is being typed is entered first.
+const STEPS = { ArrowUp: 1, ArrowDown: -1 };
+
+function step(event, element) {
+  event.preventDefault();
+  commit();
+  setCell(element.dataset.cell, element.dataset.index, stepped(element.value, STEPS[event.key]));
+  if (isText(document.activeElement)) document.activeElement.select();
+}
+
 const ARROWS = { ArrowUp: [-1, 0], ArrowDown: [1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
 
 function onGridKey(event) {
   const element = event.target.closest(STOPS), text = isText(element), inPlace = editing?.element === element && editing.inPlace;
+  if (event.altKey && text && STEPS[event.key]) step(event, element);
   if (!element || event.altKey || element.matches("[data-reason]")) return;
   const { key, ctrlKey, metaKey, shiftKey } = event, control = ctrlKey || metaKey, here = placeOf(element);
   const go = (place) => {

@@ -206,6 +206,13 @@ function decimalsOf(text) {
   return (mantissa.split(".")[1] ?? "").length - Number(power);
 }
 
+// A printed number with so many units of its last digit more; what is no number stays.
+function stepped(text, by) {
+  if (!NUMBER.test(text)) return text;
+  const [mantissa, ...power] = text.split(/(?=e)/i), places = decimalsOf(mantissa), d = tenTo(places);
+  return fixedExact({ n: readExact(mantissa).n * d / readExact(mantissa).d + BigInt(by), d }, places) + power.join("");
+}
+
 // n/d in the 15 digits that every double keeps, so that 29.7 is not cut to 29.6.
 function nearExact(x) {
   const value = toDouble(x);

@@ -16,11 +16,11 @@ function writePanel(look) {
   if (!page.panel) return;
   const rows = LIVE.headline.map((name) => {
     const [before, now] = [page.issued, look].map((one) => one.cell(name, 0).text), same = before === now;
-    const [, u = ""] = sureOf(look, name, 0)?.texts ?? [];
+    const { kept, scale } = LIVE.columns[name], u = LIVE.shared && !kept ? look.sure.u(name, 0) / scale : NaN;
     return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
-      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now), make("td", {}, u));
+      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now), make("td", {}, u > 0 ? `(${told(u, LIVE.most).digits})` : ""));
   });
-  const head = make("tr", {}, ...["result", "as issued", "now", "u"].map((text) => make("th", { scope: "col" }, text)));
+  const head = make("tr", {}, ...["result", "as issued", "now", "(u)"].map((text) => make("th", { scope: "col" }, text)));
   // The last of the pictures: those before it show steps on the way.
   const [name, chart] = Object.entries(LIVE.figures).at(-1) ?? [], drawn = name && document.querySelector(`#figure-${CSS.escape(name)} svg.picture`);
   const picture = drawn ? drawn.cloneNode(true) : chart && drawChart(chart, look)?.svg;
