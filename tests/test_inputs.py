@@ -365,7 +365,7 @@ def test_all_findings_of_all_files_at_once(findings: Findings) -> None:
         ('"8.366 g"', '""', ["LS211 report.toml:4:13+2", "LS403 report.toml:4:14+1"]),
         ('"8.366 g"', "true", ["LS205 report.toml:4:13+4"]),
         ('"8.366 g"', "2020-01-01", ["LS205 report.toml:4:13+10"]),
-        ('"8.366 g"', "{ mass = 1 }", ["LS205 report.toml:4:13+12"]),
+        ('"8.366 g"', "{ mass = 1 }", ["LS203 report.toml:4:15+4"]),
         ('"8.366 g"', "1_000", ["LS206 report.toml:4:13+5"]),
         ('"8.366 g"', "inf", ["LS206 report.toml:4:13+3"]),
         ('"8.366 g"', '"8.366 g"\npoints = "2.5"', ["LS406 report.toml:5:11+3"]),

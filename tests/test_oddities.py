@@ -263,9 +263,9 @@ def test_build_tells_it_last(tmp_path: Path, unjudged: None, capsys: pytest.Capt
     folder, out = write(tmp_path / "in", SLIPPED), tmp_path / "out"
     assert main(["build", str(folder), "--out", str(out), "--to", "json"]) == 1
     lines = capsys.readouterr().out.splitlines()
-    assert [line.partition(": ")[0] for line in lines[-3:-1]] == ["finding", "finding"]
+    assert [line.partition(": ")[0] for line in lines[-4:-1]] == ["finding"] * 3
     assert (
-        f"finding: {folder.as_posix()}/measurements.csv:3:3: alpha: 4 of 10 pairs have no value" in lines[-3]
+        f"finding: {folder.as_posix()}/measurements.csv:3:3: alpha: 4 of 10 pairs have no value" in lines[-4]
     )
     assert lines[-1].startswith("2 files in ")
 
@@ -298,7 +298,7 @@ def test_every_format_of_check_tells_it(
         assert noted["cells"] is None
         assert [name for name, note in noted.items() if note == "warning" and name.startswith("v: ")]
     if form == "junit":
-        assert int(ElementTree.fromstring(out).get("failures", "")) == 2
+        assert int(ElementTree.fromstring(out).get("failures", "")) == 3
     if form == "github":
         assert re.search(r"^::error file=.*measurements\.csv,line=3,col=3,.*title=data cells::", out, re.M)
         assert re.search(r"^::warning file=.*measurements\.csv,line=2,", out, re.M)

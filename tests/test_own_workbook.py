@@ -92,7 +92,7 @@ SHEET = "Sheet((d, *given.values(), l))"
         (
             shows('prose="soft_impact"'),
             '"soft_impact"',
-            "the text 'soft_impact' tells of (10), (11), (12a), (12e), (2), (3), (4), ",
+            "the text 'soft_impact' tells of (10a), (10c), (11), (12a), (12e), (2), (3), (4), ",
         ),
         (
             shows('figures=(FigureSpec("f", "1", "", "loop"),)'),

@@ -415,7 +415,7 @@ def test_what_is_out_of_reach_is_said_in_words(paper: Report) -> None:
     assert spec is not None
     assert "12 published values" in spec.alt
     assert "2 lie outside theirs" in spec.alt
-    assert spec.number == "L2"
+    assert spec.number == "L3"
     assert spec in figures.of(paper)
 
 

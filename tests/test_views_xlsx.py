@@ -12,6 +12,7 @@ from typing import Any
 
 import openpyxl
 import pytest
+from openpyxl.utils import get_column_letter
 from openpyxl.worksheet.formula import ArrayFormula
 
 from loopsheet.report import stages
@@ -147,8 +148,13 @@ def test_the_first_worksheet(book: Any, shown: Any, report: Report) -> None:
     assert cells["A1"].value == "Soft steel, ball drop"
     headline = report.workbook.headline
     assert [cells.cell(row, 1).value for row in range(6, 6 + len(headline))] == list(headline)
-    assert cells["B6"].value == pytest.approx(1.30264345, abs=1e-8)
-    assert [cells.cell(6, n).value for n in (3, 4, 5, 7)] == ["1", "mean exponent", "(L12)", "10 of 10 pairs"]
+    assert cells["B6"].value == pytest.approx(1.30130453, abs=1e-8)
+    assert [cells.cell(6, n).value for n in (3, 4, 5, 7)] == [
+        "1",
+        "exponent of the global fit",
+        "(L42)",
+        "5 of 5 tests",
+    ]
     text = "\n".join(str(c.value) for row in cells.iter_rows() for c in row if c.value)
     for code in ("#INPUT!", "#DOMAIN!", "#NOROOT!", "#TWOROOTS!", "#OVERFLOW!", "#STEPS!"):
         assert code in text
@@ -168,7 +174,7 @@ def test_published_values_stand_beside_live_ones(book: Any, shown: Any, report: 
         assert now.cell(row, 13).value == comparison.published.reason
     assert live["L6"].value == '=IF($I$6="differs",IF(ROUND($F$6,3)=$K$6,"yes","no"),"no")'
     depth = next(row for row in range(6, 40) if now.cell(row, 2).value == "x_m")
-    assert live.cell(depth, 6).value == "=IF(ISNUMBER(tests!$F$8),tests!$F$8,tests!$F$8)"
+    assert live.cell(depth, 6).value == "=IF(ISNUMBER(tests!$I$8),tests!$I$8,tests!$I$8)"
 
 
 def test_equations_and_their_proofs(shown: Any) -> None:
@@ -203,22 +209,23 @@ def test_what_may_be_typed_is_checked(book: Any, grid: Grid) -> None:
 
 def test_what_is_refused_is_told_beside_it(book: Any, grid: Grid) -> None:
     tests, report = book["tests"], book["report"]
-    assert (tests["E4"].value, tests["I4"].value, tests["I3"].value) == (
-        "check",
-        "v [m/s]",
-        "as checked",
+    first = next(cell.column for cell in tests[3] if cell.value == "as checked")
+    checked = [get_column_letter(first + place) for place in range(6)]
+    names = ["v [m/s]", "e", "x_p [um]", "u_v [m/s]", "u_e", "u_x_p [um]"]
+    assert [tests[f"{column}4"].value for column in checked] == names
+    broken = [f"NOT(ISNUMBER(${column}$8))" for column in checked]
+    told = (
+        *("v must be greater than 0 m/s. ", "e must be between 0 and 1. ", "x_p must be greater than 0 um. "),
+        *("u_v must be at least 0 m/s. ", "u_e must be at least 0. ", "u_x_p must be at least 0 m. "),
     )
-    assert tests["E8"].value == (
-        '=IF(OR(NOT(ISNUMBER($I$8)),NOT(ISNUMBER($J$8)),NOT(ISNUMBER($K$8))),"#INPUT! "'
-        '&IF(NOT(ISNUMBER($I$8)),"v must be greater than 0 m/s. ","")'
-        '&IF(NOT(ISNUMBER($J$8)),"e must be between 0 and 1. ","")'
-        '&IF(NOT(ISNUMBER($K$8)),"x_p must be greater than 0 um. ",""),"ok")'
-    )
+    said = "&".join(f'IF({test},"{text}","")' for test, text in zip(broken, told, strict=True))
+    assert tests["H4"].value == "check"
+    assert tests["H8"].value == f'=IF(OR({",".join(broken)}),"#INPUT! "&{said},"ok")'
     row = grid["points_per_pair"].place.row + 1
     assert "change report.toml and build again" in report[f"H{row}"].value
     assert report[f"G{row}"].value.startswith("=IF(IF(ISNUMBER(")
     (rule,) = next(own for own in tests.conditional_formatting if str(own.sqref) == "B8:B12").rules
-    assert rule.formula == ["NOT(ISNUMBER(I8))"]
+    assert rule.formula == [f"NOT(ISNUMBER({checked[0]}8))"]
 
 
 def test_no_formula_names_a_given_cell_but_its_check(grid: Grid, book: Any) -> None:
@@ -249,7 +256,7 @@ def test_no_formula_names_a_given_cell_but_its_check(grid: Grid, book: Any) -> N
         for row in range(block.place.rows)
     }
     assert named == checks
-    assert len(checks) == 15 + 4 + 1
+    assert len(checks) == 30 + 4 + 1
 
 
 def test_notes_say_meaning_bounds_and_origin(book: Any, grid: Grid) -> None:
@@ -269,7 +276,7 @@ def test_bounds_are_told_in_the_unit_of_the_cells(report: Report) -> None:
     book = openpyxl.load_workbook(io.BytesIO(xlsx.render(changed, grid_of(changed))))
     assert "AND(NOT(ISLOGICAL(D8)),D8<1000,D8>=1)" in validations(book["tests"])["D8:D12"].formula1
     assert "AND(NOT(ISLOGICAL(B8)),B8<0.001,B8>=0.000001)" in validations(book["tests"])["B8:B12"].formula1
-    assert "x_p must be at least 1 and less than 1000 um. " in book["tests"]["E8"].value
+    assert "x_p must be at least 1 and less than 1000 um. " in book["tests"]["H8"].value
 
 
 # --- charts ----------------------------------------------------------------------------------------------
@@ -286,7 +293,7 @@ def test_charts_are_native_and_drawn_from_cells(content: bytes) -> None:
         for name, text in files(content).items()
         if re.fullmatch(r"xl/charts/chart\d+\.xml", name)
     ]
-    assert len(charts) == 2
+    assert len(charts) == 3
     loops = next(text for text in charts if "Figure 4" in text)
     assert len(re.findall("<c:ser>", loops)) == 1 + 5 + 5
     assert "points!$H$8:$H$507" in loops
@@ -426,4 +433,4 @@ def test_a_report_without_anything_to_draw_or_to_compare(report: Report) -> None
     plain = excel_grid.grid(report.sheet, report.values, units)
     content = xlsx.render(replace(report, comparisons=()), plain)
     names = openpyxl.load_workbook(io.BytesIO(content)).sheetnames
-    assert names == ["report", "tests", "pairs", "points", "steps", "uncertainty", "equations"]
+    assert names == ["report", "figures", "tests", "pairs", "points", "steps", "uncertainty", "equations"]
