@@ -70,7 +70,7 @@ def told(require: Callable[..., str]) -> Told:
 
 
 def agrees(found: Any, report: Report, before: Report) -> None:
-    """Every uncertainty that is of first order, to four digits; and every computed cell as it is shown."""
+    """Every uncertainty that is of first order, to six digits; and every computed cell as it is shown."""
     known, issued = report.uncertain(), before.uncertain()
     for column in report.sheet.columns:
         if isinstance(column.axis, RepeatAxis):
@@ -84,7 +84,7 @@ def agrees(found: Any, report: Report, before: Report) -> None:
             if not isinstance(column.rule, Given) and not kept:
                 assert cells["shown"][row] == texts[row], (name, row)
             if "u" in cells and not known.bent[name][row]:
-                wanted = None if math.isnan(u) else pytest.approx(u, rel=1e-4, abs=1e-300)
+                wanted = None if math.isnan(u) else pytest.approx(u, rel=1e-5, abs=1e-300)
                 assert cells["u"][row] == wanted, (name, row)
 
 
@@ -101,14 +101,12 @@ def test_as_issued(told: Told, tmp_path: Path, name: str) -> None:
         spread = Spread(report.inputs, report.values)
         assert found["errors"] == [source.name for source in spread.sources]
         for headline in report.workbook.headline:
-            if report.values.status[headline][0]:
-                continue
             (own,) = spread.contributions([(headline, 0)])
             mine = found["cells"][headline]["parts"][0]
             # Curves of two tests at one speed end at the same approach: the lesser of both has no one slope.
             twice = len(set(report.values.value.get("v", ()))) < len(report.inputs.tests)
             np.testing.assert_allclose(
-                mine, own, rtol=1e-4, atol=(0.01 if twice else 1e-4) * np.abs(own).max()
+                mine, own, rtol=1e-4, atol=(0.01 if twice else 1e-6) * np.abs(own).max()
             )
 
 

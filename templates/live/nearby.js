@@ -9,22 +9,20 @@ const MOST_PASSES = 60; // of columns that rest on one another
 function nearby(columns, sheet, moves) {
   const { layouts, kept, status } = sheet, value = { ...sheet.value }, moved = {};
   for (const [name, row, by] of moves) {
-    if (!moved[name]) [value[name], moved[name]] = [value[name].slice(), new Uint8Array(value[name].length)];
+    if (!moved[name]) [value[name], moved[name]] = [value[name].slice(), []];
     value[name][row] += by;
-    moved[name][row] = 1;
+    moved[name][row] = true;
   }
   const again = (column) => {
     const { name, axis, kind, refs } = column, touched = refs.filter(([other]) => moved[other]);
     if (kind === "given" || !touched.length) return [value[name], moved[name]];
-    const { sizes, keep, unknown } = kept[name] ?? {}, out = sheet.value[name].slice(), own = new Uint8Array(out.length);
-    for (const [other, index, over] of touched) {
-      const those = moved[other], rows = index !== null && over === null ? layouts[axis].rows[index] : null;
-      for (let row = 0; row < own.length; row++) own[row] |= rows ? those[rows[row]] : 1;
-    }
+    const whole = touched.some(([, index, over]) => index === null || over !== null), own = [];
+    const ways = whole ? [] : touched.map(([other, index]) => [moved[other], layouts[axis].rows[index]]);
+    const { sizes, keep, unknown } = kept[name] ?? {}, out = sheet.value[name].slice();
     const kernels = kept[name] && column.kernels(value, layouts, sizes, keep);
     for (let row = 0; row < out.length; row++) {
-      if (status[name][row]) own[row] = 0;
-      if (!own[row]) continue;
+      if (status[name][row] || !(whole || ways.some(([those, rows]) => those[rows[row]]))) continue;
+      own[row] = true;
       const u = kind === "root" && unknown[row];
       out[row] = kernels.value(row, kind === "root" ? u - kernels.at(row, u) / slopes(sheet, column)[row] : undefined);
     }

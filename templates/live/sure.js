@@ -1,7 +1,7 @@
 // How sure the cells are: the errors of what was given, and what they do to each cell, by the law of propagation of
 // uncertainty (JCGM 100, 5.1 and 5.2), to first order.
 
-const MOVE = 2 ** -13; // in standard uncertainties: far enough for doubles, near enough for a straight line
+const MOVE = 2 ** -11; // in standard uncertainties, to both sides: far enough for doubles, near enough for a straight line
 const CELLS = PROGRAM.columns.filter(({ name }) => LIVE.columns[name]);
 
 // Every independent error of a state: what it is called, and what it moves, by one standard uncertainty.
@@ -38,19 +38,19 @@ class Sure {
     this.known = {};
   }
 
-  // The sheet a little along each error, and how far that is in its standard uncertainty.
-  get along() {
+  // The sheet to both sides of where it is, along each error, and how far apart they are in its standard uncertainty.
+  get sides() {
     const { sheet } = this.trace;
     return (this.found ??= this.errors.map(({ moves }) => {
-      const value = nearby(CELLS, sheet, moves.map(([name, row, u]) => [name, row, MOVE * u])), [name, row, u] = moves[0];
-      return { value, far: (value[name][row] - sheet.value[name][row]) / u };
+      const [up, down] = [MOVE, -MOVE].map((far) => nearby(CELLS, sheet, moves.map(([name, row, u]) => [name, row, far * u])));
+      const [name, row, u] = moves[0];
+      return { up, down, apart: (up[name][row] - down[name][row]) / u };
     }));
   }
 
   // What each error does to a cell, in SI, with its sign.
   parts(name, row) {
-    const was = this.trace.sheet.value[name];
-    return this.along.map(({ value, far }) => (value[name] === was ? 0 : (value[name][row] - was[row]) / far));
+    return this.sides.map(({ up, down, apart }) => (up[name] === down[name] ? 0 : (up[name][row] - down[name][row]) / apart));
   }
 
   // Each of them times what it makes of the variance, together with those that it is correlated with.
