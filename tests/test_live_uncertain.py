@@ -101,6 +101,8 @@ def test_as_issued(told: Told, tmp_path: Path, name: str) -> None:
         spread = Spread(report.inputs, report.values)
         assert found["errors"] == [source.name for source in spread.sources]
         for headline in report.workbook.headline:
+            if report.values.status[headline][0]:
+                continue
             (own,) = spread.contributions([(headline, 0)])
             mine = found["cells"][headline]["parts"][0]
             # Curves of two tests at one speed end at the same approach: the lesser of both has no one slope.

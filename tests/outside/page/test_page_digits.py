@@ -162,4 +162,4 @@ def test_input_that_is_refused_has_no_uncertainty(live: Live) -> None:
     assert live.cell("alpha", "1-2").text == "1.258"
     live.page.locator("#cell-e-4").click()
     assert not live.page.locator("#bar-sure").is_visible()
-    assert uncertain(live)[0].split()[:2] == ["alpha_mean", live.cell("alpha_mean").text]
+    assert uncertain(live)[0].split()[:2] == ["alpha_eiv", live.cell("alpha_eiv").text]
