@@ -24,8 +24,8 @@ LARGEST = 4_000_000
 def follows(report: Report) -> bool:
     """Whether the uncertainties of the page follow its edits.
 
-    Those of readings do not, which follow from how all of them scatter together, nor those of numbers with a law
-    of their own or from another report.
+    Those of readings do not, which follow from how all of them scatter together, nor those of numbers with a
+    law of their own or from another report.
     """
     stated, sheet = report.inputs.uncertainty, report.sheet
     told = [part.shape for each in stated.columns.values() for part in each.parts]
