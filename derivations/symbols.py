@@ -125,7 +125,7 @@ VOCABULARY = Vocabulary(
     Quantity("S_XX", "sum of the weighted squares of x_p", "1", "S_{XX%s}", (1e13, 1e15)),
     Quantity("Delta", "determinant of the normal matrix", "1", r"\Delta%s", (1e27, 1e30)),
     Quantity("h", "leverage of the test: how far the curve follows it", "1", "h%s", (0.01, 0.99)),
-    Quantity("alpha_k", "exponent without the test, to first order", "1", r"\alpha_{(%s)}", (1.0, 1.5)),
+    Quantity("alpha_k", "exponent without the test, to first order", "1", r"\alpha'%s", (1.0, 1.5)),
     Quantity("phi", "step of the force that goes with it", "1", r"\varphi%s", (-0.1, 0.1), positive=False),
     # The exponent may go with the depth: alpha + tau ln(x/x_0).
     Quantity(

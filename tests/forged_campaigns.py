@@ -272,7 +272,7 @@ def _printed(truth: Truth, habits: Habits, truncated: str = "") -> Campaign:
             **given,
         }
         tests = range(1, len(truth.measured["v"]) + 1)
-        again = engine.evaluate(curve().sheet, {"tests": tests}, data, curve())
+        again = engine.evaluate(curve().sheet, {"tests": tests}, uncertain(data), curve())
         cells |= {name: again.value[name].tolist() for source, name in TABLES if source == "Table 3"}
     values = truth.values
     published = [

@@ -101,7 +101,7 @@ def test_what_is_odd_about_the_data_fails_or_warns(campaign: Path) -> None:
     edit(campaign / "measurements.csv", "2.334", "0.02334")
     done = run(campaign.parent, "-k", "data or limit", "-W", "default")
     assert done.returncode == 1, done.stdout + done.stderr
-    assert failed(done.stdout) == [f"steel/report.toml::data::{name}" for name in ("cells", "result", "rows")]
+    assert failed(done.stdout) == [f"steel/report.toml::data::{name}" for name in ("cells", "rows", "result")]
     assert "steel/measurements.csv:3:3: alpha: " in done.stdout
     assert "look at test 2 first" in done.stdout
     assert "steel/measurements.csv:2: PytestWarning: v: 1 of 5 tests: a speed of no drop test" in done.stdout

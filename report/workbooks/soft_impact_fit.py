@@ -143,6 +143,6 @@ _ALIKE = (
     "the tests tell the exponent apart from the force: not all are at one speed, or but one of them counts"
 )
 _NONE = (
-    "no law C x^alpha with a positive exponent comes near to all tests, or a test has speed, restitution and "
+    "no power law with a positive exponent comes near to all tests, or a test has speed, restitution and "
     "depth without uncertainty, which weighs more than all others"
 )

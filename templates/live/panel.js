@@ -43,8 +43,7 @@ function makeAround() {
   // Of a chapter that follows in part, what does not says it.
   const parts = all("[data-issued]").flatMap((chapter) => {
     const rest = LIVE.shared && chapter.querySelector("#uncertain") && all(".table:not(#uncertain)", chapter);
-    const head = chapter.querySelector("h2");
-    return rest ? rest.map((table) => [table.firstChild, "table"]) : [[head ?? chapter.lastChild, head ? "chapter" : "note"]];
+    return rest ? rest.map((table) => [table.firstChild, "table"]) : [[chapter.querySelector("h2"), "chapter"]];
   });
   page.stale = parts.map(([place, what]) => {
     const word = make("p", { class: "stale", hidden: true }, `This ${what} is as issued, before the edits.`);

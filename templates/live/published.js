@@ -81,7 +81,7 @@ function writeGroup(place, rows, called, found) {
 
 // What no script can rewrite says that it is about the report as issued.
 function markStale() {
-  for (const note of all("main .note > p:not(.stale)")) {
+  for (const note of all("main .note > p")) {
     if (!note.querySelector(".stale")) note.prepend(make("span", { class: "stale" }, "As issued, before the edits: "));
   }
 }

@@ -19,7 +19,7 @@ from playwright.sync_api import Download, Locator, Page
 from loopsheet.report.cells.values import CODES, Status, Values
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.inputs.folders import PAPER
-from loopsheet.report.prepared import given_data
+from loopsheet.report.prepared import sheet_data
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.views import html
@@ -264,10 +264,11 @@ def static(report: Report, path: Path) -> Path:
 
 def with_missing(report: Report, *refused: tuple[str, int]) -> Values:
     """The same values where some data are refused, each by its name and its test."""
-    data: dict[str, Any] = dict(given_data(report.inputs))
+    data: dict[str, Any] = sheet_data(report.sheet, report.inputs)
     for name, test in refused:
-        data[name] = np.array(data[name], dtype=float)
-        data[name][report.inputs.tests.index(test)] = math.nan
+        for own in {name, f"u_{name}"} & data.keys():
+            data[own] = np.array(data[own], dtype=float)
+            data[own][report.inputs.tests.index(test)] = math.nan
     labels = {axis.name: report.inputs.tests for axis in report.sheet.axes if not axis.parents}
     return engine.evaluate(report.sheet, labels, data)
 

@@ -130,7 +130,7 @@ def test_tables_say_what_they_are(live: Live) -> None:
     assert live.page.locator("table[role=grid]:not([aria-readonly]) input[data-cell]").count() > 0
     assert live.page.locator("table[role=grid][aria-readonly] input[data-cell]").count() == 0
     live.type("x_p", 2, "29.8")
-    assert "mean exponent (alpha_mean) changed from 1.3026 to 1.3049" in live.text("live-said")
+    assert "exponent of the global fit (alpha_eiv) changed from 1.3013 to 1.3066" in live.text("live-said")
     labels = live.page.eval_on_selector_all("main input", "all => all.map((one) => one.ariaLabel)")
     assert all(labels)
     assert len(set(labels)) == len(labels)
@@ -175,7 +175,7 @@ def test_formula_bar_follows_the_focus_and_folds(live: Live) -> None:
     assert live.text("bar-name").endswith("x_p[3]")
     live.page.locator(".headline [data-cell]").first.focus()
     live.press("Enter")
-    assert live.page.locator("#formula-bar").get_attribute("data-cell") == "alpha_mean"
+    assert live.page.locator("#formula-bar").get_attribute("data-cell") == "alpha_eiv"
     toggle = live.page.locator("#bar-toggle")
     assert toggle.get_attribute("aria-expanded") == "true"
     toggle.click()
@@ -184,10 +184,10 @@ def test_formula_bar_follows_the_focus_and_folds(live: Live) -> None:
     # What it shows follows an edit.
     before = live.text("bar-value")
     live.type("x_p", 2, "29.8", "Escape")
-    live.page.locator("#cell-alpha_mean").click()
+    live.page.locator("#cell-alpha_eiv").click()
     assert live.text("bar-value") == before
     live.type("x_p", 2, "29.8")
-    live.page.locator("#cell-alpha_mean").click()
+    live.page.locator("#cell-alpha_eiv").click()
     assert live.text("bar-value") != before
 
 
