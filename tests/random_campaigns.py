@@ -138,7 +138,7 @@ def digits_of(variant: int, data: dict[str, list[float]]) -> dict[str, list[floa
         if not math.isfinite(x) or not SHEETS[variant].bounds[name].allow(x):
             return math.nan
         exponent = Decimal(repr(x)).as_tuple().exponent
-        return float(f"1e{exponent}") / 2 / math.sqrt(3)
+        return float(f"1e{exponent}") * (1 / math.sqrt(12))
 
     return {f"u_{name}": [u(name, x) for x in data[name]] for name in MEASURED}
 

@@ -35,6 +35,7 @@ from random_campaigns import (
 
 from loopsheet.report.cells.values import CODES, Status
 from loopsheet.report.engines import javascript
+from loopsheet.report.engines.kernels import compiled
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.judge.engines import LIMIT
 
@@ -121,8 +122,8 @@ SEARCH = re.compile(r"    (ends|at|step|defined|positive): (.|\n)*?(?=\n    \w+:
 """What guides a search decides on statuses; a wrong step is slower, but what it settles on is right. Where a
 formula is defined, or positive, is asked where it gives no number or 0; the tests of overflow change that."""
 
-STEPS = {"alpha_eiv", "F_eiv"}
-"""How the fit goes on to where the sum of squares is least: where that is, no step decides."""
+STEPS = {"alpha_0", "alpha_eiv", "F_eiv"}
+"""Where the fit begins and how it goes on, which does not decide where the sum of squares is least."""
 
 EQUIVALENT = {"$ln_F[q] - $mean_ln_F", "(ln_F - mean_ln_F)", "$x[q]/$x_ref", "1099511627776"}
 """A line's slope does not depend on what is added to all ordinates, an exponent not on the unit of length; no
@@ -153,15 +154,13 @@ def javascript_mutants(text: str) -> Mutants:
 
 def numpy_mutants(program: Program) -> Mutants:
     def run(text: str) -> Any:
-        namespace: dict[str, Any] = {"numpy": np}
-        exec(compile(text, "<changed>", "exec"), namespace)
-        return namespace["sheet" if "def sheet" in text else "kernel"]
+        return compiled(text[text.index("def ") :], np)
 
     lines = program.source.partition("\n\n# ")[0].splitlines()
     for place, line in enumerate(lines):
         # What is not changed: which data are allowed, and which rows are fetched.
         if not re.search(r"def |run\.(data|given|rows|ordinal|size|kept)", line):
-            name = re.search(r'run\.\w+\("(\w+)"', line)
+            name = re.search(r'(?:run\.\w+\("| )(\w+?)(?:"|_sum_\d+ =)', line)
             for what, mutant in changed(line):
                 text = "\n".join([*lines[:place], mutant, *lines[place + 1 :]])
                 yield name[1] if name else "", what, replace(program, function=run(text))

@@ -187,7 +187,7 @@ class Said:
         material, item = self.material, self.material.item(name)
         counted = self.report.values.counted.get(name, {}).items()
         left_out = ((axis, rows, material.count(axis)) for axis, rows in counted)
-        rows = tuple(f"over {rows} of {size} {axis}" for axis, rows, size in left_out if rows != size)
+        rows = tuple(f"over {rows} of {size} {axis}" for axis, rows, size in left_out if 0 != rows != size)
         marks = (count for count in self.report.marks.behind(self.report.sheet[name]) if count.number)
         meaning = self.rich(item.head.meaning)
         return HeadlineItem(Math(item.head.latex), meaning, item, rows, tuple(count.said for count in marks))

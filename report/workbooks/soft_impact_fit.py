@@ -85,14 +85,14 @@ def columns(tests: Axis, measured: tuple[Column, Column, Column]) -> tuple[Colum
         made("R_B", fit.birge),
         made("u_B", fit.by_scatter),
         made("h", checks.leverage),
-        made("z_R", checks.deviation, (1 - checks.H[k] > _LEAST, _ALONE)),
-        made("alpha_k", checks.without, (1 - checks.H[k] > _LEAST, _ALONE)),
+        made("z_R", checks.deviation, (1 - checks.H[k] > _FREE, _ALONE)),
+        made("alpha_k", checks.without, (1 - checks.H[k] > _FREE, _ALONE)),
         made("G", checks.trend_of_approach, display="like x_p"),
         made("T", checks.trend_of_depth, display="like x_p"),
         made("S_TT", checks.squares_T),
         made("S_TD", checks.trend_with_exponent),
         made("S_TX", checks.trend_by_depth),
-        made("Q", checks.projected, (checks.projected.value > checks.S_TT * _LEAST, _BENT)),
+        made("Q", checks.projected, (checks.projected.value > checks.S_TT * _LEFT, _BENT)),
         made("tau", checks.trend),
         made("u_tau", checks.uncertain_trend),
         made("dchi2", checks.taken_off),
@@ -137,6 +137,8 @@ def _making(tests: Axis, measured: tuple[Column, ...]) -> Callable[..., Column]:
 
 _LEAST = Rational(1, 2**30)
 """What is left of a difference, as a part of what it was made of, is more than rounding from here on."""
+_FREE, _LEFT = Rational(1, 2**10), Rational(1, 2**20)
+"""The same of a leverage and of a trend, which are differences of what was made of such differences."""
 _ALONE = "the other tests alone tell exponent and force"
 _BENT = "the tests tell a trend: there are three speeds"
 _ALIKE = (

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from uncertain_data import MISFITS, lost_to_differences
 
 from loopsheet.report import stages
 from loopsheet.report.cells.grid import Grid, checked
@@ -25,7 +26,7 @@ from loopsheet.report.engines.certified import certified
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.judge.readers import ALWAYS_RECALCULATE
 from loopsheet.report.result.result import Report
-from loopsheet.report.sheet import Given, RepeatAxis, Root, Sheet
+from loopsheet.report.sheet import Column, Given, RepeatAxis, Root, Sheet
 from loopsheet.report.study import Study
 from loopsheet.report.views import xlsx
 
@@ -118,8 +119,8 @@ class Delivered:
         """An input as it stands in its cell."""
         value = self.grid[name].values[row]
         assert isinstance(value, float)
-        printed = self.report.inputs.measured.get(name) or (self.report.inputs.parameters.get(name),)
-        known = printed[row]
+        inputs = self.report.inputs
+        known = inputs.measured[name][row] if name in inputs.measured else inputs.parameters.get(name)
         return Fraction(value) if known is None else known.value / self.grid[name].place.scale
 
 
@@ -236,11 +237,21 @@ def compare(
     read : mapping of worksheet to mapping of address to value
         What another program shows; an error of Excel's as its text.
     """
-    found = Difference()
+    found, lost = Difference(), lost_to_differences(values)
+    sheet = delivered.report.marks.values.sheet
+    looped = sheet.loop_of.keys()
+
+    def before(column: Column) -> set[str]:
+        """What a column rests on; of one that is drawn, what that is drawn of."""
+        own = sheet.by_name.get(column.name.removeprefix("plotted_"))
+        return {own.name, *(each.name for each in sheet.ancestors(own))} if own else set()
+
     for column in delivered.whole.columns:
         given = isinstance(column.rule, Given)
         place = delivered.grid[checked(column.name) if given else column.name].place
-        drawn = not given and column.name not in delivered.report.marks.values.sheet
+        name, _, a_pass = column.name.removeprefix("plotted_").partition("_pass_")
+        drawn = not given and not a_pass and column.name not in sheet
+        allowed = largest * (lost if name in MISFITS else 1)
         known, codes = values.value[column.name], values.status[column.name]
         if not known.size:
             # A count that is refused leaves no rows; those of the workbook say so.
@@ -252,22 +263,24 @@ def compare(
         for row, (value, status) in enumerate(zip(known, codes, strict=True)):
             address = place.cell(row, place.worksheet).replace("$", "")
             cell, code = read[place.worksheet].get(address), CODES[Status(int(status))]
-            name = f"{column.name}, {place.worksheet}!{address}"
+            where = f"{column.name}, {place.worksheet}!{address}"
             found.cells += 1
             if status != Status.OK:
                 expected = "#N/A" if drawn else code
                 if cell != expected:
-                    found.wrong.append(f"{name}: {cell!r} instead of {expected}")
+                    found.wrong.append(f"{where}: {cell!r} instead of {expected}")
                 continue
+            if cell == "#STEPS!" and (a_pass or looped & {column.name, *before(column)}):
+                continue  # NumPy takes as many passes as it needs
             if not isinstance(cell, int | float) or isinstance(cell, bool):
-                found.wrong.append(f"{name}: {cell!r} instead of {value / float(place.scale)!r}")
+                found.wrong.append(f"{where}: {cell!r} instead of {value / float(place.scale)!r}")
                 continue
             difference = abs(cell * float(place.scale) - value) / max(abs(value), scale, 1e-300)
             if difference > found.worst:
-                found.worst, found.where = difference, name
-            if difference > largest:
+                found.worst, found.where = difference, where
+            if difference > allowed:
                 found.wrong.append(
-                    f"{name}: {cell!r} instead of {value / float(place.scale)!r}, {difference:.1e}"
+                    f"{where}: {cell!r} instead of {value / float(place.scale)!r}, {difference:.1e}"
                 )
     return found
 

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 from playwright.sync_api import Download, Locator, Page
+from uncertain_data import MISFITS, lost_to_differences
 
 from loopsheet.report.cells.values import CODES, Status, Values
 from loopsheet.report.engines import numpy as engine
@@ -275,7 +276,7 @@ def with_missing(report: Report, *refused: tuple[str, int]) -> Values:
 
 def differences(cells: list[Shown], values: Values) -> list[str]:
     """Every cell of the page against NumPy; a cell of a test that is left out says nothing."""
-    wrong, seen = [], set()
+    wrong, seen, lost = [], set(), lost_to_differences(values)
     for cell in cells:
         if cell.status == "" and cell.value == "":
             continue
@@ -292,7 +293,9 @@ def differences(cells: list[Shown], values: Values) -> list[str]:
         elif status != Status.OK:
             if cell.value:
                 wrong.append(f"{address}: {cell.value} beside {cell.status}")
-        elif not close(cell.value, float(values.value[cell.name][row])):
+        elif not close(
+            cell.value, float(values.value[cell.name][row]), lost if cell.name in MISFITS else 1.0
+        ):
             wrong.append(f"{address}: {cell.value} instead of {values.value[cell.name][row]!r}")
     for name in {cell.name for cell in cells}:
         for label in values.labels(values.sheet[name]):
@@ -302,6 +305,6 @@ def differences(cells: list[Shown], values: Values) -> list[str]:
     return wrong
 
 
-def close(text: str, value: float) -> bool:
+def close(text: str, value: float, lost: float = 1.0) -> bool:
     # A cell without a number compares as different.
-    return bool(re.fullmatch(r"[-+.0-9e]+", text)) and abs(float(text) - value) <= LARGEST * abs(value)
+    return bool(re.fullmatch(r"[-+.0-9e]+", text)) and abs(float(text) - value) <= lost * LARGEST * abs(value)
