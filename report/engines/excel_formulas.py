@@ -352,6 +352,17 @@ class _Writing:
         lost = f"OR({last}={_CODE[Status.DOMAIN]},{last}={_CODE[Status.OVERFLOW]})"
         found = f"IF(ISNUMBER({last}),{found},IF({lost},{_CODE[Status.NOROOT]},{last}))"
         for each in self.sheet.loop_of[self.column.name].iterated:
+            if each.axis is not None:
+                # A row that is lost on the way takes the loop with it: without it another one would settle.
+                every = (Leaf("cells", pass_name(each.name, number), each.axis) for number in (0, PASSES))
+                begun, ended = (
+                    "+".join(
+                        f"COUNTIF({self.address(leaf, rows=True)},{_CODE[code]})"
+                        for code in (Status.DOMAIN, Status.OVERFLOW)
+                    )
+                    for leaf in every
+                )
+                found = f"IF({begun}={ended},{found},{_CODE[Status.NOROOT]})"
             # All rows rest on a single number, and on its error.
             if each.axis is None and each.name != self.column.name:
                 other = self.address(Leaf("cells", pass_name(each.name, 0)))

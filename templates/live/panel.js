@@ -1,6 +1,8 @@
 // Beside the table that is edited: the result, as issued and now, and a picture of it. Where there is no room
 // beside the table it stands at the top of the window, while one is in the table.
 
+const MOST_RESULTS = 6; // so that there is room for what is edited
+
 function makePanel() {
   const table = page.tables.find((one) => one.editable), names = LIVE.headline;
   if (!table || !names.length) return;
@@ -14,7 +16,7 @@ function makePanel() {
 
 function writePanel(look) {
   if (!page.panel) return;
-  const rows = LIVE.headline.map((name) => {
+  const rows = LIVE.headline.slice(0, MOST_RESULTS).map((name) => {
     const [before, now] = [page.issued, look].map((one) => one.cell(name, 0).text), same = before === now;
     const { kept, scale } = LIVE.columns[name], u = LIVE.shared && !kept ? look.sure.u(name, 0) / scale : NaN;
     return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
@@ -31,7 +33,7 @@ function writePanel(look) {
 function placePanel() {
   if (!page.panel) return;
   const around = page.panel.parentElement, table = around.querySelector(".table table");
-  const room = around.clientWidth - table.offsetWidth - 24, beside = room > 230;
+  const room = around.clientWidth - table.offsetWidth - 24, beside = room > 270;
   page.panel.classList.toggle("beside", beside);
   page.panel.style.width = beside ? `${Math.min(room, 300)}px` : "";
 }
