@@ -349,9 +349,8 @@ class _Writing:
         )
         settled = f"ABS({last}-{before})*{_SETTLED}<=ABS({last})"
         found = f"IF({settled},{last},{_UNSETTLED})"
-        lost = f"OR({last}={_CODE[Status.DOMAIN]},{last}={_CODE[Status.OVERFLOW]})"
-        found = f"IF(ISNUMBER({last}),{found},IF({lost},{_CODE[Status.NOROOT]},{last}))"
-        for each in self.sheet.loop_of[self.column.name].iterated:
+        iterated = self.sheet.loop_of[self.column.name].iterated
+        for each in iterated:
             if each.axis is not None:
                 # A row that is lost on the way takes the loop with it: without it another one would settle.
                 every = (Leaf("cells", pass_name(each.name, number), each.axis) for number in (0, PASSES))
@@ -363,6 +362,9 @@ class _Writing:
                     for leaf in every
                 )
                 found = f"IF({begun}={ended},{found},{_CODE[Status.NOROOT]})"
+        lost = f"OR({last}={_CODE[Status.DOMAIN]},{last}={_CODE[Status.OVERFLOW]})"
+        found = f"IF(ISNUMBER({last}),{found},IF({lost},{_CODE[Status.NOROOT]},{last}))"
+        for each in iterated:
             # All rows rest on a single number, and on its error.
             if each.axis is None and each.name != self.column.name:
                 other = self.address(Leaf("cells", pass_name(each.name, 0)))
