@@ -140,7 +140,8 @@ class Campaign:
             "ball_mass": float(self.mass.value),
         }
         data |= {name: [float(p.value) for p in column] for name, column in self.measured.items()}
-        values = engine.evaluate(sheet, {"tests": tests}, uncertain(data), program())
+        data = uncertain(data)
+        values = engine.evaluate(sheet, {"tests": tests}, data, program())
         inputs = Inputs(
             Path(), "", WORKBOOK,
             {
