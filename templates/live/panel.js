@@ -33,7 +33,7 @@ function writePanel(look) {
 function placePanel() {
   if (!page.panel) return;
   const around = page.panel.parentElement, table = around.querySelector(".table table");
-  const room = around.clientWidth - table.offsetWidth - 24, beside = room > 270;
+  const room = around.clientWidth - table.offsetWidth - 24, beside = room > 262;
   page.panel.classList.toggle("beside", beside);
   page.panel.style.width = beside ? `${Math.min(room, 300)}px` : "";
 }
