@@ -20,9 +20,9 @@ function writePanel(look) {
     const [before, now] = [page.issued, look].map((one) => one.cell(name, 0).text), same = before === now;
     const { kept, scale } = LIVE.columns[name], u = LIVE.shared && !kept ? look.sure.u(name, 0) / scale : NaN;
     return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
-      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now), make("td", {}, u > 0 ? `(${told(u, LIVE.most).digits})` : ""));
+      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now, u > 0 ? ` (${told(u, LIVE.most).digits})` : ""));
   });
-  const head = make("tr", {}, ...["result", "as issued", "now", "(u)"].map((text) => make("th", { scope: "col" }, text)));
+  const head = make("tr", {}, ...["result", "as issued", LIVE.shared ? "now (u)" : "now"].map((text) => make("th", { scope: "col" }, text)));
   // The last of the pictures: those before it show steps on the way.
   const [name, chart] = Object.entries(LIVE.figures).at(-1) ?? [], drawn = name && document.querySelector(`#figure-${CSS.escape(name)} svg.picture`);
   const picture = drawn ? drawn.cloneNode(true) : chart && drawChart(chart, look)?.svg;
@@ -33,7 +33,10 @@ function writePanel(look) {
 function placePanel() {
   if (!page.panel) return;
   const around = page.panel.parentElement, table = around.querySelector(".table table");
-  const room = around.clientWidth - table.offsetWidth - 24, beside = room > 262;
+  const room = around.clientWidth - table.offsetWidth - 24;
+  page.panel.classList.add("beside"); // as it would stand there, no number broken
+  page.panel.style.width = "min-content";
+  const beside = page.panel.offsetWidth <= room;
   page.panel.classList.toggle("beside", beside);
   page.panel.style.width = beside ? `${Math.min(room, 300)}px` : "";
 }
