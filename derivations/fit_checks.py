@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sympy import Expr, Sum, Symbol, diff, log, sqrt
+from sympy import Expr, diff, log, sqrt
 from sympy.core.parameters import evaluate
 
 from . import global_fit as fit
@@ -40,7 +40,6 @@ XM, XP, W, D, R, LAM, H, Z, A_K, G, T, GAMMA = (
 )
 ALPHA, F_0, x_0, S_DD, S_DX, S_XX, Delta = VOCABULARY.plain("alpha F_0 x_0 S_DD S_DX S_XX Delta")
 S_TT, S_TD, S_TX, Q, tau, u_tau, X2, phi = VOCABULARY.plain("S_TT S_TD S_TX Q tau u_tau dchi2 phi")
-_all = (k, 1, Symbol("n_tests", integer=True, positive=True))
 _A = ALPHA + 1
 
 with evaluate(False):
@@ -89,21 +88,9 @@ with evaluate(False):
         defines=T[k],
     )
 
-    squares_T, trend_with_exponent, trend_by_depth = (
-        Equation(
-            number,
-            (own, Sum(terms, _all)),
-            "definition",
-            Kind.DEFINITION,
-            f"normal matrix: {name}",
-            defines=own,
-        )
-        for number, own, terms, name in (
-            ("(L58)", S_TT, W[k] * T[k] ** 2, "trend"),
-            ("(L59)", S_TD, W[k] * T[k] * D[k], "trend and exponent"),
-            ("(L60)", S_TX, W[k] * T[k] * XP[k], "trend and force"),
-        )
-    )
+    squares_T = fit.in_normal_matrix("(L58)", S_TT, T[k] ** 2, "trend")
+    trend_with_exponent = fit.in_normal_matrix("(L59)", S_TD, T[k] * D[k], "trend and exponent")
+    trend_by_depth = fit.in_normal_matrix("(L60)", S_TX, T[k] * XP[k], "trend and force")
 
     projected = Equation(
         "(L61)",
@@ -116,7 +103,7 @@ with evaluate(False):
 
     trend = Equation(
         "(L62)",
-        (tau, Sum(LAM[k] * T[k], _all) / Q),
+        (tau, fit.over_tests(LAM[k] * T[k]) / Q),
         "the first step of a fit with a third parameter",
         Kind.DEFINITION,
         "trend of the exponent",

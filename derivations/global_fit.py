@@ -42,9 +42,11 @@ __all__ = [
     "force",
     "force_start",
     "force_step",
+    "in_normal_matrix",
     "least",
     "misfit",
     "multiplier",
+    "over_tests",
     "products",
     "restitution",
     "restitution_step",
@@ -70,18 +72,26 @@ S_DD, S_DX, S_XX, Delta = VOCABULARY.plain("S_DD S_DX S_XX Delta")
 # fmt: on
 n_tests = Symbol("n_tests", integer=True, positive=True)
 """How many tests there are; the sums run over all of them."""
-_all = (k, 1, n_tests)
 _A = ALPHA + 1
 
 
-def _sum(terms: Expr) -> Expr:
-    return Sum(terms, _all)
+def over_tests(terms: Expr) -> Expr:
+    """The sum of the terms of all tests."""
+    return Sum(terms, (k, 1, n_tests))
+
+
+def in_normal_matrix(number: str, own: Symbol, slopes: Expr, name: str) -> Equation:
+    """An entry of the normal matrix: the product of two changes of the depth, by weight."""
+    value = over_tests(W[k] * slopes)
+    return Equation(
+        number, (own, value), "definition", Kind.DEFINITION, f"normal matrix: {name}", defines=own
+    )
 
 
 with evaluate(False):
     depth_scale = Equation(
         "(L29)",
-        (x_0, Sum(XO[k], _all) / n_tests),
+        (x_0, over_tests(XO[k]) / n_tests),
         "a depth within the data: the force there is known best",
         Kind.DEFINITION,
         "mean imprint depth",
@@ -90,7 +100,7 @@ with evaluate(False):
 
     speed_scale = Equation(
         "(L30)",
-        (v_0, Sum(VO[k], _all) / n_tests),
+        (v_0, over_tests(VO[k]) / n_tests),
         "a speed within the data, where the search begins",
         Kind.DEFINITION,
         "mean impact speed",
@@ -186,21 +196,9 @@ with evaluate(False):
         title="adjusted coefficient of restitution",
     )
 
-    squares_D, products, squares_X = (
-        Equation(
-            number,
-            (own, _sum(terms)),
-            "definition",
-            Kind.DEFINITION,
-            f"normal matrix: {name}",
-            defines=own,
-        )
-        for number, own, terms, name in (
-            ("(L50)", S_DD, W[k] * D[k] ** 2, "exponent"),
-            ("(L51)", S_DX, W[k] * D[k] * XP[k], "exponent and force"),
-            ("(L52)", S_XX, W[k] * XP[k] ** 2, "force"),
-        )
-    )
+    squares_D = in_normal_matrix("(L50)", S_DD, D[k] ** 2, "exponent")
+    products = in_normal_matrix("(L51)", S_DX, D[k] * XP[k], "exponent and force")
+    squares_X = in_normal_matrix("(L52)", S_XX, XP[k] ** 2, "force")
 
     determinant = Equation(
         "(L53)",
@@ -213,7 +211,7 @@ with evaluate(False):
 
     exponent = Equation(
         "(L42)",
-        (G_alpha, Sum(LAM[k] * D[k], _all)),
+        (G_alpha, over_tests(LAM[k] * D[k])),
         "half the slope of the sum of squares, downwards; where that is least, it is zero",
         Kind.DEFINITION,
         "global fit: exponent",
@@ -222,7 +220,7 @@ with evaluate(False):
 
     force = Equation(
         "(L43)",
-        (G_F, Sum(LAM[k] * XP[k], _all)),
+        (G_F, over_tests(LAM[k] * XP[k])),
         "the same by the force, times alpha + 1; where the sum of squares is least, it is zero",
         Kind.DEFINITION,
         "global fit: force",
@@ -231,7 +229,7 @@ with evaluate(False):
 
     squares = Equation(
         "(L44)",
-        (chi2, Piecewise((Sum(LAM[k] * R[k], _all), n_tests > 2), (Integer(0), True))),
+        (chi2, Piecewise((over_tests(LAM[k] * R[k]), n_tests > 2), (Integer(0), True))),
         "the squares of a test's deviations, each over its variance, add up to this; two have none",
         Kind.DEFINITION,
         "global fit: sum of squares",
@@ -249,7 +247,7 @@ with evaluate(False):
 
     birge = Equation(
         "(L46)",
-        (R_B, sqrt(Sum(LAM[k] * R[k], _all) / (n_tests - 2))),
+        (R_B, sqrt(over_tests(LAM[k] * R[k]) / (n_tests - 2))),
         "how many times larger the deviations are than the standard uncertainties say",
         Kind.DEFINITION,
         "Birge ratio",
@@ -266,14 +264,14 @@ with evaluate(False):
     )
 
     _ln_v, _ln_x = log(VO[k] / v_0), log(XO[k] / x_0)
-    _mean_e2 = Sum(EO[k] ** 2, _all) / n_tests
+    _mean_e2 = over_tests(EO[k] ** 2) / n_tests
 
     first_exponent = Equation(
         "(L49)",
         (
             alpha_0,
             Max(
-                2 * Sum(_ln_v**2, _all) / Sum(_ln_v * _ln_x, _all),
+                2 * over_tests(_ln_v**2) / over_tests(_ln_v * _ln_x),
                 Rational(3, 2),
                 Rational(6, 5) * (beta + 1) * _mean_e2,
             )
