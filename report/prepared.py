@@ -16,20 +16,15 @@ if TYPE_CHECKING:
     from .engines.exact import ExactValues
     from .sheet import Sheet
 
-__all__ = ["Prepared", "given_data", "sheet_data"]
-
-
-def given_data(inputs: Inputs) -> dict[str, Any]:
-    """The given columns in SI as exact fractions: a list for a measured column, one for a parameter."""
-    data: dict[str, Any] = {name: [p.value for p in column] for name, column in inputs.measured.items()}
-    data |= {name: printed.value for name, printed in inputs.parameters.items()}
-    return data
+__all__ = ["Prepared", "sheet_data"]
 
 
 def sheet_data(sheet: Sheet, inputs: Inputs) -> dict[str, Any]:
-    """Those that a sheet has, with the standard uncertainties that it asks for."""
+    """What a sheet is given, in SI as exact fractions: a list for a measured column, one for a parameter."""
+    given: dict[str, Any] = {name: [p.value for p in column] for name, column in inputs.measured.items()}
+    given |= {name: printed.value for name, printed in inputs.parameters.items()}
     needed = {c.name for c in sheet.columns}
-    data = {name: value for name, value in given_data(inputs).items() if name in needed}
+    data = {name: value for name, value in given.items() if name in needed}
     for column in sheet.columns:
         if isinstance(column.rule, Given) and (own := column.rule.u_of):
             data[column.name] = [Fraction(printed.u) for printed in inputs.printed(own)]
