@@ -17,11 +17,13 @@ from loopsheet.report.cells.layout import rows_of
 from loopsheet.report.cells.values import CODES, Status
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
+from loopsheet.report.engines.excel_formulas import _SETTLED, _UNSETTLED
+from loopsheet.report.engines.excel_loops import PASSES, pass_columns, pass_name
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.judge.engines import EPS, LIMIT, Judge
 from loopsheet.report.judge.readers import Reading
 from loopsheet.report.quantity import LARGEST, SMALLEST
-from loopsheet.report.sheet import Column, Formula
+from loopsheet.report.sheet import Column, Formula, Sheet
 
 __all__ = ["Tally", "compare"]
 
@@ -108,6 +110,9 @@ def excuse(campaign: Campaign, judge: Judge, reading: Reading, findings: Sequenc
     rows = [row for other, row in found if other == name]
     true, codes, theirs = judge.judged.value[name], judge.judged.status[name], reading.status[name]
 
+    if all(theirs[row] == _UNSETTLED.strip('"') for row in rows) and _passes_too_few(campaign, judge, name):
+        return "passes"
+
     if all(theirs[row] == _OVERFLOW and _steps_beyond(campaign, judge, name, row) for row in rows):
         return "steps"
 
@@ -124,6 +129,22 @@ def excuse(campaign: Campaign, judge: Judge, reading: Reading, findings: Sequenc
         if not rows:
             return "roundings"
     return ""
+
+
+def _passes_too_few(campaign: Campaign, judge: Judge, name: str) -> bool:
+    """Whether a loop that a column rests on still moves in the last pass of a workbook, at 50 digits too."""
+    sheet = judge.sheet
+    within = {name, *(each.name for each in sheet.ancestors(sheet[name]))}
+    loops = [loop for loop in sheet.loops if within & set(loop.names)]
+    whole = Sheet((*sheet.columns, *pass_columns(sheet)))
+    values = exact.evaluate(whole, campaign.labels, campaign.data).value
+    last = [
+        pair
+        for loop in loops
+        for column in loop.iterated
+        for pair in zip(*(values[pass_name(column.name, PASSES - back)] for back in (1, 0)), strict=True)
+    ]
+    return any(new is not None and abs(new - old) * _SETTLED > abs(new) for old, new in last)
 
 
 def _steps_beyond(campaign: Campaign, judge: Judge, name: str, row: int) -> bool:

@@ -126,7 +126,7 @@ class Assembly:
         for worksheet in dict.fromkeys(self.places[column.name].worksheet for column in given):
             (room,) = (room for room in self.rooms.values() if room.worksheet == worksheet)
             self.notes[worksheet] = room.next()
-        for column in self.whole.columns:
+        for column in sorted(self.whole.columns, key=self.number):
             if column.axis is not None and column not in given:
                 self.put(column, column.name)
         for column in given:
@@ -148,6 +148,10 @@ class Assembly:
                 self.put(column, as_issued(column.name))
             else:
                 self.places[as_issued(column.name)] = Place(STEPS, row := row + 1, 1, 1, self.unit(column)[1])
+
+    def number(self, column: Column) -> int:
+        """Of the pass that a column belongs to: -1 for one that belongs to none."""
+        return self.passes[column.name][2] if column.name in self.passes else -1
 
     def put(self, column: Column, name: str) -> None:
         """The next free column of its worksheet."""

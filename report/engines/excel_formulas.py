@@ -347,10 +347,11 @@ class _Writing:
             self.address(Leaf("cells", pass_name(self.column.name, number), self.axis))
             for number in (0, PASSES - 1, PASSES)
         )
-        settled = f"ABS({last}-{before})*{_SETTLED}<=ABS({last})"
-        found = f"IF({settled},{last},{_UNSETTLED})"
-        iterated = self.sheet.loop_of[self.column.name].iterated
-        for each in iterated:
+        gone = none = _CODE[Status.NOROOT]
+        lost = f"OR({last}={_CODE[Status.DOMAIN]},{last}={_CODE[Status.OVERFLOW]})"
+        found = f"IF(ABS({last}-{before})*{_SETTLED}<=ABS({last}),{last},{_UNSETTLED})"
+        failed = f"IF({lost},{{}},{last})"
+        for each in self.sheet.loop_of[self.column.name].iterated:
             if each.axis is not None:
                 # A row that is lost on the way takes the loop with it: without it another one would settle.
                 every = (Leaf("cells", pass_name(each.name, number), each.axis) for number in (0, PASSES))
@@ -361,14 +362,15 @@ class _Writing:
                     )
                     for leaf in every
                 )
-                found = f"IF({begun}={ended},{found},{_CODE[Status.NOROOT]})"
-        lost = f"OR({last}={_CODE[Status.DOMAIN]},{last}={_CODE[Status.OVERFLOW]})"
-        found = f"IF(ISNUMBER({last}),{found},IF({lost},{_CODE[Status.NOROOT]},{last}))"
-        for each in iterated:
-            # All rows rest on a single number, and on its error.
-            if each.axis is None and each.name != self.column.name:
+                found = f"IF({begun}={ended},{found},{none})"
+                if self.axis is None:
+                    # Of a sum without any row left, the first row's code says nothing of that.
+                    failed = f"IF({begun}={ended},{failed},{{}})"
+            elif each.name != self.column.name:
+                # All rows rest on a single number, and on its error.
                 other = self.address(Leaf("cells", pass_name(each.name, 0)))
-                found = f"IF(ISNUMBER({other}),{found},{other})"
+                gone = f"IF(ISNUMBER({other}),{gone},{other})"
+        found = f"IF(ISNUMBER({last}),{found},{failed.replace('{}', gone)})"
         return f"IF(ISNUMBER({start}),{found},{start})"
 
     def drawn(self, node: Map) -> str:

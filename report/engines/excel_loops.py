@@ -53,8 +53,16 @@ def pass_columns(sheet: Sheet) -> tuple[Column, ...]:
     Parameters
     ----------
     sheet : Sheet
+
+    Returns
+    -------
+    tuple of Column
+        Declared in the order of what is passed: of several errors, cells inherit the same as those.
     """
-    return tuple(column for loop in sheet.loops for column in _of_loop(loop))
+    of = passes_of(sheet)
+    declared = {column.name: n for n, column in enumerate(sheet.columns)}
+    every = (column for loop in sheet.loops for column in _of_loop(loop))
+    return tuple(sorted(every, key=lambda column: declared[of[column.name][1]]))
 
 
 def _of_loop(loop: Loop) -> Iterator[Column]:

@@ -575,7 +575,7 @@ def extend(values: Values, columns: Sequence[Column], data: Mapping[str, Any]) -
     sheet = Sheet((*values.sheet.columns, *columns))
     arrays = _arrays(data)
     layouts = lay_out(sheet, values.given_labels, _counts(sheet, {**values.value, **arrays}))
-    return _Run(Program.of(sheet, values.value), Laid(sheet, layouts), arrays, values).values()
+    return _Run(Program.of(sheet, tuple(values.value)), Laid(sheet, layouts), arrays, values).values()
 
 
 def parts(program: Program, values: Values, laid: Laid | None = None) -> dict[str, Array]:

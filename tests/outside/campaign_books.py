@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import xlsxwriter
-from random_campaigns import MEASURED, NO_NUMBERS, SHEETS, Campaign
+from random_campaigns import MEASURED, NO_NUMBERS, SHEETS, UNCERTAIN, Campaign
 from spreadsheets import recalculated
 
 from loopsheet.report.cells.grid import Grid, as_issued
@@ -69,7 +69,8 @@ def grid_of(campaign: Campaign) -> Grid:
     """The cells of the campaign's workbook, all in SI, as they are made from sound data."""
     sheet = SHEETS[campaign.variant]
     rows = range(1, len(campaign.tests) + 1)
-    data: dict[str, Any] = dict.fromkeys(sheet.bounds, 1.0) | {name: [0.5] * len(rows) for name in MEASURED}
+    measured = MEASURED + UNCERTAIN
+    data: dict[str, Any] = dict.fromkeys(sheet.bounds, 1.0) | {name: [0.5] * len(rows) for name in measured}
     labels = {"tests": list(rows)}
     values = engine.evaluate(sheet, labels, data | {"points_per_pair": _points(campaign)}, Program.of(sheet))
     return excel_grid.grid(sheet, values, {column.name: column.unit for column in sheet.columns})
