@@ -253,7 +253,10 @@ def test_columns_that_come_later_are_those_of_the_whole_sheet() -> None:
     order = SHEET.order
     whole_sheet = engine.evaluate(Sheet(order), TESTS, data)
     assert whole_sheet.counted
+    loops = SHEET.loop_of
     for cut in range(1, len(order), 6):
+        if loops.get(order[cut].name, 0) is loops.get(order[cut - 1].name):
+            continue  # what rests on one another comes at once
         first = {c.name for c in order[:cut]}
         some = engine.evaluate(Sheet(order[:cut]), TESTS, {n: v for n, v in data.items() if n in first})
         every = engine.extend(some, order[cut:], {n: v for n, v in data.items() if n not in first})

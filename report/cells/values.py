@@ -306,13 +306,13 @@ class Values:
         return None if wrong else (column, row)
 
     def _wrong(self, column: Column, row: int) -> Iterator[tuple[Column, int]]:
-        """The precedents of a cell that are in error, first those before its loop.
+        """The precedents of a cell whose error it may have inherited, first those before its loop.
 
         A loop that did not settle is where it began.
         """
         named, kept = self._named(column)
-        loop = self._loop(column)
-        failed = isinstance(column.rule, Iterated) and self.status[column.name][row] == Status.NOROOT
+        loop, status = self._loop(column), self.status[column.name][row]
+        failed = isinstance(column.rule, Iterated) and status == Status.NOROOT
         for precedent in sorted(named, key=lambda each: each.column.name in loop):
             other, over = precedent.column, precedent.over
             if failed and other.name in loop:
@@ -320,7 +320,7 @@ class Values:
             if over is not None and (kept[over.name].any() or not kept[over.name].size):
                 continue  # a sum is in error only if no row of its axis has a value
             its_row = precedent.row(0 if over is not None else row)
-            if self.status[other.name][its_row] != Status.OK:
+            if self.status[other.name][its_row] == status:
                 yield other, its_row
 
     def _why(self, column: Column, row: int, status: Status) -> str:

@@ -156,56 +156,68 @@ class Lowering:
         starts, body = list[Node](), [node for each in loop.formulas for node in self.column(each)]
         for each in loop.iterated:
             assert isinstance(each.rule, Iterated)
-            starts += self.iterated(each, each.rule.start)
-            body += self.iterated(each, each.rule.step)
+            starts += self.formula(each, each.rule.start)
+            body += self.step(each, each.rule.step)
         return [LoopNode(loop.iterated, tuple(starts), tuple(body))]
-
-    def iterated(self, column: Column, expression: Expr) -> list[Node]:
-        """The nodes of a value of an iterated column: where it has none, the loop as a whole has failed."""
-        nodes = list[Node]()
-        value = self._lifted(self.plain(expression, column, column.axis), column, None, nodes)
-        return [*nodes, Map(column, value, (), false, false)]
 
     def column(self, column: Column) -> list[Node]:
         """The nodes of a column: its totals, then itself."""
-        rule, nodes = column.rule, list[Node]()
+        rule = column.rule
         if isinstance(rule, Given):
             return [GivenNode(column, *self.sheet.guards.get(column.name, (column.symbol, None)))]
-        unknown = rule.unknown if isinstance(rule, Root) else None
+        if isinstance(rule, Formula):
+            return self.formula(column, rule.expression)
+        assert isinstance(rule, Root)
+        return self.root(column, rule)
+
+    def formula(self, column: Column, expression: Expr) -> list[Node]:
+        """The nodes of a formula of a column, or of what an iterated one starts from."""
+        nodes = list[Node]()
+        requires = tuple(self._lower(condition, column, nodes) for condition, _ in column.requires)
+        asked = self._assuming(expression, column)
+        sign = positive(asked) if column.positive else false
+        value = self._lower(expression, column, nodes)
+        return [*nodes, Map(column, value, requires, defined(asked), sign)]
+
+    def step(self, column: Column, expression: Expr) -> list[Node]:
+        """The nodes of the next value of an iterated column: where it has none, the whole loop has failed."""
+        nodes = list[Node]()
+        value = self._lower(expression, column, nodes)
+        return [*nodes, Map(column, value, (), false, false)]
+
+    def root(self, column: Column, rule: Root) -> list[Node]:
+        """The nodes of a root."""
+        nodes = list[Node]()
 
         def lower(expression: Any) -> Any:
-            plain = self.plain(expression, column, column.axis, unknown)
-            return self._lifted(plain, column, unknown, nodes)
-
-        def assuming(expression: Any) -> Any:
-            plain = self.plain(expression, column, column.axis, unknown)
-            return plain.xreplace(typed_symbols(self.sheet, self.leaves))
+            return self._lower(expression, column, nodes, rule.unknown)
 
         requires = tuple(lower(condition) for condition, _ in column.requires)
-        if isinstance(rule, Formula):
-            asked = assuming(rule.expression)
-            sign = positive(asked) if column.positive else false
-            nodes.append(Map(column, lower(rule.expression), requires, defined(asked), sign))
-        else:
-            assert isinstance(rule, Root)
-            nodes.append(
-                RootNode(
-                    column,
-                    rule.unknown,
-                    lower(rule.low),
-                    lower(rule.high),
-                    lower(rule.start),
-                    None if rule.sign_low is None else lower(rule.sign_low),
-                    None if rule.sign_high is None else lower(rule.sign_high),
-                    tuple(map(lower, rule.turning)),
-                    lower(rule.expression),
-                    lower(rule.value),
-                    requires,
-                    is_positive(assuming(rule.value)),
-                    rule.steps,
-                )
-            )
-        return nodes
+        node = RootNode(
+            column,
+            rule.unknown,
+            lower(rule.low),
+            lower(rule.high),
+            lower(rule.start),
+            None if rule.sign_low is None else lower(rule.sign_low),
+            None if rule.sign_high is None else lower(rule.sign_high),
+            tuple(map(lower, rule.turning)),
+            lower(rule.expression),
+            lower(rule.value),
+            requires,
+            is_positive(self._assuming(rule.value, column, rule.unknown)),
+            rule.steps,
+        )
+        return [*nodes, node]
+
+    def _lower(
+        self, expression: Any, column: Column, nodes: list[Node], unknown: Symbol | None = None
+    ) -> Any:
+        return self._lifted(self.plain(expression, column, column.axis, unknown), column, unknown, nodes)
+
+    def _assuming(self, expression: Any, column: Column, unknown: Symbol | None = None) -> Any:
+        plain = self.plain(expression, column, column.axis, unknown)
+        return plain.xreplace(typed_symbols(self.sheet, self.leaves))
 
     def _lifted(self, expression: Any, column: Column, unknown: Symbol | None, nodes: list[Node]) -> Any:
         """The expression with symbols for its sums and medians, which become nodes; not for what moves."""
