@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from ...derivations.equation import Derivation, Equation, Step
@@ -90,7 +90,6 @@ class Said:
             "farthest": Role(self._test),
             "chance": Role(self._chance),
             "tail": Role(self._probability),
-            "has": Role(lambda name: not self.report.values.status[self._column(name)].any()),
             "likely": Role(lambda what: (p := self._tail(what)) is not None and p >= SIGNIFICANT),
             "unlikely": Role(lambda what: (p := self._tail(what)) is not None and p < SIGNIFICANT),
         }
@@ -308,11 +307,15 @@ class Said:
 
     def _grounds(self, proof: Proof) -> Inlines:
         """What a claim finally rests on: numbers, and titles of what has none."""
-        grounds = joined((self._named(label, label) for label in proof.rests_on), "; ")
+        grounds = joined(self._all_grounds(proof), "; ")
         return ("Rests on: ", *(grounds or (IDENTITY,)), ".")
+
+    def _all_grounds(self, proof: Proof) -> list[Inlines]:
+        return [self._named(label, label) for label in proof.rests_on]
 
     def _steps(self, derivation: Derivation, proof: Proof | None) -> Iterator[Blocks]:
         shown: set[tuple[str, str]] = set()
+        known = self._all_grounds(proof) if proof and proof.status.passes else []
         for number, step in enumerate(derivation.steps):
             blocks: Blocks = (Paragraph(self.rich(step.says)),)
             if step.claim.label != derivation.claim.label:
@@ -323,15 +326,15 @@ class Said:
                     blocks += (Paragraph(("Premise: ", *title, " – ", *why, ":")), Display(premise))
             shown.add(_name(step.claim))
             evidence = ("Evidence: ", *self.rich(proof.steps[number].sentence), ".") if proof else ()
-            yield *blocks, Paragraph((*self._rests_on(step), *evidence), aside=True)
+            yield *blocks, Paragraph((*self._rests_on(step, known), *evidence), aside=True)
 
-    def _rests_on(self, step: Step) -> Inlines:
-        if not step.premises:
-            return ()
+    def _rests_on(self, step: Step, known: Sequence[Inlines]) -> Inlines:
+        """What a step rests on, unless the claim says the same of itself, and what it eliminates."""
         # two branches of one law are one equation
-        each = dict.fromkeys(map(self._premise, step.premises))
+        each = list(dict.fromkeys(map(self._premise, step.premises)))
+        rests: Inlines = ("Rests on ", *joined(each, ", "), ". ") if each and each != known else ()
         out = joined(((Math(each),) for each in gone(step, self.material.names)), ", ")
-        return ("Rests on ", *joined(each, ", "), *(("; eliminated: ", *out) if out else ()), ". ")
+        return (*rests, *(("Eliminated: ", *out, ". ") if out else ()))
 
     def _premise(self, equation: Equation) -> Inlines:
         """What a step rests on: its number or its name, and of which test it speaks."""
