@@ -211,12 +211,12 @@ def test_what_is_refused_is_told_beside_it(book: Any, grid: Grid) -> None:
     tests, report = book["tests"], book["report"]
     first = next(cell.column for cell in tests[3] if cell.value == "as checked")
     checked = [get_column_letter(first + place) for place in range(6)]
-    names = ["v [m/s]", "e", "x_p [um]", "u_v [m/s]", "u_e", "u_x_p [um]"]
+    names = ["v [m/s]", "e [1]", "x_p [um]", "u_v [m/s]", "u_e [1]", "u_x_p [um]"]
     assert [tests[f"{column}4"].value for column in checked] == names
     broken = [f"NOT(ISNUMBER(${column}$8))" for column in checked]
     told = (
         *("v must be greater than 0 m/s. ", "e must be between 0 and 1. ", "x_p must be greater than 0 um. "),
-        *("u_v must be at least 0 m/s. ", "u_e must be at least 0. ", "u_x_p must be at least 0 m. "),
+        *("u_v must be at least 0 m/s. ", "u_e must be at least 0. ", "u_x_p must be at least 0 um. "),
     )
     said = "&".join(f'IF({test},"{text}","")' for test, text in zip(broken, told, strict=True))
     assert tests["H4"].value == "check"

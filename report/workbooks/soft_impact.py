@@ -163,6 +163,21 @@ WORKBOOK = Workbook(
             number="L5",
         ),
         TableSpec(
+            "slopes",
+            "What the fit weighs a test by: how its depth follows from the rest, and its weight",
+            ("D_eiv", "B_v_eiv", "B_e_eiv", "W_eiv", "lambda_eiv", "G_eiv", "T_eiv"),
+            number="L7",
+        ),
+        TableSpec(
+            "normal",
+            "Sums of the fit over all tests, and where its search began",
+            (
+                *("v_0", "alpha_0", "S_DD", "S_DX", "S_XX", "Delta_eiv"),
+                *("S_TT", "S_TD", "S_TX", "Q_eiv"),
+            ),
+            number="L8",
+        ),
+        TableSpec(
             "estimates",
             "Exponent of one curve for all tests, by five estimates",
             ("alpha_eiv", "alpha_mean", "alpha_median", "alpha_log", "alpha_lin"),
