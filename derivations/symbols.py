@@ -118,15 +118,36 @@ VOCABULARY = Vocabulary(
     Quantity("R", "misfit of the test", "m", "R%s", (-1e-6, 1e-6), positive=False),
     Quantity("lam", "multiplier: how hard the test pulls", "1/m", r"\lambda%s", (-1e9, 1e9), positive=False),
     # The normal matrix of exponent and force.
-    Quantity("S_DD", "sum of the weighted squares of D", "1", "S_{DD%s}", (1e13, 1e15)),
+    Quantity("S_DD", "sum of the weighted squares of D", "1", "S_{DD%s}", (1e5, 1e6)),
     Quantity(
-        "S_DX", "sum of the weighted products of D and x_p", "1", "S_{DX%s}", (-1e4, 1e4), positive=False
+        "S_DX", "sum of the weighted products of D and x_p", "1", "S_{DX%s}", (-1e5, 1e5), positive=False
     ),
-    Quantity("S_XX", "sum of the weighted squares of x_p", "1", "S_{XX%s}", (1e13, 1e15)),
-    Quantity("Delta", "determinant of the normal matrix", "1", r"\Delta%s", (1e27, 1e30)),
+    Quantity("S_XX", "sum of the weighted squares of x_p", "1", "S_{XX%s}", (1e7, 1e8)),
+    Quantity("Delta", "determinant of the normal matrix", "1", r"\Delta%s", (1e12, 1e14)),
     Quantity("h", "leverage of the test: how far the curve follows it", "1", "h%s", (0.01, 0.99)),
     Quantity("alpha_k", "exponent without the test, to first order", "1", r"\alpha'%s", (1.0, 1.5)),
     Quantity("phi", "step of the force that goes with it", "1", r"\varphi%s", (-0.1, 0.1), positive=False),
+    # How sure the force of the curve is; c are the elements of the covariance matrix of alpha and ln F_0.
+    Quantity("c_aa", "variance of the exponent", "1", r"c_{\alpha\alpha%s}", (1e-6, 1e-4)),
+    Quantity(
+        "c_aF",
+        "covariance of the exponent and the logarithm of the force F_0",
+        "1",
+        r"c_{\alpha F%s}",
+        (-1e-7, 1e-7),
+        positive=False,
+    ),
+    Quantity("c_FF", "variance of the logarithm of the force F_0", "1", "c_{FF%s}", (1e-6, 1e-4)),
+    Quantity("u_C", "standard uncertainty of the force on the curve", "N", "u(C'%s)", (1.0, 100.0)),
+    Quantity(
+        "dC",
+        "what its misfit adds to the force of the test",
+        "N",
+        r"\delta C'%s",
+        (-100.0, 100.0),
+        positive=False,
+    ),
+    Quantity("u_new", "standard deviation of the force of a further test", "N", "u_{+}(C'%s)", (1.0, 100.0)),
     # The exponent may go with the depth: alpha + tau ln(x/x_0).
     Quantity(
         "tau",
@@ -147,14 +168,12 @@ VOCABULARY = Vocabulary(
     ),
     Quantity("G", "change of the approach with the trend", "m", "G%s", (-1e-4, 1e-4), positive=False),
     Quantity("T", "change of the imprint depth with the trend", "m", "T%s", (-1e-4, 1e-4), positive=False),
-    Quantity("S_TT", "sum of the weighted squares of T", "1", "S_{TT%s}", (1e13, 1e15)),
+    Quantity("S_TT", "sum of the weighted squares of T", "1", "S_{TT%s}", (1e5, 1e6)),
+    Quantity("S_TD", "sum of the weighted products of T and D", "1", "S_{TD%s}", (-1e5, 1e5), positive=False),
     Quantity(
-        "S_TD", "sum of the weighted products of T and D", "1", "S_{TD%s}", (-1e12, 1e12), positive=False
+        "S_TX", "sum of the weighted products of T and x_p", "1", "S_{TX%s}", (-1e5, 1e5), positive=False
     ),
-    Quantity(
-        "S_TX", "sum of the weighted products of T and x_p", "1", "S_{TX%s}", (-1e12, 1e12), positive=False
-    ),
-    Quantity("Q", "what of S_TT exponent and force do not make up for", "1", "Q%s", (1e12, 1e15)),
+    Quantity("Q", "what of S_TT exponent and force do not make up for", "1", "Q%s", (1e3, 1e5)),
     Quantity("dchi2", "sum of squares that the trend takes off", "1", r"\Delta\chi^2%s", (0.1, 100.0)),
     Quantity(
         "G_alpha",

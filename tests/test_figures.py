@@ -153,7 +153,7 @@ def test_no_letter_is_smaller_than_8_points(report_of: Callable[..., Report], na
 
 def test_a_drawing_that_is_not_there_is_told(report_of: Callable[..., Report]) -> None:
     with pytest.raises(
-        KeyError, match="'loop'; there are hysteresis, lankarani, loops, alpha_pairs, misfits, referee"
+        KeyError, match="'loop'; there are hysteresis, lankarani, loops, alpha_pairs, band, referee"
     ):
         figures.draw(report_of("paper"), "loop")
 

@@ -19,6 +19,10 @@ from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.views import html, live
+from loopsheet.report.views.writer import TEMPLATES
+
+SHORT = TEMPLATES / "minified"
+DRAWS = (SHORT / "charts.js").read_text(encoding="utf-8")
 
 
 def folder_of(place: Path, kind: str) -> Path:
@@ -43,7 +47,7 @@ def test_no_page_tells_or_draws_what_only_the_paper_has(other: tuple[str, Path])
     kind, out = other
     page = (out / "report.html").read_text(encoding="utf-8")
     assert re.findall(r"generated|alpha_\w*log|x_m\b|speed|restitution", page) == []
-    assert ("function drawChart" in page) == (kind == "orbit")
+    assert (DRAWS in page) == (kind == "orbit")
     assert "All numbers in full are in" in page
     (data,) = re.findall(r'id="?live-data"?>(.*?)</script>', page, re.DOTALL)
     known, rows = json.loads(data), "readings" if kind == "gauge" else "sightings"
@@ -103,5 +107,5 @@ def test_a_workbook_that_comes_along_has_its_own_errata_told(client: Path) -> No
 
 def test_only_a_page_with_drawings_has_what_draws() -> None:
     whole, without = (live.script("{}", "", drawings) for drawings in (True, False))
-    assert "function drawChart" in whole
-    assert not re.search(r"function drawChart|class Picture", without)
+    assert DRAWS in whole
+    assert not any((SHORT / name).read_text(encoding="utf-8") in without for name in live.DRAWING)

@@ -58,6 +58,7 @@ def told(require: Callable[..., str]) -> Told:
     def run(report: Report, edits: Edits) -> Any:
         data = live.data(report, Material(report))
         head = f"const LIVE = {data}, EDITS = {json.dumps(edits)}, [ROWS, ROW] = LIVE.rows;"
+        head += "LIVE.columns = wholeColumns(LIVE.columns);"
         program = f"const PROGRAM = {stages.program(report)};"
         script = "\n".join([RUNTIME.read_text(encoding="utf-8"), head, program, *own, HARNESS])
         done = subprocess.run(

@@ -73,11 +73,11 @@ def test_a_figure_that_shows_no_data_is_drawn_once(tmp_path: Path, monkeypatch: 
     monkeypatch.setattr(figures, "draw", told)
     build(Study(folder), tmp_path / "out", ("html", "latex"))
     every = {path.name: path.read_bytes() for path in (tmp_path / "out" / "figures").iterdir()}
-    assert drawn == ["hysteresis", "lankarani", "loops", "alpha_pairs", "misfits"]
+    assert drawn == ["hysteresis", "lankarani", "loops", "alpha_pairs", "band"]
     data = folder / "measurements.csv"
     data.write_text(data.read_text().replace("29.7", "29.81"))
     build(Study(folder), tmp_path / "out", ("html", "latex"))
-    assert drawn[5:] == ["loops", "alpha_pairs", "misfits"]
+    assert drawn[5:] == ["loops", "alpha_pairs", "band"]
     now = {path.name: path.read_bytes() for path in (tmp_path / "out" / "figures").iterdir()}
     assert {name for name in every if now[name] == every[name]} == {
         f"{name}.{form}" for name in drawn[:2] for form in ("svg", "pdf")

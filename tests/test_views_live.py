@@ -33,6 +33,7 @@ from loopsheet.report.result.numbers import Numeral, at, decimals, last_place, o
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.views import compact, figures, html, live, live_files
+from loopsheet.report.views.live_uncertain import digits
 
 ROOT = Path(__file__).resolve().parent.parent
 LIVE = ROOT / "templates" / "live"
@@ -147,7 +148,11 @@ def test_pieces_of_the_toml_make_the_file_again(known: dict[str, Any], report: R
 
 def test_only_what_is_of_second_order_keeps_its_digits(known: dict[str, Any], report: Report) -> None:
     for name, column in known["columns"].items():
-        assert ("given" in column) != ("digits" in column)
+        if "given" in column:
+            assert "digits" not in column
+        else:
+            shown = column["digits"] if "of" in column else column.get("digits", 4)
+            assert shown == digits(report, report.sheet[name])["digits"], name
         bent = report.uncertain().bent.get(name, ())
         assert len(column.get("kept", ())) == sum(bent), name
     assert list(known["columns"]["C"]["kept"].values()) == [3]

@@ -19,7 +19,7 @@ def uncertain(data: Mapping[str, Any], part: float = 2.0**-11) -> dict[str, Any]
 
 MISFITS = {
     *("R_eiv", "lambda_eiv", "z_eiv", "chi2_eiv", "birge_eiv", "u_birge_eiv", "alpha_without"),
-    *("trend_eiv", "dchi2_trend"),
+    *("trend_eiv", "dchi2_trend", "beside"),
 }
 """What is made of differences of two depths that are nearly the same."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 from ...derivations.equation import Derivation, Equation, Step
@@ -298,7 +299,7 @@ class Said:
             material.status(equation),
             because,
             self._grounds(proof) if proof and derivation and proof.status.passes else (),
-            f"Derivation, {len(steps)} step{'s' * (len(steps) > 1)}{', with its evidence' * bool(proof)}",
+            f"Derivation, {len(steps)} step{'s' * (len(steps) > 1)}",
             steps,
         )
 
@@ -321,12 +322,27 @@ class Said:
             if step.claim.label != derivation.claim.label:
                 blocks += (Display(step.claim),)
             for premise in step.premises:  # those without a number, the first time
-                if premise.label not in self.material.identifiers and _name(premise) not in shown:
-                    title, why = self.rich(premise.title), self.rich(premise.because)
+                if premise.label in self.material.identifiers or _name(premise) in shown:
+                    continue
+                title, first = self.rich(premise.title), self._first_shown[premise]
+                if first != derivation.claim.label:
+                    blocks += (Paragraph(("Premise: ", *title, ", as in ", *self._named(first, first), ".")),)
+                else:
+                    why = self.rich(premise.because)
                     blocks += (Paragraph(("Premise: ", *title, " – ", *why, ":")), Display(premise))
             shown.add(_name(step.claim))
             evidence = ("Evidence: ", *self.rich(proof.steps[number].sentence), ".") if proof else ()
             yield *blocks, Paragraph((*self._rests_on(step, known), *evidence), aside=True)
+
+    @cached_property
+    def _first_shown(self) -> Mapping[Equation, str]:
+        """For each equation without a number, the claim whose derivation shows it."""
+        found: dict[Equation, str] = {}
+        for entry in self.report.ledger.entries:
+            if isinstance(entry, Derivation):
+                for premise in (premise for step in entry.steps for premise in step.premises):
+                    found.setdefault(premise, entry.claim.label)
+        return found
 
     def _rests_on(self, step: Step, known: Sequence[Inlines]) -> Inlines:
         """What a step rests on, unless the claim says the same of itself, and what it eliminates."""

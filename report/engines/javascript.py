@@ -27,7 +27,7 @@ __all__ = ["LOOPS", "RUNTIME", "program"]
 _TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
 RUNTIME = _TEMPLATES / "minified" / "runtime.js"
 """What runs a program."""
-LOOPS = _TEMPLATES / "engines" / "loops.js"
+LOOPS = _TEMPLATES / "minified" / "loops.js"
 """What a program with loops brings along."""
 
 _NULL = Symbol("null", real=True)
@@ -299,9 +299,9 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
         entry: dict[str, Any] = {
             "name": column.name,
             "axis": None if column.axis is None else column.axis.name,
-            "kind": kind,
+            "kind": "" if kind == "map" else kind,
             "refs": [] if kind == "given" else [_least(each) for each in _references(sheet, column)],
-            "sums": [axis.name for axis in sheet.summed_axes(column)],
+            "sums": _unnamed(sheet, column),
             "positive": kind != "given" and int(column.positive),
         }
         if isinstance(node, Map) and column.positive:
@@ -334,10 +334,18 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
 
 _KINDS = {GivenNode: "given", Map: "map", RootNode: "root"}
 _WHOLE = (
-    ".map(({ refs = [], ...column }) => ({ axis: null, sums: [], ...column, "
-    "refs: refs.map(([name, index = null, over = null]) => [name, index, over]) }))"
+    """.map(({ refs = [], ...column }) => ({ axis: null, kind: "map", """
+    """sums: [...new Set(refs.flatMap(([, , over]) => over ?? []))], ...column, """
+    """refs: refs.map(([name, index = null, over = null]) => [name, index, over]) }))"""
 )
 """What a column leaves out is put in again."""
+
+
+def _unnamed(sheet: Sheet, column: Column) -> list[str]:
+    """The axes that a column sums over, if its references do not tell them: a sum may count rows only."""
+    summed = [axis.name for axis in sheet.summed_axes(column)]
+    named = {each.over.name for each in sheet.named(column) if each.over}
+    return [] if named == set(summed) else summed
 
 
 def _least(reference: tuple[str | None, ...]) -> list[str | None]:

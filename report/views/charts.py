@@ -224,8 +224,9 @@ class _Picture:
 
         rows = "%s" if series.each else self.words.count(series, count)
         value = self.words.value(series.value) if series.value else ""
-        text = (*self.words.label(series, rows), ("", more + value))
-        self.keys.append(Line2D([], [], label=mathtext(text), **looks))
+        text = mathtext((*self.words.label(series, rows), ("", more + value)))
+        if all(key.get_label() != text for key in self.keys):  # both sides of a band are one
+            self.keys.append(Line2D([], [], label=text, **looks))
 
     def points(self, series: Series, own: list[Trace]) -> None:
         """Dots, thinned if they are many; what is outside of the frame is counted, and marked if named."""
@@ -242,7 +243,8 @@ class _Picture:
             shown = np.union1d(shown, named[inside[named]])
         elif len(within) < total:
             more += f"; {total - len(within)} of {total} lie outside"
-        drawing.dots(self.axes, at[0, shown], at[1, shown], size, series.colour)
+        if len(shown):  # all may lie outside
+            drawing.dots(self.axes, at[0, shown], at[1, shown], size, series.colour)
         self.taken.append((at[:, shown], size / 2 + 0.75 if series.named else 1.0))
         count = total if series.named else len(own)
         self.key(series, count, more, ls="", marker="o", ms=min(size, 2.4), color=series.colour)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import count, product
+from string import ascii_letters
 
-__all__ = ["short_markup", "short_script", "short_style"]
+__all__ = ["short_cells", "short_markup", "short_script", "short_style"]
 
 # --- JavaScript ------------------------------------------------------------------------------------------
 
@@ -72,6 +74,19 @@ def short_script(text: str) -> str:
         space = ""
         pieces.append(piece.lstrip() if kind == "pattern" else piece)
     return "".join(pieces) + ("\n" if space == "\n" else "")
+
+
+def short_cells(program: str) -> str:
+    """A generated program with short names for what it calls by a dollar: the cells that its functions read.
+
+    >>> short_cells("const $alpha=c.alpha,pairs$i=a.pairs.rows.i;return $alpha[pairs$i[r]]")
+    'const $a=c.alpha,$b=a.pairs.rows.i;return $a[$b[r]]'
+    """
+    pieces = list(_tokens(program))
+    long = dict.fromkeys(piece for kind, piece in pieces if kind == "word" and "$" in piece)
+    names = (f"${''.join(each)}" for size in count(1) for each in product(ascii_letters, repeat=size))
+    short = dict(zip(long, names, strict=False))
+    return "".join(short.get(piece, piece) for _, piece in pieces)
 
 
 # --- CSS -------------------------------------------------------------------------------------------------

@@ -27,7 +27,7 @@ from ..quantity import Bounds, Printed
 from ..result.result import Report
 from ..result.verdict import OTHERWISE, UNEXPECTED
 from ..sheet import Column, Given, Iterated, Root
-from .compact import short_script
+from .compact import short_cells, short_script
 from .live_files import given
 from .live_uncertain import digits, errors, uncertain
 from .writer import TEMPLATES
@@ -82,7 +82,7 @@ def script(program: str, runtime: str, drawings: bool = True) -> str:
     """
     names = (name for name in SCRIPTS if drawings or name not in DRAWING)
     own = [(TEMPLATES / "minified" / name).read_text(encoding="utf-8") for name in names]
-    short: str = kept("program of the page", [program], lambda: short_script(program))
+    short: str = kept("program of the page", [program], lambda: short_cells(short_script(program)))
     text = "".join(["(()=>{", runtime, f"const PROGRAM={short};\n", *own, "})();\n"])
     if re.search(r"</script|<!--|<script", text, re.IGNORECASE):
         raise ValueError("the script of the page must not hold the end of its element")
@@ -103,7 +103,7 @@ def data(report: Report, document: Material) -> str:
     """
     sheet = report.sheet
     known = {
-        "columns": {column.name: _column(report, document, column) for column in sheet.columns},
+        "columns": {column.name: _least(_column(report, document, column)) for column in sheet.columns},
         **given(report),
         **uncertain(report),
         "rows": next(([axis.name, axis.row] for axis in sheet.axes if not axis.parents), ["rows", "row"]),
@@ -166,6 +166,12 @@ def _fraction(value: Fraction) -> list[str]:
     return [str(value.numerator), str(value.denominator)]
 
 
+def _least(entry: dict[str, Any]) -> dict[str, Any]:
+    """An entry without what the page puts in again (templates/live/trace.js)."""
+    plain = {"unit": "1", "scale": 1.0} | ({} if "given" in entry or "of" in entry else {"digits": 4})
+    return {name: value for name, value in entry.items() if plain.get(name) != value}
+
+
 def _column(report: Report, document: Material, column: Column) -> dict[str, Any]:
     shown = report.shown[column.name]
     head = document.head(column)
@@ -199,7 +205,7 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
         entry["requires"] = column.conditions
     put = placed(column, report.sheet, document.names)
     if put.latex:
-        entry["put"] = put.cells
+        entry["put"] = [[part for part in cell if part is not None] for cell in put.cells]
     return entry
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..quantity import Bounds
 from ..workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook
-from .soft_impact_charts import EXPONENTS, LOOPS, MISFITS
+from .soft_impact_charts import BAND, EXPONENTS, LOOPS
 
 if TYPE_CHECKING:
     from ...derivations.equation import Ledger
@@ -55,7 +55,7 @@ def _masses_given(given: frozenset[str]) -> str | None:
 
 
 def _ledger() -> Ledger:
-    from ...derivations.fit_checks import LEDGER
+    from ...derivations.force_band import LEDGER
 
     return LEDGER
 
@@ -222,12 +222,13 @@ WORKBOOK = Workbook(
             chart=EXPONENTS,
         ),
         FigureSpec(
-            "misfits",
+            "band",
             "L2",
-            "Misfit of each test: how far its measured depth lies beside the one that follows from its speed "
-            "and its restitution on the common curve, in standard deviations.",
-            alt="One mark for each test, its misfit over its impact speed.",
-            chart=MISFITS,
+            "The common curve as the level zero, with a band of two standard uncertainties about it, one of "
+            "two standard deviations for a further test, and the force that each test has beside it.",
+            alt="One mark for each test, its force beside the common curve, over its approach; two pairs of "
+            "lines open towards larger approaches, the inner one for the curve, the outer for a test.",
+            chart=BAND,
         ),
     ),
     published_as={

@@ -1,10 +1,10 @@
-"""The charts of the soft-impact paper's data: figure 4, exponents of pairs, misfits of tests."""
+"""The charts of the soft-impact paper's data: figure 4, exponents of pairs, the band of the common curve."""
 
 from __future__ import annotations
 
 from ..charts import BLUE, VERMILION, Chart, Series
 
-__all__ = ["EXPONENTS", "LOOPS", "MISFITS"]
+__all__ = ["BAND", "EXPONENTS", "LOOPS"]
 
 LOOPS = Chart(
     "generated points, fitted curve, hysteresis loops",
@@ -29,9 +29,20 @@ EXPONENTS = Chart(
 )
 """One power law for all speeds would scatter the pairs about a level. The mean speed is the one that a pair
 speaks for: on the paper's data the exponents climb with it without exception."""
-MISFITS = Chart(
-    "misfit of each test",
-    "impact speed of the test",
-    "misfit in standard deviations",
-    (Series("v", "z_eiv", "%s", "points", BLUE, named=True),),
+BAND = Chart(
+    "force beside the common curve",
+    "approach x",
+    "force beside the common curve",
+    (
+        *(
+            Series("band_x", f"{side}_{name}", label, colour=colour)
+            for name, label, colour in (
+                ("further_u", "two standard deviations of a further test", BLUE),
+                ("band_u", "two standard uncertainties of the curve", VERMILION),
+            )
+            for side in ("above", "below")
+        ),
+        Series("x_m_eiv", "beside", "%s", "points", named=True),
+    ),
 )
+"""One power law leaves most of the tests within the outer band."""

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from sympy import Symbol
+from typing import Any
+
+from sympy import Expr, Symbol
 from sympy.core.parameters import evaluate
 
+from ...derivations import force_band as force
 from ...derivations import soft_impact as model
+from ...derivations.symbols import VOCABULARY, k
 from ..charts import Drawn, drawn
-from ..sheet import Column, Given, PairAxis, RepeatAxis, Sheet
+from ..sheet import Axis, Column, Given, PairAxis, RepeatAxis, Sheet
 
 __all__ = ["POINTS_PER_BRANCH", "columns"]
 
 POINTS_PER_BRANCH = 33
 """Abscissae of each branch; straight lines between so many look like a curve."""
+POINTS_PER_TEST = 5
+"""Abscissae of the band below the approach of each test: all of them make one line."""
 
 _row, _step, _size = (Symbol(name, integer=True, positive=True) for name in ("l", "m", "n_loops"))
 
@@ -43,4 +49,43 @@ def columns(sheet: Sheet) -> Drawn:
         for way, law, where in (("load", model.law_c, compression), ("unload", model.law_r, restitution))
     )
     mean_v = drawn("mean_v", pairs, speed, "m/s", "mean impact speed of the pair", display="like v")
-    return Drawn((count, x_c, F_c, x_r, F_r, mean_v), {loops.count: POINTS_PER_BRANCH})
+    band = _band(sheet, tests)
+    given = {loops.count: POINTS_PER_BRANCH, band[0].name: POINTS_PER_TEST}
+    return Drawn((count, x_c, F_c, x_r, F_r, mean_v, *band), given)
+
+
+def _band(sheet: Sheet, tests: Axis) -> tuple[Column, ...]:
+    """A band about the common curve, one for a further test, and where each test lies."""
+    row, step, size = (Symbol(name, integer=True, positive=True) for name in ("b", "g", "n_bands"))
+    bands = RepeatAxis("bands", row, size, of=tests, step=step, count="band_points")
+    count = Column(bands.count, None, Given("chart"), meaning="points of the band for each test", exact=True)
+    where: dict[Expr, Expr] = {VOCABULARY[like].symbol: sheet[name].symbol for like, name in _SCALARS.items()}
+    where |= {VOCABULARY[like][k]: sheet[name][tests.index] for like, name in _TESTS.items()}
+    x_m, peak, u = (VOCABULARY[like][k] for like in ("x_m", "Cprime", "u_C"))
+    beside = force.beside.at(where | {peak: force.peak.at(where).value})
+
+    def on_band(name: str, value: Expr, unit: str = "N", **more: Any) -> Column:
+        return drawn(name, bands, value, unit, "band of the common curve", **more)
+
+    x = on_band("band_x", where[x_m] * step / count.symbol, "m", display="like x_p")
+    where[x_m] = x[row]
+    F = on_band("band_F", force.peak.at(where).value)
+    where[peak] = F[row]
+    band = on_band("band_u", force.uncertain.at(where).value)
+    where[u] = band[row]
+    further = on_band("further_u", force.further.at(where).value)
+    ends = (
+        on_band(f"{side}_{own.name}", times * own[row])
+        for own in (band, further)
+        for side, times in (("above", 2), ("below", -2))
+    )
+    offset = drawn("beside", tests, beside.value, "N", beside.title)
+    return (count, x, F, band, further, *ends, offset)
+
+
+_SCALARS = {
+    "F_0": "F_eiv", "alpha": "alpha_eiv", "x_0": "x_0",
+    "S_DD": "S_DD", "S_DX": "S_DX", "S_XX": "S_XX", "Delta": "Delta_eiv",
+}  # fmt: skip
+_TESTS = {"x_m": "x_m_eiv", "x_p": "x_p_eiv", "R": "R_eiv"}
+"""What the quantities of a band are called in the sheet."""

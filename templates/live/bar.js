@@ -110,7 +110,7 @@ function summedRows(name) {
 function putIn(look, name, row) {
   const { trace } = look, { put, none } = LIVE.columns[name], [math] = part(name, "equation");
   const axis = trace.declared[name].axis, layout = axis === null ? null : trace.sheet.layouts[axis];
-  const valueOf = ([of, index]) => {
+  const valueOf = ([of, index = null]) => {
     if (of === "") return trace.sheet.layouts[index].size;
     if (of === "#") return layout.ordinals[index][row];
     return trace.sheet.value[of][index === null ? 0 : layout.rows[index][row]];

@@ -83,7 +83,8 @@ function drawChart(chart, look) {
   const mark = (d, attributes) => draw("path", { d, ...attributes });
   const key = ({ label, rows, value }, count, more, sign) => {
     const told = label.map(([kind, text]) => [kind, text.replace("%s", `${count} ${rows?.[Number(count === 1)]}`)]);
-    keys.push({ mark: sign, text: [...told, ["", more + (value ? look.shownText(value, 0) : "")]] });
+    const text = [...told, ["", more + (value ? look.shownText(value, 0) : "")]];
+    if (!keys.some((other) => plainOf(other.text) === plainOf(text))) keys.push({ mark: sign, text }); // both sides of a band are one
   };
   const draws = {
     level(one) {

@@ -27,6 +27,7 @@
 const byId = (id) => document.getElementById(id);
 const all = (selector, within = document) => Array.from(within.querySelectorAll(selector));
 const LIVE = JSON.parse(byId("live-data").textContent);
+LIVE.columns = wholeColumns(LIVE.columns);
 const SVG = "http://www.w3.org/2000/svg", MATHML = "http://www.w3.org/1998/Math/MathML";
 
 // An element with attributes and children; text stays text, whatever is in it.

@@ -2,6 +2,12 @@
 
 const BEYOND = "it, or a step towards it, is above 1.8e308, or positive and below 2.2e-308";
 
+// What the page is told of the columns, with what goes without saying.
+function wholeColumns(columns) {
+  const whole = ([name, one]) => [name, { unit: "1", scale: 1, digits: one.given || one.of ? undefined : 4, ...one }];
+  return Object.fromEntries(Object.entries(columns).map(whole));
+}
+
 class Trace {
   constructor(program, columns, sheet) {
     this.columns = columns;

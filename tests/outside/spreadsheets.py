@@ -243,8 +243,8 @@ def compare(
 
     def before(column: Column) -> set[str]:
         """What a column rests on; of one that is drawn, what that is drawn of."""
-        own = sheet.by_name.get(column.name.removeprefix("plotted_"))
-        return {own.name, *(each.name for each in sheet.ancestors(own))} if own else set()
+        own = delivered.whole.by_name.get(column.name.removeprefix("plotted_"), column)
+        return {own.name, *(each.name for each in delivered.whole.ancestors(own))}
 
     for column in delivered.whole.columns:
         given = isinstance(column.rule, Given)
