@@ -4,12 +4,17 @@ import json
 import math
 import re
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from loopsheet.report.cli import main
+from loopsheet.report.engines import numpy as engine
+from loopsheet.report.prepared import Prepared
 from loopsheet.report.result.result import Report
 from loopsheet.report.result.uncertain import Budget, Distributed
+from loopsheet.report.uncertainty.propagation import Spread
 from loopsheet.report.views.budget import as_text
 
 FILES = {
@@ -70,6 +75,32 @@ def test_for_a_pull_request_it_is_a_table(campaign: str, capsys: pytest.CaptureF
     assert found[0].startswith("alpha\\[1-2\\] = 1.")
     assert found[2].startswith("| source | estimate | u |")
     assert found[4].startswith("| x\\_p\\[")
+
+
+def test_how_much_pairs_of_the_same_tests_tell_together(capsys: pytest.CaptureFixture[str]) -> None:
+    """Five tests make ten pairs, which tell as much as four: one exponent for all of them is all they ask."""
+    said = told(capsys, "alpha_mean", "paper").splitlines()[-1].replace("\u00a0", " ")
+    eigenvalues = "3.5, 3.0, 2.1, 1.4, then 7 × 10⁻⁵ and less"
+    assert said == (
+        f"the 10 cells of alpha tell as much as 4: the eigenvalues of their correlation are {eigenvalues}"
+    )
+    found = json.loads(told(capsys, "alpha_mean", "paper", "--format", "json"))["summed"]["alpha"]
+    assert (found["rank"], sum(found["eigenvalues"])) == (4, pytest.approx(10))
+    assert json.loads(told(capsys, "alpha[1-2]", "paper", "--format", "json"))["summed"] == {}
+
+
+def test_eigenvalues_are_those_of_drawn_campaigns(report: Report) -> None:
+    rng = np.random.default_rng(3)
+    made = Prepared(report.inputs, report.sheet)
+    data: dict[str, Any] = dict(made.data)
+    size = {"v": 1e-3, "e": 1e-3, "x_p": np.array([1e-7, 1e-7, 1e-7, 1e-8, 1e-8])}
+    for name, step in size.items():
+        data[name] = data[name] + step * rng.uniform(-0.05, 0.05, (20_000, 5))
+    alpha = engine.evaluate(report.sheet, made.labels, data).value["alpha"]
+    drawn = np.linalg.eigvalsh(np.corrcoef(alpha.T))[::-1]
+    (together,) = Spread(report.inputs, report.values).budget("alpha_mean", 0).summed
+    np.testing.assert_allclose(together.eigenvalues[:4], drawn[:4], rtol=0.03)
+    assert together.eigenvalues[4] == pytest.approx(drawn[4], rel=0.3)
 
 
 def test_an_exact_one(campaign: str, capsys: pytest.CaptureFixture[str]) -> None:

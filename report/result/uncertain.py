@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ..laws import Law
 
 __all__ = [
+    "TOLERANCE",
     "Budget",
     "Conformity",
     "Contribution",
@@ -26,8 +27,12 @@ __all__ = [
     "Distributed",
     "ErrorSource",
     "Influence",
+    "Together",
     "Uncertainties",
 ]
+
+TOLERANCE = 1e-3
+"""An eigenvalue that is a smaller part of the largest one tells nothing of its own."""
 
 
 @dataclass(frozen=True)
@@ -102,6 +107,27 @@ class Contribution:
 
 
 @dataclass(frozen=True)
+class Together:
+    """How much the cells of a column that is summed tell together: they may rest on the same errors.
+
+    Parameters
+    ----------
+    name : str
+        Of the column.
+    eigenvalues : tuple of float
+        Of the correlation matrix of its cells, the largest first; that many ones if all are independent.
+    """
+
+    name: str
+    eigenvalues: tuple[float, ...]
+
+    @property
+    def rank(self) -> int:
+        """How many eigenvalues there are beside which the others are nothing."""
+        return sum(value > TOLERANCE * self.eigenvalues[0] for value in self.eigenvalues)
+
+
+@dataclass(frozen=True)
 class Budget:
     """The uncertainty of one cell and where it comes from (JCGM 100, 5 and annex H).
 
@@ -135,6 +161,8 @@ class Budget:
         The distribution that is assigned to it: normal, Student's t, or that of a source which dominates.
     law : Law or None
         As of :class:`~loopsheet.report.distribution.Error`: of what the quantity is more than the value.
+    summed : tuple of Together
+        Columns over pairs of rows that the cell sums: pairs share their rows.
     """
 
     cell: str
@@ -152,6 +180,7 @@ class Budget:
     unlooked: str = ""
     shape: Shape = Shape.NORMAL
     law: Law | None = None
+    summed: tuple[Together, ...] = ()
 
     @property
     def expanded(self) -> float:

@@ -8,7 +8,7 @@ on the same tests has the variance it has, no other.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +22,8 @@ from ..inputs.inputs import Inputs
 from ..inputs.limits import Limits
 from ..judge.chain import Chain, Made
 from ..judge.sensitivity import Numbers
-from ..result.uncertain import Budget, Conformity, Contribution, Influence, Uncertainties
-from ..sheet import Given, RepeatAxis
+from ..result.uncertain import Budget, Conformity, Contribution, Influence, Together, Uncertainties
+from ..sheet import Column, Given, PairAxis, RepeatAxis
 from .conformity import conformity
 from .coverage import assigned, coverage, effective
 from .second_order import SecondOrder, root_of
@@ -39,6 +39,8 @@ AT_ONCE = 1 << 22
 """So many derivatives are held at the same time."""
 MOST_BUDGETS = 20
 """Budgets of a report."""
+MOST_CELLS = 300
+"""Of a column that is summed; of more, nobody reads eigenvalues."""
 NOTHING = 1e-12
 """A contribution that is less than this share of the largest is left out of a budget."""
 
@@ -201,7 +203,21 @@ class Spread:
             (self.sources[a].name, self.sources[b].name): r for a, b, r in self._pairs if {a, b} <= set(order)
         }
         known = value, u, told, pairs, dof, level, factor, because, second, unlooked, shape, law
-        return Budget(address(name, label), name, label, *known)
+        return Budget(address(name, label), name, label, *known, tuple(self._summed(column)))
+
+    def _summed(self, column: Column) -> Iterator[Together]:
+        """The columns over pairs of rows that a column sums."""
+        sheet, status = self.values.sheet, self.values.status
+        for own in dict.fromkeys(sheet[each.name] for each in sheet.named(column) if each.over):
+            cells = [(own.name, int(row)) for row in np.flatnonzero(status[own.name] == Status.OK)]
+            few = 1 < len(cells) <= MOST_CELLS
+            if not (few and isinstance(own.axis, PairAxis) and self.knows(own.name)):
+                continue
+            covariance = self.covariance(cells)
+            u = np.sqrt(np.diag(covariance))
+            if np.isfinite(u).all() and (u > 0).all():
+                found = np.linalg.eigvalsh(covariance / np.outer(u, u))[::-1]
+                yield Together(own.name, tuple(np.maximum(found, 0.0).tolist()))
 
     def conformity(self, limits: Limits) -> Conformity:
         """A cell beside its limits."""

@@ -10,7 +10,7 @@ from ..quantity import behind
 from ..result.conformity import lines
 from ..result.numbers import decimals, rounded, stated
 from ..result.result import Report
-from ..result.uncertain import Budget, Conformity, Contribution, Distributed
+from ..result.uncertain import Budget, Conformity, Contribution, Distributed, Together
 from . import markdown as md
 
 __all__ = [
@@ -100,6 +100,9 @@ def as_json(
             "second_order_share": number(budget.second / budget.u**2) if budget.u else 0.0,
             "second_order_unknown": budget.unlooked or None,
             "sources": [_source(each) for each in budget.contributions],
+            "summed": {
+                each.name: {"eigenvalues": each.eigenvalues, "rank": each.rank} for each in budget.summed
+            },
             "correlations": [[*pair, r] for pair, r in budget.correlations.items()],
             **monte_carlo,
             **conformity,
@@ -172,6 +175,16 @@ def notes(report: Report, budget: Budget) -> Iterator[str]:
         if not math.isinf(budget.dof) and not math.isnan(budget.dof):
             yield f"{budget.dof:.0f} effective degrees of freedom"
         yield f"k comes from {budget.because}"
+    yield from map(_together, budget.summed)
+
+
+def _together(summed: Together) -> str:
+    """How much cells that share their inputs tell: ``the 10 cells of alpha tell as much as 4: ...``."""
+    larger = [rounded(value, 2).text for value in summed.eigenvalues[: summed.rank]]
+    less = summed.eigenvalues[summed.rank :]
+    told = ", ".join(larger) + (f", then {rounded(less[0], 1).text} and less" if less else "")
+    cells = f"the {len(summed.eigenvalues)} cells of {summed.name}"
+    return f"{cells} tell as much as {summed.rank}: the eigenvalues of their correlation are {told}"
 
 
 def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iterator[str]:
