@@ -77,7 +77,7 @@ with evaluate(False):
     F_scale = Equation(
         "(L23)",
         (F_ref, Sum(CP[p], (p, 1, n_pairs)) / n_pairs),
-        "a typical force, so that logarithms are taken of pure numbers; any would do",
+        "a typical force; any would do",
         Kind.DEFINITION,
         "reference force",
         defines=F_ref,

@@ -438,7 +438,8 @@ class Limit:
     source : str
         The number of the statement that says so, ``(4)``; empty if it is the workbook's own.
     silent : bool
-        Whether a row outside tells nothing of what it rests on, so that no test is suspected because of it.
+        Whether a row outside tells nothing of what it rests on, so that no test is suspected because of it. A
+        column that requires the same in the same words leaves it out; what that does is told by the limit.
     """
 
     inside: Boolean | Bounds
@@ -497,6 +498,8 @@ class Column:
         Where its cells are expected. One outside keeps its value and carries a mark.
     exact : bool
         Whether a given value is a choice or a convention, so that its digits say nothing of precision.
+    alongside : tuple of Column
+        Columns on the axes that its rule sums over: the sums leave out rows without a value in these, too.
     """
 
     name: str
@@ -510,6 +513,7 @@ class Column:
     requires: tuple[tuple[Rel, str], ...] = ()
     exact: bool = False
     limits: tuple[Limit, ...] = ()
+    alongside: tuple[Column, ...] = ()
     mentioned: ClassVar[Mentioned | None] = None
     """Of a column of which only a part is known."""
 
@@ -565,7 +569,8 @@ class Column:
             own = (rule.unknown, rule.steps, *turning, rule.sign_low is None, rule.sign_high is None)
         axis = self.axis and self.axis.content
         every = (self.name, axis, self.positive, type(rule).__name__, own, self.expressions)
-        return content((*every, len(self.requires)))
+        more = [tuple(other.name for other in self.alongside)] if self.alongside else []
+        return content((*every, len(self.requires), *more))
 
 
 # --- what a rule names -----------------------------------------------------------------------------------

@@ -70,6 +70,7 @@ class _ToldColumn:
     conditions: tuple[str, ...]
     mentioned: Mentioned
     limits: tuple[_ToldLimit, ...]
+    alongside: tuple[str, ...]
     given: dict[str, Any] | None
     equations: tuple[ToldEquation, ...]
     placed: Placed | None
@@ -211,10 +212,12 @@ def _column(
         )
         for own in column.limits
     )
+    alongside = tuple(other.name for other in column.alongside)
     return _ToldColumn(
         column.name, None if column.axis is None else column.axis.name, column.unit, column.meaning,
         column.latex, column.display, column.positive, column.exact, column.source, column.conditions,
-        _mentioned(sheet, column), tuple(limits), asdict(rule) if isinstance(rule, Given) else None,
+        _mentioned(sheet, column), tuple(limits), alongside,
+        asdict(rule) if isinstance(rule, Given) else None,
         tuple(told_equation(each, *writing) for each in equations) if writing else (), place,
         (rule.none, rule.two, rule.unknown_name, rule.by_proof) if isinstance(rule, Root) else None,
         rule.none if isinstance(rule, Iterated) else None,
@@ -245,7 +248,8 @@ class _Known:
     def columns(self) -> tuple[Column, ...]:
         for told in self.told.axes:
             self.axes[told.words["name"]] = self.axis(told)
-        return tuple(map(self.column, self.told.columns))
+        by_name = {told.name: told for told in self.told.columns}
+        return tuple(self.column(told, by_name) for told in self.told.columns)
 
     def axis(self, told: _ToldAxis) -> Axis:
         def whole() -> Axis:
@@ -257,7 +261,7 @@ class _Known:
         parent = {"of": self.axes[told.of]} if told.of else {}
         return partly(_KINDS[told.kind], {**words, **parent, "alone": alone}, whole)
 
-    def column(self, told: _ToldColumn) -> Column:
+    def column(self, told: _ToldColumn, by_name: Mapping[str, _ToldColumn]) -> Column:
         def whole() -> Column:
             return self.declared()[told.name]
 
@@ -280,6 +284,7 @@ class _Known:
         known |= {"axis": self.axes[told.axis] if told.axis else None, "limits": limits}
         known |= {"content": told.mentioned.content, "rule": self.rule(told, whole)}
         known |= {"placed": told.placed}
+        known |= {"alongside": tuple(self.column(by_name[name], by_name) for name in told.alongside)}
         if not told.conditions:
             known["requires"] = ()
         return partly(Column, known, whole)

@@ -58,11 +58,21 @@ class Named:
                     yield reference
                 elif name_of(reference.cell) in self.by_name:
                     yield Reference(reference.cell)  # a scalar is the same inside and outside of sums
+        for other in column.alongside:
+            assert other.axis is not None
+            yield Reference(other.cell, self.indices[other.axis.index])
 
     def check(self, column: Column) -> None:
         """Every symbol is a column, a size, or a running number that means something on this axis."""
         for expression in column.expressions:
             self._check_scope(column, expression, column.axis)
+        for other in column.alongside:
+            there = self._find(column, other.name).axis
+            if there is None or there not in self.summed(column):
+                raise SheetError(
+                    f"{column.name}: its sums run over no rows of {other.name}, which they shall look at",
+                    column.name,
+                )
         if isinstance(column.rule, Root) and column.axis is not None:
             for total in column.rule.expression.atoms(*REDUCTIONS):
                 if total.has(column.rule.unknown):

@@ -134,7 +134,9 @@ case(
     ROWS,
     [6, Rational(15, 2), Rational(35, 2)],
 )
-case("divided_by_zero", 1 / (a[k] - 3), ROWS, [-1, DOMAIN, Rational(1, 4)])
+divided = case("divided_by_zero", 1 / (a[k] - 3), ROWS, [-1, DOMAIN, Rational(1, 4)])
+case("a_mean_alongside", Sum(a[k], (k, 1, n)) / n, None, [Rational(9, 2)], alongside=(divided,))
+case("a_median_alongside", Median(a[k], (k, 1, n)), None, [Rational(9, 2)], alongside=(divided,))
 needs = ((a[j] < a[i] + 5, "not far"), (a[i] > 2, "not small"))
 case("conditions", 2 * gap[p], PAIRS, [DOMAIN, DOMAIN, 8], requires=needs)
 

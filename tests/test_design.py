@@ -200,7 +200,15 @@ def test_what_a_cell_does_not_hang_on_may_be_as_uncertain_as_it_will(
 
 
 def test_it_says_what_a_newcomer_asks(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ("paper", "--cell", "alpha_mean", "--speeds", "2, 2.05, 5 m/s", "--u", "x_p = 0.5 um; v = 0.01")
+    words = (
+        "paper",
+        "--cell",
+        "alpha_mean",
+        "--speeds",
+        "2, 2.05, 2.15, 5 m/s",
+        "--u",
+        "x_p = 0.5 um; v = 0.01",
+    )
     out = told(capsys, *words)
     assert out.startswith("planned on the curve of 'Soft steel, ball drop': alpha_log = 1.3023")
     for line in (
@@ -208,7 +216,7 @@ def test_it_says_what_a_newcomer_asks(capsys: pytest.CaptureFixture[str]) -> Non
         "1     2.000    0.010  0.55045  0.00029  19.95     0.50 ",
         "matters most:",
         "terms of second order make",
-        "warning: alpha[1-2]: speeds within 4 %: too near to tell an exponent",
+        "warning: alpha[1-2]: speeds within 4 %: too near for averages and fits",
     ):
         assert line in out
     assert "| test | v \\[m/s\\] | u(v) |" in told(capsys, *words, "--format", "markdown")

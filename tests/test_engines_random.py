@@ -209,7 +209,7 @@ def test_a_character_changed_in_a_program_is_caught(
     # The equation of alpha_lin guides a search and the count of its roots; its value is the unknown itself.
     # That of chi2_eiv for two tests, which these campaigns have not; its sum is that of birge_eiv.
     mutants = [each for each in mutants if each[0] not in {"alpha_lin", "chi2_eiv", *STEPS}]
-    without_operator = {"v", "e", "x_p", "beta", "points_per_pair", "x_top", "alpha_median", "alpha_lin"}
+    without_operator = {"v", "e", "x_p", "beta", "points_per_pair", "alpha_median", "alpha_lin"}
     without_operator |= {"v_margin", "ball_density_margin", *VARIANTS[1], *UNCERTAIN, "chi2_eiv", *STEPS}
     assert {column for column, _, _ in mutants if column} == sheet.by_name.keys() - without_operator
     programs = [javascript.program(sheet)] + ([] if ours else [program for _, _, program in mutants])

@@ -271,8 +271,8 @@ def test_the_depth_is_shown_in_the_users_unit(report_of: Callable[..., Report]) 
 def test_what_is_left_out_of_the_picture_is_told(report_of: Callable[..., Report]) -> None:
     report = report_of("40")
     (told,) = (word for word in words(figures.draw(report, "loops")) if word.startswith("points of"))
-    pairs, points = (report.values.status[name] == 0 for name in ("alpha", "F"))
-    assert told.startswith(f"points of {np.count_nonzero(pairs)} pairs, one in ")
+    pairs, apart, points = (report.values.status[name] == 0 for name in ("alpha", "x_top", "F"))
+    assert told.startswith(f"points of {np.count_nonzero(apart)} pairs, one in ")
     assert f" of {np.count_nonzero(points)} lie outside" in told
     (told,) = (word for word in words(figures.draw(report, "alpha_pairs")) if word.startswith("outside"))
     assert re.fullmatch(rf"outside the frame: [1-9]\d* of {np.count_nonzero(pairs)}", told)

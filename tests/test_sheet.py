@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 from sympy import Expr, IndexedBase, Rel, Sum, Symbol
@@ -259,6 +260,10 @@ REFUSED: dict[str, tuple[tuple[Column, ...], str]] = {
         (a, given("c", Axis("rows", whole("l"), whole("m")))),
         "two different index sets are called 'rows'",
     ),
+    "alongside what is not summed": (
+        (a, step, replace(mean, alongside=(step,))),
+        "mean: its sums run over no rows of step, which they shall look at",
+    ),
     "one symbol for two axes": (
         (a, given("c", Axis("others", k, whole("m")))),
         "the symbol 'k' is the index of rows and the index of others",
@@ -279,6 +284,15 @@ def test_a_sum_within_a_sum_is_a_sheet() -> None:
     sheet = Sheet((a, step, nested))
     assert sheet.named(nested) == (Reference(a[k], ROWS), Reference(step[p], PAIRS))
     assert sheet.summed_axes(nested) == (ROWS, PAIRS)
+
+
+def test_what_a_sum_looks_at_is_named_though_no_formula_has_it() -> None:
+    other = formula("other", a[k] - 1, ROWS)
+    beside = replace(mean, alongside=(other,))
+    sheet = Sheet((a, beside, other))
+    assert sheet.named(beside) == (Reference(a[k], ROWS), Reference(other[k], ROWS))
+    assert [column.name for column in sheet.order] == ["a", "other", "mean"]
+    assert beside.content != mean.content
 
 
 def test_columns_are_found_by_name() -> None:

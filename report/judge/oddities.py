@@ -56,8 +56,10 @@ class _Oddities:
 
     def __init__(self, report: Report) -> None:
         self.report, self.inputs, self.sheet, self.values = report, report.inputs, report.sheet, report.values
+        self.silent = {margin.limit.mark for margin in report.marks.margins if margin.limit.silent}
         self.met: dict[str, list[str]] = {each.address: [] for each in self.inputs.expected}
-        self.failed = _Odd(self, self.once(self.values.errors()))
+        errors = list(self.once(self.values.errors()))
+        self.failed = _Odd(self, [cell for cell in errors if not self.is_silent(cell)])
         self.outside = {
             margin.column.name: _Odd(self, self.cells(margin), f"is marked ({margin.limit.mark})")
             for margin in report.marks.margins
@@ -85,6 +87,12 @@ class _Oddities:
         labels = self.values.labels(margin.of)
         for row in np.flatnonzero(self.report.marks.outside(margin)).tolist():
             yield self.values.cell(margin.of.name, labels[row])
+
+    def is_silent(self, cell: Cell) -> bool:
+        """Whether an error begins because a row tells nothing: the limit that says so tells it of the row."""
+        column, broken = self.sheet[cell.name], self.values.broken.get(cell.name)
+        number = 0 if broken is None else int(broken[self.values.row(column, cell.label)])
+        return number > 0 and column.conditions[number - 1] in self.silent
 
     def once(self, cells: Iterable[Cell]) -> Iterator[Cell]:
         """The cells, but of a loop that does not settle one column: of the result, if it has one there."""
@@ -166,7 +174,7 @@ class _Oddities:
         if not said:
             said = (
                 "rows are left out as is expected"
-                if self.failed
+                if self.failed or self.values.counted
                 else "sums, means and fits are over all rows"
             )
         return Check(DATA, ROWS, not found, said, self.inputs.place)
@@ -194,7 +202,11 @@ class _Oddities:
     def follows(self, cell: Cell, says: str) -> bool:
         """Whether somebody expects what is said of a cell, or all errors that it may follow from."""
         behind = {cell.name, *(column.name for column in self.sheet.ancestors(self.sheet[cell.name]))}
-        return bool(self.reason(cell, says)) or not any(odd.name in behind for odd in self.failed.open)
+        begun = cell.culprit or cell
+        silent = self.is_silent(begun) and not self.reason(begun, _no_value(begun))
+        return bool(self.reason(cell, says)) or not (
+            silent or any(odd.name in behind for odd in self.failed.open)
+        )
 
     # --- what is implausible, what is expected
 

@@ -163,7 +163,9 @@ class Campaign:
         if cut not in self.made.sheets:
             self.made.sheets[cut] = Sheet(
                 tuple(
-                    replace(column, rule=Given("free"), requires=()) if column.name in cut else column
+                    replace(column, rule=Given("free"), requires=(), alongside=())
+                    if column.name in cut
+                    else column
                     for column in self.sheet.columns
                 )
             )

@@ -13,7 +13,7 @@ from ..result.verdict import Change, Tried
 from ..result.verdict_words import mismatch as in_words
 from .digits import is_slip
 from .exchanges import columns, exchanged_in_tables, exchanged_inputs, orders
-from .habits import computed_from_printed, other_conventions, other_rows
+from .habits import computed_from_printed, every_row, other_conventions, other_rows
 from .misprints import misprints, two_misprints
 from .problem import Problem
 from .scales import misplaced_inputs, misplaced_tables, truncated_inputs, truncated_tables
@@ -24,7 +24,7 @@ __all__ = ["Explained", "explanations"]
 Kind = Callable[[Search], Iterator[Explained]]
 
 KINDS: tuple[tuple[Kind, ...], ...] = (
-    (computed_from_printed, other_conventions),
+    (computed_from_printed, every_row, other_conventions),
     (
         truncated_inputs, truncated_tables, exchanged_inputs, exchanged_in_tables, columns, other_rows,
         misplaced_inputs, misplaced_tables, misprints,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cells.address import index_text
-from ..engines.numpy import evaluate
+from ..engines.numpy import Program, evaluate
 from ..result.verdict import INPUT, Change
-from ..sheet import Column, Formula, Given
+from ..sheet import Column, Formula, Given, Sheet
 from .campaign import Array, Campaign
 from .minimax import best
 from .misprints import freed
@@ -20,7 +20,7 @@ from .problem import Problem
 from .search import Explained, Search
 from .ways import Way, from_printed, over_rows
 
-__all__ = ["computed_from_printed", "other_conventions", "other_rows"]
+__all__ = ["computed_from_printed", "every_row", "other_conventions", "other_rows"]
 
 CHOSEN, MOST_DIGITS = 3, 6
 """Significant digits of a convention that somebody may have chosen, and of one that is looked for."""
@@ -131,6 +131,45 @@ def _habit(
 
 
 # --- sums and means over other rows -----------------------------------------------------------------------
+
+
+def every_row(search: Search) -> Iterator[Explained]:
+    """Published averages and fits that count the rows, too, which tell nothing and are left out for that."""
+    problem, campaign = search.problem, search.problem.campaign
+    sheet, values = campaign.sheet, campaign.values
+    silent = {limit.mark for column in sheet.columns for limit in column.limits if limit.silent}
+    by = {c.name: says for c in sheet.columns for says in c.conditions if says in silent}
+    broken = [name for name in by if name in values.broken and values.broken[name].any()]
+    resting = {name: {a.name for a in sheet.ancestors(sheet[name])} for _, name in search.groups}
+    for name in broken:
+        members = [n for n, value in enumerate(problem.published) if name in resting[value.cell]]
+        if not members or not search.worth(members):
+            continue
+        cells = [problem.published[n].cell for n in members]
+        program = campaign.program(cells, tuple(free for free in campaign.free if free not in cells))
+        asked = [(problem.computed(Way(_with_every(program, silent), campaign.labels), members), None)]
+        for _, now in search.likeliest(asked):
+            scalars = [n for n in members if not problem.published[n].index] or members[:1]
+            would = f"with all {sheet[name].axis.name}, those left out here, too ({by[name]})"  # type: ignore[union-attr]
+            changes = [
+                Change("rows", p.cell, p.index, p.source, p.printed.text, would, count=0)
+                for p in (problem.published[n] for n in scalars)
+            ]
+            yield search.explained(changes, asked[0][0], problem.box, now)
+
+
+def _with_every(program: Program, silent: Set[str]) -> Program:
+    """The same without the conditions that leave rows out."""
+    return Program.of(
+        Sheet(
+            tuple(
+                replace(column, requires=tuple(each for each in column.requires if each[1] not in silent))
+                if silent & set(column.conditions)
+                else column
+                for column in program.sheet.columns
+            )
+        )
+    )
 
 
 def other_rows(search: Search) -> Iterator[Explained]:

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cells.address import address
-from ..cells.layout import how_large
-from ..cells.values import Status, Values
+from ..cells.layout import how_large, precedents
+from ..cells.values import Status, Values, rows_kept
 from ..distribution import LEVEL
 from ..engines.numpy import Program
 from ..inputs.inputs import Inputs
@@ -206,10 +206,16 @@ class Spread:
         return Budget(address(name, label), name, label, *known, tuple(self._summed(column)))
 
     def _summed(self, column: Column) -> Iterator[Together]:
-        """The columns over pairs of rows that a column sums."""
+        """The columns over pairs of rows that a column sums, of the rows that it sums."""
         sheet, status = self.values.sheet, self.values.status
-        for own in dict.fromkeys(sheet[each.name] for each in sheet.named(column) if each.over):
-            cells = [(own.name, int(row)) for row in np.flatnonzero(status[own.name] == Status.OK)]
+        layouts, beside = self.values.layouts, {other.name for other in column.alongside}
+        kept = rows_kept(precedents(sheet, layouts, column), layouts, status)
+        summed = dict.fromkeys(each.name for each in sheet.named(column) if each.over)
+        for own in (sheet[name] for name in summed if name not in beside):
+            if own.axis is None:
+                continue
+            rows = kept.get(own.axis.name, status[own.name] == Status.OK)
+            cells = [(own.name, int(row)) for row in np.flatnonzero(rows)]
             few = 1 < len(cells) <= MOST_CELLS
             if not (few and isinstance(own.axis, PairAxis) and self.knows(own.name)):
                 continue

@@ -87,7 +87,7 @@ def _line(report: Report, name: str) -> str:
     if cell.value is None:
         return cell.reason
     rows = report.values.counted.get(name, {})
-    left = "".join(f"  (over {n} {axis} that have values)" for axis, n in rows.items())
+    left = "".join(f"  (over {n} of {report.values.layouts[a].size} {a})" for a, n in rows.items())
     left += "".join(f"  ({count.said})" for count in report.marks.behind(column) if count.number)
     left += (mark := report.marks.of(name)[0]) and f"  {mark}"
     return f"{name:12} {report.text(cell)}  {column.meaning} {column.source}{left}"

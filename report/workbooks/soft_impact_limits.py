@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sympy import Expr, Max, Min, Rational
+from sympy import Expr, Max, Min, Rational, Rel
 
 from ...derivations import soft_impact as model
 from ...derivations.soft_impact import E, V
 from ..quantity import Bounds
 from ..sheet import Column, Limit
 
-__all__ = ["limits"]
+__all__ = ["apart", "limits"]
 
 Cells = Mapping[Expr, Expr]
 """What the two tests of the derivations are called in a sheet."""
@@ -24,6 +24,18 @@ APART = Rational(104, 100)
 """The least ratio of two speeds. One per cent of an imprint depth moves the exponent of a pair by some
 .01 (alpha + 1)^2/(2 ln(v_2/v_1)), if the restitution is the same: at alpha = 1, the lower end of (4), by its
 whole width at 4 %."""
+NEAR = f"speeds within {100 * (APART - 1)} %: too near for averages and fits"
+
+
+def apart(where: Cells) -> tuple[Rel, str]:
+    """That the speeds of two tests tell an exponent, and what is said where they do not.
+
+    Parameters
+    ----------
+    where : mapping of Expr to Expr
+        The cells that the symbols of the two tests stand for.
+    """
+    return (Max(V[1], V[2]) >= APART * Min(V[1], V[2])).xreplace(dict(where)), NEAR
 
 
 def limits(columns: tuple[Column, ...], where: Cells) -> dict[str, tuple[Limit, ...]]:
@@ -41,10 +53,9 @@ def limits(columns: tuple[Column, ...], where: Cells) -> dict[str, tuple[Limit, 
         name: (Limit.of(model.eq4.at({model.alpha: by_name[name].cell})),) for name in exponents
     }
     falls = (E[2] - E[1]) * (V[2] - V[1]) <= 0
-    apart = Max(V[1], V[2]) >= APART * Min(V[1], V[2])
     found["alpha"] += (
         Limit(falls.xreplace(dict(where)), "e rises with the speed"),
-        Limit(apart.xreplace(dict(where)), "speeds within 4 %: too near to tell an exponent", silent=True),
+        Limit(*apart(where), silent=True),
     )
     found["v"] = (SPEEDS,)
     if "ball_density" in by_name:

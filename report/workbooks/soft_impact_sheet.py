@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from sympy import Expr, Integer, Rational, Symbol
@@ -16,7 +17,7 @@ from ...derivations.soft_impact import CP, XM, XP, E, V
 from ...derivations.symbols import VOCABULARY, p, q, s
 from ..sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Root, Sheet
 from . import soft_impact_fit
-from .soft_impact_limits import limits
+from .soft_impact_limits import apart, limits
 from .soft_impact_root import alpha_rule, two_tests
 
 __all__ = ["TESTS", "e", "sheet", "v", "x_p"]
@@ -84,7 +85,9 @@ def sheet(given: frozenset[str]) -> Sheet:
             ("x_top", points.top, "x_top", "largest approach of the pair", "like x_p", r"x_{\mathrm{top}%s}"),
         )
     }
-    x_top = on_pair["x_top"]
+    # A pair that tells no exponent has no points; averages look at the points, and leave it out, too.
+    x_top = replace(on_pair["x_top"], requires=(apart(where),))
+    with_points = (x_top,)
     x = _column(
         "x", POINTS,
         Formula(points.abscissa.at({points.x_top: x_top[p], points.N: points_per_pair.symbol})), "x",
@@ -97,13 +100,16 @@ def sheet(given: frozenset[str]) -> Sheet:
     )  # fmt: skip
     columns = (
             v, e, x_p, beta, *_masses(given), points_per_pair,
-            alpha, *on_pair.values(),
-            Column("alpha_mean", None, Formula(points.mean), meaning="mean exponent", latex=r"\bar{\alpha}"),
+            alpha, *(on_pair | {"x_top": x_top}).values(),
+            Column(
+                "alpha_mean", None, Formula(points.mean), meaning="mean exponent", latex=r"\bar{\alpha}",
+                alongside=with_points,
+            ),
             Column(
                 "alpha_median", None, Formula(points.middle),
-                meaning="median exponent", latex=r"\tilde{\alpha}",
+                meaning="median exponent", latex=r"\tilde{\alpha}", alongside=with_points,
             ),
-            x, F, *_log_fit(x, where), *_lin_fit(), *_tests_after_fit(),
+            x, F, *_log_fit(x, where, with_points), *_lin_fit(), *_tests_after_fit(),
             *soft_impact_fit.columns(TESTS, (v, e, x_p)),
     )  # fmt: skip
     return Sheet(columns).limited(limits(columns, where))
@@ -138,11 +144,13 @@ def _mass(name: str, rule: Formula | Given, meaning: str, latex: str) -> Column:
     return Column(name, None, rule, "kg", meaning, latex, "g")
 
 
-def _log_fit(x: Column, pair: Mapping[Expr, Expr]) -> tuple[Column, ...]:
+def _log_fit(x: Column, pair: Mapping[Expr, Expr], with_points: tuple[Column, ...]) -> tuple[Column, ...]:
     """The straight line through the logarithms of the generated points."""
     ref = (
         _column("x_ref", None, Formula(points.x_scale), "x_ref", display="like x_p"),
-        _column("F_ref", None, Formula(points.F_scale.at({CP[p]: pair[CP[2]]})), "F_ref"),
+        _column(
+            "F_ref", None, Formula(points.F_scale.at({CP[p]: pair[CP[2]]})), "F_ref", alongside=with_points
+        ),
     )
     ln_x, ln_F = (Column(name, POINTS, Given(), positive=False) for name in ("ln_x", "ln_F"))
     mean_x, mean_F, line = (
