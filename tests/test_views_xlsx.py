@@ -72,8 +72,8 @@ def named(book: Any, name: str) -> list[Any]:
 
 def test_worksheets(book: Any) -> None:
     assert book.sheetnames == [
-        "report", "figures", "tests", "pairs", "points", "loops", "steps", "published", "uncertainty",
-        "equations",
+        "report", "figures", "tests", "pairs", "points", "loops", "bands", "steps", "published",
+        "uncertainty", "equations",
     ]  # fmt: skip
 
 
@@ -256,7 +256,7 @@ def test_no_formula_names_a_given_cell_but_its_check(grid: Grid, book: Any) -> N
         for row in range(block.place.rows)
     }
     assert named == checks
-    assert len(checks) == 30 + 4 + 1
+    assert len(checks) == 30 + 4 + 2
 
 
 def test_notes_say_meaning_bounds_and_origin(book: Any, grid: Grid) -> None:
@@ -433,4 +433,4 @@ def test_a_report_without_anything_to_draw_or_to_compare(report: Report) -> None
     plain = excel_grid.grid(report.sheet, report.values, units)
     content = xlsx.render(replace(report, comparisons=()), plain)
     names = openpyxl.load_workbook(io.BytesIO(content)).sheetnames
-    assert names == ["report", "figures", "tests", "pairs", "points", "steps", "uncertainty", "equations"]
+    assert names == ["report", "tests", "pairs", "points", "steps", "uncertainty", "equations"]

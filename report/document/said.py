@@ -324,7 +324,7 @@ class Said:
             for premise in step.premises:  # those without a number, the first time
                 if premise.label in self.material.identifiers or _name(premise) in shown:
                     continue
-                title, first = self.rich(premise.title), self._first_shown[premise]
+                title, first = self.rich(premise.title), self._first_shown[self._shown_as(premise)]
                 if first != derivation.claim.label:
                     blocks += (Paragraph(("Premise: ", *title, ", as in ", *self._named(first, first), ".")),)
                 else:
@@ -334,14 +334,17 @@ class Said:
             evidence = ("Evidence: ", *self.rich(proof.steps[number].sentence), ".") if proof else ()
             yield *blocks, Paragraph((*self._rests_on(step, known), *evidence), aside=True)
 
+    def _shown_as(self, premise: Equation) -> tuple[object, ...]:
+        return *_name(premise), self.material.written(premise).speaks_of
+
     @cached_property
-    def _first_shown(self) -> Mapping[Equation, str]:
+    def _first_shown(self) -> Mapping[tuple[object, ...], str]:
         """For each equation without a number, the claim whose derivation shows it."""
-        found: dict[Equation, str] = {}
+        found: dict[tuple[object, ...], str] = {}
         for entry in self.report.ledger.entries:
             if isinstance(entry, Derivation):
                 for premise in (premise for step in entry.steps for premise in step.premises):
-                    found.setdefault(premise, entry.claim.label)
+                    found.setdefault(self._shown_as(premise), entry.claim.label)
         return found
 
     def _rests_on(self, step: Step, known: Sequence[Inlines]) -> Inlines:
