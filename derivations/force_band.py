@@ -71,13 +71,13 @@ _by_alpha, _by_F_0 = diff(_force, ALPHA) / _force, F_0 * diff(_force, F_0) / _fo
 """Relative to the force, by the exponent and by the logarithm of the force at the mean depth."""
 
 
-def _covariance(own: Expr, value: Expr, name: str) -> Equation:
-    because = "the inverse of the normal matrix, whose unknowns are alpha and -ln(F_0)/(alpha + 1)"
+def _covariance(own: Expr, value: Expr, name: str, because: str = "of the same inverse") -> Equation:
     return Equation("", (own, value), because, Kind.DEFINITION, name, defines=own)
 
 
+_INVERSE = "the inverse of the normal matrix, whose unknowns are alpha and -ln(F_0)/(alpha + 1)"
 _covariances = (
-    _covariance(c_aa, S_XX / Delta, "variance of the exponent"),
+    _covariance(c_aa, S_XX / Delta, "variance of the exponent", _INVERSE),
     _covariance(c_aF, _A * S_DX / Delta, "covariance of exponent and force"),
     _covariance(c_FF, _A**2 * S_DD / Delta, "variance of the force, relative"),
 )

@@ -54,7 +54,7 @@ def consistent(tests: int, alpha: float, beta: float, C: float = 1.1e9) -> Value
 def drawn_of(values: Values, samples: int | None = None) -> Values:
     """The same with the columns that only the charts ask for."""
     more = columns(SHEET)
-    return extend(values, more.columns, {"loop_points": samples} if samples else more.given)
+    return extend(values, more.columns, {**more.given, **({"loop_points": samples} if samples else {})})
 
 
 def branch(values: Values, name: str) -> dict[int, tuple[Array, Array]]:

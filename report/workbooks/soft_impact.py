@@ -224,10 +224,9 @@ WORKBOOK = Workbook(
         FigureSpec(
             "band",
             "L2",
-            "The common curve as the level zero, with a band of two standard uncertainties about it, one of "
-            "two standard deviations for a further test, and the force that each test has beside it.",
-            alt="One mark for each test, its force beside the common curve, over its approach; two pairs of "
-            "lines open towards larger approaches, the inner one for the curve, the outer for a test.",
+            "Force of each test beside the common curve, a band of two standard uncertainties of the curve, "
+            "and one of two standard deviations of a further test.",
+            alt="One mark for each test over its approach, and two pairs of lines that open to the right.",
             chart=BAND,
         ),
     ),
