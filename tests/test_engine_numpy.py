@@ -4,6 +4,7 @@ import gc
 import sys
 import tracemalloc
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -347,7 +348,7 @@ def test_the_blocks_in_which_a_batch_is_computed_do_not_show(
 
 def test_a_large_batch_needs_little_more_memory_than_its_values() -> None:
     names = ("v", "e", "x_p", "beta", "alpha", "alpha_mean")
-    few = Sheet(tuple(SHEET[name] for name in names))
+    few = Sheet(tuple(replace(SHEET[name], alongside=()) for name in names))
     program, data = Program.of(few, functions=np), noisy((50_000,), seed=12)
     given = {name: data[name] for name in names[:3]} | {"beta": 1.5}
     engine.evaluate(few, {"tests": range(1, 6)}, given, program)
@@ -381,7 +382,7 @@ def test_results_go_where_they_are_wanted(monkeypatch: pytest.MonkeyPatch, shape
 def test_batch_after_batch_takes_no_more_memory_than_a_block(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(engine, "WIDEST", 1 << 13)
     names, most, held = ("v", "e", "x_p", "beta", "alpha", "alpha_mean"), [], []
-    few = Sheet(tuple(SHEET[name] for name in names))
+    few = Sheet(tuple(replace(SHEET[name], alongside=()) for name in names))
     program, data = Program.of(few, functions=np), noisy((40_000,), seed=12)
     given, out = {name: data[name] for name in names[:3]}, {"alpha_mean": np.empty((40_000, 1))}
     tracemalloc.start()

@@ -11,7 +11,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
 from uncertain_data import uncertain
@@ -149,6 +149,7 @@ def test_whatever_was_put_in_comes_back(
 ) -> None:
     # e falls with the speed, as it does on soft targets: then every pair has exactly one root.
     v = [speed / 100 for speed in centimetres]
+    assume(max(v) > 1.05 * min(v))  # or no pair tells an exponent
     drop = data.draw(st.floats(0.0, 0.03))
     e = [0.6 - drop * speed for speed in v]
     made = campaign(v, e, alpha, beta, C=data.draw(st.floats(1e6, 1e11)))
