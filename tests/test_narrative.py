@@ -1,11 +1,12 @@
 """Narratives: what a report says, from Markdown with roles and conditions; and the shipped ones."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from slipped_campaigns import PAPER, Slip, write
 
 from loopsheet.report.document import narrative
 from loopsheet.report.document.material import Material
@@ -28,6 +29,7 @@ from loopsheet.report.document.tree import (
     Value,
 )
 from loopsheet.report.result.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.which_workbook import find_workbook
 from loopsheet.report.workbooks import SHIPPED
 
@@ -40,13 +42,15 @@ def reads(report: Report, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Re
     monkeypatch.setattr(narrative, "FOLDER", tmp_path)
     narrative._lines.cache_clear()
 
-    def read(text: str, drawn: tuple[str, ...] = ("loops",), **parts: str) -> tuple[Section, ...]:
+    def read(
+        text: str, drawn: tuple[str, ...] = ("loops",), said: Said | None = None, **parts: str
+    ) -> tuple[Section, ...]:
         (tmp_path / "parts").mkdir(exist_ok=True)
         (tmp_path / "own.md").write_text(text, encoding="utf-8")
         for name, part in parts.items():
             (tmp_path / "parts" / f"{name}.md").write_text(part, encoding="utf-8")
         narrative._lines.cache_clear()
-        return sections("own", Said(Material(report), drawn))
+        return sections("own", said or Said(Material(report), drawn))
 
     return read
 
@@ -109,6 +113,46 @@ def test_conditions_hold_each_other_and_parts_are_put_in(reads: Reads) -> None:
     inner = ":::{if} {fig}`lankarani`\n:::{if} {fig}`loops`\nno\n:::{else}\nno\n:::\n:::{else}\nyes\n:::\n"
     (chapter,) = reads("# One {#one}\n\n:::{include} inner\n", inner=inner)
     assert chapter.blocks == (Paragraph(("yes",)),)
+
+
+def values_in(run: object) -> Iterator[Value]:
+    """The cells in running text."""
+    if isinstance(run, Value):
+        yield run
+    elif isinstance(run, tuple):
+        for part in run:
+            yield from values_in(part)
+    elif isinstance(run, (Section, Paragraph, Note, Strong)):
+        yield from values_in(run.blocks if isinstance(run, Section) else run.content)
+
+
+@pytest.fixture(scope="module")
+def slipped(tmp_path_factory: pytest.TempPathFactory) -> Report:
+    """The paper with one depth a tenth of itself: some pairs and the global fit have no value."""
+    folder = write(tmp_path_factory.mktemp("slipped"), Slip("x_p", 2, up=False).of(PAPER))
+    return Study(folder).computed
+
+
+def test_a_sentence_about_a_cell_without_a_value_says_so_and_why(slipped: Report, reads: Reads) -> None:
+    line = "The exponent is {cell}`alpha_eiv`, not {cell}`beta`, and {cell}`chi2_eiv` is left over."
+    said = Said(Material(slipped), ())
+    (chapter,) = reads(f"# One {{#one}}\n\n{line}\nThe mean is {{cell}}`alpha_mean`.\n", said=said)
+    (paragraph,) = chapter.blocks
+    assert isinstance(paragraph, Paragraph)
+    symbols = Math(r"\alpha_{\mathrm{eiv}}"), " and ", Math(r"\chi^2_{\mathrm{eiv}}")
+    assert paragraph.content[:4] == (*symbols, " have no value: ")
+    text = "".join(part for part in paragraph.content if isinstance(part, str))
+    assert "did not settle: no power law with a positive exponent comes near to all tests, or" in text
+    assert text.endswith("which weighs more than all others. The mean is .")
+    assert [value.item.cell.name for value in values_in(chapter)] == ["alpha_mean"]
+
+
+def test_no_sentence_of_a_shipped_narrative_shows_a_code(slipped: Report, report: Report) -> None:
+    known, lacking = (sections("soft_impact", Said(Material(each), ())) for each in (report, slipped))
+    assert "alpha_eiv" in {value.item.cell.name for value in values_in(known)}
+    shown = list(values_in(lacking))
+    assert {"alpha_mean", "beta"} <= {value.item.cell.name for value in shown}
+    assert all(value.item.ok for value in shown)
 
 
 @pytest.mark.parametrize(

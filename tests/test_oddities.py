@@ -87,6 +87,26 @@ def test_a_result_without_a_value_is_a_finding(tmp_path: Path) -> None:
     )
 
 
+def test_of_a_fit_without_a_value_nobody_says_over_how_many_tests_it_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = write(tmp_path, PAPER) / "measurements.csv"
+    exact = (
+        table.read_text().replace("2.940", "2.940(0)").replace("0.512", "0.512(0)").replace("29.7", "29.7(0)")
+    )
+    table.write_text(exact)
+    found = checks(tmp_path)
+    assert found["data cells"].message.startswith("test 2 has v, e and x_p without uncertainty")
+    assert found["data rows"].message == "rows are left out as is expected"
+    report = Study(tmp_path).computed
+    assert report.values.counted["alpha_eiv"] == {"tests": 4}, "the exact one does not count"
+    headline = re.search(r"<dl class=.?headline.*?</dl>", html.render(report, {}), re.DOTALL)
+    assert headline is not None
+    assert "over 4 of 5" not in headline[0]
+    assert main(["why", "alpha_eiv", str(tmp_path)]) == 0
+    assert "over" not in capsys.readouterr().out.split("rests on")[0].split("from  ")[1]
+
+
 def changed(column: str, test: int, text: str, texts: Texts = PAPER) -> Texts:
     """The campaign with another number."""
     return {**texts, column: [text if n == test else old for n, old in enumerate(texts[column], 1)]}

@@ -9,8 +9,9 @@ links to chapters (``[text](#name)``) they have
   something, those behind ``:::{else}`` if not. They may lie inside a paragraph: each line holds sentences;
 - ``:::{include} NAME``: the lines of parts/NAME.md.
 
-A line that begins with a comma, a semicolon or a full stop goes on with the word before it. Nothing of a
-narrative is evaluated.
+A line that begins with a comma, a semicolon or a full stop goes on with the word before it. In the place of a
+line that shows a cell without a value stands which of its cells have none, and why: such lines are whole
+sentences. Nothing of a narrative is evaluated.
 """
 
 from __future__ import annotations
@@ -121,9 +122,15 @@ class _Reader:
                 known = ":::{if}, :::{else}, :::{include} and :::"
                 raise NarrativeError(f"{line.place}: unknown line {word}; there are {known}")
             elif all(holds for holds, _ in open_ones):
-                yield line
+                yield self._valued(line)
         if open_ones:
             raise NarrativeError(f"{open_ones[-1][1].place}: this condition does not end")
+
+    def _valued(self, line: Line) -> Line:
+        """The line; if it shows cells without a value, one that says so."""
+        cells = (name for role, name in _NAMED.findall(line.text) if role == "cell")
+        lacking = [name for name in cells if not self._answer("cell", name, line.place)]
+        return line._replace(text=f"{{lacking}}`{' '.join(lacking)}`") if lacking else line
 
     def _hold(self, condition: str, place: str) -> bool:
         """Whether all roles of a condition stand for something."""

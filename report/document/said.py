@@ -18,7 +18,7 @@ from ..result.statements import statements
 from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
 from ..workbook import FigureSpec
 from .material import Material
-from .parts import SourceGroup
+from .parts import Item, SourceGroup
 from .refereed import GOOD
 from .tables import Tables
 from .tree import (
@@ -77,12 +77,13 @@ class Said:
         self.rich, self.sentence = material.sentences.rich, material.sentences.sentence
         self.referee, self.tables = material.report.referee, Tables(material)
         self.roles: Mapping[str, Role] = {
-            "cell": Role(lambda name: (Value(self.material.item(self._column(name))),)),
+            "cell": Role(lambda name: (Value(item),) if (item := self._item(name)).ok else ()),
             "count": Role(self._count),
             "eq": Role(lambda label: (Refer(self._label(label)),), self._numbered),
             "fig": Role(lambda name: _links("figure", self._spec(name)), self._figure),
             "fit": Role(lambda name: self.told(self.fits().get(name, ""))),
             "inside": Role(self._inside),
+            "lacking": Role(lambda names: self._lacking(names.split())),
             "math": Role(lambda latex: (Math(latex),)),
             "published": Role(self._printed),
             "say": Role(lambda name: SAID[_known("sentence", name, SAID)](self)),
@@ -99,6 +100,15 @@ class Said:
 
     def _column(self, name: str) -> str:
         return _known("column", name, self.report.sheet.by_name)
+
+    def _item(self, name: str) -> Item:
+        return self.material.item(self._column(name))
+
+    def _lacking(self, names: Sequence[str]) -> Inlines:
+        """That cells have no value, and why the first has none."""
+        cells = joined(((self.material.sentences.symbol(name),) for name in names), ", ", " and ")
+        why = self.rich(self._item(names[0]).origin.why)
+        return *cells, f" {'has' if len(names) == 1 else 'have'} no value: ", *why, "."
 
     def _label(self, label: str) -> str:
         return _known("equation", label, self.material.identifiers)
@@ -187,10 +197,16 @@ class Said:
         material, item = self.material, self.material.item(name)
         counted = self.report.values.counted.get(name, {}).items()
         left_out = ((axis, rows, material.count(axis)) for axis, rows in counted)
-        rows = tuple(f"over {rows} of {size} {axis}" for axis, rows, size in left_out if 0 != rows != size)
+        rows = tuple(f"over {rows} of {size} {axis}" for axis, rows, size in left_out if rows != size)
         marks = (count for count in self.report.marks.behind(self.report.sheet[name]) if count.number)
         meaning = self.rich(item.head.meaning)
-        return HeadlineItem(Math(item.head.latex), meaning, item, rows, tuple(count.said for count in marks))
+        return HeadlineItem(
+            Math(item.head.latex),
+            meaning,
+            item,
+            rows if item.ok else (),
+            tuple(count.said for count in marks),
+        )
 
     def oddities(self) -> Blocks:
         """What there is to tell of the data themselves."""

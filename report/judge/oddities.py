@@ -166,9 +166,10 @@ class _Oddities:
         """Whether all sums, means and fits are over all rows."""
         found: dict[str, list[str]] = {}
         for name in self.first(self.values.counted):
+            cell = self.values.cell(name)
             for axis, rows in self.values.counted[name].items():
                 over = f"over {rows} of {self.values.layouts[axis].size} {axis}"
-                if rows and not self.follows(self.values.cell(name), f"is {over}"):
+                if cell.value is not None and not self.follows(cell, f"is {over}"):
                     found.setdefault(over, []).append(name)
         said = "; ".join(f"{_some(n)} {'is' if len(n) == 1 else 'are'} {over}" for over, n in found.items())
         if not said:

@@ -131,11 +131,13 @@ def _equation(report: Report, column: Column, row: int, cell: Cell) -> Iterator[
     assert equation is not None
     yield _line("", text_of_equation(equation.origin, report.ledger.vocabulary))
     summed = report.sheet.summed_axes(column)
+    if cell.value is None:
+        return
     if any(member.has(*REDUCTIONS) for member in equation.members):
         counted = report.values.counted.get(column.name, {})
         sizes = (f"{counted.get(a.name, report.values.layouts[a.name].size)} {a.name}" for a in summed)
         yield _line("", f"over {', '.join(sizes)}")
-    elif cell.value is not None:
+    else:
         # A formula's own side is the cell itself; a root's equation shows the cell inside of it.
         text = Wording(report.ledger.vocabulary).text
         numbers = [text(member) for member in equation.at(_numbers(report, column, row)).members]
