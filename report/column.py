@@ -498,6 +498,9 @@ class Column:
         Where its cells are expected. One outside keeps its value and carries a mark.
     exact : bool
         Whether a given value is a choice or a convention, so that its digits say nothing of precision.
+    spare : bool
+        Whether its conditions ask for more than a campaign must have, so that where they do not hold there is
+        nothing to find: its cells have no value, and nobody is to blame.
     alongside : tuple of Column
         Columns on the axes that its rule sums over: the sums leave out rows without a value in these, too.
     """
@@ -513,6 +516,7 @@ class Column:
     requires: tuple[tuple[Rel, str], ...] = ()
     exact: bool = False
     limits: tuple[Limit, ...] = ()
+    spare: bool = False
     alongside: tuple[Column, ...] = ()
     mentioned: ClassVar[Mentioned | None] = None
     """Of a column of which only a part is known."""

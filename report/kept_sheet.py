@@ -66,6 +66,7 @@ class _ToldColumn:
     display: str
     positive: bool
     exact: bool
+    spare: bool
     source: str
     conditions: tuple[str, ...]
     mentioned: Mentioned
@@ -215,8 +216,8 @@ def _column(
     alongside = tuple(other.name for other in column.alongside)
     return _ToldColumn(
         column.name, None if column.axis is None else column.axis.name, column.unit, column.meaning,
-        column.latex, column.display, column.positive, column.exact, column.source, column.conditions,
-        _mentioned(sheet, column), tuple(limits), alongside,
+        column.latex, column.display, column.positive, column.exact, column.spare, column.source,
+        column.conditions, _mentioned(sheet, column), tuple(limits), alongside,
         asdict(rule) if isinstance(rule, Given) else None,
         tuple(told_equation(each, *writing) for each in equations) if writing else (), place,
         (rule.none, rule.two, rule.unknown_name, rule.by_proof) if isinstance(rule, Root) else None,
@@ -276,6 +277,7 @@ class _Known:
                 "display",
                 "positive",
                 "exact",
+                "spare",
                 "source",
                 "conditions",
                 "mentioned",

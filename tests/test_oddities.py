@@ -15,6 +15,7 @@ from slipped_campaigns import PAPER, Slip, Texts, campaign, slips, write
 
 from loopsheet.report import stages
 from loopsheet.report.cli import main
+from loopsheet.report.document.material import Material
 from loopsheet.report.messages.diagnostics import Check
 from loopsheet.report.messages.errors import InputError
 from loopsheet.report.study import Study
@@ -153,9 +154,42 @@ def test_what_is_implausible_is_a_warning_with_its_place(tmp_path: Path, cell: s
 
 
 def test_a_pair_that_says_nothing_accuses_nobody(tmp_path: Path) -> None:
-    found = told(write(tmp_path, changed("x_p", 4, "41.5", NEAR)))
-    assert any("alpha: 1 of 10 pairs have no value: alpha[3-4]" in said for said in found)
-    assert not any("look at test" in said for said in found)
+    campaign = write(tmp_path, changed("x_p", 4, "41.5", NEAR))
+    (said,) = told(campaign)
+    assert said.startswith("warning: alpha: 1 of 10 pairs: speeds within 4 %")
+    assert said.endswith(": alpha[3-4] #NOROOT!")
+
+
+def remarks(folder: Path) -> list[tuple[str, str, str]]:
+    """The cells to look at."""
+    return [(each.cell.address, each.code, each.why) for each in Material(Study(folder).computed).remarks]
+
+
+def test_two_tests_are_no_fault_though_no_test_can_be_left_out_of_them(tmp_path: Path) -> None:
+    report = Study(write(tmp_path, TWO)).computed
+    codes = {
+        name: report.values.cell(name).reason for name in ("birge_eiv", "Q_eiv", "u_birge_eiv", "trend_eiv")
+    }
+    assert codes["birge_eiv"].endswith("(L46): two tests lie on one curve, so that nothing is left over")
+    assert codes["u_birge_eiv"].startswith("#DOMAIN! u_birge_eiv needs birge_eiv: ")
+    assert codes["Q_eiv"].endswith("(L61): tests at two speeds tell no trend")
+    assert report.values.cell("z_eiv", (1,)).why.endswith("(L48): the other tests alone tell no curve")
+    assert told(tmp_path) == remarks(tmp_path) == []
+    found = checks(tmp_path)
+    assert found["data cells"].message == "every cell has a value where it can"
+    assert main(["check", str(tmp_path)]) == 0
+
+
+def test_a_fault_of_two_tests_is_one_all_the_same(tmp_path: Path) -> None:
+    write(tmp_path, BACKWARDS)
+    assert [address for address, _, _ in remarks(tmp_path)][:2] == ["alpha[1-2]", "alpha_eiv"]
+
+
+def test_a_pair_at_nearly_one_speed_is_told_once(tmp_path: Path) -> None:
+    write(tmp_path, changed("x_p", 4, "41.7", NEAR))
+    ((address, code, why),) = remarks(tmp_path)
+    assert (address, code) == ("alpha[3-4]", "†")
+    assert why == "outside (4), range of the exponent; speeds within 4 %: too near for averages and fits"
 
 
 @pytest.mark.campaigns

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..partly import partly
 from ..sheet import Column, Formula, Limit, Sheet
-from .values import Status, Values
+from .values import Cell, Status, Values
 
 __all__ = ["Margin", "MarkCount", "Marks", "margins", "with_margins"]
 
@@ -150,6 +150,19 @@ class Marks:
             for row in np.flatnonzero(self.outside(margin) & has).tolist():
                 marks[row].append(margin.limit.mark)
         return ["; ".join(own) for own in marks]
+
+    def is_faultless(self, cell: Cell) -> bool:
+        """Whether an error begins where nobody is to blame: in a spare column, or as a silent limit says."""
+        column, broken = self.values.sheet[cell.name], self.values.broken.get(cell.name)
+        row = self.values.row(column, cell.label)
+        number = 0 if broken is None else int(broken[row])
+        if number and (column.spare or column.conditions[number - 1] in self._silent):
+            return True
+        return any(each.limit.silent and self.outside(each)[row] for each in self.limiting(cell.name))
+
+    @cached_property
+    def _silent(self) -> set[str]:
+        return {margin.limit.mark for margin in self.margins if margin.limit.silent}
 
     def behind(self, column: Column) -> Iterator[MarkCount]:
         """For a scalar, how many of the rows that it rests on lie outside, limit by limit."""

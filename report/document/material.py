@@ -237,7 +237,7 @@ class Material:
 
     @cached_property
     def _remarks(self) -> tuple[Remark, ...]:
-        errors = (Remark(cell, cell.status.code, cell.why) for cell in self.report.values.errors())
+        errors = (Remark(cell, cell.status.code, cell.why) for cell in self.report.faults)
         return tuple(islice(chain(errors, self._marks()), MOST + 1))
 
     def told(self, cell: Cell) -> bool:
@@ -254,9 +254,10 @@ class Material:
         return tuple(check for check in self.report.oddities if check.word)
 
     def _marks(self) -> Iterator[Remark]:
-        marks = self.report.marks
+        marks, told = self.report.marks, dict[Cell, list[str]]()
         for margin in marks.margins:
             cells = self.report.values.cells(margin.of.name)
             for cell, outside in zip(cells, marks.outside(margin).tolist(), strict=True):
                 if outside:
-                    yield Remark(cell, MARK, margin.limit.told)
+                    told.setdefault(cell, []).append(margin.limit.told)
+        return (Remark(cell, MARK, "; ".join(why)) for cell, why in told.items())

@@ -56,10 +56,8 @@ class _Oddities:
 
     def __init__(self, report: Report) -> None:
         self.report, self.inputs, self.sheet, self.values = report, report.inputs, report.sheet, report.values
-        self.silent = {margin.limit.mark for margin in report.marks.margins if margin.limit.silent}
         self.met: dict[str, list[str]] = {each.address: [] for each in self.inputs.expected}
-        errors = list(self.once(self.values.errors()))
-        self.failed = _Odd(self, [cell for cell in errors if not self.is_silent(cell)])
+        self.failed = _Odd(self, report.faults)
         self.outside = {
             margin.column.name: _Odd(self, self.cells(margin), f"is marked ({margin.limit.mark})")
             for margin in report.marks.margins
@@ -88,23 +86,6 @@ class _Oddities:
         for row in np.flatnonzero(self.report.marks.outside(margin)).tolist():
             yield self.values.cell(margin.of.name, labels[row])
 
-    def is_silent(self, cell: Cell) -> bool:
-        """Whether an error begins because a row tells nothing: the limit that says so tells it of the row."""
-        column, broken = self.sheet[cell.name], self.values.broken.get(cell.name)
-        number = 0 if broken is None else int(broken[self.values.row(column, cell.label)])
-        return number > 0 and column.conditions[number - 1] in self.silent
-
-    def once(self, cells: Iterable[Cell]) -> Iterator[Cell]:
-        """The cells, but of a loop that does not settle one column: of the result, if it has one there."""
-        for cell in cells:
-            loop = self.sheet.loop_of.get(cell.name)
-            if loop and cell.status is Status.NOROOT:
-                names = [column.name for column in loop.iterated]
-                told = next((name for name in self.report.workbook.headline if name in names), names[0])
-                if cell.name != told:
-                    continue
-            yield cell
-
     def tests(self, cell: Cell) -> tuple[int, ...]:
         """The numbers of the tests that a row rests on; none of a scalar."""
         column = self.sheet[cell.name]
@@ -132,7 +113,8 @@ class _Oddities:
     def of_cells(self) -> Check:
         """Whether every cell has a value."""
         if not self.failed:
-            return Check(DATA, CELLS, True, "every cell has a value", self.inputs.place)
+            told = " where it can" if any(self.values.errors()) else ""
+            return Check(DATA, CELLS, True, f"every cell has a value{told}", self.inputs.place)
         by_column: dict[str, list[Cell]] = {}
         for cell in self.failed.told:
             by_column.setdefault(cell.name, []).append(cell)
@@ -204,7 +186,7 @@ class _Oddities:
         """Whether somebody expects what is said of a cell, or all errors that it may follow from."""
         behind = {cell.name, *(column.name for column in self.sheet.ancestors(self.sheet[cell.name]))}
         begun = cell.culprit or cell
-        silent = self.is_silent(begun) and not self.reason(begun, _no_value(begun))
+        silent = self.report.marks.is_faultless(begun) and not self.reason(begun, _no_value(begun))
         return bool(self.reason(cell, says)) or not (
             silent or any(odd.name in behind for odd in self.failed.open)
         )

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from ..cells.marks import Marks
-from ..cells.values import Cell, Values
+from ..cells.values import Cell, Status, Values
 from ..inputs.inputs import Inputs, PublishedValue
 from ..messages.diagnostics import Check
 from ..quantity import Printed, behind
@@ -204,6 +205,23 @@ class Report:
             return self.comparisons
         every = (*self.comparisons, *self.comparisons_u)
         return tuple(sorted(every, key=lambda each: each.published.places["value"].line or 0))
+
+    @cached_property
+    def faults(self) -> tuple[Cell, ...]:
+        """The cells where an error begins: of a loop that does not settle those of one column."""
+        return tuple(
+            cell
+            for cell in self.values.errors()
+            if not self.marks.is_faultless(cell) and self._told_of(cell) == cell.name
+        )
+
+    def _told_of(self, cell: Cell) -> str:
+        """The column that tells of a loop that does not settle: of the result, or the first."""
+        loop = self.sheet.loop_of.get(cell.name)
+        if loop is None or cell.status is not Status.NOROOT:
+            return cell.name
+        names = [column.name for column in loop.iterated]
+        return next((name for name in self.workbook.headline if name in names), names[0])
 
     @property
     def ledger(self) -> Ledger:

@@ -82,17 +82,17 @@ def columns(tests: Axis, measured: tuple[Column, Column, Column]) -> tuple[Colum
         made("C", fit.coefficient, unit="N/m^alpha_eiv", meaning="coefficient of the global fit"),
         made("chi2", fit.squares, meaning="sum of squares of the global fit"),
         made("u_alpha", fit.by_adjusted),
-        made("R_B", fit.birge),
+        made("R_B", fit.birge, (fit.n_tests > 2, _TWO), spare=True),
         made("u_B", fit.by_scatter),
         made("h", checks.leverage),
-        made("z_R", checks.deviation, (1 - checks.H[k] > _FREE, _ALONE)),
-        made("alpha_k", checks.without, (1 - checks.H[k] > _FREE, _ALONE)),
+        made("z_R", checks.deviation, (1 - checks.H[k] > _FREE, _ALONE), spare=True),
+        made("alpha_k", checks.without, (1 - checks.H[k] > _FREE, _ALONE), spare=True),
         made("G", checks.trend_of_approach, display="like x_p"),
         made("T", checks.trend_of_depth, display="like x_p"),
         made("S_TT", checks.squares_T),
         made("S_TD", checks.trend_with_exponent),
         made("S_TX", checks.trend_by_depth),
-        made("Q", checks.projected, (checks.projected.value > checks.S_TT * _LEFT, _BENT)),
+        made("Q", checks.projected, (checks.projected.value > checks.S_TT * _LEFT, _BENT), spare=True),
         made("tau", checks.trend),
         made("u_tau", checks.uncertain_trend),
         made("dchi2", checks.taken_off),
@@ -139,11 +139,10 @@ _LEAST = Rational(1, 2**30)
 """What is left of a difference, as a part of what it was made of, is more than rounding from here on."""
 _FREE, _LEFT = Rational(1, 2**10), Rational(1, 2**20)
 """The same of a leverage and of a trend, which are differences of what was made of such differences."""
-_ALONE = "the other tests alone tell exponent and force"
-_BENT = "the tests tell a trend: there are three speeds"
-_ALIKE = (
-    "the tests tell the exponent apart from the force: not all are at one speed, or but one of them counts"
-)
+_ALONE = "the other tests alone tell no curve"
+_TWO = "two tests lie on one curve, so that nothing is left over"
+_BENT = "tests at two speeds tell no trend"
+_ALIKE = "the tests tell no exponent: all are at one speed, or but one of them counts"
 _NONE = (
     "no power law with a positive exponent comes near to all tests, or a test has speed, restitution and "
     "depth without uncertainty, which weighs more than all others"
