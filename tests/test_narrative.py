@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from slipped_campaigns import PAPER, Slip, write
 
@@ -21,6 +22,7 @@ from loopsheet.report.document.tree import (
     Link,
     Math,
     Note,
+    Number,
     Paragraph,
     Refer,
     Section,
@@ -145,6 +147,45 @@ def test_a_sentence_about_a_cell_without_a_value_says_so_and_why(slipped: Report
     assert "did not settle: no power law with a positive exponent comes near to all tests, or" in text
     assert text.endswith("which weighs more than all others. The mean is .")
     assert [value.item.cell.name for value in values_in(chapter)] == ["alpha_mean"]
+
+
+NO, CLOSE, ONE = (
+    "No single power law describes these tests",
+    "The uncertainties look overstated",
+    "One power law describes these tests",
+)
+
+
+@pytest.mark.parametrize(
+    ("chi2", "said", "probability"),
+    [
+        (1e-4, CLOSE, "3e-7"),
+        (0.2, CLOSE, "0.02"),
+        (0.25, ONE, "0.97"),
+        (2.366, ONE, "0.5"),
+        (7.7, ONE, "0.05"),
+        (7.9, NO, "0.05"),
+        (55.19, NO, "6e-12"),
+        (1e4, NO, "below 1e-15"),
+    ],
+)
+def test_what_is_said_first_is_whether_one_curve_serves(
+    report: Report, chi2: float, said: str, probability: str
+) -> None:
+    """Chi-square of three degrees of freedom: 2.5 % below 0.216, half below 2.366, 5 % above 7.815."""
+    values = replace(report.values, value={**report.values.value, "chi2_eiv": np.array([chi2])})
+    told = sections("soft_impact", Said(Material(replace(report, values=values)), ()))[0].blocks[0]
+    assert isinstance(told, Note)
+    text = "".join(map(plain, told.content))
+    assert text.startswith(said)
+    assert text.endswith(f"with probability {probability}.")
+
+
+def plain(part: object) -> str:
+    """What an inline says."""
+    if isinstance(part, Number) and part.figure:
+        return part.figure.plain
+    return "".join(map(plain, part.content)) if isinstance(part, Strong) else str(part)
 
 
 def test_no_sentence_of_a_shipped_narrative_shows_a_code(slipped: Report, report: Report) -> None:

@@ -12,8 +12,8 @@ from ..cells.address import index_text
 from ..messages.errors import suggest
 from ..result import verdict_words as words
 from ..result.agreement import Agreement
-from ..result.chi_square import SIGNIFICANT, largest, tail
-from ..result.numbers import is_pure, rounded
+from ..result.chi_square import CLOSE, SIGNIFICANT, head, largest, tail
+from ..result.numbers import is_pure, probability
 from ..result.statements import statements
 from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
 from ..workbook import FigureSpec
@@ -91,9 +91,10 @@ class Said:
             "table": Role(lambda name: _links("table", self._table(name)), self._table),
             "farthest": Role(self._test),
             "chance": Role(self._chance),
-            "tail": Role(self._probability),
-            "likely": Role(lambda what: (p := self._tail(what)) is not None and p >= SIGNIFICANT),
-            "unlikely": Role(lambda what: (p := self._tail(what)) is not None and p < SIGNIFICANT),
+            "tail": Role(lambda what: self._probable(self._squares(tail, what))),
+            "head": Role(lambda what: self._probable(self._squares(head, what))),
+            "unlikely": Role(lambda what: (p := self._squares(tail, what)) is not None and p < SIGNIFICANT),
+            "close": Role(lambda what: (p := self._squares(head, what)) is not None and p < CLOSE),
         }
 
     # --- cells, counts, references
@@ -126,18 +127,15 @@ class Said:
         limited = self.report.marks.limited(self._column(name))
         return (Count(limited.inside, "inside", limited.margin.column.name),)
 
-    def _probability(self, what: str) -> Inlines:
-        found = self._tail(what)
-        return () if found is None else self.sentence(rounded(found, 1).plain)
+    def _probable(self, p: float | None) -> Inlines:
+        return () if p is None else self.rich(probability(p))
 
-    def _tail(self, what: str) -> float | None:
-        """``chi2 tests 2``: how likely so large a sum of squares is, of all tests but 2; None without one."""
+    def _squares(self, how: Callable[[float, int], float], what: str) -> float | None:
+        """``chi2 tests 2``: how likely such a sum of squares is, of all tests but 2; None without one."""
         name, axis, fewer = what.split()
-        value, dof = (
-            self.report.values.scalar(self._column(name)),
-            self.material.counted(name, axis) - int(fewer),
-        )
-        return tail(value, dof) if dof > 0 and value == value else None
+        value = self.report.values.scalar(self._column(name))
+        dof = self.material.counted(name, axis) - int(fewer)
+        return how(value, dof) if dof > 0 and value == value else None
 
     def _farthest(self, name: str) -> tuple[str, float] | None:
         """The row whose deviation, in standard deviations, is too large for chance, and that chance."""
@@ -155,7 +153,7 @@ class Said:
 
     def _chance(self, name: str) -> Inlines:
         found = self._farthest(name)
-        return self.sentence(rounded(found[1], 1).plain) if found else ()
+        return self._probable(found[1]) if found else ()
 
     def _printed(self, cell: str) -> Inlines:
         self._column(cell)

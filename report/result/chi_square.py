@@ -6,10 +6,12 @@ import math
 
 import mpmath
 
-__all__ = ["SIGNIFICANT", "largest", "tail"]
+__all__ = ["CLOSE", "SIGNIFICANT", "head", "largest", "tail"]
 
 SIGNIFICANT = 0.05
 """A sum of squares that is less likely than this is not taken for chance."""
+CLOSE = 0.025
+"""Nor is one that is as small as this lets it be."""
 
 
 def tail(chi2: float, dof: int) -> float:
@@ -27,6 +29,17 @@ def tail(chi2: float, dof: int) -> float:
     ('0.050000', '6.25e-12')
     """
     return float(mpmath.gammainc(mpmath.mpf(dof) / 2, mpmath.mpf(chi2) / 2, regularized=True))
+
+
+def head(chi2: float, dof: int) -> float:
+    """The probability of a sum of squares at most so large: the rest of :func:`tail`, which may be tiny.
+
+    Examples
+    --------
+    >>> f"{head(0.484419, 4):.6f}", f"{head(1e-4, 4):.3e}"
+    ('0.025000', '1.250e-09')
+    """
+    return float(mpmath.gammainc(mpmath.mpf(dof) / 2, 0, mpmath.mpf(chi2) / 2, regularized=True))
 
 
 def largest(deviation: float, number: int, left_out: int = 0) -> float:

@@ -41,6 +41,8 @@ _DOUBLE = 15
 """Digits that every double has."""
 _GROUPS = 5
 """From this many digits on, the integer part is grouped by three."""
+LEAST = 1e-15
+"""Of a probability below this nobody knows more than that it is."""
 MINUS = "\u2212"
 THIN = "\u202f"
 RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
@@ -229,6 +231,17 @@ def chance(probability: float, other: float) -> str:
     if probability < 1e-4:
         return "less than 0.01 %"
     return "more than 99.99 %" if probability > 1 - 1e-4 else f"{decimals(100 * probability, 2).text} %"
+
+
+def probability(p: float) -> str:
+    """A probability with one digit, or with one of what is missing to 1; of tiny ones that they are.
+
+    >>> probability(6.25e-12), probability(0.0), probability(0.34), probability(0.968)
+    ('6e-12', 'below 1e-15', '0.3', '0.97')
+    """
+    if p < LEAST:
+        return f"below {rounded(LEAST, 1).plain}"
+    return at(p, min(order(p), order(1 - p))).plain if p < 1 else "1"
 
 
 def _figure(text: str, exponent: int | None) -> Numeral:
