@@ -7,6 +7,7 @@ templates/engines/runtime.js runs it, in a browser or in node.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import count, groupby
 from pathlib import Path
@@ -30,6 +31,8 @@ RUNTIME = _TEMPLATES / "minified" / "runtime.js"
 LOOPS = _TEMPLATES / "minified" / "loops.js"
 """What a program with loops brings along."""
 
+_ASKS = re.compile(r"\bu\b")
+"""A function that asks for the unknown."""
 _NULL = Symbol("null", real=True)
 """JavaScript's null."""
 
@@ -190,8 +193,8 @@ class _Scope:
     def body(self, expressions: Sequence[Any], indent: str) -> tuple[list[str], list[str]]:
         """Statements that compute what expressions have in common, and the texts of the expressions."""
         common, reduced = cse(list(expressions), symbols=numbered_symbols("t_"), order="none", list=True)
-        lines = [f"{indent}const {name} = {self.printer.doprint(value)};" for name, value in common]
-        return lines, [self.printer.doprint(value) for value in reduced]
+        named = ", ".join(f"{name} = {self.printer.doprint(value)}" for name, value in common)
+        return [f"{indent}const {named};"] * bool(named), [self.printer.doprint(value) for value in reduced]
 
     def function(self, *expressions: Any, alone: bool = False) -> str:
         """A function of the row (and the unknown): it returns the expressions' values, or the only one's."""
@@ -203,9 +206,8 @@ class _Scope:
         self.totals |= still
         lines = self.passes({total: name for total, name in moving.items() if total not in still}) + lines
         result = texts[0] if alone else f"[{', '.join(texts)}]"
-        if not lines:
-            return f"(r, u) => {result}"
-        return "\n".join(["(r, u) => {", *lines, f"      return {result};", "    }"])
+        whole = "\n".join(["{", *lines, f"      return {result};", "    }"]) if lines else result
+        return f"{'(r, u)' if _ASKS.search(whole) else '(r)'} => {whole}"
 
     def moves(self, expression: Any) -> bool:
         return self.unknown is not None and bool(expression.has(self.unknown))
@@ -260,10 +262,11 @@ def _kernels(sheet: Sheet, plan: Plan, nodes: Sequence[PlanNode]) -> str:
     return "\n".join(["(c, a, n, k) => {", *lines, *scope.head, f"    return {{\n{inner}\n    }};", "  }"])
 
 
-def _references(sheet: Sheet, column: Column) -> Iterable[tuple[str, str | None, str | None]]:
+def _references(sheet: Sheet, column: Column) -> Iterable[str]:
     """The cells that a column names: the column, the index, and the axis of the sum that it stands in."""
     for reference in sheet.named(column):
-        yield reference.name, reference.index, None if reference.over is None else reference.over.name
+        over = reference.over.name if reference.over else ""
+        yield f"{reference.name} {reference.index or ''} {over}".rstrip()
 
 
 def _axis(axis: Axis) -> str:
@@ -300,7 +303,7 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
             "name": column.name,
             "axis": None if column.axis is None else column.axis.name,
             "kind": "" if kind == "map" else kind,
-            "refs": [] if kind == "given" else [_least(each) for each in _references(sheet, column)],
+            "refs": "" if kind == "given" else ",".join(_references(sheet, column)),
             "sums": _unnamed(sheet, column),
             "positive": kind != "given" and int(column.positive),
         }
@@ -333,11 +336,11 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
 
 
 _KINDS = {GivenNode: "given", Map: "map", RootNode: "root"}
-_WHOLE = (
-    """.map(({ refs = [], ...column }) => ({ axis: null, kind: "map", """
-    """sums: [...new Set(refs.flatMap(([, , over]) => over ?? []))], ...column, """
-    """refs: refs.map(([name, index = null, over = null]) => [name, index, over]) }))"""
-)
+_WHOLE = """.map(({ refs: named = "", ...column }) => {
+  const refs = named.split(",").filter(Boolean).map((one) => [0, 1, 2].map((n) => one.split(" ")[n] || null));
+  const sums = [...new Set(refs.flatMap((one) => one[2] ?? []))];
+  return { axis: null, kind: "map", refs, sums, ...column };
+})"""
 """What a column leaves out is put in again."""
 
 
@@ -346,11 +349,3 @@ def _unnamed(sheet: Sheet, column: Column) -> list[str]:
     summed = [axis.name for axis in sheet.summed_axes(column)]
     named = {each.over.name for each in sheet.named(column) if each.over}
     return [] if named == set(summed) else summed
-
-
-def _least(reference: tuple[str | None, ...]) -> list[str | None]:
-    """What is left of a reference without the nulls at its end."""
-    parts = list(reference)
-    while parts[-1] is None:
-        parts.pop()
-    return parts

@@ -39,9 +39,10 @@ from sympy.logic.boolalg import Boolean
 
 from ..plan.nodes import RowSum
 
-__all__ = ["enclose", "interval", "needed"]
+__all__ = ["FUNCTIONS", "enclose", "interval", "needed"]
 
-_FUNCTIONS = Path(__file__).resolve().parents[2] / "templates" / "engines" / "intervals.js"
+FUNCTIONS = Path(__file__).resolve().parents[2] / "templates" / "minified" / "intervals.js"
+"""The functions, a part for each."""
 
 _RISING = {exp: "exp", log: "log", atan: "atan", tanh: "tanh", sinh: "sinh", asinh: "asinh"}
 _UNKNOWN = "ALL"
@@ -153,7 +154,7 @@ def enclose(
 
 def needed(program: str) -> str:
     """The functions for intervals that a program calls, and those that they call."""
-    parts = _FUNCTIONS.read_text(encoding="utf-8").strip().split("\n\n")
+    parts = FUNCTIONS.read_text(encoding="utf-8").strip().split("\n\n")
     names = {part: set(re.findall(r"^(?:const|function) (\w+)", part, re.MULTILINE)) for part in parts}
     found: set[str] = set()
     waiting = [program]

@@ -115,7 +115,9 @@ _IMPLIED = re.compile(
 
 
 def short_markup(page: str) -> str:
-    """A page without the end tags and quotes that every reader puts in again; scripts and styles stay.
+    """A page without the end tags, quotes and empty values that every reader puts in again.
+
+    Scripts and styles stay.
 
     >>> short_markup("<ul><li>1</li><li>2</li></ul><script>'</li><li>'</script>")
     "<ul><li>1<li>2</li></ul><script>'</li><li>'</script>"
@@ -126,4 +128,4 @@ def short_markup(page: str) -> str:
 
 
 def _unquoted(tag: str) -> str:
-    return re.sub(r'="([\w.#-]+)"(?=[ >])', r"=\1", tag)
+    return re.sub(r'="([\w.#-]+)"(?=[ >])', r"=\1", tag.replace('="" ', " "))

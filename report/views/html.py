@@ -43,6 +43,10 @@ class HtmlWriter(Writer):
         """A formula in running text."""
         return mathml(node.latex)
 
+    def places(self, node: Math) -> Markup:
+        """A formula with places for numbers: of each the number, where it stands."""
+        return Markup(_PLACE.sub(r"<ms>\1</ms>", str(self.math(node))))
+
     def number(self, node: Number) -> Markup:
         """A number."""
         figure = node.figure
@@ -103,6 +107,7 @@ class HtmlWriter(Writer):
         return self(Unit(item.head.unit))
 
 
+_PLACE = re.compile(r"<mtext>@([0-9]+)@</mtext>")
 _MEASURES = re.compile(r' (?:width|height|viewBox)="[^"]*"')
 _OPENING = re.compile(r"<svg\b[^>]*>")
 _STYLE = re.compile(r' style="([^"]*)"')
@@ -130,7 +135,10 @@ def inlined(svgs: Mapping[str, str]) -> tuple[dict[str, str], str]:
 
 
 def csp(style: str, script: str = "") -> str:
-    """The content security policy of a page with this style, this script and nothing else."""
+    """The content security policy of a page with this style, this script and nothing else.
+
+    A script may begin workers of texts that are in the page.
+    """
 
     def hashed(text: str) -> str:
         return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
@@ -138,6 +146,8 @@ def csp(style: str, script: str = "") -> str:
     return (
         f"default-src 'none'; script-src {hashed(script) if script else chr(39) + 'none' + chr(39)}; "
         f"style-src {hashed(style)}; img-src data:; base-uri 'none'; form-action 'none'"
+        + "; worker-src blob:"
+        * bool(script)
     )
 
 

@@ -34,7 +34,11 @@ from .writer import TEMPLATES
 
 __all__ = ["SCRIPTS", "BarPart", "data", "drawn", "limits", "parts", "script"]
 
+ALONE = "random.js"
+"""What a worker runs behind the program, and the page, too."""
+
 SCRIPTS = (
+    ALONE,
     "page.js",
     "numbers.js",
     "inputs.js",
@@ -51,6 +55,7 @@ SCRIPTS = (
     "grid.js",
     "files.js",
     "keep.js",
+    "monte_carlo.js",
     "panel.js",
     "main.js",
 )
@@ -80,10 +85,11 @@ def script(program: str, runtime: str, drawings: bool = True) -> str:
     ValueError
         The text would end the element that it stands in.
     """
-    names = (name for name in SCRIPTS if drawings or name not in DRAWING)
-    own = [(TEMPLATES / "minified" / name).read_text(encoding="utf-8") for name in names]
+    names = (name for name in SCRIPTS[1:] if drawings or name not in DRAWING)
+    alone, *own = [(TEMPLATES / "minified" / name).read_text(encoding="utf-8") for name in (ALONE, *names)]
     short: str = kept("program of the page", [program], lambda: short_cells(short_script(program)))
-    text = "".join(["(()=>{", runtime, f"const PROGRAM={short};\n", *own, "})();\n"])
+    until = f"{alone}if(!self.document)return;\n"
+    text = "".join(["(()=>{", runtime, f"const PROGRAM={short};\n", until, *own, "})();\n"])
     if re.search(r"</script|<!--|<script", text, re.IGNORECASE):
         raise ValueError("the script of the page must not hold the end of its element")
     return text
@@ -213,7 +219,8 @@ def _given(report: Report, column: Column) -> dict[str, Any]:
     """What an input may be, and how large its printed unit is."""
     meaning = report.workbook.declared.get(column.name, column).meaning
     printed, bounds = _printed(report, column.name), report.sheet.bounds[column.name]
-    return {
+    cut = {"truncated": True} if printed and printed.mode == "truncated" else {}
+    return cut | {
         "scale": _fraction(printed.scale if printed else parse_unit(column.unit).scale),
         "bounds": limits(bounds),
         "allowed": f"{bounds.said(column.unit)} ({meaning})",

@@ -1,10 +1,11 @@
 // Intervals [low, high], rounded outwards: each holds what an operation gives for any numbers in its arguments,
 // of which one may be a plain number. Of the elementary functions 4 units in the last place are allowed for.
-// A program brings what it calls of these, part by part.
+// A program brings what it calls of these, part by part: a blank line is between two of them.
 
 const ALL = [-Infinity, Infinity];
 
 const side = ([low, high]) => (low > 0 ? 1 : high < 0 ? -1 : 0);
+
 const span = (x) => (x.length ? x : [x, x]);
 
 function out(low, high, by = Number.EPSILON) {

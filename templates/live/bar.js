@@ -7,6 +7,7 @@ function showCell(name, index) {
   if (!LIVE.columns[name]) return;
   bar.name = name;
   bar.index = index;
+  drawSoon();
   writeBar(page.look);
 }
 
@@ -21,7 +22,7 @@ function writeBar(look) {
   box.dataset.index = index;
   byId("bar-hint").hidden = row >= 0;
   byId("bar-cell").hidden = row < 0;
-  for (const id of ["reason", "sure", "source", "put", "precedents", "dependents"]) byId(`bar-${id}`).hidden = true;
+  for (const id of ["reason", "sure", "draws", "source", "put", "precedents", "dependents"]) byId(`bar-${id}`).hidden = true;
   byId("bar-hint").textContent = name === null ? bar.hint : `${name}[${index}] has no place in the sheet now: its ${ROW} is left out or removed.`;
   if (row >= 0) fillBar(look, name, row, index);
   markCells(look, name, row, index);
@@ -37,6 +38,7 @@ function fillBar(look, name, row, index) {
     fillLine("bar-reason", itself ? "" : "needs ", ...(itself ? [] : [cellButton(look, origin.name, origin.row), ": "]), trace.why(origin.name, origin.row));
   }
   fillSure(look, name, row);
+  fillDraws(look);
   if (column.given) fillLine("bar-source", `given, ${here.axis === null ? "in report.toml" : `in ${LIVE.file}, ${ROW} ${index}`}`);
   else fillLine("bar-source", ...sourceLine(column), ...publishedMath(column, name));
   if (column.put && trace.isOk(name, row)) fillLine("bar-put", ...putIn(look, name, row));
@@ -48,7 +50,8 @@ function fillBar(look, name, row, index) {
 function fillSure(look, name, row) {
   const known = sureOf(look, name, row), { kept, unit } = LIVE.columns[name];
   if (!known) {
-    if (kept && look.trace.isOk(name, row)) fillLine("bar-sure", make("span", { class: "says" }, "its uncertainty is as issued"));
+    const told = LIVE.shared ? kept?.[look.trace.index(name, row)] && "its uncertainty is of second order, which an edit leaves to draws" : kept && "its uncertainty is as issued";
+    if (told && look.trace.isOk(name, row)) fillLine("bar-sure", make("span", { class: "says" }, told));
     return;
   }
   const [, u, factor, expanded] = known.texts, behind = () => (unit === "1" ? [] : ["\u00a0", ...part(name, "unit")]);
@@ -115,10 +118,7 @@ function putIn(look, name, row) {
     if (of === "#") return layout.ordinals[index][row];
     return trace.sheet.value[of][index === null ? 0 : layout.rows[index][row]];
   };
-  for (const place of all("mtext", math)) {
-    const found = /^@([0-9]+)@$/.exec(place.textContent);
-    if (found) place.replaceWith(...numberMath(valueOf(put[found[1]])));
-  }
+  for (const place of all("ms", math)) place.replaceWith(...numberMath(valueOf(put[place.textContent])));
   math.setAttribute("display", "block");
   const shown = make("span", { class: "math" }, ...breakable(math));
   if (none !== undefined) return [make("span", { class: "si" }, "in SI: "), shown];

@@ -28,11 +28,6 @@ function tracesOf({ x, y, style }, { log }, { sheet, declared }, sizes) {
   return found.filter(Boolean);
 }
 
-function quantile(sorted, part) {
-  const place = part * (sorted.length - 1), n = Math.floor(place);
-  return sorted[n] + (place - n) * ((sorted[n + 1] ?? sorted[n]) - sorted[n]);
-}
-
 // The ends of both axes, and whether a point is drawn where it is: others must not shrink to nothing for its sake.
 function frameOf({ log, zero }, lines, dots) {
   const flat = (n, value) => (log[n] ? Math.log10(value) : value);

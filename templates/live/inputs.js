@@ -51,6 +51,12 @@ function errorsOf({ given, errors = {} }, index, text) {
   return sized.filter(({ u }) => u); // none of what is no number
 }
 
+// How much more than it says a number is expected to be, in SI: of a truncated one half a unit of its last digit.
+function expected({ given, errors }, index, text) {
+  const stated = Array.isArray(errors) ? errors : errors?.[index];
+  return given.truncated && !stated ? (text.startsWith("-") ? -0.5 : 0.5) * readInput(given, text).digit : 0;
+}
+
 // --- states ----------------------------------------------------------------------------------------------
 // A state is { tests: [{ label, used, reason, cells: { v: "2.334" } }], parameters: { beta: "1.5" } } and is never
 // changed: an edit makes a new one. The reason is why a test is not used.
@@ -103,7 +109,8 @@ function differences(state, issued) {
 
 // --- the sheet of a state --------------------------------------------------------------------------------
 
-// Reads the inputs and computes every column: what evaluateSheet returns, with why inputs were refused.
+// Reads the inputs and computes every column: what evaluateSheet returns, with what it was given and why inputs were
+// refused.
 function computeSheet(program, columns, state) {
   const tests = usedTests(state), labels = {}, data = {}, refused = {};
   for (const axis of program.axes) if (axis.kind === "given") labels[axis.name] = tests.map((test) => test.label);
@@ -124,5 +131,5 @@ function computeSheet(program, columns, state) {
       return read.why ? NaN : read.value;
     });
   }
-  return { ...evaluateSheet(program, labels, data), refused };
+  return { ...evaluateSheet(program, labels, data), labels, data, refused };
 }

@@ -8,6 +8,8 @@ function lookAt(state, issued) {
   return new Look(new Trace(PROGRAM, LIVE.columns, computeSheet(PROGRAM, LIVE.columns, state)), state, issued);
 }
 
+const isEdited = () => document.documentElement.hasAttribute("data-edited");
+
 const say = (sentence) => {
   byId("live-said").textContent = sentence;
 };
@@ -114,13 +116,14 @@ function show() {
   const focus = document.activeElement?.closest?.("[data-cell], [data-use]");
   pick();
   page.look = lookAt(now, page.issued);
-  const edited = !sameState(now, issued), wasEdited = document.documentElement.hasAttribute("data-edited");
+  const edited = !sameState(now, issued), wasEdited = isEdited();
   document.documentElement.toggleAttribute("data-edited", edited);
   // As issued, the page holds the numbers of another engine: none of them is left between ours.
   if (edited) writePage(page.look, wasEdited ? before : null);
   else restore();
   for (const word of page.stale) word.hidden = !edited;
   keepState(now, edited);
+  drawSoon();
   writeToolbar(edited);
   writePanel(page.look);
   writeBar(page.look);

@@ -174,6 +174,12 @@ const signedText = (figure) => {
   return figure.negative || zero ? figureText(figure) : `+${figureText(figure)}`;
 };
 
+// Below which such a part of sorted numbers lies, between two of them in proportion.
+function quantile(sorted, part) {
+  const place = part * (sorted.length - 1), n = Math.floor(place);
+  return sorted[n] + (place - n) * ((sorted[n + 1] ?? sorted[n]) - sorted[n]);
+}
+
 // All digits of a double, as the issued page writes them.
 function repr(x) {
   if (!Number.isFinite(x)) return "";

@@ -18,7 +18,8 @@
 //   #live-panel                       the result beside the table that is edited, as issued and now
 //   [data-issued] > .stale            a chapter that is as issued
 //   #formula-bar[data-cell][data-index]; #bar-toggle (aria-expanded)
-//   #bar-name #bar-meaning #bar-value #bar-reason #bar-sure #bar-source #bar-equation #bar-put
+//   #bar-name #bar-meaning #bar-value #bar-reason #bar-sure #bar-draws #bar-source #bar-equation #bar-put
+//   #bar-draws[data-u][data-ends][data-lost]          what draws told, in SI; #live-panel span: of the results
 //   #bar-precedents button[data-goto="x_p[2]"], #bar-dependents button[data-goto]
 //   #figure-loops svg, #figure-alpha_pairs svg      drawn again (then of the class picture)
 //   #why-NAME-INDEX                   the row that says why a cell has no value

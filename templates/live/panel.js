@@ -19,10 +19,12 @@ function writePanel(look) {
   const rows = LIVE.headline.slice(0, MOST_RESULTS).map((name) => {
     const [before, now] = [page.issued, look].map((one) => one.cell(name, 0).text), same = before === now;
     const { kept, scale } = LIVE.columns[name], u = LIVE.shared && !kept ? look.sure.u(name, 0) / scale : NaN;
+    const more = isEdited() && LIVE.shared && look.trace.isOk(name, 0) ? [...(kept ? ["second order"] : []), shortDraws(name)] : [];
     return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
-      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now, u > 0 ? ` (${told(u, LIVE.most).digits})` : ""));
+      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now, u > 0 ? ` (${told(u, LIVE.most).digits})` : "", ...more.flatMap((text) => [make("br"), make("span", {}, text)])));
   });
   const head = make("tr", {}, ...["result", "as issued", LIVE.shared ? "now (u)" : "now"].map((text) => make("th", { scope: "col" }, text)));
+  if (LIVE.shared) head.lastChild.append(make("br"), make("span", {}, `95\u00a0% of ${DRAWS} draws`));
   // The last of the pictures: those before it show steps on the way.
   const [name, chart] = Object.entries(LIVE.figures).at(-1) ?? [], drawn = name && document.querySelector(`#figure-${CSS.escape(name)} svg.picture`);
   const picture = drawn ? drawn.cloneNode(true) : chart && drawChart(chart, look)?.svg;

@@ -155,7 +155,7 @@ def test_the_bar_says_how_sure_a_cell_is_and_why(live: Live) -> None:
     live.page.locator("#cell-C-4-5").click(position={"x": 3, "y": 3})
     assert "u = " in live.text("bar-sure")
     live.page.locator("#cell-C-3-4").click(position={"x": 3, "y": 3})
-    assert live.text("bar-sure") == "its uncertainty is as issued"
+    assert live.text("bar-sure") == "its uncertainty is of second order, which an edit leaves to draws"
 
 
 def test_input_that_is_refused_has_no_uncertainty(live: Live) -> None:

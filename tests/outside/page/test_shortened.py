@@ -8,13 +8,14 @@ from pathlib import Path
 import pytest
 
 from loopsheet.report.engines.javascript import LOOPS, RUNTIME
+from loopsheet.report.engines.javascript_intervals import FUNCTIONS
 from loopsheet.report.views import live
 from loopsheet.report.views.writer import TEMPLATES
 
 HERE = Path(__file__).parent
 KEPT = [RUNTIME.name, LOOPS.name]
 SOURCES = (
-    *(TEMPLATES / "engines" / name for name in KEPT),
+    *(TEMPLATES / "engines" / name for name in (*KEPT, FUNCTIONS.name)),
     *(TEMPLATES / "live" / name for name in live.SCRIPTS),
 )
 
@@ -23,7 +24,14 @@ def test_scripts_that_ship_are_made_of_their_sources(
     require: Callable[..., str], packages: Path, pytestconfig: pytest.Config
 ) -> None:
     scripts = {path.name: path.read_text(encoding="utf-8") for path in SOURCES}
-    given = json.dumps({"module": str(packages / "terser"), "scripts": scripts, "kept": KEPT})
+    given = json.dumps(
+        {
+            "module": str(packages / "terser"),
+            "scripts": scripts,
+            "kept": KEPT,
+            "parted": FUNCTIONS.name,
+        }
+    )
     done = subprocess.run(
         [require("node"), str(HERE / "shorten.cjs")], input=given, capture_output=True, text=True, check=False
     )

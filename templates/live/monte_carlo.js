@@ -1,0 +1,104 @@
+// The results, and the cell in the formula bar, by Monte Carlo (JCGM 101): some hundred draws in a worker, a moment
+// after an edit, which the next one ends. The page waits for nothing of it.
+
+const DRAWS = 500, PAUSE = 200; // milliseconds in which nothing else was edited
+const WITHOUT = 0.025, NO_DEVIATION = 2.2; // as the report has them
+const TEXT = document.currentScript.textContent;
+const carlo = { worker: null, timer: 0, look: null, found: {}, refused: false };
+
+const draws = (look, name) => LIVE.shared && axisNamed(look.trace.declared[name].axis)?.kind !== "repeat" && !LIVE.columns[name].given;
+
+// Every cell that is to be drawn: after an edit the results, and the one in the bar.
+function cellsToDraw(look) {
+  const results = isEdited() && page.panel ? LIVE.headline.slice(0, MOST_RESULTS).map((name) => [name, 0]) : [];
+  const own = bar.name === null ? [] : [[bar.name, look.trace.row(bar.name, bar.index)]];
+  return [...results, ...own].filter(([name, row]) => row >= 0 && draws(look, name) && look.trace.isOk(name, row));
+}
+
+// Draws what was not drawn yet, soon; what was begun for another state ends.
+function drawSoon() {
+  const { look } = page, cells = cellsToDraw(look);
+  if (carlo.look !== look) Object.assign(carlo, { look, found: {} });
+  clearTimeout(carlo.timer);
+  carlo.worker?.terminate();
+  if (carlo.refused || cells.every((cell) => carlo.found[cell])) return;
+  carlo.timer = setTimeout(() => drawNow(look, cells), PAUSE);
+}
+
+function drawNow(look, cells) {
+  const names = new Set(cells.flatMap(([name]) => [name, ...look.trace.ancestors(name)]));
+  const { labels, data } = look.trace.sheet, { errors, pairs } = look.sure, refuse = () => {
+    carlo.refused = true;
+    tellDraws(look);
+  };
+  try {
+    carlo.worker = new Worker((carlo.url ??= URL.createObjectURL(new Blob([TEXT], { type: "text/javascript" }))));
+  } catch {
+    refuse();
+    return;
+  }
+  carlo.worker.onerror = refuse;
+  carlo.worker.onmessage = ({ data }) => {
+    carlo.worker.terminate();
+    cells.forEach((cell, n) => (carlo.found[cell] = toldBy(data[n])));
+    tellDraws(look);
+  };
+  carlo.worker.postMessage({ count: DRAWS, labels, data: centred(look, data), errors: errors.map(({ moves, shape, dof, sample }) => ({ moves, shape, dof, sample })), pairs, cells, names });
+}
+
+// What was given as it is expected to be: a truncated number is larger than what it says.
+function centred(look, data) {
+  const moved = CELLS.filter(({ name }) => LIVE.columns[name].given?.truncated);
+  const by = (name) => look.texts(name).map((text, row) => expected(LIVE.columns[name], look.trace.index(name, row), text));
+  return { ...data, ...Object.fromEntries(moved.map(({ name }) => [name, data[name].map((value, row) => value + by(name)[row])])) };
+}
+
+// What draws tell: the ends of 95 % with equal tails if nearly all have a value, and the standard uncertainty if the
+// tails let one exist, by Hill's index.
+function toldBy(sorted) {
+  const { length } = sorted, lost = DRAWS - length, mean = sum(sorted) / length, most = Math.floor(Math.sqrt(length));
+  const ends = lost > WITHOUT * DRAWS ? null : [0.025, 0.975].map((part) => quantile(sorted, part));
+  const middle = quantile(sorted, 0.5), out = Array.from(sorted, (value) => Math.abs(value - middle)).sort((a, b) => a - b).slice(-most - 1);
+  const slope = sum(out.slice(1).map((one) => Math.log(one / out[0]))) / most;
+  const u = length > 1 && !(slope * NO_DEVIATION >= 1) ? Math.sqrt(sum(Array.from(sorted, (value) => (value - mean) ** 2)) / (length - 1)) : NaN;
+  return { lost, u, ends };
+}
+
+function tellDraws(look) {
+  if (look !== page.look) return;
+  writePanel(look);
+  fillDraws(look);
+}
+
+// From one end to the other, with the digits that the uncertainty lets them have and a power of ten once.
+function rangeOf(name, { u, ends }) {
+  const { scale } = LIVE.columns[name], by = u > 0 ? u : (ends[1] - ends[0]) / 4;
+  const [low, high] = ends.map((end) => (by > 0 ? stated(end / scale, by / scale, LIVE.most)[0] : readFigure(brief(end / scale))));
+  return `${figureText(low.exponent === high.exponent ? { ...low, exponent: null } : low)} … ${figureText(high)}`;
+}
+
+// Below the first order of the cell in the bar.
+function fillDraws(look) {
+  const { name, index } = bar, row = name === null ? -1 : look.trace.row(name, index);
+  byId("bar-draws").hidden = true;
+  if (row < 0 || !draws(look, name) || !look.trace.isOk(name, row)) return;
+  const found = carlo.found[[name, row]], { unit, scale } = LIVE.columns[name], says = make("span", { class: "says" }, `${DRAWS} draws`);
+  const behind = () => (unit === "1" ? [] : ["\u00a0", ...part(name, "unit")]);
+  if (carlo.refused) fillLine("bar-draws", says, "this browser lets no page draw in the background");
+  if (carlo.refused) return;
+  if (!found) {
+    fillLine("bar-draws", says, "…");
+    return;
+  }
+  const { lost, u, ends } = found, words = u >= 0 ? ["u = ", figureText(stated(0, u / scale, LIVE.most)[1]), ...behind()] : ["the tails have no standard deviation"];
+  words.push(...(ends ? [`, 95\u00a0% in ${rangeOf(name, found)}`, ...behind()] : [", too many without a value for an interval"]));
+  fillLine("bar-draws", says, make("span", {}, ...words, lost ? `; ${lost} without a value` : ""));
+  furnished(byId("bar-draws"), { "data-lost": lost, "data-u": u, "data-ends": ends ?? "" }, []);
+}
+
+// The same of a result, for the panel.
+function shortDraws(name) {
+  const found = carlo.found[[name, 0]];
+  if (!found) return carlo.refused ? "–" : "…";
+  return found.ends ? rangeOf(name, found) : `${found.lost} of ${DRAWS} draws without a value`;
+}

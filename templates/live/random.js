@@ -1,0 +1,79 @@
+// What a sheet gives when its inputs are drawn from their distributions (JCGM 101). A worker runs the program and this
+// file, which know nothing of the page, and ends here.
+
+// Numbers between 0 and 1, the same ones every time (Doty-Humphrey's sfc32, of PractRand).
+function generator() {
+  let a = 1, b = 2, c = 3, counter = 1;
+  const next = () => {
+    const found = (a + b + counter++) | 0;
+    a = b ^ (b >>> 9);
+    b = (c + (c << 3)) | 0;
+    c = ((c << 21 | c >>> 11) + found) | 0;
+    return ((found >>> 0) + 0.5) / 2 ** 32;
+  };
+  for (let n = 0; n < 16; n++) next();
+  return next;
+}
+
+// A root of the correlations of some errors, as the rows of Cholesky's factor; nothing where nothing is left.
+function rootOf(mixed, pairs) {
+  const between = (a, b) => (a === b ? 1 : pairs.reduce((all, [one, other, r]) => ((one === a && other === b) || (one === b && other === a) ? r : all), 0));
+  const rows = [];
+  mixed.forEach((n, i) => {
+    const row = (rows[i] = []);
+    for (let j = 0; j <= i; j++) {
+      const rest = between(n, mixed[j]) - rows[j].slice(0, j).reduce((all, one, k) => all + one * row[k], 0), own = rows[j][j];
+      row[j] = i === j ? Math.sqrt(Math.max(0, rest)) : own > 1e-7 ? rest / own : 0;
+    }
+  });
+  return rows;
+}
+
+// What gives all errors once more, each in units of its standard uncertainty. Those that are correlated are normal; those
+// of one sample are together as wrong as their common estimate is (JCGM 101, 6.4.9).
+function drawer(errors, pairs) {
+  const next = generator(), wave = (turn) => Math.sin(2 * Math.PI * turn);
+  const normal = () => Math.sqrt(-2 * Math.log(next())) * wave(next());
+  // Half of a chi-square with so many halves of a degree of freedom (Marsaglia and Tsang, for one more, taken back).
+  const gamma = (size) => {
+    const d = size + 2 / 3, c = 1 / Math.sqrt(9 * d);
+    for (;;) {
+      const x = normal(), v = (1 + c * x) ** 3;
+      if (v > 0 && Math.log(next()) < x * x / 2 + d * (1 - v + Math.log(v))) return d * v * next() ** (1 / size);
+    }
+  };
+  const shapes = {
+    normal, rectangular: () => Math.sqrt(3) * (2 * next() - 1), triangular: () => Math.sqrt(6) * (next() - next()), arcsine: () => Math.SQRT2 * wave(next()),
+  };
+  const mixed = [...new Set(pairs.flatMap(([a, b]) => [a, b]))].sort((a, b) => a - b), root = rootOf(mixed, pairs);
+  const shared = ({ sample }) => sample && errors.filter((other) => other.sample === sample).length > 1;
+  const places = errors.map((_, n) => mixed.indexOf(n)), wide = errors.map((error, n) => error.dof && (shared(error) || places[n] < 0));
+  return () => {
+    const scales = {}, own = mixed.map(normal);
+    return errors.map(({ shape, dof, sample }, n) => {
+      const error = places[n] < 0 ? (shapes[shape] ?? normal)() : root[places[n]].reduce((all, one, k) => all + one * own[k], 0);
+      return wide[n] ? error * (scales[sample ?? n] ??= Math.sqrt(dof / 2 / gamma(dof / 2))) : error;
+    });
+  };
+}
+
+// The values of some cells, sorted, of as many draws as asked for: those that have one. `data` and `labels` are the
+// sheet's, `names` the columns that the cells rest on, and they themselves.
+function drawn({ count, labels, data, errors, pairs, cells, names }) {
+  const program = { ...PROGRAM, columns: PROGRAM.columns.filter(({ name }) => names.has(name)) };
+  const draw = drawer(errors, pairs), found = cells.map(() => []);
+  for (let n = 0; n < count; n++) {
+    const inputs = { ...data }, by = draw();
+    errors.forEach(({ moves }, which) => {
+      for (const [name, row, u] of moves) {
+        if (inputs[name] === data[name]) inputs[name] = data[name].slice();
+        inputs[name][row] += u * by[which];
+      }
+    });
+    const { value, status } = evaluateSheet(program, labels, inputs);
+    cells.forEach(([name, row], which) => status[name][row] || found[which].push(value[name][row]));
+  }
+  return found.map((values) => new Float64Array(values).sort());
+}
+
+if (!self.document) self.onmessage = ({ data }) => postMessage(drawn(data));
