@@ -101,6 +101,19 @@ def test_why_names_the_first_culprit(campaign: Path, capsys: pytest.CaptureFixtu
     assert "#NOROOT! x_m1[1-2] needs alpha[1-2]: (11) has no root here" in out
 
 
+@pytest.mark.parametrize("command", ["show alpha_eiv", "show alpha", "show x_m1[1-2]", "budget alpha_eiv"])
+def test_a_cell_without_a_value_is_a_finding(
+    campaign: Path, capsys: pytest.CaptureFixture[str], command: str
+) -> None:
+    whole = main([*command.split(), str(campaign)]), capsys.readouterr().out
+    table = campaign / "measurements.csv"
+    table.write_text(table.read_text().replace("0.512", "0.9"))
+    lacking = main([*command.split(), str(campaign)]), capsys.readouterr().out
+    assert (whole[0], lacking[0]) == (0, 1)
+    assert "#NOROOT!" in lacking[1]
+    assert "#NOROOT!" not in whole[1]
+
+
 def test_show_tells_value_equation_and_precedents(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["show", "alpha[1-2]", "paper"]) == 0
     out = capsys.readouterr().out

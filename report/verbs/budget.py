@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from typing import TYPE_CHECKING
 
 from ..distribution import LEVEL
-from .common import OK, Progress, count, find_one, folder_argument, format_argument, keeping_arguments
+from .common import Progress, answer, count, find_one, folder_argument, format_argument, keeping_arguments
 
 if TYPE_CHECKING:
     from ..study import Study
@@ -40,7 +41,7 @@ def _level(text: str) -> float:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the budget of a cell."""
+    """Print the budget of a cell; exit code 1 if it has no value."""
     from ..inputs.folders import report_folder
     from ..study import Study
 
@@ -49,11 +50,11 @@ def run(options: argparse.Namespace) -> int:
         draws = str(options.draws), str(options.seed)
         parts = options.cell, options.format, repr(options.level), *draws
         told = study.kept("budget", lambda: _told(study, *parts), *parts)
-    print(told)
-    return OK
+    return answer(*told)
 
 
-def _told(study: Study, address: str, form: str, level: str, draws: str, seed: str) -> str:
+def _told(study: Study, address: str, form: str, level: str, draws: str, seed: str) -> tuple[str, bool]:
+    """What is told, and whether the cell has a value."""
     from ..uncertainty.monte_carlo import draw
     from ..uncertainty.propagation import Spread
     from ..views.budget import FORMATS
@@ -65,4 +66,5 @@ def _told(study: Study, address: str, form: str, level: str, draws: str, seed: s
     if int(draws) and budget.u > 0:
         drawn = draw(report.inputs, report.values, budget, int(draws), int(seed), study.step)
     limited = [each for each in report.inputs.limits if each.cell == (column.name, tuple(label))]
-    return FORMATS[form](report, budget, drawn, tuple(map(spread.conformity, limited)))
+    told = FORMATS[form](report, budget, drawn, tuple(map(spread.conformity, limited)))
+    return told, not math.isnan(budget.value)

@@ -22,6 +22,7 @@ __all__ = [
     "OK",
     "USAGE",
     "Progress",
+    "answer",
     "count",
     "find",
     "find_one",
@@ -97,6 +98,12 @@ def count(text: str) -> int:
 def outcome(checks: Iterable[Check]) -> int:
     """The exit code of what was checked."""
     return OK if all(check.passed for check in checks) else FINDINGS
+
+
+def answer(told: str, known: bool) -> int:
+    """Print what is told of cells; the exit code: a cell that was asked for and has no value is a finding."""
+    print(told)
+    return OK if known else FINDINGS
 
 
 def print_checks(checks: tuple[Check, ...], form: str, title: str, more: Mapping[str, Any]) -> None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING
 
-from .common import OK, find, folder_argument, keeping_arguments
+from .common import OK, answer, find, folder_argument, keeping_arguments
 
 if TYPE_CHECKING:
     from ..result.result import Report
+    from ..sheet import Column
 
 HELP = "show a cell: its value, its equation, what it is computed from"
 
@@ -24,16 +25,22 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print a column's equation, and the cells that are asked for."""
+    """Print an equation and the cells that are asked for; exit code 1 if one of them has no value."""
     from ..inputs.folders import report_folder
     from ..study import Study
 
     study = Study(report_folder(options.folder))
     if options.plan:
         print(study.kept("plan", lambda: _plan(study.computed, options.cell), options.cell), end="")
-    else:
-        print(study.kept("show", lambda: "\n".join(_lines(study.computed, options.cell)), options.cell))
-    return OK
+        return OK
+    return answer(*study.kept("show", lambda: _told(study.computed, options.cell), options.cell))
+
+
+def _told(report: Report, address: str) -> tuple[str, bool]:
+    """What is told, and whether all cells that are asked for have a value."""
+    column, labels = find(report, address)
+    known = all(report.values.cell(column.name, label).value is not None for label in labels)
+    return "\n".join(_lines(report, column, labels)), known
 
 
 def _plan(report: Report, address: str) -> str:
@@ -47,10 +54,9 @@ def _plan(report: Report, address: str) -> str:
     return text(plan, [column.name])
 
 
-def _lines(report: Report, address: str) -> Iterator[str]:
+def _lines(report: Report, column: Column, labels: Collection[tuple[int, ...]]) -> Iterator[str]:
     from ...derivations.text import text_of_equation
 
-    column, labels = find(report, address)
     name = column.name
     yield f"{name}  {column.meaning}  [{report.shown[name].unit}]  {column.source}"
     if column.equation is not None:
