@@ -498,6 +498,8 @@ class Column:
         Where its cells are expected. One outside keeps its value and carries a mark.
     exact : bool
         Whether a given value is a choice or a convention, so that its digits say nothing of precision.
+    is_u : bool
+        Whether its cells are uncertainties themselves, of which no more digits are shown than of any other.
     spare : bool
         Whether its conditions ask for more than a campaign must have, so that where they do not hold there is
         nothing to find: its cells have no value, and nobody is to blame.
@@ -516,6 +518,7 @@ class Column:
     requires: tuple[tuple[Rel, str], ...] = ()
     exact: bool = False
     limits: tuple[Limit, ...] = ()
+    is_u: bool = False
     spare: bool = False
     alongside: tuple[Column, ...] = ()
     mentioned: ClassVar[Mentioned | None] = None

@@ -66,6 +66,7 @@ class _ToldColumn:
     display: str
     positive: bool
     exact: bool
+    is_u: bool
     spare: bool
     source: str
     conditions: tuple[str, ...]
@@ -216,7 +217,7 @@ def _column(
     alongside = tuple(other.name for other in column.alongside)
     return _ToldColumn(
         column.name, None if column.axis is None else column.axis.name, column.unit, column.meaning,
-        column.latex, column.display, column.positive, column.exact, column.spare, column.source,
+        column.latex, column.display, column.positive, column.exact, column.is_u, column.spare, column.source,
         column.conditions, _mentioned(sheet, column), tuple(limits), alongside,
         asdict(rule) if isinstance(rule, Given) else None,
         tuple(told_equation(each, *writing) for each in equations) if writing else (), place,
@@ -277,6 +278,7 @@ class _Known:
                 "display",
                 "positive",
                 "exact",
+                "is_u",
                 "spare",
                 "source",
                 "conditions",

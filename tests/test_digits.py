@@ -21,12 +21,14 @@ from loopsheet.report import stages
 from loopsheet.report.cells.address import index_text
 from loopsheet.report.cells.values import Status
 from loopsheet.report.document.material import Material
+from loopsheet.report.document.tables import Tables
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Given, RepeatAxis
 from loopsheet.report.study import Study
 from loopsheet.report.verbs.build import summary
 from loopsheet.report.views import html, latex
+from loopsheet.report.views.live_uncertain import digits
 
 TOML = """\
 workbook = "soft_impact"
@@ -184,6 +186,22 @@ def test_the_terminal_shows_what_the_page_shows(of: Shown) -> None:
         label = tuple(map(int, index.split("-"))) if index else ()
         told = of.report.text(of.report.values.cell(name, label))
         assert plain(told.removesuffix(f" {of.report.shown[name].unit}")) == text
+
+
+def test_a_column_of_uncertainties_has_no_more_digits_than_any_other(report: Report) -> None:
+    shown = {c.name: report.figures(c.name) for c in report.sheet.columns if c.is_u}
+    assert {name: figure.plain for name, (figure,) in shown.items() if figure} == {
+        "u_alpha_eiv": "0.0031", "u_birge_eiv": "0.013", "u_trend_eiv": "0.026"
+    }  # fmt: skip
+    assert all(digits(report, report.sheet[name])["kept"] == {"": 2} for name in shown)
+
+
+def test_units_in_what_a_user_stated_are_those_of_the_head(tmp_path: Path) -> None:
+    report = Study(written(tmp_path)).computed
+    legend = "".join(map(str, Tables(Material(report)).data["measured"].legend))
+    stated = legend.partition("Stated uncertainties")[2]
+    assert "Unit(unit='um')" in stated
+    assert " um" not in stated
 
 
 def test_the_key_sets_the_number_of_digits(tmp_path: Path) -> None:

@@ -41,7 +41,19 @@ def both(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.Mon
 
 def plainly(sheet: Sheet, column: Column) -> list[object]:
     """What a column says without its algebra."""
-    names = ("name", "unit", "meaning", "latex", "display", "positive", "exact", "spare", "source", "content")
+    names = (
+        "name",
+        "unit",
+        "meaning",
+        "latex",
+        "display",
+        "positive",
+        "exact",
+        "is_u",
+        "spare",
+        "source",
+        "content",
+    )
     rule = column.rule
     return [
         *(getattr(column, name) for name in names),

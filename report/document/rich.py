@@ -17,10 +17,11 @@ from .tree import Inline, Inlines, Math, Number, Refer, Unit
 
 __all__ = ["Sentences"]
 
+_UNIT = r"(?<!\w)N/m\^\w+|(?<=[\d–]\s)[uμ](?:m|s|in)\b"
 _PART = re.compile(
     r"(?P<number>(?<![\w.])-?\d+(?:\.\d+)?e[+-]?\d+(?!\w))"
     r"|(?P<label>\(L?\d+[a-z]?\))"
-    r"|(?P<unit>(?<!\w)N/m\^\w+)"
+    rf"|(?P<unit>{_UNIT})"
     r"|(?P<symbol>(?<![\w'’.])(?P<name>[A-Za-z]\w*(?:'+(?:_\w+)?)?(?:,[a-z](?!\w))?)"
     r"(?:\[(?P<index>\w+(?:-\w+)?)\])?(?:(?:\*\*|\^)(?P<power>\w+))?(?![\w’]|\.\w))"
     r"|(?P<raised>(?<=\))\^(?P<to>\w+))"
@@ -61,6 +62,11 @@ class Sentences:
         text = text.rstrip(".")
         word = re.match(r"[a-z]{2,}\b|a(?= )", text)
         return self.rich(text[0].upper() + text[1:] if word and word.group() not in self.vocabulary else text)
+
+    def units(self, text: str) -> Inlines:
+        """Words of a user, with the units in them as tables print them."""
+        parts = enumerate(re.split(f"({_UNIT})", text))
+        return tuple(Unit(part) if n % 2 else part for n, part in parts if part)
 
     def _parts(self, text: str) -> Iterator[Inline]:
         place = 0

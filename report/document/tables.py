@@ -174,7 +174,7 @@ class Tables:
     def _known(self, heads: Iterable[Head]) -> Inlines:
         """What is stated of the errors of given columns."""
         told = [
-            (Math(head.latex), "\u00a0", said)
+            (Math(head.latex), "\u00a0", *self.material.sentences.units(said))
             for head in heads
             if head.given and (said := of_column(self.report, head.name))
         ]

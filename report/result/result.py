@@ -16,7 +16,7 @@ from ..quantity import Printed, behind
 from ..sheet import Given, Sheet
 from ..workbook import Workbook
 from .agreement import Agreement
-from .numbers import Numeral, last_place, read, shown, stated, uncertainty
+from .numbers import Numeral, last_place, order, read, shown, stated, uncertainty
 from .uncertain import Uncertainties
 from .verdict import (
     OTHERWISE,
@@ -245,6 +245,8 @@ class Report:
         how, most = self.shown[name], self.inputs.uncertainty.digits
         known = self.uncertain().u
         values = self.in_unit(name)
+        if self.sheet[name].is_u:
+            return [order(value) - most + 1 if value else 0 for value in values]
         u = (known[name] / how.scale).tolist() if name in known else [math.nan] * len(values)
         return [last_place(value or 0.0, own, how.digits, most) for value, own in zip(values, u, strict=True)]
 

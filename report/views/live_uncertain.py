@@ -84,7 +84,7 @@ def digits(report: Report, column: Column) -> dict[str, Any]:
         for row, (label, value, place) in enumerate(
             zip(labels, report.in_unit(name), report.places(name), strict=True)
         )
-        if value is not None and (every or bent[row])
+        if value is not None and (every or bent[row] or column.is_u)
     }
     least = min(issued.values(), default=warranted) if every else warranted
     kept = {index: number for index, number in issued.items() if not every or number != least}

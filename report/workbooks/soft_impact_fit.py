@@ -81,9 +81,9 @@ def columns(tests: Axis, measured: tuple[Column, Column, Column]) -> tuple[Colum
         made("F_0", (fit.force, fit.force_step, fit.force_start)),
         made("C", fit.coefficient, unit="N/m^alpha_eiv", meaning="coefficient of the global fit"),
         made("chi2", fit.squares, meaning="sum of squares of the global fit"),
-        made("u_alpha", fit.by_adjusted),
+        made("u_alpha", fit.by_adjusted, is_u=True),
         made("R_B", fit.birge, (fit.n_tests > 2, _TWO), spare=True),
-        made("u_B", fit.by_scatter),
+        made("u_B", fit.by_scatter, is_u=True),
         made("h", checks.leverage),
         made("z_R", checks.deviation, (1 - checks.H[k] > _FREE, _ALONE), spare=True),
         made("alpha_k", checks.without, (1 - checks.H[k] > _FREE, _ALONE), spare=True),
@@ -94,7 +94,7 @@ def columns(tests: Axis, measured: tuple[Column, Column, Column]) -> tuple[Colum
         made("S_TX", checks.trend_by_depth),
         made("Q", checks.projected, (checks.projected.value > checks.S_TT * _LEFT, _BENT), spare=True),
         made("tau", checks.trend),
-        made("u_tau", checks.uncertain_trend),
+        made("u_tau", checks.uncertain_trend, is_u=True),
         made("dchi2", checks.taken_off),
     )
 
