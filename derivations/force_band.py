@@ -88,10 +88,9 @@ _propagated = Equation(
     Kind.DEFINITION,
     "uncertainty of the force by propagation",
 )
-_depth = fit.depth.sides[1].xreplace({XM[k]: fit.approach.sides[1]})
 _as_deep = Equation(
     "",
-    (diff(_depth, F_0) * F_0 * DC[k] / CP[k], R[k]),
+    (diff(fit.on_curve, F_0) * F_0 * DC[k] / CP[k], R[k]),
     "definition: the force that changes the imprint depth by the misfit, to first order",
     Kind.DEFINITION,
     "depth of a curve with more force",

@@ -46,6 +46,7 @@ __all__ = [
     "least",
     "misfit",
     "multiplier",
+    "on_curve",
     "over_tests",
     "products",
     "restitution",
@@ -303,12 +304,13 @@ least = {G_alpha: Integer(0), G_F: Integer(0)}
 
 # --- why they hold -----------------------------------------------------------------------------------------
 
-_on_curve = depth.sides[1].xreplace({XM[k]: approach.sides[1]})
+on_curve: Expr = depth.sides[1].xreplace({XM[k]: approach.sides[1]})
+"""The imprint depth of a test by its true speed and restitution, and by the curve."""
 
 
 def _slope(of: Expr, by: Expr, name: str) -> Equation:
     because = f"derivative of the imprint depth by the {name}"
-    return Equation("", (of, diff(_on_curve, by)), "definition", Kind.DEFINITION, because, defines=of)
+    return Equation("", (of, diff(on_curve, by)), "definition", Kind.DEFINITION, because, defines=of)
 
 
 _depth_of = Function("x_p")(V[k], E[k])

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from test_global_fit import depth
 
 from loopsheet.report.cells.values import Values
 from loopsheet.report.engines import numpy as engine
@@ -21,10 +22,9 @@ def curve(report: Report, alpha: float, force: float, x: np.ndarray) -> np.ndarr
 
 def depths(report: Report, alpha: float, force: float) -> np.ndarray:
     """The imprints of the tests, by their adjusted speeds and restitutions, on another curve."""
-    x_0, beta, m_red = (report.values.scalar(name) for name in ("x_0", "beta", "m_red"))
+    x_0, m_red, beta = (report.values.scalar(name) for name in ("x_0", "m_red", "beta"))
     v, e = (report.values.value[name] for name in ("v_eiv", "e_eiv"))
-    x_m = x_0 * ((alpha + 1) * m_red * v**2 / (2 * force * x_0)) ** (1 / (alpha + 1))
-    return np.asarray(x_m * (1 - (beta + 1) / (alpha + 1) * e**2))
+    return depth(v, e, alpha, force, x_0, m_red, beta)
 
 
 def test_the_band_is_propagated_from_exponent_and_force(report: Report, drawn: Values) -> None:

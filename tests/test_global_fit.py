@@ -45,10 +45,12 @@ def fitted(*given: Any) -> Values:
     return engine.evaluate(SHEET, {"tests": range(1, given[0].shape[-1] + 1)}, data(*given), PROGRAM)
 
 
-def depth(v: Array, e: Array, alpha: Any, F: Any, x_0: float) -> Array:
+def depth(
+    v: Array, e: Array, alpha: Any, F: Any, x_0: float, mass: float = MASS, beta: float = BETA
+) -> Array:
     """The imprint depth on a curve, by (6), (7) and (9)."""
     A = alpha + 1
-    found: Array = x_0 * (A * MASS * v**2 / (2 * F * x_0)) ** (1 / A) * (1 - e**2 * (BETA + 1) / A)
+    found: Array = x_0 * (A * mass * v**2 / (2 * F * x_0)) ** (1 / A) * (1 - e**2 * (beta + 1) / A)
     return found
 
 

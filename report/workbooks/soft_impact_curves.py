@@ -12,6 +12,7 @@ from ...derivations import soft_impact as model
 from ...derivations.symbols import VOCABULARY, k
 from ..charts import Drawn, drawn
 from ..sheet import Axis, Column, Given, PairAxis, RepeatAxis, Sheet
+from .soft_impact_fit import CALLED
 
 __all__ = ["POINTS_PER_BRANCH", "columns"]
 
@@ -59,8 +60,10 @@ def _band(sheet: Sheet, tests: Axis) -> tuple[Column, ...]:
     row, step, size = (Symbol(name, integer=True, positive=True) for name in ("b", "g", "n_bands"))
     bands = RepeatAxis("bands", row, size, of=tests, step=step, count="band_points")
     count = Column(bands.count, None, Given("chart"), meaning="points of the band for each test", exact=True)
-    where: dict[Expr, Expr] = {VOCABULARY[like].symbol: sheet[name].symbol for like, name in _SCALARS.items()}
-    where |= {VOCABULARY[like][k]: sheet[name][tests.index] for like, name in _TESTS.items()}
+    where: dict[Expr, Expr] = {}
+    for like, name in CALLED.items():
+        own, quantity = sheet[name], VOCABULARY[like]
+        where[quantity.symbol if own.axis is None else quantity[k]] = own.cell
     x_m, peak, u = (VOCABULARY[like][k] for like in ("x_m", "Cprime", "u_C"))
     beside = force.beside.at(where | {peak: force.peak.at(where).value})
 
@@ -81,11 +84,3 @@ def _band(sheet: Sheet, tests: Axis) -> tuple[Column, ...]:
     )
     offset = drawn("beside", tests, beside.value, "N", beside.title)
     return (count, x, F, band, further, *ends, offset)
-
-
-_SCALARS = {
-    "F_0": "F_eiv", "alpha": "alpha_eiv", "x_0": "x_0",
-    "S_DD": "S_DD", "S_DX": "S_DX", "S_XX": "S_XX", "Delta": "Delta_eiv",
-}  # fmt: skip
-_TESTS = {"x_m": "x_m_eiv", "x_p": "x_p_eiv", "R": "R_eiv"}
-"""What the quantities of a band are called in the sheet."""

@@ -14,9 +14,9 @@ from ...derivations.symbols import VOCABULARY, k
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Formula, Given, Iterated
 
-__all__ = ["columns"]
+__all__ = ["CALLED", "columns"]
 
-_CALLED = {
+CALLED = {
     "u_v": "u_v", "u_e": "u_e", "u_x": "u_x_p", "v": "v_eiv", "e": "e_eiv", "x_m": "x_m_eiv",
     "x_p": "x_p_eiv", "D": "D_eiv", "B_v": "B_v_eiv", "B_e": "B_e_eiv", "W": "W_eiv", "R": "R_eiv",
     "lam": "lambda_eiv", "x_0": "x_0", "v_0": "v_0", "F_0": "F_eiv", "alpha": "alpha_eiv",
@@ -109,11 +109,11 @@ def _making(tests: Axis, measured: tuple[Column, ...]) -> Callable[..., Column]:
             "rule": Given(), "unit": own.unit, "meaning": own.meaning, "latex": _LATEX.get(like, own.latex),
             "positive": own.positive and like not in _ZERO, **more,
         }  # fmt: skip
-        return Column(_CALLED[like], axis, **more)
+        return Column(CALLED[like], axis, **more)
 
     observed = (VOCABULARY[name][k] for name in ("v_obs", "e_obs", "x_obs"))
     where: dict[Expr, Expr] = {cell: own[k] for cell, own in zip(observed, measured, strict=True)}
-    for like in _CALLED:
+    for like in CALLED:
         own, cell = VOCABULARY[like], blank(like)
         where[own.symbol if like in _SCALARS else own[k]] = cell.cell
 
