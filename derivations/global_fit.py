@@ -28,6 +28,7 @@ __all__ = [
     "alpha_step",
     "approach",
     "birge",
+    "bowl",
     "by_adjusted",
     "by_exponent",
     "by_restitution",
@@ -290,6 +291,9 @@ with evaluate(False):
 speed_step: Expr = VO[k] + V[k] - speed.value
 restitution_step: Expr = EO[k] + E[k] - restitution.value
 """The next true values: they stay where (L38) and (L39) hold."""
+bowl: Expr = Max((BE[k] / XM[k]) ** 2, 1 - UE[k] ** 2 * W[k] * R[k] * diff(by_restitution.value, E[k]))
+"""Positive but where a restitution of zero is a top of a test's squares, which no step leaves, and not their
+least: the second is their second derivative there, over that of the restitution's own square."""
 _more_alpha, _less_force = exponent.sides[1], force.sides[1]
 alpha_step: Expr = ALPHA + (S_XX * _more_alpha - S_DX * _less_force) / Delta
 """The next exponent, by least squares along the tangents: it stays where (L42) and (L43) are 0."""

@@ -130,6 +130,24 @@ def test_one_test_has_no_exponent() -> None:
     assert values.cell("chi2_eiv").culprit is not None
 
 
+@pytest.mark.parametrize(("u_e", "settles"), [(0.002, True), (0.1, False)])
+def test_a_restitution_of_zero_is_a_minimum_or_no_value(u_e: float, settles: bool) -> None:
+    """Nothing moves at zero: the sum is the same on both sides of it, be it least there or greatest."""
+    third = np.arange(V.size) == 2
+    e, us = np.where(third, 0, E), (0.005 * V, np.where(third, u_e, 0.002), 0.005 * X)
+    values = fitted(V, e, X, *us)
+    assert (values.status["alpha_eiv"][0] == Status.OK) == settles
+    near = fitted(V, np.maximum(e, 1e-3), X, *us)
+    alpha, chi2, _ = by_scipy(V, np.maximum(e, 1e-3), X, *us)
+    # Far from the curve others stop before the least sum.
+    assert near.scalar("alpha_eiv") == pytest.approx(alpha, abs=1e-5)
+    assert near.scalar("chi2_eiv") <= chi2 == pytest.approx(near.scalar("chi2_eiv"), rel=1e-7)
+    if settles:
+        assert values.scalar("chi2_eiv") == pytest.approx(chi2, rel=0.01)
+    else:
+        assert "a restitution of zero" in values.cell("alpha_eiv").reason
+
+
 def test_a_speed_may_be_exact() -> None:
     """Its error then takes no part, and its true value is the measured one."""
     values = fitted(V, E, X, 0 * U[0], U[1], U[2])

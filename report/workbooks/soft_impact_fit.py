@@ -66,7 +66,7 @@ def columns(tests: Axis, measured: tuple[Column, Column, Column]) -> tuple[Colum
         made("B_e", fit.by_restitution, display="like x_p"),
         made("W", fit.weight),
         made("R", fit.misfit, display="like x_p"),
-        made("lam", fit.multiplier),
+        made("lam", fit.multiplier, (fit.bowl > 0, _BOWL)),
         made("S_DD", fit.squares_D),
         made("S_DX", fit.products),
         made("S_XX", fit.squares_X),
@@ -145,5 +145,7 @@ _BENT = "tests at two speeds tell no trend"
 _ALIKE = "the tests tell no exponent: all are at one speed, or but one of them counts"
 _NONE = (
     "no power law with a positive exponent comes near to all tests, or a test has speed, restitution and "
-    "depth without uncertainty, which weighs more than all others"
+    "depth without uncertainty, which weighs more than all others, or a restitution of zero is so uncertain "
+    "that a larger one fits better: state one above zero"
 )
+_BOWL = "a restitution of zero is the best there is: its uncertainty is small, or its imprint deep"
