@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from .column import Column
     from .sheet import Sheet
 
-__all__ = ["Design", "FigureSpec", "Measured", "Parameter", "TableSpec", "Workbook"]
+__all__ = ["Design", "FigureSpec", "Measured", "Parameter", "SquareSum", "TableSpec", "Workbook"]
 
 
 @dataclass(frozen=True)
@@ -96,6 +96,25 @@ class FigureSpec:
 
 
 @dataclass(frozen=True)
+class SquareSum:
+    """A least sum of squares: it tells whether what was fitted describes what was measured.
+
+    Parameters
+    ----------
+    name : str
+        The cell of the sum; every square is that of a deviation over its standard uncertainty.
+    axis : str
+        The rows that it sums over.
+    fitted : int
+        How many numbers were fitted to them.
+    """
+
+    name: str
+    axis: str
+    fitted: int
+
+
+@dataclass(frozen=True)
 class Design:
     """How rows that are not measured yet are made forward from what is known.
 
@@ -162,6 +181,8 @@ class Workbook:
     sheet: Callable[[frozenset[str]], Sheet]
     check_parameters: Callable[[frozenset[str]], str | None] = lambda given: None
     headline: tuple[str, ...] = ()
+    squares: tuple[SquareSum, ...] = ()
+    """The sums of squares to be no larger and no smaller than chance makes them."""
     fits: tuple[str, ...] = ()
     tables: tuple[TableSpec, ...] = ()
     figures: tuple[FigureSpec, ...] = ()

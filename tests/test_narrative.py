@@ -145,7 +145,7 @@ def test_a_sentence_about_a_cell_without_a_value_says_so_and_why(slipped: Report
     assert paragraph.content[:4] == (*symbols, " have no value: ")
     text = "".join(part for part in paragraph.content if isinstance(part, str))
     assert "did not settle: no power law with a positive exponent comes near to all tests, or" in text
-    assert text.endswith("which weighs more than all others. The mean is .")
+    assert text.endswith("state one above zero. The mean is .")
     assert [value.item.cell.name for value in values_in(chapter)] == ["alpha_mean"]
 
 

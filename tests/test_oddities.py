@@ -27,6 +27,24 @@ pytestmark = pytest.mark.usefixtures("keeping")
 SLIPPED = Slip("x_p", 2, up=False).of(PAPER)
 TWO = {name: column[:2] for name, column in PAPER.items()}
 BACKWARDS = {**TWO, "x_p": ("29.7", "23.5")}
+SOUND = {
+    "v": ("2.000", "2.603", "3.197", "3.791", "4.395", "4.990"),
+    "e": ("0.5401", "0.5227", "0.4990", "0.4838", "0.4710", "0.4557"),
+    "x_p": ("20.65", "26.55", "32.96", "39.20", "44.97", "51.41"),
+}
+"""On the curve of 1.3, with normal errors of the standard uncertainties that follow."""
+
+
+SCATTERED = (
+    "warning: chi2_eiv = 742 on 3 degrees of freedom; the probability of so much is below 1e-15: what is "
+    "fitted does not describe all tests, or their standard uncertainties are understated"
+)
+
+
+def stated(part: float = 1) -> str:
+    """Lines of report.toml: the standard uncertainties that its errors have, times a number."""
+    each = ("v", 0.01, "m/s"), ("e", 0.002, "1"), ("x_p", 0.2, "um")
+    return "[uncertainty]\n" + "".join(f'{name} = "u = {part * u:g} {unit}"\n' for name, u, unit in each)
 
 
 def checks(folder: Path) -> dict[str, Check]:
@@ -51,8 +69,30 @@ def named(folder: Path) -> list[int]:
 
 
 def test_of_sound_data_there_is_nothing_to_tell(tmp_path: Path) -> None:
-    assert told(write(tmp_path, PAPER)) == []
+    assert told(write(tmp_path, SOUND, stated())) == []
     assert all(check.passed for check in checks(tmp_path).values())
+
+
+@pytest.mark.parametrize(
+    ("part", "says"),
+    [
+        (0.2, "the probability of so much is 4e-5: what is fitted does not describe all tests"),
+        (30, "the probability of so little is 2e-7: the standard uncertainties of the tests are over"),
+    ],
+)
+def test_deviations_are_neither_larger_nor_smaller_than_chance_makes_them(
+    tmp_path: Path, part: float, says: str
+) -> None:
+    (warning,) = told(write(tmp_path, SOUND, stated(part)))
+    assert says in warning
+    expected = '[expected]\nchi2_eiv = "a round robin"\n'
+    assert [line.partition(":")[0] for line in told(write(tmp_path, SOUND, expected + stated(part)))] == [
+        "expected"
+    ]
+
+
+def test_of_two_tests_nothing_is_left_over(tmp_path: Path) -> None:
+    assert checks(write(tmp_path, TWO))["squares chi2_eiv"].message == "chi2_eiv: nothing left over of tests"
 
 
 @pytest.mark.parametrize("up", [True, False])
@@ -126,7 +166,8 @@ IMPLAUSIBLE = {
 def test_of_several_tests_that_may_be_wrong_the_one_that_moves_the_result_most(tmp_path: Path) -> None:
     """Only the pair of tests 4 and 5 is odd: both may be the cause."""
     texts = changed("e", 5, "0.469")
-    both = told(write(tmp_path, texts))
+    *both, scattered = told(write(tmp_path, texts))
+    assert scattered == SCATTERED
     assert [said.partition(": alpha[4-5] = ")[0] for said in both] == [
         "warning: alpha: 1 of 10 pairs outside (4)",
         "warning: alpha: 1 of 10 pairs: e rises with the speed",
@@ -155,7 +196,8 @@ def test_what_is_implausible_is_a_warning_with_its_place(tmp_path: Path, cell: s
 
 def test_a_pair_that_says_nothing_accuses_nobody(tmp_path: Path) -> None:
     campaign = write(tmp_path, changed("x_p", 4, "41.5", NEAR))
-    (said,) = told(campaign)
+    said, scattered = told(campaign)
+    assert scattered.startswith("warning: chi2_eiv = ")
     assert said.startswith("warning: alpha: 1 of 10 pairs: speeds within 4 %")
     assert said.endswith(": alpha[3-4] #NOROOT!")
 

@@ -12,7 +12,7 @@ from ..cells.address import index_text
 from ..messages.errors import suggest
 from ..result import verdict_words as words
 from ..result.agreement import Agreement
-from ..result.chi_square import CLOSE, SIGNIFICANT, head, largest, tail
+from ..result.chi_square import CLOSE, SIGNIFICANT, freedom, head, largest, tail
 from ..result.numbers import is_pure, probability
 from ..result.statements import statements
 from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
@@ -131,10 +131,10 @@ class Said:
         return () if p is None else self.rich(probability(p))
 
     def _squares(self, how: Callable[[float, int], float], what: str) -> float | None:
-        """``chi2 tests 2``: how likely such a sum of squares is, of all tests but 2; None without one."""
-        name, axis, fewer = what.split()
-        value = self.report.values.scalar(self._column(name))
-        dof = self.material.counted(name, axis) - int(fewer)
+        """How likely such a sum of squares is; None without one, or if nothing is left over."""
+        declared = {squares.name: squares for squares in self.report.workbook.squares}
+        squares = declared[_known("sum of squares", what, declared)]
+        value, dof = self.report.values.scalar(squares.name), freedom(squares, self.report.values)
         return how(value, dof) if dof > 0 and value == value else None
 
     def _farthest(self, name: str) -> tuple[str, float] | None:

@@ -12,6 +12,8 @@ import numpy as np
 from ..cells.marks import Margin, MarkCount, margins
 from ..cells.values import Cell, Status
 from ..messages.diagnostics import Check, Location
+from ..result.chi_square import CLOSE, SIGNIFICANT, freedom, head, tail
+from ..result.numbers import probability
 from ..sheet import Column, Given, Sheet
 from .suspects import suspected
 
@@ -19,13 +21,18 @@ if TYPE_CHECKING:
     from ..inputs.inputs import Inputs
     from ..quantity import Printed
     from ..result.result import Report
+    from ..workbook import SquareSum
 
 __all__ = ["names", "oddities"]
 
-DATA, LIMIT, EXPECTED, LEFT_OUT = "data", "limit", "expected", "left out"
+DATA, LIMIT, SQUARES, EXPECTED, LEFT_OUT = "data", "limit", "squares", "expected", "left out"
 """The kinds of these checks."""
 CELLS, ROWS, RESULT = "cells", "rows", "result"
 """The checks of the first kind: every cell has a value, every sum is over all rows, there is a result."""
+MISFIT = "what is fitted does not describe all {axis}, or their standard uncertainties are understated"
+OVERSTATED = (
+    "the standard uncertainties of the {axis} are overstated, or their deviations are not independent"
+)
 MOST = 6
 """So many cells are named; the rest are counted."""
 CAUSES = 4
@@ -37,6 +44,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
     return {
         DATA: [CELLS, ROWS, RESULT],
         LIMIT: list(map(_name, margins(sheet))),
+        SQUARES: [squares.name for squares in inputs.workbook.squares],
         EXPECTED: [expectation.address for expectation in inputs.expected],
         LEFT_OUT: [f"test {each.test}" for each in inputs.left_out],
     }
@@ -77,6 +85,7 @@ class _Oddities:
         yield self.of_rows()
         yield self.of_result()
         yield from map(self.of_limit, self.report.marks.margins)
+        yield from map(self.of_squares, self.report.workbook.squares)
         yield from self.of_expectations()
         yield from self.of_left_out()
 
@@ -206,6 +215,24 @@ class _Oddities:
             LIMIT, name, f"{margin.of.name}: {said}{_some(list(map(self.valued, odd.told)))}", odd
         )
 
+    def of_squares(self, squares: SquareSum) -> Check:
+        """Whether chance makes a sum of squares as large as it is, and as small."""
+        cell, name, dof = self.values.cell(squares.name), squares.name, freedom(squares, self.values)
+        if cell.value is None or dof < 1:
+            said = "no value" if cell.value is None else f"nothing left over of {squares.axis}"
+            return Check(SQUARES, name, True, f"{name}: {said}", self.inputs.place)
+        large, small = tail(cell.value, dof), head(cell.value, dof)
+        found = f"{name} = {self.report.text(cell)} on {dof} degrees of freedom"
+        if large >= SIGNIFICANT and small >= CLOSE:
+            return Check(SQUARES, name, True, f"{found} is what chance makes", self.inputs.place)
+        said = (
+            f"the probability of so much is {probability(large)}: {MISFIT}"
+            if large < SIGNIFICANT
+            else f"the probability of so little is {probability(small)}: {OVERSTATED}"
+        )
+        said = f"{found}; {said.format(axis=squares.axis)}"
+        return self.check(SQUARES, name, said, _Odd(self, [cell], "is improbable"))
+
     def valued(self, cell: Cell) -> str:
         """``alpha[1-2] = 2.73``; a given cell as it was printed."""
         return f"{cell.address}{' ' if cell.value is None else ' = '}{self.report.text(cell)}"
@@ -233,7 +260,7 @@ class _Oddities:
             return Check(kind, name, True, f"{said}, as is expected", self.inputs.place)
         if any(self.suspect in self.tests(cell) for cell in odd.open):
             said += f"; look at test {self.suspect} first: {self.because}"
-        warns = kind == LIMIT
+        warns = kind in (LIMIT, SQUARES)
         return Check(kind, name, warns, said, self.place(odd.open), note="warning" * warns)
 
     # --- where

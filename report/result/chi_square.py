@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import mpmath
 
-__all__ = ["CLOSE", "SIGNIFICANT", "head", "largest", "tail"]
+if TYPE_CHECKING:
+    from ..cells.values import Values
+    from ..workbook import SquareSum
+
+__all__ = ["CLOSE", "SIGNIFICANT", "freedom", "head", "largest", "tail"]
 
 SIGNIFICANT = 0.05
 """A sum of squares that is less likely than this is not taken for chance."""
 CLOSE = 0.025
 """Nor is one that is as small as this lets it be."""
+
+
+def freedom(squares: SquareSum, values: Values) -> int:
+    """The degrees of freedom of a sum of squares: rows without a value do not count."""
+    rows = values.counted.get(squares.name, {}).get(squares.axis, values.layouts[squares.axis].size)
+    return rows - squares.fitted
 
 
 def tail(chi2: float, dof: int) -> float:

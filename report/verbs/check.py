@@ -130,8 +130,10 @@ def _print(report: Report, found: Sequence[Check]) -> None:
     for line in lines(report.referee, lambda name: report.sheet[name].meaning):
         print(line)
     tell(found)
-    failed = sum(not check.passed for check in found)
-    print(f"{failed} finding{'s' * (failed != 1)}" if failed else "everything as expected")
+    failed, warned = (sum(check.word == word for check in found) for word in ("finding", "warning"))
+    number = f"{failed or 'no'} finding{'s' * (failed != 1)}"
+    told = f"{number}, {warned} warning{'s' * (warned != 1)}" if warned else number
+    print(told if failed or warned else "everything as expected")
 
 
 def _details(report: Report) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from ..quantity import Bounds
-from ..workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook
+from ..workbook import FigureSpec, Measured, Parameter, SquareSum, TableSpec, Workbook
 from .soft_impact_charts import BAND, EXPONENTS, LOOPS
 
 if TYPE_CHECKING:
@@ -94,6 +94,7 @@ WORKBOOK = Workbook(
     parameters=PARAMETERS,
     check_parameters=_masses_given,
     sheet=_sheet,
+    squares=(SquareSum("chi2_eiv", axis="tests", fitted=2),),
     fits=("alpha_mean", "alpha_log", "alpha_lin"),
     headline=(
         *("alpha_eiv", "C_eiv", "chi2_eiv"),
