@@ -180,6 +180,8 @@ def _way(path: Path, transform: Any, clip: Clip, *, simplify: bool) -> str:
 
     >>> _way(Path([(0, 0), (10, 0), (10.04, 5.55), (8, 4)]), Affine2D(), None, simplify=False)
     'm0,0h10v5.6l-2-1.6'
+    >>> _way(Path([(3, 4), (3, 4)]), Affine2D(), None, simplify=False)
+    'm3,4z'
     """
     made, here, start, last = "", (0, 0), (0, 0), ""
     segments = path.iter_segments(transform, clip=clip, simplify=simplify and path.should_simplify)
@@ -191,7 +193,8 @@ def _way(path: Path, transform: Any, clip: Clip, *, simplify: bool) -> str:
         places = [(int(x), int(y)) for x, y in np.rint(np.reshape(points, (-1, 2)) * 10)]
         steps = [step for x, y in places for step in (x - here[0], y - here[1])]
         if command == "l" and not all(steps):
-            if not any(steps) and last != "m":  # a dot is a line from a place to itself
+            if not any(steps):  # a dot is a way that ends where it begins
+                made, last = (f"{made}z", "z") if last == "m" else (made, last)
                 continue
             command, steps = ("v", steps[1:]) if steps[1] else ("h", steps[:1])
         here = places[-1]
