@@ -57,7 +57,7 @@ with evaluate(False):
 
     further = Equation(
         "(L68)",
-        (UN[k], sqrt(UC[k] ** 2 + _A**2 * CP[k] ** 2 * fit.n_tests / S_XX)),
+        (UN[k], sqrt(UC[k] ** 2 + _A**2 * CP[k] ** 2 / (fit.squares_X.value / fit.n_tests))),
         "a further test scatters about the curve as the tests do in the mean, by their weights",
         Kind.DEFINITION,
         "standard deviation of the force of a further test",

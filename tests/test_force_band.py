@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_global_fit import depth
+from test_global_fit import SHEET, WORKBOOK, E, U, V, X, depth, fitted
 
 from loopsheet.report.cells.values import Values
 from loopsheet.report.engines import numpy as engine
@@ -62,3 +62,14 @@ def test_the_curve_is_known_best_within_the_data(report: Report, drawn: Values) 
     depth = report.values.value["x_p"]
     assert depth.min() < x[np.argmin(relative)] < depth.max() * 1.3
     assert relative[np.argmin(x)] > 3 * relative.min()
+
+
+def test_a_test_without_a_value_is_not_counted() -> None:
+    """A further test scatters as those do that the curve goes by."""
+    assert WORKBOOK.drawn is not None
+    own, lost = WORKBOOK.drawn(SHEET), E.copy()
+    lost[2] = np.nan
+    without = fitted(*(np.delete(column, 2) for column in (V, E, X, *U)))
+    bands = [engine.extend(values, own.columns, own.given) for values in (fitted(V, lost, X, *U), without)]
+    for name in ("band_u", "further_u"):
+        np.testing.assert_allclose(*(drawn.value[name][:5] for drawn in bands), rtol=1e-9)

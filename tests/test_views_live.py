@@ -146,7 +146,9 @@ def test_pieces_of_the_toml_make_the_file_again(known: dict[str, Any], report: R
     assert sorted(places) == sorted(known["parameters"])
 
 
-def test_only_what_is_of_second_order_or_an_uncertainty_keeps_its_digits(known: dict[str, Any], report: Report) -> None:
+def test_only_what_is_of_second_order_or_an_uncertainty_keeps_its_digits(
+    known: dict[str, Any], report: Report
+) -> None:
     for name, column in known["columns"].items():
         if "given" in column:
             assert "digits" not in column
