@@ -375,7 +375,8 @@ class _Writing:
 
     def drawn(self, node: Map) -> str:
         """A cell for a chart: its value, or what charts leave out."""
-        tests = [f"ISNUMBER({self.address(leaf)})" for leaf, _ in self.named]
+        # A sum leaves out the rows without a value.
+        tests = [f"ISNUMBER({self.address(leaf)})" for leaf, over in self.named if over is None]
         value = self.where_it_holds(node, self.number(node.value), _NOT_AVAILABLE)
         return f"IF({_all(tests)},{value},{_NOT_AVAILABLE})"
 

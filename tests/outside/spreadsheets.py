@@ -23,6 +23,8 @@ from loopsheet.report.cells.values import CODES, Status, Values
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.certified import certified
+from loopsheet.report.engines.excel_formulas import _SETTLED
+from loopsheet.report.engines.excel_loops import PASSES, pass_name
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.judge.readers import ALWAYS_RECALCULATE
 from loopsheet.report.result.result import Report
@@ -227,6 +229,15 @@ class Difference:
     wrong: list[str] = field(default_factory=list)
 
 
+def still_moving(sheet: Sheet, values: Values) -> bool:
+    """Whether a loop moves in the last pass of a workbook by more than it takes for settled, or nearly so."""
+    for column in (column for loop in sheet.loops for column in loop.iterated):
+        old, new = (values.value[pass_name(column.name, number)] for number in (PASSES - 1, PASSES))
+        if (np.abs(new - old) * 2 * _SETTLED > np.abs(new)).any():
+            return True
+    return False
+
+
 def compare(
     delivered: Delivered, values: Values, read: Mapping[str, Mapping[str, Any]], largest: float = LARGEST
 ) -> Difference:
@@ -239,7 +250,7 @@ def compare(
     """
     found, lost = Difference(), lost_to_differences(values)
     sheet = delivered.report.marks.values.sheet
-    looped = sheet.loop_of.keys()
+    looped, moving = sheet.loop_of.keys(), still_moving(sheet, values)
 
     def before(column: Column) -> set[str]:
         """What a column rests on; of one that is drawn, what that is drawn of."""
@@ -270,7 +281,7 @@ def compare(
                 if cell != expected:
                     found.wrong.append(f"{where}: {cell!r} instead of {expected}")
                 continue
-            if cell in ("#STEPS!", "#N/A") and (a_pass or looped & {column.name, *before(column)}):
+            if moving and cell in ("#STEPS!", "#N/A") and (a_pass or looped & {column.name, *before(column)}):
                 continue  # NumPy takes as many passes as it needs
             if not isinstance(cell, int | float) or isinstance(cell, bool):
                 found.wrong.append(f"{where}: {cell!r} instead of {value / float(place.scale)!r}")
