@@ -185,7 +185,8 @@ def plain(part: object) -> str:
     """What an inline says."""
     if isinstance(part, Number) and part.figure:
         return part.figure.plain
-    return "".join(map(plain, part.content)) if isinstance(part, Strong) else str(part)
+    inside = part.content if isinstance(part, Strong) else part.text if isinstance(part, Count) else ()
+    return "".join(map(plain, inside)) or str(part)
 
 
 def test_no_sentence_of_a_shipped_narrative_shows_a_code(slipped: Report, report: Report) -> None:

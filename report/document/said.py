@@ -91,8 +91,8 @@ class Said:
             "table": Role(lambda name: _links("table", self._table(name)), self._table),
             "farthest": Role(self._test),
             "chance": Role(self._chance),
-            "tail": Role(lambda what: self._probable(self._squares(tail, what))),
-            "head": Role(lambda what: self._probable(self._squares(head, what))),
+            "tail": Role(lambda what: self._followed("tail", what, self._squares(tail, what))),
+            "head": Role(lambda what: self._followed("head", what, self._squares(head, what))),
             "unlikely": Role(lambda what: (p := self._squares(tail, what)) is not None and p < SIGNIFICANT),
             "close": Role(lambda what: (p := self._squares(head, what)) is not None and p < CLOSE),
         }
@@ -129,6 +129,9 @@ class Said:
 
     def _probable(self, p: float | None) -> Inlines:
         return () if p is None else self.rich(probability(p))
+
+    def _followed(self, kind: str, what: str, p: float | None) -> Inlines:
+        return (Count(text, kind, what),) if (text := self._probable(p)) else ()
 
     def _squares(self, how: Callable[[float, int], float], what: str) -> float | None:
         """How likely such a sum of squares is; None without one, or if nothing is left over."""

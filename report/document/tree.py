@@ -110,10 +110,11 @@ class Value(Node):
 class Count(Node):
     """How many rows there are, which the page counts again.
 
-    Of an axis (`kind` is ``count``), or of them in a column's sum; or inside of a margin (``inside``).
+    Of an axis (`kind` is ``count``), or of them in a column's sum; or inside of a margin (``inside``). Or how
+    likely a sum of squares is (``tail``, ``head``).
     """
 
-    text: str
+    text: str | Inlines
     kind: str
     name: str
     column: str = ""

@@ -207,7 +207,7 @@ class _Scope:
         lines = self.passes({total: name for total, name in moving.items() if total not in still}) + lines
         result = texts[0] if alone else f"[{', '.join(texts)}]"
         whole = "\n".join(["{", *lines, f"      return {result};", "    }"]) if lines else result
-        return f"{'(r, u)' if _ASKS.search(whole) else '(r)'} => {whole}"
+        return f"{'(r, u)' if _ASKS.search(whole) else 'r'} => {whole}"
 
     def moves(self, expression: Any) -> bool:
         return self.unknown is not None and bool(expression.has(self.unknown))

@@ -24,6 +24,8 @@ from ..document.written import placed
 from ..inputs.unit_text import parse_unit
 from ..machine.kept import kept
 from ..quantity import Bounds, Printed
+from ..result.chi_square import CLOSE, SIGNIFICANT
+from ..result.numbers import LEAST
 from ..result.result import Report
 from ..result.verdict import OTHERWISE, UNEXPECTED
 from ..sheet import Column, Given, Iterated, Root
@@ -48,6 +50,7 @@ SCRIPTS = (
     "cells.js",
     "tables.js",
     "published.js",
+    "verdicts.js",
     "drawing.js",
     "charts.js",
     "bar.js",
@@ -115,6 +118,8 @@ def data(report: Report, document: Material) -> str:
         "rows": next(([axis.name, axis.row] for axis in sheet.axes if not axis.parents), ["rows", "row"]),
         "headline": [name for name in report.workbook.headline if name in sheet],
         "figures": drawn(report),
+        "squares": {one.name: [one.axis, one.fitted] for one in report.workbook.squares},
+        "chances": [SIGNIFICANT, CLOSE, LEAST],
         "findings": {"unexpected": UNEXPECTED, "otherwise": OTHERWISE},
         "published": [
             {
@@ -200,7 +205,12 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
     if head.sources != (column.source,):
         entry["equations"] = head.sources
     if isinstance(column.rule, Iterated):
-        entry["none"] = f"did not settle: {column.rule.none}"
+        first = report.sheet.loop_of[column.name].iterated[0]
+        same = (
+            column is not first and isinstance(first.rule, Iterated) and first.rule.none == column.rule.none
+        )
+        # What all columns of a loop say stands with the first of them.
+        entry["none"] = first.name if same else f"did not settle: {column.rule.none}"
     if isinstance(column.rule, Root):
         entry |= {"none": f"has no root here: {column.rule.none}", "two": column.rule.two}
         if column.unit != "1":
@@ -211,7 +221,7 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
         entry["requires"] = column.conditions
     put = placed(column, report.sheet, document.names)
     if put.latex:
-        entry["put"] = [[part for part in cell if part is not None] for cell in put.cells]
+        entry["put"] = ",".join(" ".join(part for part in cell if part is not None) for cell in put.cells)
     return entry
 
 

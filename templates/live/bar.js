@@ -111,14 +111,14 @@ function summedRows(name) {
 
 // The equation with the values put in, in SI.
 function putIn(look, name, row) {
-  const { trace } = look, { put, none } = LIVE.columns[name], [math] = part(name, "equation");
+  const { trace } = look, { put, none } = LIVE.columns[name], [math] = part(name, "equation"), cells = put.split(",");
   const axis = trace.declared[name].axis, layout = axis === null ? null : trace.sheet.layouts[axis];
   const valueOf = ([of, index = null]) => {
     if (of === "") return trace.sheet.layouts[index].size;
     if (of === "#") return layout.ordinals[index][row];
     return trace.sheet.value[of][index === null ? 0 : layout.rows[index][row]];
   };
-  for (const place of all("ms", math)) place.replaceWith(...numberMath(valueOf(put[place.textContent])));
+  for (const place of all("ms", math)) place.replaceWith(...numberMath(valueOf(cells[place.textContent].split(" "))));
   math.setAttribute("display", "block");
   const shown = make("span", { class: "math" }, ...breakable(math));
   if (none !== undefined) return [make("span", { class: "si" }, "in SI: "), shown];

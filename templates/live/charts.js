@@ -56,7 +56,7 @@ function waysOf({ each }, traces) {
 
 const sameTraces = (some, others) => JSON.stringify(some) === JSON.stringify(others);
 
-// A chart, or nothing if no cell that it shows has a value.
+// A chart, or nothing if no cell that it shows has a value; a small one says less.
 function drawChart(chart, look) {
   const { trace } = look, { value } = trace.sheet, series = chart.series.map((one) => ({ style: "line", colour: INK, ...one }));
   const units = ["x", "y"].map((axis) => {
@@ -74,7 +74,7 @@ function drawChart(chart, look) {
   if (!lines.length && !dots.length) return null;
   const frame = frameOf(chart, [...lines, ...ghostly], dots), [x, y] = frame.ends, keys = [], names = [];
   const titles = ["x", "y"].map((axis, n) => lettered([...chart[axis].title, ["", units[n][0] && ` / ${units[n][0]}`]]));
-  const picture = new Picture(chart, frame.ends, titles, series.filter(({ style }) => style !== "level").length > 1 || !dots.every(frame.holds) || ghosts.some((traces) => traces.length) ? 28 : 4);
+  const picture = new Picture(chart, frame.ends, titles, chart.small ? 14 : series.filter(({ style }) => style !== "level").length > 1 || !dots.every(frame.holds) || ghosts.some((traces) => traces.length) ? 33 : 4);
   const mark = (d, attributes) => draw("path", { d, ...attributes });
   const key = ({ label, rows, value }, count, more, sign) => {
     const told = label.map(([kind, text]) => [kind, text.replace("%s", `${count} ${rows?.[Number(count === 1)]}`)]);
@@ -109,7 +109,7 @@ function drawChart(chart, look) {
       for (const point of named) {
         const inside = frame.holds(point), at = point.at.map((value, n) => Math.min(Math.max(value, frame.ends[n][0]), frame.ends[n][1]));
         if (!inside) picture.arrow(at, point.at);
-        const text = inside ? point.name : `${point.name}: ${LIVE.columns[one.y] ? look.shownText(one.y, point.row) : brief(point.at[1])}`;
+        const text = inside ? point.name : `${point.name}: ${LIVE.columns[one.y] ? look.shownText(one.y, point.row) : `${figureText(rounded(point.at[1], Math.min(0, order(point.at[1]) - 1)))} ${units[1][0]}`}`;
         names.push([text, [[at, inside ? AROUND : AROUND.slice(0, 2)]], { size: 8.5 }]);
       }
       if (out && one.named) keys.push({ mark: mark("M3 2h6l-3-5z", { fill: LOADING }), text: [["", `outside the frame: ${out} of ${all.length}`]] });
@@ -122,6 +122,6 @@ function drawChart(chart, look) {
   if (ghosts.some((traces) => traces.length)) keys.push({ mark: mark("M0 0h13", { stroke: GHOST, "stroke-width": 2 }), text: [["", "as issued"]] });
   series.forEach((one, n) => (own[n].length || one.style === "level") && draws[one.style](one, own[n]));
   for (const [text, places, style] of names) places.some(([at, beside]) => picture.label(text, at, beside, style));
-  if (picture.frame.top > 4) picture.key(keys);
+  if (picture.frame.top > 14) picture.key(keys);
   return { svg: picture.svg, says: `${keys.map(({ text }) => plainOf(text)).join("; ")}.` };
 }

@@ -1,7 +1,7 @@
 // What every picture drawn in the page is made with: a frame, scales and ticks, texts that find room.
 // Measures are points of print, as in the pictures that were issued.
 
-const WIDTH = 453.54, INK = "#1a1a1a", LOADING = "#d55e00";
+const WIDTH = 453.54, SMALL = { width: 226, height: 97, small: true }, INK = "#1a1a1a", LOADING = "#d55e00";
 const FONT = "'DejaVu Sans', Verdana, 'Noto Sans', 'Liberation Sans', Arial, sans-serif";
 
 // Round numbers between two ends: their distance is 1, 2, 2.5 or 5 times a power of ten.
@@ -25,20 +25,20 @@ function logTicks(low, high, most) {
 }
 
 class Picture {
-  constructor({ height, log }, limits, titles, top) {
+  constructor({ height, log, width = WIDTH, small }, limits, titles, top) {
     const marks = (n, most) => (log[n] ? logTicks : ticks)(...limits[n], most);
-    const yTicks = marks(1, Math.min(9, (height - 60) / 24));
+    const yTicks = marks(1, small ? 4 : Math.min(9, (height - 60) / 24));
     const left = 28 + Math.max(...yTicks.map((tick) => textWidth(tick.text, 8.5)));
-    this.frame = { left, right: WIDTH - 3, top, bottom: height - 36 };
+    this.frame = { left, right: width - 3, top, bottom: height - (small ? 25 : 36) };
     this.limits = limits;
     this.log = log;
     this.taken = [];
     this.svg = draw("svg", {
-      role: "img", viewBox: `0 0 ${WIDTH} ${height}`, width: Math.round((WIDTH * 4) / 3), height: Math.round((height * 4) / 3),
+      role: "img", viewBox: `0 0 ${width} ${height}`, width: Math.round((width * 4) / 3), height: Math.round((height * 4) / 3),
       "font-family": FONT, "font-size": "9", fill: INK, class: "picture",
     });
-    this.svg.append(draw("rect", { width: WIDTH, height, fill: "#fff" }));
-    this.axes(marks(0, 9), yTicks, titles, height);
+    this.svg.append(draw("rect", { width, height, fill: "#fff" }));
+    this.axes(marks(0, small ? 5 : 9), yTicks, titles, height, small);
   }
 
   // How far along an axis a value stands, from 0 to 1.
@@ -57,7 +57,7 @@ class Picture {
     return bottom - this.part(1, value) * (bottom - top);
   }
 
-  axes(xTicks, yTicks, [xLabel, yLabel], height) {
+  axes(xTicks, yTicks, [xLabel, yLabel], height, small) {
     const { left, right, top, bottom } = this.frame, lines = [], marks = [], texts = [];
     for (const { at, text } of xTicks) {
       const x = this.x(at).toFixed(2);
@@ -76,8 +76,8 @@ class Picture {
       draw("path", { d: lines.join(""), stroke: "#e6e6e6", "stroke-width": 0.5 }),
       draw("path", { d: marks.join("") + `M${left} ${top}V${bottom}H${right}`, stroke: INK, "stroke-width": 0.7, fill: "none" }),
       draw("g", { "font-size": "8.5" }, ...texts),
-      draw("text", { x: (left + right) / 2, y: height - 7, "text-anchor": "middle" }, ...xLabel),
-      draw("text", { transform: `translate(11 ${middle}) rotate(-90)`, "text-anchor": "middle" }, ...yLabel),
+      draw("text", { x: (left + right) / 2, y: height - (small ? 2 : 7), "text-anchor": "middle" }, ...xLabel),
+      draw("text", small ? { x: 2, y: 9 } : { transform: `translate(11 ${middle}) rotate(-90)`, "text-anchor": "middle" }, ...yLabel),
     );
   }
 
@@ -125,12 +125,12 @@ class Picture {
     return false;
   }
 
-  // What the marks are, above the picture: [mark, letters], the mark an element around 0 0.
+  // What the marks are, above the picture and beside a long title: [mark, letters], the mark an element around 0 0.
   key(entries) {
-    let x = 10, y = 11;
+    let x = 24, y = 11;
     for (const { mark, text } of entries) {
       const plain = plainOf(text);
-      if (x > 10 && x + 19 + textWidth(plain, 8.5) > WIDTH) [x, y] = [10, y + 11];
+      if (x > 24 && x + 19 + textWidth(plain, 8.5) > WIDTH) [x, y] = [24, y + 11];
       const group = draw("g", { transform: `translate(${x.toFixed(1)} ${y})` }, mark);
       group.append(draw("text", { x: 19, y: 3.1, "font-size": 8.5 }, ...lettered(text)));
       this.svg.append(group);

@@ -8,8 +8,6 @@ function lookAt(state, issued) {
   return new Look(new Trace(PROGRAM, LIVE.columns, computeSheet(PROGRAM, LIVE.columns, state)), state, issued);
 }
 
-const isEdited = () => document.documentElement.hasAttribute("data-edited");
-
 const say = (sentence) => {
   byId("live-said").textContent = sentence;
 };
@@ -40,14 +38,18 @@ function setCell(name, index, text) {
 
 const enough = (state) => usedTests(state).length >= 2;
 
+// Whether a report can do without a test; where it cannot, that is said.
+function mayGo(state, label) {
+  if (!enough(state)) note(`Two ${ROWS} are the least that a report needs: ${ROW} ${label} stays.`);
+  return enough(state);
+}
+
 function useTest(label, used) {
   change((state) => {
     const test = state.tests.find((one) => one.label === label), issued = page.history.issued.tests.find((one) => one.label === label);
     test.used = used;
     test.reason = used ? "" : issued?.reason ?? "";
-    if (enough(state)) return true;
-    say(`Two ${ROWS} are the least that a report needs.`);
-    return false;
+    return mayGo(state, label);
   });
   for (const box of all("[data-use]")) box.checked = page.history.now.tests.find((test) => String(test.label) === box.dataset.use).used;
 }
@@ -61,9 +63,7 @@ function giveReason(label, reason) {
 function removeTest(label) {
   change((state) => {
     state.tests = state.tests.filter((test) => test.label !== label);
-    if (enough(state)) return true;
-    say(`Two ${ROWS} are the least that a report needs.`);
-    return false;
+    return mayGo(state, label);
   });
 }
 
@@ -140,7 +140,7 @@ function writePage(look, last) {
   writeMissing(look);
   writePublished(look);
   writeUncertain(look);
-  markStale();
+  writeVerdicts(look);
   writeFigures(look);
 }
 

@@ -72,9 +72,10 @@ function tellDraws(look) {
 
 // From one end to the other, with the digits that the uncertainty lets them have and a power of ten once.
 function rangeOf(name, { u, ends }) {
-  const { scale } = LIVE.columns[name], by = u > 0 ? u : (ends[1] - ends[0]) / 4;
-  const [low, high] = ends.map((end) => (by > 0 ? stated(end / scale, by / scale, LIVE.most)[0] : readFigure(brief(end / scale))));
-  return `${figureText(low.exponent === high.exponent ? { ...low, exponent: null } : low)} … ${figureText(high)}`;
+  const { scale } = LIVE.columns[name], by = (u > 0 ? u : (ends[1] - ends[0]) / 4) / scale, both = ends.map((end) => end / scale);
+  if (!(by > 0)) return brief(both[0]);
+  const [low, high] = alike(both, told(by, LIVE.most).place, Math.max(...both.map(Math.abs)));
+  return `${figureText({ ...low, exponent: null })} … ${figureText(high)}`;
 }
 
 // Below the first order of the cell in the bar.

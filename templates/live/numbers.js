@@ -139,9 +139,13 @@ function lastPlace(value, u, digits, most) {
 // A value and its uncertainty: with the same decimals, and the same power of ten.
 function stated(value, u, most) {
   const { digits, place } = told(u, most), own = lastPlace(value, u, 1, most), short = Number(`${digits}e${place}`);
-  if (place < own) return [rounded(value, own), rounded(short, place)];
-  const { exponent } = rounded(Math.max(Math.abs(value), u), place);
-  return [value, short].map((x) => (exponent === null ? figureOf(fixed(x, -place)) : shifted(fixed(x, -place), place, exponent)));
+  return place < own ? [rounded(value, own), rounded(short, place)] : alike([value, short], place, Math.max(Math.abs(value), u));
+}
+
+// Numbers up to the same digit, with the power of ten of the largest.
+function alike(values, place, most) {
+  const { exponent } = rounded(most, place);
+  return values.map((x) => (exponent === null ? figureOf(fixed(x, -place)) : shifted(fixed(x, -place), place, exponent)));
 }
 
 // A text that ends at a place, with another power of ten.

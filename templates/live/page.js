@@ -26,6 +26,7 @@
 //   html[data-milliseconds]           how long the last recalculation and redrawing took
 
 const byId = (id) => document.getElementById(id);
+const isEdited = () => document.documentElement.hasAttribute("data-edited");
 const all = (selector, within = document) => Array.from(within.querySelectorAll(selector));
 const LIVE = JSON.parse(byId("live-data").textContent);
 LIVE.columns = wholeColumns(LIVE.columns);

@@ -1,7 +1,7 @@
 // Beside the table that is edited: the result, as issued and now, and a picture of it. Where there is no room
 // beside the table it stands at the top of the window, while one is in the table.
 
-const MOST_RESULTS = 6; // so that there is room for what is edited
+const MOST_RESULTS = 4; // so that there is room for what is edited
 
 function makePanel() {
   const table = page.tables.find((one) => one.editable), names = LIVE.headline;
@@ -21,13 +21,12 @@ function writePanel(look) {
     const { kept, scale } = LIVE.columns[name], u = LIVE.shared && !kept ? look.sure.u(name, 0) / scale : NaN;
     const more = isEdited() && LIVE.shared && look.trace.isOk(name, 0) ? [...(kept ? ["second order"] : []), shortDraws(name)] : [];
     return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
-      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now, u > 0 ? ` (${told(u, LIVE.most).digits})` : "", ...more.flatMap((text) => [make("br"), make("span", {}, text)])));
+      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now, u > 0 ? ` (${told(u, LIVE.most).digits})` : "", ...more.map((text) => make("span", {}, text))));
   });
   const head = make("tr", {}, ...["result", "as issued", LIVE.shared ? "now (u)" : "now"].map((text) => make("th", { scope: "col" }, text)));
-  if (LIVE.shared) head.lastChild.append(make("br"), make("span", {}, `95\u00a0% of ${DRAWS} draws`));
+  if (LIVE.shared) head.lastChild.append(make("span", {}, `95\u00a0% of ${DRAWS} draws`));
   // The last of the pictures: those before it show steps on the way.
-  const [name, chart] = Object.entries(LIVE.figures).at(-1) ?? [], drawn = name && document.querySelector(`#figure-${CSS.escape(name)} svg.picture`);
-  const picture = drawn ? drawn.cloneNode(true) : chart && drawChart(chart, look)?.svg;
+  const chart = Object.values(LIVE.figures).at(-1), picture = chart && drawChart({ ...chart, ...SMALL }, look)?.svg;
   picture?.setAttribute("aria-hidden", "true"); // the same stands in the report, with words
   page.panel.replaceChildren(make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows)), ...(picture ? [picture] : []));
 }
@@ -40,7 +39,7 @@ function placePanel() {
   page.panel.style.width = "min-content";
   const beside = page.panel.offsetWidth <= room;
   page.panel.classList.toggle("beside", beside);
-  page.panel.style.width = beside ? `${Math.min(room, 300)}px` : "";
+  page.panel.style.width = beside ? `${Math.min(room, 320)}px` : "";
 }
 
 // What stands beside the report: buttons that copy tables, the result beside what is edited, and what chapters

@@ -78,10 +78,3 @@ function writeGroup(place, rows, called, found) {
   const text = `${node.data.slice(0, node.data.indexOf(start))}${start}s ${comes(same)} out as printed${off}.`;
   if (node.data !== text) node.data = text;
 }
-
-// What no script can rewrite says that it is about the report as issued.
-function markStale() {
-  for (const note of all("main .note > p")) {
-    if (!note.querySelector(".stale")) note.prepend(make("span", { class: "stale" }, "As issued, before the edits: "));
-  }
-}

@@ -122,7 +122,7 @@ class Trace {
     const told = si && !(unknown && status === STATUS.UNDECIDED) ? ` ${si}` : "";
     const roots = Array.from(this.sheet.roots[name]?.[row] ?? [], (root) => brief(root) + told);
     if (status === STATUS.INPUT) return this.sheet.refused[name]?.[row] ?? "the datum is missing or invalid";
-    if (status === STATUS.NOROOT) return `${source} ${none}`;
+    if (status === STATUS.NOROOT) return `${source} ${this.columns[none]?.none ?? none}`;
     if (status === STATUS.TWOROOTS) {
       return `${source} has more than one root here: ${roots.join(" and ")} (${two})`;
     }

@@ -10,6 +10,8 @@ import pytest
 from driving import Live
 
 from loopsheet.report.build import build
+from loopsheet.report.result.chi_square import SIGNIFICANT, tail
+from loopsheet.report.result.numbers import probability
 from loopsheet.report.study import Study
 
 Open = Callable[..., Live]
@@ -49,3 +51,43 @@ def test_the_edited_page_is_what_a_rebuild_gives(
         if cell.name == "z_eiv":  # a difference of two depths: of two tests next to nothing is left
             row = values.row(values.sheet["z_eiv"], (int(cell.index),))
             assert float(cell.value) == pytest.approx(values.value["z_eiv"][row], abs=1e-8)
+
+
+def test_the_verdict_follows_while_it_is_the_same(live: Live) -> None:
+    note, issued = (
+        live.page.locator("#result .note").first,
+        live.page.locator("#result .note").first.inner_text(),
+    )
+    live.type("x_p", 2, "29.8")
+    p = tail(float(live.cell("chi2_eiv").value), 3)
+    shown = probability(p).replace("e-", " × 10⁻").translate(str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    assert p < SIGNIFICANT
+    assert shown[-2:] == note.locator("[data-tail]").inner_text()[-2:]
+    assert "As issued" not in note.inner_text()
+    live.click("live-reset")
+    assert note.inner_text() == issued
+
+
+def test_a_verdict_that_no_longer_holds_says_so(live: Live) -> None:
+    note = live.page.locator("#result .note").first
+    for test in (4, 5):  # the farthest of all, and then of four
+        live.page.locator(f'[data-use="{test}"]').click()
+    p = tail(float(live.cell("chi2_eiv").value), 1)
+    assert p > SIGNIFICANT
+    assert note.inner_text().startswith("As issued, before the edits: No single power law")
+    assert note.inner_text().endswith(f"With the edits it is {probability(p)}: this no longer holds.")
+    live.page.locator('[data-use="3"]').click()  # two tests are on one curve anyway
+    assert note.inner_text().endswith("With the edits there is none: this no longer holds.")
+
+
+def test_the_last_two_tests_stay_and_that_is_said(live: Live) -> None:
+    for test in (3, 4, 5):
+        live.page.locator(f'[data-use="{test}"]').click()
+    assert live.text("live-note") == ""
+    live.page.locator('[data-use="2"]').click()
+    assert live.page.locator('[data-use="2"]').is_checked()
+    assert live.text("live-note") == "Two tests are the least that a report needs: test 2 stays."
+    live.page.locator('[data-remove="1"]').click()
+    assert live.text("live-note").endswith("test 1 stays.")
+    live.page.locator('[data-use="4"]').click()
+    assert live.text("live-note") == ""

@@ -34,7 +34,7 @@ def test_the_result_is_on_the_screen_while_the_tests_are_edited(open_page: Open,
     live.type("x_p", 2, "29.8")
     panel = live.page.locator("#live-panel")
     shown = [text for text in panel.locator("tbody tr").all_inner_texts() if text]
-    assert shown[0].split()[-3:] == ["1.3013", "1.3066", "(31)"]
+    assert [word for word in shown[0].split() if word[0] in "1("][:3] == ["1.3013", "1.3066", "(31)"]
     assert len(seen(live, "#live-panel tbody tr")) >= 3
     assert all(seen(live, "#live-panel tbody tr, #live-panel svg"))
     assert seen(live, "#live-panel svg") == [True]
@@ -132,6 +132,6 @@ def test_chapters_that_are_as_issued_say_so(live: Live) -> None:
     live.type("x_p", 2, "29.8")
     for chapter in chapters.all()[1:]:  # how sure the results are follows every edit
         assert "as issued, before the edits" in chapter.locator("> .stale").inner_text()
-    assert "As issued, before the edits" in live.page.locator("#result .note").first.inner_text()
+    assert "As issued, before the edits" in live.page.locator("#result .note").last.inner_text()
     live.click("live-undo")
     assert [word.is_visible() for word in words.all()] == [False] * 3

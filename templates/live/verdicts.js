@@ -1,0 +1,51 @@
+// Sentences that judge a sum of squares: their probability follows an edit while they say what is so, and else they say
+// that they no longer do. What no script can compute again says that it is as issued.
+
+// How likely a sum of squares is at least, and at most, so large, of so many independent standard normal numbers: from
+// one or two of them on, every two more add a term.
+function squares(chi2, dof) {
+  const x = chi2 / 2, root = Math.sqrt(x / Math.PI);
+  let a = dof % 2 ? 0.5 : 1, term = (a < 1 ? 2 * root : x) * Math.exp(-x), tail = Math.exp(-x);
+  const rest = () => {
+    let all = term;
+    for (let one = term, n = a + 1; one > all * 1e-17; n++) all += one *= x / n;
+    return all;
+  };
+  if (a < 1 && x < 2) tail = 1 - rest();
+  else if (a < 1) {
+    // The complementary error function of the root of x, by Laplace's continued fraction.
+    const z = Math.sqrt(x);
+    let below = z;
+    for (let n = 100; n; n--) below = z + n / 2 / below;
+    tail *= 1 / Math.sqrt(Math.PI) / below;
+  }
+  for (; a < dof / 2; a++) [tail, term] = [tail + term, term * x / (a + 1)];
+  return { tail, head: tail < 0.5 ? 1 - tail : rest() };
+}
+
+// The probability of a sum of squares as a text, and what is said of it.
+function judged({ trace: { sheet } }, name, kind) {
+  const [axis, fitted] = LIVE.squares[name], dof = (sheet.counted[name]?.[axis] ?? sheet.layouts[axis].size) - fitted;
+  if (!(dof > 0) || sheet.status[name][0]) return { text: "", says: "" };
+  const found = squares(sheet.value[name][0], dof), p = found[kind], [unlikely, close, least] = LIVE.chances;
+  const text = p < least ? `below ${figureText(rounded(least, order(least)))}` : p < 1 ? figureText(rounded(p, Math.min(order(p), order(1 - p)))) : "1";
+  return { text, says: found.tail < unlikely ? "unlikely" : found.head < close ? "close" : "likely" };
+}
+
+const stale = (text) => make("span", { class: "stale" }, text);
+
+function writeVerdicts(look) {
+  for (const note of all("main .note > p")) {
+    const place = note.querySelector("[data-tail], [data-head]"), olds = all(".stale", note);
+    if (!place && olds.length) continue;
+    for (const old of olds) old.remove();
+    if (place) {
+      const [[kind, name]] = Object.entries(place.dataset), [then, now] = [look.issued, look].map((one) => judged(one, name, kind));
+      setText(place, (then.says === now.says ? now : then).text);
+      place.classList.toggle("changed", then.says === now.says && then.text !== now.text);
+      if (then.says === now.says) continue;
+      note.append(stale(` With the edits ${now.text ? `it is ${now.text}` : "there is none"}: this no longer holds.`));
+    }
+    note.prepend(stale("As issued, before the edits: "));
+  }
+}
