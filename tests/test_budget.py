@@ -10,11 +10,15 @@ import numpy as np
 import pytest
 
 from loopsheet.report.cli import main
+from loopsheet.report.document.material import Material
+from loopsheet.report.document.tables import Tables
+from loopsheet.report.document.tree import Bar, Code
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.prepared import Prepared
 from loopsheet.report.result.result import Report
 from loopsheet.report.result.uncertain import Budget, Distributed
 from loopsheet.report.uncertainty.propagation import Spread
+from loopsheet.report.views import html, latex
 from loopsheet.report.views.budget import as_text
 
 FILES = {
@@ -50,6 +54,32 @@ def campaign(tmp_path: Path) -> str:
 def told(capsys: pytest.CaptureFixture[str], *words: str) -> str:
     assert main(["budget", *words, "--no-cache"]) == 0
     return capsys.readouterr().out
+
+
+def test_the_test_that_matters_most_is_told_by_its_share(capsys: pytest.CaptureFixture[str]) -> None:
+    out = told(capsys, "alpha_eiv", "paper")
+    sources = json.loads(told(capsys, "alpha_eiv", "paper", "--format", "json"))["sources"]
+    tests = {n: sum(s["share"] for s in sources if s["source"].endswith(f"[{n}]")) for n in range(1, 6)}
+    most = max(tests, key=lambda n: tests[n])
+    assert f"\ntest {most} matters most: {100 * tests[most]:.1f} % of the variance\n" in f"{out}\n"
+    assert "matters most" not in told(capsys, "x_p[1]", "paper")
+
+
+def test_the_report_draws_the_shares_of_the_first_result(report: Report) -> None:
+    budget = report.uncertain().budgets[0]
+    table = Tables(Material(report)).budget()
+    assert budget.cell == "alpha_eiv"
+    shown = [(row.cells[0], row.cells[2]) for row in table.rows]
+    drawn = {each.source.name: each.share for each in budget.contributions if each.share >= 0.005}
+    assert [name for (name,), _ in shown] == [Code(name) for name in drawn]  # type: ignore[misc]
+    assert [bar for _, (bar, _) in shown] == [Bar(share) for share in drawn.values()]  # type: ignore[misc]
+    assert table.legend == ("The largest 7 of 15 sources. Test 1 matters most: 48\u00a0%.",)
+    percents = [round(100 * share) for share in drawn.values()]
+    page = re.findall(r"<meter value=([\d.]+) aria-hidden=true></meter> (\d+)", html.render(report, {}))
+    assert [(float(long), int(percent)) for long, percent in page] == [(n / 100, n) for n in percents]
+    article = re.findall(r"\\rule\{([\d.]+)mm\}\{1.2ex\}\} (\d+)", latex.render(report, []))
+    assert [(float(length), int(percent)) for length, percent in article] == [(n / 4, n) for n in percents]
+    assert [Bar(share).percent for share in (-0.1, 0.004, 0.555, 1.2)] == [0, 0, 56, 100]
 
 
 def test_a_given_number(campaign: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -27,6 +27,7 @@ from loopsheet.report.views import figures, html, latex
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ ((( report ))) {{ 7 * 7 }}"
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="480" height="240"><path d="M0 0"/></svg>'
 XHTML = "{http://www.w3.org/1999/xhtml}"
+THEAD, TBODY, TH, TD = (XHTML + name for name in ("thead", "tbody", "th", "td"))
 SVG_NAME = "{http://www.w3.org/2000/svg}"
 
 
@@ -196,10 +197,16 @@ def test_shown_digits_follow_the_uncertainties(tree: ET.Element) -> None:
     assert shown["cell-C_log"] == "1.019 × 10⁹"
 
 
-def test_tables_have_captions_scopes_and_links_to_their_equations(tree: ET.Element) -> None:
+def test_tables_have_captions_heads_by_place_and_links_to_their_equations(tree: ET.Element) -> None:
+    """A head without a scope heads its column if its row has heads alone, else its row (HTML, 4.9.12.2)."""
     for table in _elements(tree, "table"):
         assert table.find(XHTML + "caption") is not None
-        assert all(head.get("scope") in ("col", "row", "rowgroup") for head in table.iter(XHTML + "th"))
+        (above,), *rows = ([list(row) for row in part] for part in table if part.tag in (THEAD, TBODY))
+        assert {head.tag for head in above} == {TH}
+        for first, *others in (row for part in rows for row in part):
+            assert first.tag == TH
+            assert {cell.tag for cell in others} == ({TD} if others else set())
+            assert others or first.get("scope") == "rowgroup"
     by_id = {element.get("id"): element for element in tree.iter() if element.get("id")}
     for table, equations in {
         "table-alpha": {"#eq-11", "#eq-L5"},

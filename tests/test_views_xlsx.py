@@ -143,6 +143,19 @@ def test_panes_are_frozen_and_steps_are_an_outline(grid: Grid, book: Any) -> Non
     assert (level.outlineLevel, level.hidden) == (1, False)
 
 
+def test_the_shares_of_a_variance_are_bars_of_a_whole(book: Any) -> None:
+    sheet = book["uncertainty"]
+    shares = {cell.coordinate for cell in sheet["I"] if str(cell.value).startswith("=")}
+    barred = set()
+    for own in sheet.conditional_formatting:
+        (rule,) = own.rules
+        assert rule.type == "dataBar"
+        assert [(end.type, end.val) for end in rule.dataBar.cfvo] == [("num", 0), ("num", 1)]
+        barred |= {cell.coordinate for (cell,) in sheet[str(own.sqref)]}
+    assert barred == shares
+    assert len(shares) > 50
+
+
 def test_the_first_worksheet(book: Any, shown: Any, report: Report) -> None:
     cells = shown["report"]
     assert cells["A1"].value == "Soft steel, ball drop"

@@ -16,6 +16,7 @@ from ..result import verdict_words as words
 from ..result.conformity import conforming, risk
 from ..result.numbers import Numeral, decimals, is_pure, read, rounded, table_format
 from ..result.result import Comparison
+from ..result.shares import SEEN, foremost
 from ..result.statements import of_column
 from ..result.uncertain import Budget, Conformity, Contribution, Decision
 from ..result.verdict import ALL, INPUT, UNREACHABLE, TableVerdict
@@ -25,6 +26,7 @@ from .material import Material
 from .parts import MOST, Head, Pair, SourceGroup, described, slug, why_address
 from .refereed import GOOD, RefereedPair, shown_mismatch
 from .tree import (
+    Bar,
     Code,
     Hint,
     Inlines,
@@ -46,6 +48,8 @@ __all__ = ["Tables"]
 
 MOST_SOURCES, LEAST_SHARE = 3, 0.05
 """The sources of an uncertainty that are named, and the least share of the variance of one."""
+MOST_BARS = 12
+"""The sources whose shares are drawn; those of no whole percent are none of them."""
 OFF_BY = "recomputed minus published, in units of the last published digit"
 
 
@@ -200,6 +204,29 @@ class Tables:
         level = f"{100 * self.material.budgets[0].level:.12g}\u00a0%"
         caption = (Strong(("Uncertainty of the results.",)), f" U is the expanded one, for {level}")
         return _table("uncertain", caption, made, [((), self.material.budgets)], look="list", wide=True)
+
+    def budget(self) -> Table:
+        """Where the uncertainty of the first result comes from, source by source."""
+        budget, most = self.material.budgets[0], foremost(self.report, self.material.budgets[0])
+        seen = [each for each in budget.contributions if abs(each.share) >= SEEN][:MOST_BARS]
+        made = (
+            _Made("source", lambda each: Code(each.source.name), "words"),
+            _Made("u", self._of_source),
+            _Made("share of the variance", self._share, "words"),
+        )
+        caption = Strong(("Where that comes from:",)), " ", Code(budget.cell)
+        legend = f"The largest {len(seen)} of {len(budget.contributions)} sources."
+        legend += f" {most[0].capitalize()} matters most: {_percent(most[1])}." if most else ""
+        return _table("budget", caption, made, [((), seen)], look="list", legend=(legend,))
+
+    def _share(self, each: Contribution) -> Inlines:
+        return Bar(each.share), f" {_percent(each.share)}"
+
+    def _of_source(self, each: Contribution) -> Inlines:
+        if each.source.u is None:
+            return ()
+        name = each.source.moves[0][0]
+        return Number(self.report.sure(name, each.source.u)), *_in(self.report.shown[name].unit)
 
     def conformity(self) -> Table:
         """The cells that have limits, and what the decision rule says of each."""

@@ -17,6 +17,7 @@ from .parts import Item, cell_id
 
 __all__ = [
     "Badge",
+    "Bar",
     "Block",
     "Blocks",
     "Claim",
@@ -100,6 +101,18 @@ class Unit(Node):
 
 
 @dataclass(frozen=True)
+class Bar(Node):
+    """A share of a whole, as long as it is large."""
+
+    share: float
+
+    @property
+    def percent(self) -> int:
+        """How long it is, of 100."""
+        return round(100 * min(max(self.share, 0.0), 1.0))
+
+
+@dataclass(frozen=True)
 class Value(Node):
     """A cell in running text, with its unit; the page keeps it up to date."""
 
@@ -152,7 +165,7 @@ class Badge(Node):
     kind: str
 
 
-Inline = str | Strong | Code | Math | Number | Unit | Value | Count | Refer | Link | Hint | Badge
+Inline = str | Strong | Code | Math | Number | Unit | Value | Count | Refer | Link | Hint | Badge | Bar
 Inlines = tuple[Inline, ...]
 
 

@@ -7,7 +7,7 @@ ones are, and the law of propagation tells the rest.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TypeVar
@@ -15,7 +15,6 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cells.address import address
 from ..cells.marks import Marks
 from ..cells.values import Status, Values
 from ..engines.numpy import Program, evaluate
@@ -24,12 +23,11 @@ from ..inputs.planned import Said, planned
 from ..inputs.stated import read_statement
 from ..inputs.unit_text import parse_unit
 from ..result.design import BestChoice, Needed
-from ..result.uncertain import Budget
 from ..sheet import Sheet
 from ..workbook import Design
 from .propagation import Spread
 
-__all__ = ["NotPlanned", "Planner", "shares"]
+__all__ = ["NotPlanned", "Planner"]
 
 Array = NDArray[np.float64]
 K = TypeVar("K")
@@ -270,35 +268,3 @@ def _settled(
             choices = [[*here[:row], place, *here[row + 1 :]] for place in (at, *near(at))]
             here = min(choices, key=judged)
     return here
-
-
-def shares(budget: Budget, inputs: Inputs) -> tuple[dict[str, float], dict[int, float]]:
-    """The parts of a cell's variance, the largest first.
-
-    Parameters
-    ----------
-    budget : Budget
-    inputs : Inputs
-        That it is of.
-
-    Returns
-    -------
-    mapping of str to float
-        By column or parameter; what several cells share, by its own name.
-    mapping of int to float
-        By test.
-    """
-    columns: dict[str, float] = {}
-    tests = dict.fromkeys(inputs.tests, 0.0)
-    for each in budget.contributions:
-        name, row, _ = each.source.moves[0]
-        own = each.source.name.partition(", ")[0] in {name, address(name, (inputs.tests[row],))}
-        key = name if own else each.source.name
-        columns[key] = columns.get(key, 0.0) + each.share
-        if own and name in inputs.measured:
-            tests[inputs.tests[row]] += each.share
-    return _ordered(columns), _ordered(tests)
-
-
-def _ordered(found: Mapping[K, float]) -> dict[K, float]:
-    return dict(sorted(found.items(), key=lambda item: -abs(item[1])))

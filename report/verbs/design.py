@@ -104,8 +104,8 @@ def _told(study: Study, options: argparse.Namespace) -> tuple[str, bool]:
 def _plan(study: Study, options: argparse.Namespace) -> Planned:
     from ..prepared import Prepared
     from ..result.design import Planned
+    from ..result.shares import shares
     from ..stages import evaluated
-    from ..uncertainty.design import shares
     from ..uncertainty.propagation import Spread
 
     report = study.computed

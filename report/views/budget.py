@@ -10,6 +10,7 @@ from ..quantity import behind
 from ..result.conformity import lines
 from ..result.numbers import decimals, rounded, stated
 from ..result.result import Report
+from ..result.shares import foremost
 from ..result.uncertain import Budget, Conformity, Contribution, Distributed, Together
 from . import markdown as md
 
@@ -175,6 +176,8 @@ def notes(report: Report, budget: Budget) -> Iterator[str]:
         if not math.isinf(budget.dof) and not math.isnan(budget.dof):
             yield f"{budget.dof:.0f} effective degrees of freedom"
         yield f"k comes from {budget.because}"
+    if (most := foremost(report, budget)) is not None:
+        yield f"{most[0]} matters most: {percent(most[1])} of the variance"
     yield from map(_together, budget.summed)
 
 

@@ -48,10 +48,6 @@ def _curve(plan: Planned) -> str:
 def _said(plan: Planned) -> Iterator[str]:
     """What there is to tell of it, a sentence each."""
     yield from notes(plan.report, plan.budget)
-    if plan.budget.u > 0 and plan.of_tests:
-        test, share = next(iter(plan.of_tests.items()))
-        if share > 0:
-            yield f"test {test} matters most: {percent(share)} of the variance"
     if plan.best is not None:
         yield _best(plan)
     if plan.needed is not None:

@@ -36,6 +36,11 @@ _COLUMNS = (
 _UNLIMITED = 10.0**15
 """Stands for infinitely many degrees of freedom."""
 _DOF = '[>=1000000000]"∞";General'
+_BARS = {
+    **{"type": "data_bar", "bar_color": "#E9B893"},
+    **{"min_type": "num", "min_value": 0, "max_type": "num", "max_value": 1},
+}
+"""A share is as long as its bar: the whole cell is the whole variance."""
 _FACTORS = {
     "exponential": "IF({p}>1-EXP(-2),-LN(1-{p})-1,ASINH({p}*EXP(1)/2))",
     "rectangular": "{p}*SQRT(3)",
@@ -86,6 +91,8 @@ class _Written:
         self.sheet.set_row(self.top + 1, height([(head, width) for head, width in _COLUMNS], 2))
         for row, each in enumerate(self.budget.contributions, start=self.first):
             self.source(row, each)
+        if self.budget.contributions:
+            self.sheet.conditional_format(self.first, 8, self.last, 8, _BARS)
         return self.result(self.last + 1)
 
     def source(self, row: int, each: Contribution) -> None:

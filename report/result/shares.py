@@ -1,0 +1,61 @@
+"""What the variance of a cell is made of: by column, and by test."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, TypeVar
+
+from ..cells.address import address
+
+if TYPE_CHECKING:
+    from ..inputs.inputs import Inputs
+    from .result import Report
+    from .uncertain import Budget
+
+__all__ = ["foremost", "shares"]
+
+K = TypeVar("K")
+SEEN = 0.005
+"""Shares of a variance that are nearer than this are told apart by nobody."""
+
+
+def shares(budget: Budget, inputs: Inputs) -> tuple[dict[str, float], dict[int, float]]:
+    """The parts of a cell's variance, the largest first.
+
+    Parameters
+    ----------
+    budget : Budget
+    inputs : Inputs
+        That it is of.
+
+    Returns
+    -------
+    mapping of str to float
+        By column or parameter; what several cells share, by its own name.
+    mapping of int to float
+        By test.
+    """
+    columns: dict[str, float] = {}
+    tests = dict.fromkeys(inputs.tests, 0.0)
+    for each in budget.contributions:
+        name, row, _ = each.source.moves[0]
+        own = each.source.name.partition(", ")[0] in {name, address(name, inputs.tests[row : row + 1])}
+        key = name if own else each.source.name
+        columns[key] = columns.get(key, 0.0) + each.share
+        if own and name in inputs.measured:
+            tests[inputs.tests[row]] += each.share
+    return _ordered(columns), _ordered(tests)
+
+
+def _ordered(found: Mapping[K, float]) -> dict[K, float]:
+    return dict(sorted(found.items(), key=lambda item: -abs(item[1])))
+
+
+def foremost(report: Report, budget: Budget) -> tuple[str, float] | None:
+    """The test that most of the variance comes from, and its part; None if none is first of several."""
+    _, tests = shares(budget, report.inputs)
+    axis = next((report.sheet[name].axis for name in report.inputs.measured), None)
+    if axis is None or len(tests) < 2:
+        return None
+    (test, share), (_, less), *_ = tests.items()
+    return (f"{axis.row} {test}", share) if 0 < less < share - SEEN else None
