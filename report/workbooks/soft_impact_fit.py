@@ -143,9 +143,8 @@ _ALONE = "the other tests alone tell no curve"
 _TWO = "two tests lie on one curve, so that nothing is left over"
 _BENT = "tests at two speeds tell no trend"
 _ALIKE = "the tests tell no exponent: all are at one speed, or but one of them counts"
+_BOWL = "a restitution of zero is so uncertain that a larger one fits better"
 _NONE = (
     "no power law with a positive exponent comes near to all tests, or a test has speed, restitution and "
-    "depth without uncertainty, which weighs more than all others, or a restitution of zero is so uncertain "
-    "that a larger one fits better: state one above zero"
+    f"depth without uncertainty, which weighs more than all others, or {_BOWL}: state one above zero"
 )
-_BOWL = "a restitution of zero is the best there is: its uncertainty is small, or its imprint deep"
