@@ -342,7 +342,7 @@ def test_two_tests_stay(live: Live) -> None:
     live.page.locator('[data-use="4"]').click()
     assert live.page.locator('[data-use="4"]').is_checked()
     live.page.locator('[data-remove="5"]').click()
-    assert "Two tests" in live.text("live-said")
+    assert "Two tests" in live.text("live-note")
     assert live.input("v", 5).count() == 1
 
 
