@@ -13,7 +13,7 @@ from ..cells.values import Cell, Status, Values
 from ..inputs.inputs import Inputs, PublishedValue
 from ..messages.diagnostics import Check
 from ..quantity import Printed, behind
-from ..sheet import Given, Sheet
+from ..sheet import Column, Given, Iterated, Sheet
 from ..workbook import Workbook
 from .agreement import Agreement
 from .numbers import Numeral, last_place, order, read, shown, stated, uncertainty
@@ -212,14 +212,15 @@ class Report:
         return tuple(
             cell
             for cell in self.values.errors()
-            if not self.marks.is_faultless(cell) and self._told_of(cell) == cell.name
+            if not self.marks.is_faultless(cell)
+            and (cell.status is not Status.NOROOT or self.told_of(self.sheet[cell.name]) == cell.name)
         )
 
-    def _told_of(self, cell: Cell) -> str:
-        """The column that tells of a loop that does not settle: of the result, or the first."""
-        loop = self.sheet.loop_of.get(cell.name)
-        if loop is None or cell.status is not Status.NOROOT:
-            return cell.name
+    def told_of(self, column: Column) -> str:
+        """The column that tells that the loop of a column does not settle: of the result, or the first."""
+        loop = self.sheet.loop_of.get(column.name)
+        if loop is None or not isinstance(column.rule, Iterated):
+            return column.name
         names = [column.name for column in loop.iterated]
         return next((name for name in self.workbook.headline if name in names), names[0])
 

@@ -183,6 +183,9 @@ def _least(entry: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in entry.items() if plain.get(name) != value}
 
 
+_SILENT = {False: (), True: (1,)}
+
+
 def _column(report: Report, document: Material, column: Column) -> dict[str, Any]:
     shown = report.shown[column.name]
     head = document.head(column)
@@ -193,7 +196,12 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
     }
     if limits := report.marks.limiting(column.name):
         entry["limits"] = [
-            (each.column.name, each.limit.mark, each.limit.says if each.limit.source else "")
+            (
+                each.column.name,
+                each.limit.mark,
+                each.limit.says if each.limit.source else "",
+                *_SILENT[each.limit.silent],
+            )
             for each in limits
         ]
     if isinstance(column.rule, Given) and column.rule.u_of:
@@ -202,6 +210,8 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
         entry["given"] = _given(report, column)
         return entry if (stated := errors(report, column)) is None else entry | {"errors": stated}
     entry |= digits(report, column)
+    if column.spare or report.told_of(column) != column.name:
+        entry["spare"] = 1
     if head.sources != (column.source,):
         entry["equations"] = head.sources
     if isinstance(column.rule, Iterated):

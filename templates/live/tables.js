@@ -142,7 +142,8 @@ function howMany(look, margin) {
 // Beside the result: over how many rows it was taken, where some have no value, and how many carry marks.
 function writeCounted(look) {
   for (const element of all(".headline [data-cell]")) {
-    const box = element.parentElement, counted = look.trace.sheet.counted[element.dataset.cell] ?? {};
+    const box = element.parentElement, name = element.dataset.cell;
+    const counted = look.trace.isOk(name, 0) ? look.trace.sheet.counted[name] ?? {} : {};
     for (const old of all(".counted", box)) {
       if (!old.previousSibling?.data?.trim()) old.previousSibling?.remove();
       old.remove();
@@ -151,7 +152,7 @@ function writeCounted(look) {
       const size = look.trace.sheet.layouts[axis].size;
       if (rows) box.append(" ", make("span", { class: "counted" }, `over ${rows} of ${size} ${axis}`));
     }
-    const behind = look.trace.ancestors(element.dataset.cell);
+    const behind = look.trace.ancestors(name);
     for (const { name, axis } of look.trace.order.filter(({ name, axis }) => axis && behind.has(name))) {
       for (const [margin, mark, says] of LIVE.columns[name].limits ?? []) {
         const [outside, size] = howMany(look, margin), text = `${outside} of ${size} ${axis}${says ? "" : ":"} ${mark}`;
@@ -165,12 +166,14 @@ function writeCounted(look) {
 function writeMissing(look) {
   const { errors, order, sheet } = look.trace;
   const shown = byId("missing-cells")?.querySelector("table"), most = shown ? mostOf(shown) : Infinity;
-  const remarks = errors.slice(0, most).map(({ name, row }) => [name, row, CODES[sheet.status[name][row]], look.trace.why(name, row)]);
+  const remarks = errors.filter(({ name, row }) => !look.trace.isFaultless(name, row)).slice(0, most).map(({ name, row }) => [name, row, CODES[sheet.status[name][row]], look.trace.why(name, row)]);
   for (const { name } of order) {
+    const marks = new Map();
     for (const [margin, mark, says] of LIVE.columns[name].limits ?? []) {
       const told = says ? `${mark}, ${says}` : mark;
-      sheet.value[margin].forEach((room, row) => room < 0 && remarks.push([name, row, "†", told]));
+      sheet.value[margin].forEach((room, row) => room < 0 && marks.set(row, [...marks.get(row) ?? [], told]));
     }
+    for (const [row, told] of marks) remarks.push([name, row, "†", told.join("; ")]);
   }
   let section = byId("missing");
   if (!section && remarks.length) {

@@ -16,6 +16,8 @@ class Trace {
     // What is only drawn is no cell of the report.
     this.order = program.columns.filter(({ name }) => columns[name]);
     this.found = {};
+    const limits = Object.values(columns).flatMap((column) => column.limits ?? []);
+    this.silent = new Set(limits.filter(([, , , silent]) => silent).map(([, mark]) => mark));
   }
 
   size(name) {
@@ -108,6 +110,15 @@ class Trace {
   // What limits a cell lies outside of.
   outsideOf(name, row) {
     return (this.columns[name].limits ?? []).filter(([margin]) => this.sheet.value[margin][row] < 0);
+  }
+
+  // Whether an error begins where nobody is to blame: in a spare column, as a silent limit says, or in a column
+  // of a loop for which another one tells.
+  isFaultless(name, row) {
+    const { spare, requires, limits = [] } = this.columns[name], number = this.sheet.broken?.[name]?.[row];
+    return (spare && (number || this.sheet.status[name][row] === STATUS.NOROOT))
+      || (number && this.silent.has(requires[number - 1]))
+      || limits.some(([margin, , , silent]) => silent && this.sheet.value[margin][row] < 0);
   }
 
   // All columns that a column is computed from.

@@ -52,7 +52,7 @@ class Shown:
     """What it lies outside of."""
 
 
-_CELLS = """() => Array.from(document.querySelectorAll("main [data-cell][data-value]"), (cell) => {
+_CELLS = """() => Array.from(document.querySelectorAll("main [data-cell][data-value]%s"), (cell) => {
   const box = cell.tagName === "INPUT" ? cell.parentElement : cell;
   return [cell.dataset.cell, cell.dataset.index, cell.dataset.value, cell.dataset.status,
     cell.tagName === "INPUT" ? cell.value : cell.textContent,
@@ -92,13 +92,15 @@ def alike(ours: list[str], theirs: list[str]) -> bool:
     )
 
 
-# What stands beside the cells and follows from them.
+# What stands beside the cells and follows from them. A build says of a cell without a value that it has none,
+# an edited page shows its code in the sentence as issued.
 _AROUND = """() => {
   const text = (element) => element.textContent.replace(/\\s+/g, " ").trim();
   const all = (selector) => Array.from(document.querySelectorAll(selector), text);
   const missing = document.getElementById("missing");
   return [...all("#published tbody tr"), ...(missing && !missing.hidden ? all("#missing tbody tr") : []),
-    ...all("#result > p"), ...all(".headline dd"), ...all("#published > ul > li")];
+    ...all("#result > p").filter((text) => !/#[A-Z]+!|no value: /.test(text)),
+    ...all(".headline dd"), ...all("#published > ul > li")];
 }"""
 
 # When all that waits for the next frame has been done.
@@ -135,8 +137,10 @@ class Live:
 
     # what it shows
 
-    def cells(self) -> list[Shown]:
-        return [Shown(*fields) for fields in self.page.evaluate(_CELLS)]
+    def cells(self, outside: str = "") -> list[Shown]:
+        """All that are shown, or those outside of the elements of a selector."""
+        where = f":not({outside} *)" if outside else ""
+        return [Shown(*fields) for fields in self.page.evaluate(_CELLS.replace("%s", where))]
 
     def cell(self, name: str, index: str = "") -> Shown:
         return next(cell for cell in self.cells() if (cell.name, cell.index) == (name, index))
