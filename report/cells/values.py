@@ -16,7 +16,7 @@ from ..sheet import Column, Formula, Iterated, Root, Sheet
 from .address import address
 from .layout import Layout, Precedent, precedents
 
-__all__ = ["CODES", "Cell", "Status", "Values", "how_many", "inherited", "rows_kept"]
+__all__ = ["CODES", "Cell", "Status", "Values", "how_many", "inherited", "other_rows", "rows_kept"]
 
 Codes = NDArray[np.uint8]
 Mask = NDArray[np.bool_]
@@ -356,3 +356,35 @@ class Values:
         if isinstance(rule, Formula):
             return f"{outside}: it gives no {'positive' if column.positive else 'finite'} number here"
         return outside
+
+
+def other_rows(here: Values, there: Values) -> dict[str, Mask]:
+    """The columns whose sums run over other rows than elsewhere: what they estimate is then another quantity.
+
+    Parameters
+    ----------
+    here : Values
+        With a batch or without.
+    there : Values
+        All columns of these over the same rows, without a batch.
+
+    Returns
+    -------
+    mapping of column name to boolean array (...,)
+        For which elements of the batch they do; columns of which none does are not there.
+    """
+    wrong = {
+        column.name
+        for column in here.sheet.columns
+        if here.status[column.name].any() or there.status[column.name].any()
+    }
+    found: dict[str, Mask] = {}
+    for column in here.sheet.columns:
+        summed = [each for each in precedents(here.sheet, here.layouts, column) if each.over is not None]
+        if wrong.isdisjoint(each.column.name for each in summed):
+            continue
+        own, other = (rows_kept(summed, here.layouts, values.status) for values in (here, there))
+        moved = [np.any(mask != other[axis], axis=-1) for axis, mask in own.items()]
+        if any(each.any() for each in moved):
+            found[column.name] = np.logical_or.reduce(np.broadcast_arrays(*moved))
+    return found

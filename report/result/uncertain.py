@@ -200,7 +200,8 @@ class Distributed:
     Parameters
     ----------
     number, lost : int
-        Draws, and those of them without a value: all else is of the others.
+        Draws, and those of them without a value, or with sums over other rows than those of the estimate: all
+        else is of the others.
     median, mean, u : float
         In SI; mean and standard uncertainty are NaN where the tails are too heavy.
     symmetric, shortest : tuple of float

@@ -2,7 +2,8 @@
 
 All errors of what was given are drawn from their distributions and go through the sheet, batch after batch.
 Quantiles come first: they exist for any distribution. A mean and a standard deviation are told only where the
-tails let them exist, and an interval only if nearly all draws have a value.
+tails let them exist, and an interval only if nearly all draws have a value. One whose sums run over other
+rows than those of the estimate has none: it is a value of another estimator.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cells.values import Status, Values
+from ..cells.values import Status, Values, other_rows
 from ..distribution import DIVISORS, PARTS, Shape
 from ..engines.elementary import log
 from ..engines.intervals import Intervals
@@ -87,8 +88,8 @@ def draw(
 
     for number, batch in enumerate(drawn.batches(size, most), start=1):
         step(f"drawing {number * size} times")
-        own, status = drawn.of(batch, row)
-        ordered = np.sort(own[status == Status.OK])
+        own, there = drawn.of(batch, row)
+        ordered = np.sort(own[there])
         lost += own.size - ordered.size
         found.append(ordered)
         if ordered.size:
@@ -103,7 +104,7 @@ class _Draws:
 
     def __init__(self, inputs: Inputs, values: Values, name: str, seed: int) -> None:
         column = values.sheet[name]
-        self.sheet = Sheet((*values.sheet.ancestors(column), column))
+        self.sheet, self.estimate = Sheet((*values.sheet.ancestors(column), column)), values
         self.labels = values.given_labels
         self.program, self.name = Program.of(self.sheet), name
         self.generator = np.random.Generator(np.random.PCG64(seed))
@@ -195,23 +196,25 @@ class _Draws:
             return DIVISORS[shape] * np.sin(2 * np.pi * draws.random(size))
         return DIVISORS[shape] * (2 * draws.random(size) - 1)
 
-    def of(self, batch: dict[str, Array], row: int) -> tuple[Array, NDArray[np.uint8]]:
-        """The values and statuses of a row of the column (size,)."""
+    def of(self, batch: dict[str, Array], row: int) -> tuple[Array, NDArray[np.bool_]]:
+        """The values of a row of the column, and whether they have one (size,)."""
         if self.beside is None or not batch:
             return self._asked(batch, row)
         own, known = self.beside.column(self.name, row, batch)
-        status = np.full(own.size, Status.OK, dtype=np.uint8)
+        there = np.ones(own.size, dtype=bool)
         if not known.all():
             left = {name: each[~known] for name, each in batch.items()}
-            own[~known], status[~known] = self._asked(left, row)
-        return own, status
+            own[~known], there[~known] = self._asked(left, row)
+        return own, there
 
-    def _asked(self, batch: dict[str, Array], row: int) -> tuple[Array, NDArray[np.uint8]]:
-        """The same, asked of every draw whether it has a value."""
+    def _asked(self, batch: dict[str, Array], row: int) -> tuple[Array, NDArray[np.bool_]]:
+        """The same, asked of every draw whether it has a value by the rows of the estimate."""
         values = evaluate(self.sheet, self.labels, self.base | batch, self.program)
         size = max((len(own) for own in batch.values()), default=1)
-        own, status = values.value[self.name], values.status[self.name]
-        return np.broadcast_to(own[..., row], size), np.broadcast_to(status[..., row], size)
+        own, there = values.value[self.name][..., row], values.status[self.name][..., row] == Status.OK
+        for others in other_rows(values, self.estimate).values():
+            there = there & ~others
+        return np.broadcast_to(own, size), np.broadcast_to(there, size)
 
 
 # --- what draws tell ---------------------------------------------------------------------------------------

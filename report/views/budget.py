@@ -210,7 +210,10 @@ def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iter
     )
     if drawn.lost:
         share = percent(drawn.lost / drawn.number)
-        yield f"{drawn.lost} of them ({share}) have no value: all this is of the others"
+        yield (
+            f"{drawn.lost} of them ({share}) have no value, or one of sums over other rows than the "
+            "estimate's: all this is given that every row which the estimate uses has a value, and no other"
+        )
     if math.isnan(drawn.u):
         what = "standard deviation" if math.isfinite(drawn.mean) else "mean and no standard deviation"
         yield f"there is no {what}: the tails fall as the power {drawn.tail:.2g} of the distance"

@@ -26,7 +26,7 @@ function drawSoon() {
 }
 
 function drawNow(look, cells) {
-  const names = new Set(cells.flatMap(([name]) => [name, ...look.trace.ancestors(name)]));
+  const names = cells.map(([name]) => [name, ...look.trace.ancestors(name)]);
   const { labels, data } = look.trace.sheet, { errors, pairs } = look.sure, refuse = () => {
     carlo.refused = true;
     tellDraws(look);
@@ -93,7 +93,7 @@ function fillDraws(look) {
   }
   const { lost, u, ends } = found, words = u >= 0 ? ["u = ", figureText(stated(0, u / scale, LIVE.most)[1]), ...behind()] : ["the tails have no standard deviation"];
   words.push(...(ends ? [`, 95\u00a0% in ${rangeOf(name, found)}`, ...behind()] : [", too many without a value for an interval"]));
-  fillLine("bar-draws", says, make("span", {}, ...words, lost ? `; ${lost} without a value` : ""));
+  fillLine("bar-draws", says, make("span", {}, ...words, lost ? `; ${lost} without a value over these rows` : ""));
   furnished(byId("bar-draws"), { "data-lost": lost, "data-u": u, "data-ends": ends ?? "" }, []);
 }
 

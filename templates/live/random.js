@@ -57,11 +57,17 @@ function drawer(errors, pairs) {
   };
 }
 
-// The values of some cells, sorted, of as many draws as asked for: those that have one. `data` and `labels` are the
-// sheet's, `names` the columns that the cells rest on, and they themselves.
+// The columns whose sums run over other rows than elsewhere: what rests on them is a value of another estimator.
+function otherRows(here, there) {
+  const moved = (name) => Object.entries(here[name].keep).some(([axis, rows]) => rows.some((kept, row) => kept !== there[name].keep[axis][row]));
+  return Object.keys(here).filter(moved);
+}
+
+// The values of some cells, sorted, of as many draws as asked for: those that have one over the rows of the estimate.
+// `data` and `labels` are the sheet's; `names` has for each cell the columns that it rests on, and its own.
 function drawn({ count, labels, data, errors, pairs, cells, names }) {
-  const program = { ...PROGRAM, columns: PROGRAM.columns.filter(({ name }) => names.has(name)) };
-  const draw = drawer(errors, pairs), found = cells.map(() => []);
+  const asked = new Set(names.flat()), program = { ...PROGRAM, columns: PROGRAM.columns.filter(({ name }) => asked.has(name)) };
+  const draw = drawer(errors, pairs), found = cells.map(() => []), estimate = evaluateSheet(program, labels, data).kept;
   for (let n = 0; n < count; n++) {
     const inputs = { ...data }, by = draw();
     errors.forEach(({ moves }, which) => {
@@ -70,8 +76,10 @@ function drawn({ count, labels, data, errors, pairs, cells, names }) {
         inputs[name][row] += u * by[which];
       }
     });
-    const { value, status } = evaluateSheet(program, labels, inputs);
-    cells.forEach(([name, row], which) => status[name][row] || found[which].push(value[name][row]));
+    const { value, status, kept } = evaluateSheet(program, labels, inputs), others = otherRows(kept, estimate);
+    cells.forEach(([name, row], which) => {
+      if (!status[name][row] && !others.some((other) => names[which].includes(other))) found[which].push(value[name][row]);
+    });
   }
   return found.map((values) => new Float64Array(values).sort());
 }

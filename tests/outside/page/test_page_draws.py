@@ -30,7 +30,7 @@ ASK = """(message) => new Promise((resolve, reject) => {
   const worker = new Worker(URL.createObjectURL(new Blob([text], { type: "text/javascript" })));
   worker.onerror = ({ message }) => reject(message);
   worker.onmessage = ({ data }) => resolve(data.map((one) => Array.from(one)));
-  worker.postMessage({ ...message, names: new Set(message.names) });
+  worker.postMessage({ ...message, names: message.cells.map(() => message.names) });
 })"""
 
 
@@ -41,8 +41,8 @@ def drawn(
     draws = _Draws(report.inputs, report.values, name, seed=2)
     row = report.values.row(report.values.sheet[name], label)
     (batch,) = draws.batches(size, size)
-    own, status = draws.of(batch, row)
-    return np.where(status == 0, own, np.nan)
+    own, there = draws.of(batch, row)
+    return np.where(there, own, np.nan)
 
 
 def shown(live: Live, name: str, index: str = "") -> Mapping[str, float | list[float]]:
@@ -129,6 +129,18 @@ def test_draws_without_a_value_are_counted(live: Live, tmp_path: Path) -> None:
     lost = np.isnan(ours).mean()
     assert abs(found["lost"] - DRAWS * lost) < SURE * math.sqrt(DRAWS * lost * (1 - lost))  # type: ignore[operator]
     assert "too many without a value" in live.text("bar-draws")
+
+
+def test_draws_over_other_rows_than_the_estimate_are_counted(live: Live, tmp_path: Path) -> None:
+    """A restitution of 0 cannot be less: half of the draws have a test less to fit."""
+    live.type("e", 1, "0.000")
+    report = Study(driving.write(tmp_path / "zero", driving.edited({("e", 1): "0.000"}))).computed
+    ours = drawn(report, "alpha_eiv")
+    assert np.isnan(ours).mean() == pytest.approx(0.5, abs=0.02)
+    found = shown(live, "alpha_eiv")
+    assert found["ends"] == []
+    assert abs(found["lost"] - DRAWS / 2) < SURE * math.sqrt(DRAWS) / 2
+    assert "without a value over these rows" in live.text("bar-draws")
 
 
 def test_a_browser_without_workers_says_so(open_page: Open) -> None:
