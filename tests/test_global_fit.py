@@ -55,7 +55,7 @@ def depth(
 
 
 def by_scipy(
-    v: Array, e: Array, x_p: Array, u_v: Array, u_e: Array, u_x: Array
+    v: Array, e: Array, x_p: Array, u_v: Array, u_e: Array, u_x: Array, start: float = 1.3
 ) -> tuple[float, float, float]:
     """Exponent, sum of squares and standard uncertainty, with all true values as unknowns of their own."""
     n, x_0 = v.size, float(x_p.mean())
@@ -65,8 +65,10 @@ def by_scipy(
         true = depth(v + u_v * dv, e + u_e * de, z[0], np.exp(z[1]), x_0)
         return np.concatenate([dv, de, (x_p - true) / u_x])
 
-    start = np.concatenate([[1.3, np.log(MASS * v.mean() ** 2 / x_0)], np.zeros(2 * n)])
-    found = least_squares(deviations, start, method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15)
+    # The force with which the mean test lies on the first curve.
+    left = depth(v, e, start, 1.0, x_0) / x_p
+    begin = np.concatenate([[start, (start + 1) * np.log(left.mean())], np.zeros(2 * n)])
+    found = least_squares(deviations, begin, method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15)
     covariance = np.linalg.inv(found.jac.T @ found.jac)
     return float(found.x[0]), 2 * float(found.cost), float(np.sqrt(covariance[0, 0]))
 
@@ -128,6 +130,29 @@ def test_one_test_has_no_exponent() -> None:
     assert values.cell("alpha_eiv").reason.startswith("#DOMAIN! alpha_eiv needs alpha_0: outside the domain")
     assert values.cell("v_eiv", (1,)).reason.startswith("#DOMAIN! v_eiv[1] needs alpha_0: outside the domain")
     assert values.cell("chi2_eiv").culprit is not None
+
+
+@pytest.mark.parametrize(
+    ("v", "e", "x_p"),
+    [
+        ((2, 2.8, 3.6), (0.93, 0.927, 0.924), (1.8, 2.65, 3.6)),
+        ((2, 2.8, 3.6, 4.5), (0.9, 0.897, 0.894, 0.89), (1.07, 1.74, 2.55, 3.7)),
+        ((2, 2.8, 3.6, 4.5), (0.95, 0.947, 0.944, 0.94), (1.8, 2.61, 3.51, 4.69)),
+    ],
+)
+def test_of_nearly_elastic_tests_there_is_a_fit(v: Any, e: Any, x_p: Any) -> None:
+    """The search passes places where a restitution leaves no imprint."""
+    v, e, x_p = np.array(v), np.array(e), np.array(x_p) * 1e-6
+    us = [np.full(v.size, half / np.sqrt(3)) for half in (5e-4, 5e-4, 5e-9)]
+    values = fitted(v, e, x_p, *us)
+    pairs = values.scalar("alpha_median")
+    assert abs(values.scalar("alpha_eiv") - pairs) < 3 * values.scalar("u_alpha_eiv")
+    assert values.scalar("chi2_eiv") < 1
+    assert (values.value["x_p_eiv"] > 0).all()
+    # No deviations of any test are smaller: nearby curves and true values have larger sums.
+    others = [by_scipy(v, e, x_p, *us, start=pairs + step) for step in (-0.01, 0, 0.01)]
+    assert values.scalar("chi2_eiv") <= min(chi2 for _, chi2, _ in others) + 1e-9
+    assert values.scalar("alpha_eiv") == pytest.approx(min(others, key=lambda o: o[1])[0], abs=1e-5)
 
 
 @pytest.mark.parametrize(("u_e", "settles"), [(0.002, True), (0.1, False)])

@@ -160,11 +160,11 @@ NO, CLOSE, ONE = (
     ("chi2", "said", "probability"),
     [
         (1e-4, CLOSE, "3e-7"),
-        (0.2, CLOSE, "0.02"),
-        (0.25, ONE, "0.97"),
+        (0.11, CLOSE, "0.009"),
+        (0.12, ONE, "0.99"),
         (2.366, ONE, "0.5"),
-        (7.7, ONE, "0.05"),
-        (7.9, NO, "0.05"),
+        (11.2, ONE, "0.01"),
+        (11.5, NO, "0.009"),
         (55.19, NO, "6e-12"),
         (1e4, NO, "below 1e-15"),
     ],
@@ -172,7 +172,7 @@ NO, CLOSE, ONE = (
 def test_what_is_said_first_is_whether_one_curve_serves(
     report: Report, chi2: float, said: str, probability: str
 ) -> None:
-    """Chi-square of three degrees of freedom: 2.5 % below 0.216, half below 2.366, 5 % above 7.815."""
+    """Chi-square of three degrees of freedom: 1 % below 0.115, half below 2.366, 1 % above 11.345."""
     values = replace(report.values, value={**report.values.value, "chi2_eiv": np.array([chi2])})
     told = sections("soft_impact", Said(Material(replace(report, values=values)), ()))[0].blocks[0]
     assert isinstance(told, Note)

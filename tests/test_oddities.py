@@ -91,6 +91,22 @@ def test_deviations_are_neither_larger_nor_smaller_than_chance_makes_them(
     ]
 
 
+@pytest.mark.parametrize(
+    "more",
+    [
+        '[uncertainty.correlation]\n"v, e" = "0.95"\n',
+        '[uncertainty.shared."height datum"]\nof = "x_p"\nstated = "u = 1 um"\n',
+    ],
+)
+def test_of_errors_that_are_tied_nobody_says_how_likely_their_squares_are(tmp_path: Path, more: str) -> None:
+    """Squares over their own variances are no independent ones then: honest campaigns would be accused."""
+    assert told(write(tmp_path, SOUND, stated(0.2) + more)) == []
+    assert "not judged" in checks(tmp_path)["squares chi2_eiv"].message
+    text = html.render(Study(tmp_path).computed, {})
+    assert "Some errors are shared or correlated" in text
+    assert "describes these tests within" not in text
+
+
 def test_of_two_tests_nothing_is_left_over(tmp_path: Path) -> None:
     assert checks(write(tmp_path, TWO))["squares chi2_eiv"].message == "chi2_eiv: nothing left over of tests"
 

@@ -12,7 +12,7 @@ from ..cells.address import index_text
 from ..messages.errors import suggest
 from ..result import verdict_words as words
 from ..result.agreement import Agreement
-from ..result.chi_square import CLOSE, SIGNIFICANT, freedom, head, largest, tail
+from ..result.chi_square import RARE, SIGNIFICANT, freedom, head, largest, tail, tied
 from ..result.numbers import is_pure, probability
 from ..result.statements import statements
 from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
@@ -93,8 +93,9 @@ class Said:
             "chance": Role(self._chance),
             "tail": Role(lambda what: self._followed("tail", what, self._squares(tail, what))),
             "head": Role(lambda what: self._followed("head", what, self._squares(head, what))),
-            "unlikely": Role(lambda what: (p := self._squares(tail, what)) is not None and p < SIGNIFICANT),
-            "close": Role(lambda what: (p := self._squares(head, what)) is not None and p < CLOSE),
+            "unlikely": Role(lambda what: (p := self._squares(tail, what)) is not None and p < RARE),
+            "tied": Role(lambda _: tied(self.report)),
+            "close": Role(lambda what: (p := self._squares(head, what)) is not None and p < RARE),
         }
 
     # --- cells, counts, references
@@ -134,17 +135,17 @@ class Said:
         return (Count(text, kind, what),) if (text := self._probable(p)) else ()
 
     def _squares(self, how: Callable[[float, int], float], what: str) -> float | None:
-        """How likely such a sum of squares is; None without one, or if nothing is left over."""
+        """How likely such a sum of squares is; None without one, and if nothing or no chance is left over."""
         declared = {squares.name: squares for squares in self.report.workbook.squares}
         squares = declared[_known("sum of squares", what, declared)]
-        value, dof = self.report.values.scalar(squares.name), freedom(squares, self.report.values)
-        return how(value, dof) if dof > 0 and value == value else None
+        value, dof = self.report.values.scalar(squares.name), freedom(squares, self.report)
+        return how(value, dof) if dof > 0 and value == value and not tied(self.report) else None
 
     def _farthest(self, name: str) -> tuple[str, float] | None:
         """The row whose deviation, in standard deviations, is too large for chance, and that chance."""
         values, column = self.report.values, self.report.sheet[self._column(name)]
         known = [(abs(x), row) for row, x in enumerate(values.value[column.name]) if x == x]
-        if not known:
+        if not known or tied(self.report):
             return None
         most, row = max(known)
         chance = largest(most, len(known), len(self.report.inputs.left_out))

@@ -12,7 +12,7 @@ import numpy as np
 from ..cells.marks import Margin, MarkCount, margins
 from ..cells.values import Cell, Status
 from ..messages.diagnostics import Check, Location
-from ..result.chi_square import CLOSE, SIGNIFICANT, freedom, head, tail
+from ..result.chi_square import RARE, freedom, head, tail, tied
 from ..result.numbers import probability
 from ..sheet import Column, Given, Sheet
 from .suspects import suspected
@@ -217,17 +217,20 @@ class _Oddities:
 
     def of_squares(self, squares: SquareSum) -> Check:
         """Whether chance makes a sum of squares as large as it is, and as small."""
-        cell, name, dof = self.values.cell(squares.name), squares.name, freedom(squares, self.values)
+        cell, name, dof = self.values.cell(squares.name), squares.name, freedom(squares, self.report)
         if cell.value is None or dof < 1:
             said = "no value" if cell.value is None else f"nothing left over of {squares.axis}"
             return Check(SQUARES, name, True, f"{name}: {said}", self.inputs.place)
+        if tied(self.report):
+            said = f"{name}: errors are shared or correlated, and its weights leave that out: not judged"
+            return Check(SQUARES, name, True, said, self.inputs.place)
         large, small = tail(cell.value, dof), head(cell.value, dof)
         found = f"{name} = {self.report.text(cell)} on {dof} degrees of freedom"
-        if large >= SIGNIFICANT and small >= CLOSE:
+        if min(large, small) >= RARE:
             return Check(SQUARES, name, True, f"{found} is what chance makes", self.inputs.place)
         said = (
             f"the probability of so much is {probability(large)}: {MISFIT}"
-            if large < SIGNIFICANT
+            if large < RARE
             else f"the probability of so little is {probability(small)}: {OVERSTATED}"
         )
         said = f"{found}; {said.format(axis=squares.axis)}"

@@ -7,20 +7,30 @@ from typing import TYPE_CHECKING
 
 import mpmath
 
+from ..sheet import Given
+
 if TYPE_CHECKING:
-    from ..cells.values import Values
     from ..workbook import SquareSum
+    from .result import Report
 
-__all__ = ["CLOSE", "SIGNIFICANT", "freedom", "head", "largest", "tail"]
+__all__ = ["RARE", "SIGNIFICANT", "freedom", "head", "largest", "tail", "tied"]
 
+RARE = 0.01
+"""A sum of squares that is as large, or as small, less often than this is not taken for chance."""
 SIGNIFICANT = 0.05
-"""A sum of squares that is less likely than this is not taken for chance."""
-CLOSE = 0.025
-"""Nor is one that is as small as this lets it be."""
+"""Nor is a deviation that is less likely than this, however many were looked at."""
 
 
-def freedom(squares: SquareSum, values: Values) -> int:
+def tied(report: Report) -> bool:
+    """Whether errors that are weighed are shared or correlated: squares are then no independent ones."""
+    weighed = {c.rule.u_of for c in report.sheet.columns if isinstance(c.rule, Given)} - {""}
+    stated = report.inputs.uncertainty
+    return not weighed.isdisjoint({each.of for each in stated.shared}.union(*stated.correlations))
+
+
+def freedom(squares: SquareSum, report: Report) -> int:
     """The degrees of freedom of a sum of squares: rows without a value do not count."""
+    values = report.values
     rows = values.counted.get(squares.name, {}).get(squares.axis, values.layouts[squares.axis].size)
     return rows - squares.fitted
 

@@ -24,7 +24,7 @@ from ..document.written import placed
 from ..inputs.unit_text import parse_unit
 from ..machine.kept import kept
 from ..quantity import Bounds, Printed
-from ..result.chi_square import CLOSE, SIGNIFICANT
+from ..result.chi_square import RARE
 from ..result.numbers import LEAST
 from ..result.result import Report
 from ..result.verdict import OTHERWISE, UNEXPECTED
@@ -119,7 +119,7 @@ def data(report: Report, document: Material) -> str:
         "headline": [name for name in report.workbook.headline if name in sheet],
         "figures": drawn(report),
         "squares": {one.name: [one.axis, one.fitted] for one in report.workbook.squares},
-        "chances": [SIGNIFICANT, CLOSE, LEAST],
+        "chances": [RARE, LEAST],
         "findings": {"unexpected": UNEXPECTED, "otherwise": OTHERWISE},
         "published": [
             {

@@ -31,7 +31,10 @@ _SCALARS = (
     *("x_0", "v_0", "F_0", "alpha", "C", "chi2", "u_alpha", "R_B", "u_B", "alpha_0"),
     *("S_DD", "S_DX", "S_XX", "Delta", "S_TT", "S_TD", "S_TX", "Q", "tau", "u_tau", "dchi2"),
 )
-_ZERO = ("u_v", "u_e", "u_x", "chi2", "e", "S_DD", "Delta", "h", "S_TT", "Q", "dchi2", "R_B", "u_B")
+_ZERO = (
+    *("u_v", "u_e", "u_x", "chi2", "e", "S_DD", "Delta", "h", "S_TT", "Q", "dchi2", "R_B", "u_B"),
+    *("x_p", "B_v"),  # on the way to a fit of nearly elastic tests; there they are positive
+)
 """What may be zero."""
 _LATEX = {
     "v": r"\hat{v}'%s", "e": r"\hat{e}%s", "x_p": r"\hat{x}_{p%s}", "x_m": r"\hat{x}_{m%s}",

@@ -27,9 +27,9 @@ function squares(chi2, dof) {
 function judged({ trace: { sheet } }, name, kind) {
   const [axis, fitted] = LIVE.squares[name], dof = (sheet.counted[name]?.[axis] ?? sheet.layouts[axis].size) - fitted;
   if (!(dof > 0) || sheet.status[name][0]) return { text: "", says: "" };
-  const found = squares(sheet.value[name][0], dof), p = found[kind], [unlikely, close, least] = LIVE.chances;
+  const found = squares(sheet.value[name][0], dof), p = found[kind], [rare, least] = LIVE.chances;
   const text = p < least ? `below ${figureText(rounded(least, order(least)))}` : p < 1 ? figureText(rounded(p, Math.min(order(p), order(1 - p)))) : "1";
-  return { text, says: found.tail < unlikely ? "unlikely" : found.head < close ? "close" : "likely" };
+  return { text, says: found.tail < rare ? "unlikely" : found.head < rare ? "close" : "likely" };
 }
 
 const stale = (text) => make("span", { class: "stale" }, text);
