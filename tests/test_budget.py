@@ -67,7 +67,7 @@ def test_the_test_that_matters_most_is_told_by_its_share(capsys: pytest.CaptureF
 
 def test_the_report_draws_the_shares_of_the_first_result(report: Report) -> None:
     budget = report.uncertain().budgets[0]
-    table = Tables(Material(report)).budget()
+    (table,) = Tables(Material(report)).budget()
     assert budget.cell == "alpha_eiv"
     shown = [(row.cells[0], row.cells[2]) for row in table.rows]
     drawn = {each.source.name: each.share for each in budget.contributions if each.share >= 0.005}

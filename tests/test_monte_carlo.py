@@ -6,10 +6,12 @@ from pathlib import Path
 import pytest
 
 from loopsheet.report.cli import main
+from loopsheet.report.document.material import Material
 from loopsheet.report.result.uncertain import Distributed
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.monte_carlo import draw
 from loopsheet.report.uncertainty.propagation import Spread
+from loopsheet.report.views import latex
 
 PAPER = Path(__file__).parent.parent / "data" / "soft_steel"
 SUM = """\
@@ -193,3 +195,34 @@ def test_draws_that_lose_a_test_are_of_another_estimator(
 def test_a_number_that_is_exact_is_not_drawn(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["budget", "beta", "paper", "--draws", "1000"]) == 0
     assert capsys.readouterr().out == "beta = 1.5, exactly\n"
+
+
+def test_at_a_bound_there_is_no_second_order(tmp_path: Path) -> None:
+    """A step below a restitution of 0 is no change of the fit but its loss of a test."""
+    rows = "1,2.200,0.000,22.58\n2,3.100,0.000,31.92\n3,4.300,0.000,44.80\n"
+    (tmp_path / "measurements.csv").write_text(f"{STOPPED.splitlines()[0]}\n{rows}", encoding="utf-8")
+    toml = 'workbook = "soft_impact"\n[parameters]\nball_mass = "8.366 g"\n[measurements]\n'
+    errors = ERRORS.replace("u = 0.002", "u = 0.01, min = 0")
+    (tmp_path / "report.toml").write_text(toml + f'file = "measurements.csv"\n{errors}', encoding="utf-8")
+    report = Study(tmp_path).computed
+    budget = Spread(report.inputs, report.values).budget("alpha_eiv", 0)
+    assert budget.second == 0
+    assert budget.unlooked == "0.062 u from what was given its sums run over other rows"
+    found = draw(report.inputs, report.values, budget, 20_000)
+    assert found.lost == 0
+    assert found.u == pytest.approx(budget.u, rel=0.05)
+
+
+def test_where_only_second_order_counts_no_table_of_sources_is_empty(tmp_path: Path) -> None:
+    """A product of two errors around nearly zero: no source of first order is seen beside their product."""
+    product = SUM.replace("sum(c.symbol for c in x)", "x[0].symbol * x[1].symbol")
+    (tmp_path / "workbook.py").write_text(product, encoding="utf-8")
+    (tmp_path / "measurements.csv").write_text("test,r [1]\n1,1\n2,2\n", encoding="utf-8")
+    given = "".join(f'x_{n} = "0.001, u = 1"\n' for n in range(1, 5))
+    toml = f'workbook = "workbook.py"\n[parameters]\n{given}[measurements]\nfile = "measurements.csv"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    report = Study(tmp_path).report
+    assert Material(report).budgets[0].contributions
+    article = latex.render(report, [])
+    assert "most of it from" in article
+    assert "@{}@{}" not in article

@@ -403,7 +403,7 @@ SAID: dict[str, Callable[[Said], Answer]] = {
     "each_refereed": lambda s: (s.tables.refereed(),),
     "without": Said.without,
     "uncertain": lambda s: (s.tables.uncertain(),) if s.material.budgets else (),
-    "budget": lambda s: (s.tables.budget(),) if any(b.contributions for b in s.material.budgets[:1]) else (),
+    "budget": lambda s: s.tables.budget(),
     "conformity": lambda s: (s.tables.conformity(),) if s.report.inputs.limits else (),
     "published_u": lambda s: (s.tables.published_u(),) if s.report.comparisons_u else (),
     "asked_why": lambda s: s.referee.asked_why,

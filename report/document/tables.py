@@ -205,10 +205,17 @@ class Tables:
         caption = (Strong(("Uncertainty of the results.",)), f" U is the expanded one, for {level}")
         return _table("uncertain", caption, made, [((), self.material.budgets)], look="list", wide=True)
 
-    def budget(self) -> Table:
-        """Where the uncertainty of the first result comes from, source by source."""
+    def budget(self) -> tuple[Table, ...]:
+        """Where the uncertainty of the first result comes from, source by source; nothing if none is seen.
+
+        Beside terms of second order, those of first order may all be next to nothing.
+        """
+        if not self.material.budgets:
+            return ()
         budget, most = self.material.budgets[0], foremost(self.report, self.material.budgets[0])
         seen = [each for each in budget.contributions if abs(each.share) >= SEEN][:MOST_BARS]
+        if not seen:
+            return ()
         made = (
             _Made("source", lambda each: Code(each.source.name), "words"),
             _Made("u", self._of_source),
@@ -217,7 +224,7 @@ class Tables:
         caption = Strong(("Where that comes from:",)), " ", Code(budget.cell)
         legend = f"The largest {len(seen)} of {len(budget.contributions)} sources."
         legend += f" {most[0].capitalize()} matters most: {_percent(most[1])}." if most else ""
-        return _table("budget", caption, made, [((), seen)], look="list", legend=(legend,))
+        return (_table("budget", caption, made, [((), seen)], look="list", legend=(legend,)),)
 
     def _share(self, each: Contribution) -> Inlines:
         return Bar(each.share), f" {_percent(each.share)}"

@@ -182,8 +182,7 @@ class Spread:
         own, more = found[0, : len(self.sources)], self._more(cell, found)
         second, unlooked = float(np.nan_to_num(more)[0]), ""
         if not np.isfinite(more[0]):
-            far = "the sheet has no values so far from what was given"
-            unlooked = "the sheet is too large for that" if self.second is None else far
+            unlooked = "the sheet is too large for that" if self.second is None else self.second.why(name)
         first = float(self._variance(found)[0])
         u = math.sqrt(first + second) if math.isfinite(first + second) else math.nan
         if math.isnan(u):

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cells.layout import how_large
-from ..cells.values import Values
+from ..cells.values import Values, other_rows
 from ..distribution import Shape
 from ..engines.numpy import Program, evaluate
 from ..judge.chain import Chain
@@ -93,12 +93,26 @@ class SecondOrder:
         for node in chain.made.nodes:
             if node.median or any(slope.by in self.jumping for slope in node.slopes):
                 self.jumping.add(node.name)
-        self._along = Numbers(chain, _beside(values, program, sources, root)).go()
+        beside = _beside(values, program, sources, root)
+        self._along = Numbers(chain, beside).go()
+        moved = other_rows(beside, values)
+        self.torn = {
+            column.name
+            for column in values.sheet.columns
+            if any(each.name in moved for each in (column, *values.sheet.ancestors(column)))
+        }
+        """What rests on sums that run over other rows a step away: another estimator, whose slope tells nothing."""
 
     @staticmethod
     def is_small(values: Values, sources: Sequence[ErrorSource]) -> bool:
         """Whether the sheet is small enough for it."""
         return 2 * len(sources) * how_large(values.sheet, values.layouts) <= LARGEST
+
+    def why(self, name: str) -> str:
+        """Why nothing is known of a column's cell."""
+        if name in self.torn:
+            return f"{STEP:.2g} u from what was given its sums run over other rows"
+        return "the sheet has no values so far from what was given"
 
     def variance(self, cells: Sequence[tuple[str, int]], first: Array) -> Array:
         """The variance of some cells that the terms of second order make (cells,).
@@ -113,7 +127,7 @@ class SecondOrder:
         -------
         float array (cells,)
             In the squares of the cells' SI units; 0 where it does not count. NaN where a cell has no value so
-            near to its own.
+            near to its own, or has it of sums over other rows.
         """
         beside, first = self.by_source(self._along.at(cells)) @ self.root, first @ self.root
         up, down = beside[: len(self.sources)], beside[len(self.sources) :]
@@ -131,7 +145,8 @@ class SecondOrder:
             more = np.where(own + bent + turned > 0, bent + turned, bent)
             little = np.maximum(bent, np.abs(more)) <= COUNTS * own
             jumping = np.array([name in self.jumping for name, _ in cells], dtype=bool)
-            found: Array = np.where(little | jumping, 0.0, more)
+            torn = np.array([name in self.torn for name, _ in cells], dtype=bool)
+            found: Array = np.where(torn, np.nan, np.where(little | jumping, 0.0, more))
         return found
 
 
