@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.result import Report
+from loopsheet.report.study import Study
 from loopsheet.report.views import figures, latex, pdf
 
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ Șα"
@@ -142,3 +144,17 @@ def test_tex_reads_nothing_outside_its_folder(file: str, tmp_path: Path, require
     )
     with pytest.raises(pdf.TexFailed):
         pdf.compile(folder)
+
+
+def test_much_that_is_said_of_a_result_is_broken_into_lines(
+    tmp_path: Path, require: Callable[..., str]
+) -> None:
+    require("pdflatex")
+    for name in ("report.toml", "measurements.csv"):
+        text = (PAPER / name).read_text(encoding="utf-8").replace("29.7", "19.7")
+        (tmp_path / name).write_text(text.partition("[published]")[0], encoding="utf-8")
+    article = latex.render(Study(tmp_path).computed, [])
+    first = article.partition(r"\end{abstract}")[0] + r"\end{abstract}\end{document}"
+    assert "; over 9 of 10 pairs" in first
+    (tmp_path / "report.tex").write_text(first, encoding="utf-8")
+    assert not re.search(r"^!|Overfull", _log(tmp_path), re.MULTILINE)

@@ -206,8 +206,7 @@ class Said:
             Math(item.head.latex),
             meaning,
             item,
-            rows if item.ok else (),
-            tuple(count.said for count in marks),
+            (*(rows if item.ok else ()), *(count.said for count in marks)),
         )
 
     def oddities(self) -> Blocks:

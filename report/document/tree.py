@@ -343,8 +343,7 @@ class HeadlineItem:
     symbol: Math
     meaning: Inlines
     item: Item
-    rows: tuple[str, ...]
-    marks: tuple[str, ...]
+    said: tuple[str, ...]
 
 
 @dataclass(frozen=True)

@@ -101,7 +101,7 @@ class SecondOrder:
             for column in values.sheet.columns
             if any(each.name in moved for each in (column, *values.sheet.ancestors(column)))
         }
-        """What rests on sums that run over other rows a step away: another estimator, whose slope tells nothing."""
+        """What rests on sums that run over other rows a step away: slopes of other estimators."""
 
     @staticmethod
     def is_small(values: Values, sources: Sequence[ErrorSource]) -> bool:
