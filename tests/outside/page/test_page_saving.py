@@ -98,7 +98,7 @@ def test_a_reason_is_taken_back_and_given_again(live: Live) -> None:
     live.press("Enter")
     why.fill("second")
     live.press("Enter")
-    live.page.locator("h1").click()
+    live.page.locator("#result h2").click()
     live.press("Control+z")
     assert why.input_value() == "first"
     live.press("Control+z", "Control+z")
