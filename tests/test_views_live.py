@@ -122,7 +122,8 @@ def test_data_hold_the_inputs_as_printed(known: dict[str, Any], report: Report) 
     cells = {"v": "2.940", "e": "0.512", "x_p": "29.7"}
     assert known["tests"][1] == {"label": 2, "used": True, "reason": "", "cells": cells}
     assert known["parameters"]["beta"] == "1.5"
-    assert known["units"] == {"v": "m/s", "e": "1", "x_p": "um"}
+    assert known["heads"] == {"test": "test", "v": "v [m/s]", "e": "e [1]", "x_p": "x_p [um]"}
+    assert known["texts"] == {}
     assert set(known["columns"]) == {column.name for column in report.sheet.columns}
 
 
@@ -245,7 +246,7 @@ const does = {
   },
   beside: (x, text, [n, d], cut) => beside(doubled(x), text, { n: BigInt(n), d: BigInt(d) }, cut),
   read: (given, text) => {
-    const found = readInput(given, text);
+    const found = readInput({ given }, "", text);
     return found.why ? null : hexed(found.value);
   },
   normalised: (text) => normalised(text),

@@ -78,7 +78,8 @@ class Inputs:
     measured : dict of str to tuple of Printed
         One number a test for each measured column.
     header_units : dict of str to str
-        The unit of each measured column, as written in the header.
+        The unit of each measured column, as written in the header, and of the column of its uncertainties,
+        which is called ``u(x_p)``.
     published : tuple of PublishedValue
         The values to referee.
     published_u : tuple of PublishedValue
@@ -104,6 +105,10 @@ class Inputs:
         Where cells have to lie.
     taken : mapping of str to Taken
         The parameters whose numbers were taken from other reports.
+    heads : mapping of str to str
+        The first line of the measurements as it stands, by what it names.
+    texts : mapping of int to mapping of str to str
+        The row of each test as it stands, by column; that of one that is left out stands with it.
     """
 
     folder: Path
@@ -126,6 +131,8 @@ class Inputs:
     published_u: tuple[PublishedValue, ...] = ()
     limits: tuple[Limits, ...] = ()
     taken: Mapping[str, Taken] = field(default_factory=dict)
+    heads: Mapping[str, str] = field(default_factory=dict)
+    texts: Mapping[int, Mapping[str, str]] = field(default_factory=dict)
 
     @property
     def about_source(self) -> bool:
@@ -298,6 +305,8 @@ class _Reader:
             published_u=tuple(value for value in published if value.about is not None),
             limits=limits,
             taken=self.taken,
+            heads=measurements.heads,
+            texts=measurements.texts,
         )
         if self.findings.found:
             self.findings.found.extend(self.more(inputs))
@@ -417,7 +426,9 @@ class _Reader:
         tests = (*measurements.tests, *(each.test for each in measurements.left_out))
         stated = read_uncertainty(self.tables, numbers | single, declared, tests, self.said)
         parameters = {name: printed for name, (printed,) in stated.of(single).items()}
-        return stated, parameters, replace(measurements, measured=stated.of(measurements.measured))
+        left_out = tuple(_with(stated, each, measurements.header_units) for each in measurements.left_out)
+        measured = stated.of(measurements.measured)
+        return stated, parameters, replace(measurements, measured=measured, left_out=left_out)
 
     def take(self, said: Mapping[str, object], of: Declared) -> Printed | None:
         """Take a parameter from the result of another report."""
@@ -537,3 +548,17 @@ class _Reader:
             replace(value, printed=replace(value.printed, mode=modes.get(value.cell, "rounded")))
             for value in values
         )
+
+
+def _with(said: Stated, test: LeftOut, units: Mapping[str, str]) -> LeftOut:
+    """A test that is left out with what is stated of its columns; of what is no number of them, nothing."""
+    numbers = {}
+    for name, errors in said.columns.items():
+        try:
+            number = read_printed(test.texts[name], parse_unit(units[name])) if name in test.texts else None
+        except NumberError:
+            continue
+        if number and not any(part.why_not(number) for part in errors.parts):
+            numbers[name] = (number,)
+    found = {name: number.stated for name, (number,) in said.of(numbers).items()}
+    return replace(test, stated={**test.stated, **found})

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ..distribution import Error
-from .csvtable import CsvTable, Field, match_columns, read_table
+from ..messages.errors import Findings
+from .csvtable import CsvRow, CsvTable, Field, match_columns, read_table
 from .number_text import NumberError, read_printed, read_value
 from .unit_text import ParsedUnit, UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
-    from ..messages.errors import Findings, Location
+    from ..messages.errors import Location
     from ..quantity import Printed
     from ..workbook import Measured
     from .number_text import Declared
@@ -53,6 +54,8 @@ class LeftOut:
         Why, in the words of the file.
     texts : dict of str to str
         What stands in its row, as it stands, by the name of the column; it may be no number.
+    stated : dict of str to tuple of Error or None
+        What is stated of its numbers, by their columns; None: what stands there is no uncertainty.
     place : int
         How many rows stand above it.
     at : Location
@@ -62,6 +65,7 @@ class LeftOut:
     test: int
     reason: str
     texts: dict[str, str]
+    stated: dict[str, tuple[Error, ...] | None]
     place: int
     at: Location
 
@@ -70,13 +74,16 @@ class LeftOut:
 class Measurements:
     """The checked table: test numbers, and a printed number for each test and measured column.
 
-    What is left out stands apart from them.
+    What is left out stands apart from them. A unit is that of a column or, called ``u(x_p)``, of its
+    uncertainties. The heads are the first line as it stands, the texts the rows of the tests, by column.
     """
 
     tests: tuple[int, ...]
     measured: dict[str, tuple[Printed, ...]]
     header_units: dict[str, str]
     left_out: tuple[LeftOut, ...] = ()
+    heads: dict[str, str] = field(default_factory=dict)
+    texts: dict[int, dict[str, str]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -130,11 +137,13 @@ def read_measurements(
     used = [row for place, row in enumerate(table.rows) if place not in gone]
     values: dict[str, tuple[Printed, ...]] = {}
     units: dict[str, str] = {}
+    of_u: dict[str, ParsedUnit | None] = {}
     for name, column in columns.items():
         head, unit = read_unit(table, heads, places.get(name), column, findings)
-        _, unit_of_u = read_unit(table, heads, places.get(f"u({name})"), column, findings)
-        if head is not None and head.unit is not None:
-            units[name] = head.unit.strip() or "1"  # empty brackets: a pure number
+        head_of_u, of_u[name] = read_unit(table, heads, places.get(f"u({name})"), column, findings)
+        for each in (head, head_of_u):
+            if each is not None and each.unit is not None:
+                units[each.name] = each.unit.strip() or "1"  # empty brackets: a pure number
         if name in places:
             mode = modes.get(name, "rounded")
             read = []
@@ -147,26 +156,38 @@ def read_measurements(
                     cell.text, unit, column, table.at(cell), findings, mode=mode, where=where
                 )
                 if f"u({name})" in places:
-                    given = _uncertainty(table, row.fields[places[f"u({name})"]], name, unit_of_u, findings)
+                    given = _uncertainty(table, row.fields[places[f"u({name})"]], name, of_u[name], findings)
                     printed = printed and _with(table, cell, printed, name, given, findings)
                 read.append(printed)
             values[name] = tuple(printed for printed in read if printed is not None)
     if len(findings.found) > before:
         return None
     taken = tuple(test for place, test in enumerate(tests) if place not in gone)
-    # What else stands in a row that is left out is not looked at.
-    texts = {name: place for name, place in places.items() if name not in ("test", LEFT_OUT)}
+    named = {name: place for name, place in places.items() if name not in ("test", LEFT_OUT)}
+
+    def texts(row: CsvRow) -> dict[str, str]:
+        return {name: row.fields[place].text for name, place in named.items()}
+
+    def stated(row: CsvRow) -> dict[str, tuple[Error, ...] | None]:
+        # Nothing in a row that is left out is wrong: what is found of it, nobody hears.
+        given = {name: row.fields[named[f"u({name})"]] for name in columns if f"u({name})" in named}
+        us = {name: _uncertainty(table, each, name, of_u[name], Findings()) for name, each in given.items()}
+        return {name: _known(name, u) for name, u in us.items()}
+
     left_out = tuple(
         LeftOut(
             tests[row],
             reasons[row].text,
-            {name: table.rows[row].fields[place].text for name, place in texts.items()},
+            texts(table.rows[row]),
+            stated(table.rows[row]),
             row,
             table.at(reasons[row]),
         )
         for row in sorted(gone)
     )
-    return Measurements(taken, values, units, left_out)
+    lines = dict(zip(taken, map(texts, used), strict=True))
+    first = {name: table.header[place].text for name, place in places.items()}
+    return Measurements(taken, values, units, left_out, first, lines)
 
 
 def _last(table: CsvTable) -> Location:
@@ -281,4 +302,9 @@ def _with(
     if printed.stated is not None:
         hint = f"leave out the column u({name}), or what stands in parentheses"
         findings.add("LS433", table.at(field), name=name, suggestion=hint)
-    return replace(printed, stated=None if u is None else (Error(u, said=f"u({name})"),))
+    return replace(printed, stated=_known(name, u))
+
+
+def _known(name: str, u: Fraction | None) -> tuple[Error, ...] | None:
+    """The error that a column of uncertainties says."""
+    return None if u is None else (Error(u, said=f"u({name})"),)

@@ -239,8 +239,14 @@ def _given(report: Report, column: Column) -> dict[str, Any]:
     """What an input may be, and how large its printed unit is."""
     meaning = report.workbook.declared.get(column.name, column).meaning
     printed, bounds = _printed(report, column.name), report.sheet.bounds[column.name]
-    cut = {"truncated": True} if printed and printed.mode == "truncated" else {}
-    return cut | {
+    more: dict[str, Any] = {"truncated": True} if printed and printed.mode == "truncated" else {}
+    inputs, own = report.inputs, f"u({column.name})"
+    if own in inputs.header_units:
+        units = (parse_unit(inputs.header_units[name]).scale for name in (column.name, own))
+        more |= {"said": f"the column {own}", "u": float(next(units) / next(units))}
+    elif column.name in inputs.uncertainty.columns or (column.axis is None and printed and printed.stated):
+        more["said"] = "report.toml"
+    return more | {
         "scale": _fraction(printed.scale if printed else parse_unit(column.unit).scale),
         "bounds": limits(bounds),
         "allowed": f"{bounds.said(column.unit)} ({meaning})",

@@ -22,8 +22,8 @@ def given(report: Report) -> dict[str, Any]:
     return {
         "tests": _tests(report, measured),
         "parameters": {name: number.text for name, number in inputs.parameters.items() if name in sheet},
-        "units": {name: inputs.header_units[name] for name in measured},
-        "uncertainties": _uncertainties(report, measured),
+        "heads": inputs.heads or {"test": "test"},
+        "texts": _texts(report, measured),
         "toml": list(_toml(report)),
         **_files(report),
     }
@@ -74,22 +74,21 @@ def _saved(name: str) -> str:
     return name.replace("/", "-")
 
 
-def _uncertainties(report: Report, measured: Mapping[str, tuple[Printed, ...]]) -> dict[str, dict[str, str]]:
-    """The standard uncertainties of the table, in the unit of the header, by column and test."""
-    given = {
-        name: numbers
-        for name, numbers in measured.items()
-        if name not in report.inputs.uncertainty.columns and any(number.stated for number in numbers)
+def _texts(report: Report, measured: Mapping[str, tuple[Printed, ...]]) -> dict[int, dict[str, str]]:
+    """What stands in the rows of the tests, by test and column, where the cells of the page do not say it."""
+    inputs = report.inputs
+    cells = {
+        test: {name: measured[name][row].text for name in measured} for row, test in enumerate(inputs.tests)
     }
-    return {
-        name: {
-            str(test): _decimal(number.stated[0].width / number.scale)
-            for test, number in zip(report.inputs.tests, numbers, strict=True)
-            if number.stated
-        }
-        | {str(each.test): each.texts.get(f"u({name})", "") for each in report.inputs.left_out}
-        for name, numbers in given.items()
+    found = {
+        test: {name: text for name, text in texts.items() if cells[test].get(name) != text}
+        for test, texts in inputs.texts.items()
     }
+    found |= {
+        each.test: {name: text for name, text in each.texts.items() if name not in measured}
+        for each in inputs.left_out
+    }
+    return {test: texts for test, texts in found.items() if texts}
 
 
 def _decimal(value: Fraction) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 from ..cells.address import index_text
@@ -58,7 +59,10 @@ def uncertain(report: Report) -> dict[str, Any]:
 
 
 def errors(report: Report, column: Column) -> list[Any] | dict[str, Any] | None:
-    """What is stated of the numbers of a given column: of all, or of each by its label; None: nothing."""
+    """What is stated of the numbers of a given column: of all, or of each by its label; None: nothing.
+
+    Of a test that is left out, too: the page takes it in again. A text in its place is no uncertainty.
+    """
     said = report.inputs.uncertainty.columns.get(column.name)
     if said is not None and FOLLOWED.issuperset(part.shape for part in said.parts):
         return _stated(said, column.name)
@@ -68,7 +72,18 @@ def errors(report: Report, column: Column) -> list[Any] | dict[str, Any] | None:
         for label, each in zip(report.values.labels(column), printed, strict=True)
         if each.stated is not None
     }
+    found |= dict(_of_left_out(report, column.name))
     return found or ([] if column.exact else None)
+
+
+def _of_left_out(report: Report, name: str) -> Iterator[tuple[str, Any]]:
+    """What is stated of the numbers of a column in the tests that are left out."""
+    printed = report.inputs.printed(name)
+    for each in report.inputs.left_out:
+        if name in each.stated:
+            stated = each.stated[name]
+            none = each.texts.get(f"u({name})", "")
+            yield str(each.test), none if stated is None else [_error(report, printed[0], e) for e in stated]
 
 
 def digits(report: Report, column: Column) -> dict[str, Any]:

@@ -7,22 +7,27 @@ const csvField = (text) => (/^[\w.+\- [\]/()^*%°µμ²³⁻]*$/.test(text) ? te
 const leftOut = ({ used, reason }) => (used ? "" : reason || "no reason was given");
 
 function measurementsCsv(state) {
-  const names = Object.keys(LIVE.units), given = Object.keys(LIVE.uncertainties);
-  const heads = names.flatMap((name) => {
-    const unit = `[${LIVE.units[name]}]`;
-    return given.includes(name) ? [`${name} ${unit}`, `u(${name}) ${unit}`] : [`${name} ${unit}`];
-  });
-  const tests = savedTests(state), someOut = tests.some(({ used }) => !used);
-  const lines = tests.map((test) => {
-    const { label, cells } = test;
-    const fields = names.flatMap((name) => {
-      const known = LIVE.uncertainties[name];
-      return known ? [cells[name], known[label] ?? lastDigitUncertainty(cells[name])] : [cells[name]];
-    });
-    return [String(label), ...fields, ...(someOut ? [leftOut(test)] : [])];
-  });
-  if (someOut) heads.push("left out");
-  return [["test", ...heads], ...lines].map((fields) => fields.map(csvField).join(",") + "\n").join("");
+  const tests = savedTests(state), heads = { ...LIVE.heads };
+  if (tests.some(({ used }) => !used)) heads["left out"] ??= "left out";
+  const lines = tests.map((test) => Object.keys(heads).map((name) => savedField(test, name)));
+  return [Object.values(heads), ...lines].map((fields) => fields.map(csvField).join(",") + "\n").join("");
+}
+
+// What stands in a row in the column of this name: what was not edited as it stood.
+function savedField(test, name) {
+  const { label, cells } = test, was = LIVE.texts[label]?.[name], of = /^u\((.*)\)$/.exec(name)?.[1];
+  if (name === "test") return String(label);
+  if (name === "left out") return leftOut(test);
+  if (!(name in cells)) return was ?? (of in cells ? lastDigitUncertainty(cells[of], LIVE.columns[of].given.u) : "");
+  const issued = page.history.issued.tests.find((one) => one.label === label)?.cells[name];
+  return was && was !== issued ? (cells[name] === issued ? was : withStated(cells[name], CONCISE.exec(was))) : cells[name];
+}
+
+// A number with the uncertainty that another text has in parentheses, and as many digits as say it.
+function withStated(text, [, other, u]) {
+  if (!NUMBER.test(text)) return text;
+  const places = Math.max(0, decimalsOf(text), decimalsOf(other));
+  return `${fixedExact(readExact(text), places)}(${u}${"0".repeat(places - decimalsOf(other))})`;
 }
 
 // An empty row is dropped. What was issued stays, for published values may be about it: as a test left out.
@@ -35,15 +40,15 @@ function savedTests(state) {
 
 // The inputs that a build of the files would refuse.
 function refusedInputs(state) {
-  const refused = (name, text) => readInput(LIVE.columns[name].given, text).why;
-  const measured = savedTests(state).filter(({ used }) => used).flatMap(({ label, cells }) =>
-    Object.keys(cells).filter((name) => refused(name, cells[name])).map((name) => `${name}[${label}]`));
-  return [...measured, ...Object.keys(state.parameters).filter((name) => refused(name, state.parameters[name]))];
+  const refused = (cells, index) => Object.keys(cells).filter((name) => readInput(LIVE.columns[name], index, cells[name]).why);
+  const measured = savedTests(state).filter(({ used }) => used).flatMap(({ label, cells }) => refused(cells, label).map((name) => `${name}[${label}]`));
+  return [...measured, ...refused(state.parameters, "")];
 }
 
-// What stands for the uncertainty of a number that came without one: half a unit of its last digit, rectangular.
-function lastDigitUncertainty(text) {
-  return NUMBER.test(text) ? brief(10 ** -decimalsOf(text) / 2 / Math.sqrt(3)) : "";
+// What stands for the uncertainty of a number that came without one: half a unit of its last digit, rectangular; in
+// a unit of which one of the number's has so many.
+function lastDigitUncertainty(text, many) {
+  return NUMBER.test(text) ? brief(many * 10 ** -decimalsOf(text) / 2 / Math.sqrt(3)) : "";
 }
 
 function reportToml(state) {

@@ -18,18 +18,27 @@ const LARGEST = tenTo(300);
 const isLess = (a, b) => a.n * b.d < b.n * a.d;
 const isSane = ({ n, d }) => magnitude(n) <= LARGEST * d && magnitude(n) * LARGEST >= d;
 
-// A printed text as the value of an input in SI: { value }, with one unit of its last digit, or { why } there is none.
-function readInput(given, text) {
+// In parentheses behind a number stands its standard uncertainty, in units of its last digit.
+const CONCISE = /^([^()]*)\(([0-9]+)\)$/;
+
+// A printed text as the value of an input in SI: { value }, with one unit of its last digit and what is stated of its
+// errors, or { why } there is none.
+function readInput({ given, errors }, index, text) {
+  const concise = given.bounds.integer ? null : CONCISE.exec(text), digits = concise ? concise[1] : text;
+  const own = Array.isArray(errors) ? errors : errors?.[index];
+  const stated = concise && !errors?.length ? [{ digits: Number(concise[2]), shape: "normal" }] : own;
   const allowed = `it must be ${given.allowed}`;
   if (text === "") return { why: `the datum is missing; ${allowed}` };
-  const found = NUMBER.exec(text);
+  const found = NUMBER.exec(digits);
   const meant = EITHER.test(text) ? `: write ${text.replace(",", ".")} or ${text.replace(",", "")}, whichever is meant` : "";
   if (!found) return { why: `“${text}” is not a number${meant}; ${allowed}` };
   if (text.length > 100 || Math.abs(Number(found[5] ?? 0)) > 300) return { why: `“${text}” is out of all range; ${allowed}` };
-  const exact = readExact(text), scale = { n: BigInt(given.scale[0]), d: BigInt(given.scale[1]) };
+  if (concise && given.said) return { why: `“${text}” says how sure it is, and so does ${given.said}: write ${digits}` };
+  if (typeof stated === "string") return { why: `“${stated}” in ${given.said} is not a standard uncertainty of at least 0` };
+  const exact = readExact(digits), scale = { n: BigInt(given.scale[0]), d: BigInt(given.scale[1]) };
   const value = { n: exact.n * scale.n, d: exact.d * scale.d };
   // Its last digit is asked for, too: from it comes the uncertainty.
-  const places = decimalsOf(text), digit = places < 0 ? { n: scale.n * tenTo(-places), d: scale.d } : { n: scale.n, d: scale.d * tenTo(places) };
+  const places = decimalsOf(digits), digit = places < 0 ? { n: scale.n * tenTo(-places), d: scale.d } : { n: scale.n, d: scale.d * tenTo(places) };
   if (!isSane(digit) || (value.n !== 0n && !isSane(value))) return { why: `“${text}” is out of all range; ${allowed}` };
   const { low, high, low_open, high_open, integer } = given.bounds;
   const wrong = [
@@ -38,23 +47,23 @@ function readInput(given, text) {
     high !== undefined && (isLess(readExact(high), value) || (high_open && !isLess(value, readExact(high)))),
   ];
   if (wrong.some(Boolean)) return { why: `“${text}” is not allowed; ${allowed}` };
-  return { value: toDouble(value), digit: toDouble(digit) };
+  return { value: toDouble(value), digit: toDouble(digit), stated };
 }
 
 // The errors of a given number, with their standard uncertainties in SI: those that were stated of its column, or of
 // its row alone, else that of its digits. What is a share of the value or of its last digit follows what is typed.
 const OF_DIGITS = [{ digits: 1 / Math.sqrt(12), shape: "rectangular" }];
 
-function errorsOf({ given, errors = {} }, index, text) {
-  const { value, digit } = readInput(given, text), own = (Array.isArray(errors) ? errors : errors[index]) ?? OF_DIGITS;
-  const sized = own.map(({ u = 0, share = 0, digits = 0, ...more }) => ({ ...more, u: u + share * Math.abs(value) + digits * digit }));
+function errorsOf(column, index, text) {
+  const { value, digit, stated = OF_DIGITS } = readInput(column, index, text);
+  const sized = stated.map(({ u = 0, share = 0, digits = 0, ...more }) => ({ ...more, u: u + share * Math.abs(value) + digits * digit }));
   return sized.filter(({ u }) => u); // none of what is no number
 }
 
 // How much more than it says a number is expected to be, in SI: of a truncated one half a unit of its last digit.
-function expected({ given, errors }, index, text) {
-  const stated = Array.isArray(errors) ? errors : errors?.[index];
-  return given.truncated && !stated ? (text.startsWith("-") ? -0.5 : 0.5) * readInput(given, text).digit : 0;
+function expected(column, index, text) {
+  const { digit, stated } = readInput(column, index, text);
+  return column.given.truncated && !stated ? (text.startsWith("-") ? -0.5 : 0.5) * digit : 0;
 }
 
 // --- states ----------------------------------------------------------------------------------------------
@@ -119,14 +128,14 @@ function computeSheet(program, columns, state) {
     const { of } = columns[name];
     if (of) {
       data[name] = tests.map(({ label, cells }) => {
-        const refused = readInput(columns[of].given, cells[of]).why;
+        const refused = readInput(columns[of], label, cells[of]).why;
         return refused ? NaN : Math.hypot(...errorsOf(columns[of], label, cells[of]).map(({ u }) => u));
       });
       continue;
     }
-    const texts = axis === null ? [state.parameters[name]] : tests.map((test) => test.cells[name]);
-    data[name] = texts.map((text, row) => {
-      const read = readInput(columns[name].given, text);
+    const texts = axis === null ? [["", state.parameters[name]]] : tests.map(({ label, cells }) => [label, cells[name]]);
+    data[name] = texts.map(([index, text], row) => {
+      const read = readInput(columns[name], index, text);
       if (read.why) (refused[name] ??= {})[row] = read.why;
       return read.why ? NaN : read.value;
     });

@@ -10,7 +10,7 @@ function readState(read, most = Infinity) {
   try {
     const found = JSON.parse(read());
     if (found.tests.length > most) return null;
-    const names = Object.keys(LIVE.units), parameters = Object.keys(LIVE.parameters);
+    const names = Object.keys(LIVE.tests[0].cells), parameters = Object.keys(LIVE.parameters);
     const texts = (from, wanted) => Object.fromEntries(wanted.map((name) => [name, plainText(from[name])]));
     const tests = found.tests.map(({ label, used, reason, cells }) => {
       if (!Number.isSafeInteger(label) || label < 1 || label >= 1e9) throw new RangeError("no number of a test");

@@ -69,7 +69,7 @@ function removeTest(label) {
 
 function newTest(state) {
   const label = Math.max(0, ...state.tests.map((test) => test.label)) + 1;
-  const test = { label, used: true, reason: "", cells: Object.fromEntries(Object.keys(LIVE.units).map((name) => [name, ""])) };
+  const test = { label, used: true, reason: "", cells: Object.fromEntries(Object.keys(LIVE.tests[0].cells).map((name) => [name, ""])) };
   state.tests.push(test);
   return test;
 }
