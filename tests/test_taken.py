@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from loopsheet.report.result.uncertain import Budget
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.monte_carlo import draw
 from loopsheet.report.uncertainty.propagation import Spread
+from loopsheet.report.views.budget import as_text
 from loopsheet.report.which_workbook import find_workbook
 
 HEAD = """\
@@ -130,6 +132,20 @@ def test_monte_carlo_draws_what_is_shared_once(apart: Path) -> None:
     own = Spread(report.inputs, report.values).budget("rho", 0)
     found = draw(report.inputs, report.values, own, 100_000, tolerance=0.0)
     assert found.symmetric[1] - found.symmetric[0] == pytest.approx(2 * own.expanded, rel=0.03)
+
+
+def test_a_row_of_a_budget_says_of_which_taken_number_it_tells(apart: Path) -> None:
+    """The estimate beside an error of another report is the number that was taken, with its u's digits."""
+    report = Study(apart).computed
+    rows = as_text(report, Spread(report.inputs, report.values).budget("rho", 0)).splitlines()
+    found = [re.split(r"  +", row)[:2] for row in rows if "values.json)  " in row]
+    alone = [estimate for _, estimate in found if estimate != "—"]  # what moves several has no estimate
+    assert alone
+    for estimate in alone:
+        name, _, told = estimate.partition(" = ")
+        assert name in ("m", "V")
+        value, u = report.values.scalar(name), report.inputs.printed(name)[0].u
+        assert told.split()[0] == report.stated(name, value, u)[0].text.split()[0]
 
 
 def test_what_two_reports_share_with_a_third_is_still_one(apart: Path, tmp_path: Path) -> None:

@@ -138,9 +138,12 @@ def _source(each: Contribution) -> dict[str, object]:
 
 def _row(report: Report, budget: Budget, each: Contribution) -> tuple[str, ...]:
     source = each.source
-    name = source.moves[0][0]
+    name, row, _ = source.moves[0]
     (unit, _), (own, own_scale) = _unit(report, name), _unit(report, budget.name)
-    estimate = f"{report.inputs.printed(name)[source.moves[0][1]].text}{unit}"
+    printed = report.inputs.printed(name)[row]
+    estimate = f"{printed.text}{unit}"
+    if source.origin and each.estimate is not None:  # its own value stands in the other report
+        estimate = f"{name} = {report.stated(name, each.estimate, printed.u)[0].text}{unit}"
     contribution, _ = stated(each.u / own_scale, budget.u / own_scale, 3)
     return (
         source.name,
