@@ -178,3 +178,22 @@ def test_draws_tell_of_a_cell_of_which_nothing_else_is_known(report: Report, u: 
     assert f"between {digits} (equal tails" in told
     assert "nan" not in told.lower()
     assert "law of propagation" not in told
+
+
+@pytest.mark.parametrize(
+    ("ends", "around"),
+    [
+        ((1.2959, 1.3094), "; 1.3026 +0.0068/-0.0067)"),
+        ((1.3020, 1.3194), "; 1.3026 +0.0168/-0.0006)"),  # both to the last digit of the estimate
+        ((1.3040, 1.3194), ")"),  # the estimate lies outside
+    ],
+)
+def test_distances_from_the_estimate_to_the_ends(
+    report: Report, ends: tuple[float, float], around: str
+) -> None:
+    found = Distributed(
+        1000, 0, 1.3026, 1.3026, 0.0035, ends, ends, math.inf, 0.01, True, (math.nan, math.nan)
+    )
+    told = as_text(report, Budget("alpha_mean", "alpha_mean", (), 1.30264, level=0.95), found)
+    assert f"(equal tails{around}" in told
+    assert f"(the shortest{around}" in told

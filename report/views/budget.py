@@ -225,8 +225,10 @@ def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iter
         return
     level = f"{100 * budget.level:.12g} %"
     for name, (low, high) in (("equal tails", drawn.symmetric), ("the shortest", drawn.shortest)):
-        around = f"{told(budget.value)} +{wide(high - budget.value)}/-{wide(budget.value - low)}"
-        yield f"{level} between {told(low)} and {told(high)}{unit} ({name}; {around})"
+        around = ""  # where the estimate lies outside, it has no such distances
+        if low <= budget.value <= high:
+            around = f"; {told(budget.value)} +{told(high - budget.value)}/-{told(budget.value - low)}"
+        yield f"{level} between {told(low)} and {told(high)}{unit} ({name}{around})"
     if not drawn.stable:
         yield "its ends are not known to the second digit of u: more draws would tell"
     if not budget.is_known:
