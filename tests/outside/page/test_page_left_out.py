@@ -128,3 +128,16 @@ def test_what_a_cell_does_not_take_it_says_in_words(open_table: Callable[..., Li
     live.input("points_per_pair").fill("20(1)")
     live.press("Enter")
     assert "“20(1)” is not a number" in live.cell("points_per_pair").title
+
+
+def test_what_is_said_around_it_is_so(open_table: Callable[..., Live]) -> None:
+    """The list of three uncertainties is none of four tests; counted is what the curve was fitted to."""
+    live = open_table(STATED)
+    stale = live.page.get_by_text("This list of stated uncertainties is as issued, before the edits.")
+    assert stale.count() == 0 or not stale.first.is_visible()
+    live.page.locator('[data-use="4"]').click()
+    assert stale.first.is_visible()
+    counted = live.page.locator("#result p", has_text="The curve nearest to all")
+    assert "nearest to all 4 tests" in counted.inner_text()
+    live.type("e", 1, "abc")
+    assert "nearest to all 3 tests" in counted.inner_text()
