@@ -107,7 +107,7 @@ def test_a_cell_without_a_value_is_a_finding(
 ) -> None:
     whole = main([*command.split(), str(campaign)]), capsys.readouterr().out
     table = campaign / "measurements.csv"
-    table.write_text(table.read_text().replace("0.512", "0.9"))
+    table.write_text(table.read_text().replace("29.7", "2.97"))
     lacking = main([*command.split(), str(campaign)]), capsys.readouterr().out
     assert (whole[0], lacking[0]) == (0, 1)
     assert "#NOROOT!" in lacking[1]
