@@ -174,6 +174,11 @@ class Sheet:
                 add(column.axis)
         return tuple(found.values())
 
+    @property
+    def weighed(self) -> dict[str, str]:
+        """The columns of stated standard uncertainties, and of what."""
+        return {c.name: c.rule.u_of for c in self.columns if isinstance(c.rule, Given) and c.rule.u_of}
+
     @cached_property
     def algebra(self) -> Named:
         """What the symbols of its rules mean."""

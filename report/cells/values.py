@@ -232,6 +232,10 @@ class Values:
         column = self.sheet[name]
         return self._cell(column, self.row(column, label), label)
 
+    def rows_summed(self, name: str, axis: str) -> int:
+        """Over how many rows of an axis a column sums: those without a value do not count."""
+        return self.counted.get(name, {}).get(axis, self.layouts[axis].size)
+
     def scalar(self, name: str) -> float:
         """The value of a scalar; NaN if it has none."""
         return float(self.value[name][..., 0])

@@ -84,7 +84,7 @@ class Material:
 
     def counted(self, name: str, axis: str) -> int:
         """Over how many rows of an axis a column sums; rows without a value do not count."""
-        return self.report.values.counted.get(name, {}).get(axis, self.count(axis))
+        return self.report.values.rows_summed(name, axis)
 
     def left_out(self, name: str) -> tuple[tuple[str, int, int], ...]:
         """For a column that sums over an axis with errors: the axis, how many rows counted, of how many."""

@@ -132,10 +132,10 @@ class _Oddities:
 
     def exact(self) -> Iterator[str]:
         """The tests whose numbers are all stated to be exact, where a fit weighs by what is stated."""
-        weighed = [c for c in self.sheet.columns if isinstance(c.rule, Given) and c.rule.u_of]
-        of = _some([c.rule.u_of for c in weighed if isinstance(c.rule, Given)])
+        weighed = self.sheet.weighed
+        of = _some(list(weighed.values()))
         for row, test in enumerate(self.inputs.tests):
-            if weighed and not any(self.values.value[c.name][row] for c in weighed):
+            if weighed and not any(self.values.value[name][row] for name in weighed):
                 yield f"test {test} has {of} without uncertainty, so that no other test would count beside it"
 
     def without_value(self, column: Column, cells: Sequence[Cell]) -> str:

@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING
 
 import mpmath
 
-from ..sheet import Given
-
 if TYPE_CHECKING:
     from ..workbook import SquareSum
     from .result import Report
@@ -23,16 +21,14 @@ SIGNIFICANT = 0.05
 
 def tied(report: Report) -> bool:
     """Whether errors that are weighed are shared or correlated: squares are then no independent ones."""
-    weighed = {c.rule.u_of for c in report.sheet.columns if isinstance(c.rule, Given)} - {""}
     stated = report.inputs.uncertainty
-    return not weighed.isdisjoint({each.of for each in stated.shared}.union(*stated.correlations))
+    of = {each.of for each in stated.shared}.union(*stated.correlations)
+    return not of.isdisjoint(report.sheet.weighed.values())
 
 
 def freedom(squares: SquareSum, report: Report) -> int:
     """The degrees of freedom of a sum of squares: rows without a value do not count."""
-    values = report.values
-    rows = values.counted.get(squares.name, {}).get(squares.axis, values.layouts[squares.axis].size)
-    return rows - squares.fitted
+    return report.values.rows_summed(squares.name, squares.axis) - squares.fitted
 
 
 def tail(chi2: float, dof: int) -> float:

@@ -183,9 +183,6 @@ def _least(entry: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in entry.items() if plain.get(name) != value}
 
 
-_SILENT = {False: (), True: (1,)}
-
-
 def _column(report: Report, document: Material, column: Column) -> dict[str, Any]:
     shown = report.shown[column.name]
     head = document.head(column)
@@ -200,7 +197,7 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
                 each.column.name,
                 each.limit.mark,
                 each.limit.says if each.limit.source else "",
-                *_SILENT[each.limit.silent],
+                *(1,) * each.limit.silent,
             )
             for each in limits
         ]

@@ -134,8 +134,7 @@ def _equation(report: Report, column: Column, row: int, cell: Cell) -> Iterator[
     if cell.value is None:
         return
     if any(member.has(*REDUCTIONS) for member in equation.members):
-        counted = report.values.counted.get(column.name, {})
-        sizes = (f"{counted.get(a.name, report.values.layouts[a.name].size)} {a.name}" for a in summed)
+        sizes = (f"{report.values.rows_summed(column.name, a.name)} {a.name}" for a in summed)
         yield _line("", f"over {', '.join(sizes)}")
     else:
         # A formula's own side is the cell itself; a root's equation shows the cell inside of it.

@@ -43,9 +43,8 @@ def counted(report: Report, grid: Grid, block: CellBlock) -> tuple[str, str]:
     parts, now = [], []
     for axis, formula in block.kept.items():
         size = report.values.layouts[axis].size
-        kept = report.values.counted.get(block.name, {}).get(axis, size)
         parts.append(f'{formula.removeprefix("=")}&" of {size} {axis}"')
-        now.append(f"{kept} of {size} {axis}")
+        now.append(f"{report.values.rows_summed(block.name, axis)} of {size} {axis}")
     text, value = '&", "&'.join(parts), ", ".join(now)
     for count in report.marks.behind(report.sheet[block.name]):
         if count.margin.column.name not in grid.by_name:
