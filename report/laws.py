@@ -55,6 +55,10 @@ class Law(ABC):
     def below(self, z: float) -> float:
         """The probability that the error is at most z."""
 
+    def above(self, z: float) -> float:
+        """The probability that the error is larger than z."""
+        return 1 - self.below(z)
+
     @abstractmethod
     def quantile(self, shares: Array) -> Array:
         """The errors that so many are below: of random numbers from 0 to 1, draws."""
@@ -99,6 +103,9 @@ class _Turned(Law):
 
     def below(self, z: float) -> float:
         return 1 - self.of.below(-z)
+
+    def above(self, z: float) -> float:
+        return 1 - self.of.above(-z)
 
     def quantile(self, shares: Array) -> Array:
         return -self.of.quantile(1 - shares)
@@ -249,6 +256,11 @@ class Samples(Law):
     def below(self, z: float) -> float:
         """As above."""
         return float(np.searchsorted(self._ordered, z, side="right")) / self.errors.size
+
+    def above(self, z: float) -> float:
+        """As above, by the rule of succession: that none of so many draws is there does not make it 0."""
+        number = self.errors.size
+        return (number - float(np.searchsorted(self._ordered, z, side="right")) + 1) / (number + 2)
 
     def quantile(self, shares: Array) -> Array:
         """As above: the same share is the same row of the table, for every column of it."""

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from pathlib import Path
 
 import mpmath
@@ -9,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from test_budget import FILES
+from test_monte_carlo import SUM
 
 from loopsheet.report.cli import main
 from loopsheet.report.distribution import DIVISORS, Shape
@@ -179,6 +181,36 @@ def test_a_budget_tells_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert "no decision on x_p[2]: it lies in the guard band" in told(capsys, "x_p[2]", campaign)
     assert "limits" not in told(capsys, "x_p[3]", campaign)
     assert "conforms: it lies" in told(capsys, "x_p[1]", campaign, "--format", "markdown")
+
+
+def half_of_a_product(y: float) -> mpmath.mpf:
+    """The probability that the product of two normal errors lies between 0 and y."""
+    return mpmath.quad(lambda t: mpmath.besselk(0, t), [0, y]) / mpmath.pi
+
+
+def test_what_the_law_of_propagation_does_not_tell_is_drawn(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A product of two normal errors around zero has the density K0(y) / pi: 0.896 below 1, and not 0.841."""
+    product = SUM.replace("sum(c.symbol for c in x)", "x[0].symbol * x[1].symbol")
+    (tmp_path / "workbook.py").write_text(product, encoding="utf-8")
+    (tmp_path / "measurements.csv").write_text("test,r [1]\n1,1\n2,2\n", encoding="utf-8")
+    stated = "".join(f'x_{n} = "0.0, u = 1"\n' for n in range(1, 5))
+    limits = '[limits]\ny = "<= 1"\n[limits.rule]\nguard = "U"\nlevel = "90 %"\n'
+    toml = f'workbook = "workbook.py"\n[parameters]\n{stated}[measurements]\nfile = "measurements.csv"\n'
+    (tmp_path / "report.toml").write_text(toml + limits, encoding="utf-8")
+    own = json.loads(told(capsys, "y", str(tmp_path), "--format", "json"))["conformity"]
+    assert own["above"] == pytest.approx(float(0.5 - half_of_a_product(1)), abs=0.007)
+    assert 2 * half_of_a_product(own["guard"]) == pytest.approx(0.90, abs=0.007)
+    assert (own["distribution"], own["decision"]) == ("samples", "no decision")
+    words = told(capsys, "y", str(tmp_path))
+    assert "the guard bands meet" not in words
+    assert re.search(r"conformance probability \d\d\.\d %, by 20000 draws: ", words)
+
+
+def test_guard_bands_that_meet_accept_nothing() -> None:
+    found = judged(5.0, 3.0, "4", "6", "1")
+    assert (found.decision, found.because) == (Decision.NONE, "the guard bands meet: no value is accepted")
 
 
 def test_a_program_gets_all_digits(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -41,15 +41,20 @@ def probabilities(found: Conformity) -> Iterator[str]:
 
 def conforming(found: Conformity) -> str:
     """The conformance probability; empty if no distribution is known."""
-    return "" if math.isnan(found.probability) else chance(found.probability, found.below + found.above)
+    return _chance(found, found.probability, found.below + found.above)
 
 
 def risk(found: Conformity) -> str:
     """The specific risk that is taken: ``consumer’s risk 1.37 %``; empty where nothing was decided."""
     told = conforming(found)
     if told and found.consumer_risk is not None:
-        return f"consumer’s risk {chance(found.consumer_risk, found.probability)}"
+        return f"consumer’s risk {_chance(found, found.consumer_risk, found.probability)}"
     return f"producer’s risk {told}" if told and found.producer_risk is not None else ""
+
+
+def _chance(found: Conformity, probability: float, other: float) -> str:
+    """With as many digits as draws tell, where draws told it."""
+    return "" if math.isnan(probability) else chance(probability, other, 1 if found.budget.draws else 2)
 
 
 def _rule(report: Report, found: Conformity) -> str:

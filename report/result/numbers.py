@@ -220,17 +220,22 @@ def decimals(value: float, places: int) -> Numeral:
     return at(value, -max(0, places), scientific=False)
 
 
-def chance(probability: float, other: float) -> str:
+def chance(probability: float, other: float, places: int = 2) -> str:
     """A probability in percent, and that of the contrary: it is told to be 0 or 1 only where it is.
 
     >>> chance(0.66, 0.34), chance(1.0, 1e-19), chance(1e-9, 1 - 1e-9), chance(0.0, 1.0)
     ('66.00 %', 'more than 99.99 %', 'less than 0.01 %', '0 %')
+    >>> chance(0.0004, 0.9996, 1)
+    'less than 0.1 %'
     """
     if probability == 0.0 or other == 0.0:
         return f"{100 * probability:.0f} %"
-    if probability < 1e-4:
-        return "less than 0.01 %"
-    return "more than 99.99 %" if probability > 1 - 1e-4 else f"{decimals(100 * probability, 2).text} %"
+    least = 10.0 ** -(places + 2)
+    if probability < least:
+        return f"less than {decimals(100 * least, places).text} %"
+    if probability > 1 - least:
+        return f"more than {decimals(100 * (1 - least), places).text} %"
+    return f"{decimals(100 * probability, places).text} %"
 
 
 def probability(p: float) -> str:

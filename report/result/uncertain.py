@@ -163,6 +163,8 @@ class Budget:
         As of :class:`~loopsheet.report.distribution.Error`: of what the quantity is more than the value.
     summed : tuple of Together
         Columns over pairs of rows that the cell sums: pairs share their rows.
+    draws : int
+        So many told its distribution and the coverage factor; 0 where the errors' own did.
     """
 
     cell: str
@@ -181,6 +183,7 @@ class Budget:
     shape: Shape = Shape.NORMAL
     law: Law | None = None
     summed: tuple[Together, ...] = ()
+    draws: int = 0
 
     @property
     def expanded(self) -> float:
@@ -295,7 +298,10 @@ class Conformity:
             return "it lies outside of the tolerance limits"
         if math.isnan(self.budget.value):
             return "it has no value"
-        return "the guard band is not known" if math.isnan(self.guard) else "it lies in the guard band"
+        if math.isnan(self.guard):
+            return "the guard band is not known"
+        low, high = self.acceptance
+        return "the guard bands meet: no value is accepted" if low > high else "it lies in the guard band"
 
 
 @dataclass(frozen=True)

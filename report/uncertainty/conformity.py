@@ -31,7 +31,7 @@ def beyond(z: float, shape: Shape, dof: float, law: Law | None = None) -> float:
     (0.25, 0.0808)
     """
     if law is not None:
-        return 1 - law.below(z)
+        return law.above(z)
     if shape in SHARES:
         share = SHARES[shape](min(abs(z) / DIVISORS[shape], 1.0))
         return (1 - share) / 2 if z > 0 else (1 + share) / 2

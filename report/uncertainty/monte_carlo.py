@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,18 +24,21 @@ from ..engines.numpy import Laid, Program, evaluate
 from ..engines.numpy_beside import BESIDE, Beside
 from ..inputs.inputs import Inputs
 from ..judge.enclosure import Enclosure
+from ..laws import Samples
 from ..quantity import SMALLEST
 from ..result.uncertain import Budget, Distributed, ErrorSource
 from ..sheet import Sheet
 from .second_order import root_of
 from .sources import correlated, given, sources
 
-__all__ = ["MOST", "draw"]
+__all__ = ["MOST", "by_draws", "draw"]
 
 Array = NDArray[np.float64]
 
 MOST = 1_000_000
 """Draws, at most, where nobody asks for another number."""
+SOME = 20_000
+"""Draws, where nobody asks for any and the law of propagation does not serve."""
 FEWEST = 10
 """Batches before it is asked whether they are enough."""
 FAR = 5.0
@@ -97,6 +101,35 @@ def draw(
         if number >= FEWEST and len(told) == number and _is_enough(told, tolerance):
             break
     return _distributed(np.sort(np.concatenate(found)), lost, budget, tolerance, told)
+
+
+def by_draws(inputs: Inputs, values: Values, budget: Budget) -> Budget:
+    """A budget with the distribution of its cell as draws tell it, in place of that of its errors.
+
+    Parameters
+    ----------
+    inputs : Inputs
+    values : Values
+        All columns, without a batch.
+    budget : Budget
+        With a standard uncertainty that is not 0.
+
+    Returns
+    -------
+    Budget
+        Without a coverage factor where too many draws have no value.
+    """
+    drawn = _Draws(inputs, values, budget.name, seed=1)
+    row = values.row(values.sheet[budget.name], budget.label)
+    found = [own[there] for own, there in (drawn.of(batch, row) for batch in drawn.batches(SOME, SOME))]
+    errors = (np.concatenate(found) - budget.value) / budget.u
+    if errors.size < (1 - WITHOUT) * SOME:
+        return replace(budget, factor=math.nan, because="nothing: too many draws have no value")
+    law = Samples(errors)
+    told = f"{SOME} draws: terms of first order do not tell its distribution"
+    return replace(
+        budget, factor=law.half(budget.level), because=told, shape=Shape.SAMPLES, law=law, draws=SOME
+    )
 
 
 class _Draws:

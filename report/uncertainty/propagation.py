@@ -26,6 +26,7 @@ from ..result.uncertain import Budget, Conformity, Contribution, Influence, Toge
 from ..sheet import Column, Given, PairAxis, RepeatAxis
 from .conformity import conformity
 from .coverage import assigned, coverage, effective
+from .monte_carlo import by_draws
 from .second_order import SecondOrder, root_of
 from .sources import correlated, given, sources
 
@@ -62,7 +63,7 @@ class Spread:
     """
 
     def __init__(self, inputs: Inputs, values: Values, like: Spread | None = None) -> None:
-        self.values = values
+        self.inputs, self.values = inputs, values
         self.sources = sources(inputs, values)
         self._pairs = correlated(self.sources, inputs, values)
         numbers, size = {}, 0
@@ -227,8 +228,10 @@ class Spread:
     def conformity(self, limits: Limits) -> Conformity:
         """A cell beside its limits."""
         name, label = limits.cell
-        row = self.values.row(self.values.sheet[name], label)
-        return conformity(self.budget(name, row, limits.guard.level), limits)
+        budget = self.budget(name, self.values.row(self.values.sheet[name], label), limits.guard.level)
+        if budget.u > 0 and (budget.second or budget.unlooked):
+            budget = by_draws(self.inputs, self.values, budget)
+        return conformity(budget, limits)
 
     def influence(self, cells: Sequence[tuple[str, int]]) -> Influence:
         """What every source does to some cells; those without a value are left out."""

@@ -110,6 +110,8 @@ class SecondOrder:
 
     def why(self, name: str) -> str:
         """Why nothing is known of a column's cell."""
+        if name in self.jumping:
+            return "it rests on a median, which other rows take over when inputs move"
         if name in self.torn:
             return f"{STEP:.2g} u from what was given its sums run over other rows"
         return "the sheet has no values so far from what was given"
@@ -127,7 +129,7 @@ class SecondOrder:
         -------
         float array (cells,)
             In the squares of the cells' SI units; 0 where it does not count. NaN where a cell has no value so
-            near to its own, or has it of sums over other rows.
+            near to its own, has it of sums over other rows, or rests on a median.
         """
         beside, first = self.by_source(self._along.at(cells)) @ self.root, first @ self.root
         up, down = beside[: len(self.sources)], beside[len(self.sources) :]
@@ -144,9 +146,8 @@ class SecondOrder:
             # A sum that would be negative is no variance: then the terms of the fourth order count too.
             more = np.where(own + bent + turned > 0, bent + turned, bent)
             little = np.maximum(bent, np.abs(more)) <= COUNTS * own
-            jumping = np.array([name in self.jumping for name, _ in cells], dtype=bool)
-            torn = np.array([name in self.torn for name, _ in cells], dtype=bool)
-            found: Array = np.where(torn, np.nan, np.where(little | jumping, 0.0, more))
+            unknown = np.array([name in self.jumping | self.torn for name, _ in cells], dtype=bool)
+            found: Array = np.where(unknown, np.nan, np.where(little, 0.0, more))
         return found
 
 

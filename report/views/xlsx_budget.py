@@ -7,7 +7,7 @@ Only sensitivities are numbers as issued: a spreadsheet has no derivatives.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -208,13 +208,18 @@ class _Written:
         """The decision rule, where the cell has limits."""
         for found in self.report.uncertain().conformities:
             if found.budget.cell == self.budget.cell:
-                plain = f'IF({at["dof"]}>{MOST_DOF},"normal","t")'
-                level = found.limits.guard.level
-                named = self.by_shape(own, at, SHAPES, plain)
-                formulas = lambda p, level=level: self.factor(own, {**at, "p": p}, level), named
                 form = self.form(found.guard or self.budget.u)
+                formulas = self.assigned(found.budget, own, at)
                 row = write_limits(self.sheet, self.style, found, self.scale, form, row, dict(at), formulas)
         return row
+
+    def assigned(self, budget: Budget, own: str, at: Mapping[str, str]) -> tuple[Callable[[str], str], str]:
+        """The coverage factor for the cell of a probability, and the name of the distribution."""
+        level, factor, shape = budget.level, budget.factor, budget.shape
+        if budget.draws:
+            return lambda p: as_issued(p, level, factor), f'"{shape}"'
+        plain = f'IF({at["dof"]}>{MOST_DOF},"normal","t")'
+        return lambda p: self.factor(own, {**at, "p": p}, level), self.by_shape(own, at, SHAPES, plain)
 
     def below(self, own: str, dof: str) -> str:
         """What stands below in the formula of Welch and Satterthwaite: sources of one estimate are one."""

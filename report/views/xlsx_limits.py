@@ -102,9 +102,8 @@ def write_limits(
     to.end("low", "lower tolerance limit", "", low / scale, "General")
     to.end("high", "upper tolerance limit", "", high / scale, "General")
     if math.isnan(found.probability) or math.isnan(found.guard):
-        style.text(
-            sheet, to.row, 0, "what is decided is not known: correlated sources have degrees of freedom"
-        )
+        why = budget.because.partition(": ")[2] or found.because
+        style.text(sheet, to.row, 0, f"what is decided is not known: {why}")
         return to.row + 1
     width = ""
     if rule.width is None:
