@@ -2,6 +2,7 @@
 // after an edit, which the next one ends. The page waits for nothing of it.
 
 const DRAWS = 500, PAUSE = 200; // milliseconds in which nothing else was edited
+const OFF = 0.25; // of a standard uncertainty, of which so many draws know a twentieth
 const WITHOUT = 0.025, NO_DEVIATION = 2.2; // as the report has them
 const TEXT = document.currentScript.textContent;
 const carlo = { worker: null, timer: 0, look: null, found: {}, refused: false };
@@ -103,3 +104,6 @@ function shortDraws(name) {
   if (!found) return carlo.refused ? "–" : "…";
   return found.ends ? rangeOf(name, found) : `${found.lost} of ${DRAWS} draws without a value`;
 }
+
+// Whether draws tell another standard uncertainty of a result than the first order does.
+const isOff = (look, name) => Math.abs(carlo.found[[name, 0]]?.u / look.sure.u(name, 0) - 1) > OFF;

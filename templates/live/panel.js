@@ -18,8 +18,8 @@ function writePanel(look) {
   if (!page.panel) return;
   const rows = LIVE.headline.slice(0, MOST_RESULTS).map((name) => {
     const [before, now] = [page.issued, look].map((one) => one.cell(name, 0).text), same = before === now;
-    const { kept, scale } = LIVE.columns[name], u = LIVE.shared && !kept ? look.sure.u(name, 0) / scale : NaN;
-    const more = isEdited() && LIVE.shared && look.trace.isOk(name, 0) ? [...(kept ? ["second order"] : []), shortDraws(name)] : [];
+    const second = LIVE.shared && (LIVE.columns[name].kept || isOff(look, name)), u = LIVE.shared && !second ? look.sure.u(name, 0) / LIVE.columns[name].scale : NaN;
+    const more = isEdited() && LIVE.shared && look.trace.isOk(name, 0) ? [...(second ? ["second order"] : []), shortDraws(name)] : [];
     return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
       make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now, u > 0 ? ` (${told(u, LIVE.most).digits})` : "", ...more.map((text) => make("span", {}, text))));
   });
