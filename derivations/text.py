@@ -93,7 +93,7 @@ class Wording:
                 return self._name(expression, ""), _ATOM
             case Number():
                 tight = _SIGN if expression < 0 else _PRODUCT if not expression.is_Integer else _ATOM
-                return sstr(expression), tight
+                return sstr(expression, full_prec=False), tight
             case Add():
                 return self._sum(expression), _SUM
             case Mul():

@@ -103,9 +103,15 @@ class _Own:
         module.__file__ = str(self.path)
         sys.modules[module.__name__] = module
         exec(compile(self.code, str(self.path), "exec", dont_inherit=True), vars(module))
-        if not hasattr(module, "WORKBOOK"):
-            self.refuse("it declares no WORKBOOK")
-        return module.WORKBOOK
+        if hasattr(module, "WORKBOOK"):
+            return module.WORKBOOK
+        every = [each for each in vars(module).values() if getattr(each, "__module__", "") == module.__name__]
+        methods = [each for each in every if hasattr(each, "workbook")]
+        if len(methods) != 1:
+            self.refuse(
+                "it declares no WORKBOOK and no class of Method" if not methods else "it declares two methods"
+            )
+        return methods[0].workbook
 
     def guarded(self, what: str, function: Callable[..., Any], kind: Any = object) -> Callable[..., Any]:
         """The function, with what it raises told as the user's own; and that it returns what it should."""
@@ -146,7 +152,15 @@ def place_of(path: Path, code: bytes, field: str, word: str = "") -> Location:
 def place_of_column(path: Path, code: bytes, about: Sequence[str]) -> Location:
     """Where what a sheet complains of is written: a column of the first name that there is, or the name."""
     text = code.decode("utf-8", "replace")
-    ways = (rf"{before}{_quoted(name)}" for name in about for before in (r"Column\(\s*", ""))
+    ways = (
+        way
+        for name in about
+        for way in (
+            rf"Column\(\s*{_quoted(name)}",
+            rf"(?m)(?<=^    ){re.escape(name)}\b(?= *=)",
+            _quoted(name),
+        )
+    )
     found = (re.search(way, text) for way in ways)
     return _found(path, text, next(filter(None, found), None))
 

@@ -62,7 +62,7 @@ SHEET = "Sheet((d, *given.values(), l))"
         ("import sys\nsys.exit()", "sys.exit", "cannot be used: SystemExit\n"),
         ("raise BaseException", "raise", "cannot be used: BaseException\n"),
         ("WORKBOOK = 7", "", "WORKBOOK is no Workbook"),
-        ("", "", "workbook.py cannot be used: it declares no WORKBOOK\n"),
+        ("", "", "it declares no WORKBOOK and no class of Method\n"),
         (changed("Ledger((eq,))", "exit(0)"), "exit(0)", "SystemExit: 0"),
         (changed("Ledger((eq,))", "eq"), "", "what ledger() returns is no Ledger"),
         (changed("Ledger((eq,))", "Ledger((eq,), (lambda own: exit(1),))"), "exit(1)", "SystemExit: 1"),

@@ -18,7 +18,7 @@ from ..named import name_of
 from ..quantity import Bounds
 from ..sheet import Column, Formula, Given, Iterated, Root, Sheet, SheetError
 
-__all__ = ["Dimension", "DimensionMismatch", "check", "dimension_of_unit"]
+__all__ = ["Dimension", "DimensionMismatch", "check", "dimension_of_unit", "unit_of"]
 
 
 class DimensionMismatch(SheetError):
@@ -132,6 +132,24 @@ def check(sheet: Sheet) -> None:
         for limit in column.limits:
             if not isinstance(limit.inside, Bounds):
                 checker.relation(limit.inside)
+
+
+def unit_of(sheet: Sheet, column: Column) -> str:
+    """The SI unit that a column's formula gives, whatever it declares.
+
+    Raises
+    ------
+    DimensionMismatch
+        There is none, or one that hangs on a quantity.
+    """
+    checker = _Checker(sheet, column)
+    assert isinstance(column.rule, Formula)
+    found = checker.of(column.rule.expression)
+    if any(not exponent.is_Rational for exponent in found.values()):
+        raise checker.fail(
+            column.rule.expression, f"its unit is {text_of(found)}; write it with names, N/m^alpha:"
+        )
+    return text_of(found).replace(" ", "*")
 
 
 def _expect(checker: _Checker, expression: Expr, own: Dimension) -> None:

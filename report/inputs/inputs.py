@@ -396,6 +396,8 @@ class _Reader:
     def measurements(self) -> Measurements | None:
         if self.workbook is not None and not (self.workbook.measured or "measurements" in self.toml.data):
             return Measurements((), {}, {})  # all that there is to give are parameters
+        if self.workbook is None and "measurements" not in self.toml.data:
+            return None  # it cannot be known whether there is anything to measure
         table = self.tables.keys(("measurements",), ("file", "printed"))
         above = self.toml.data
         missing = isinstance(above.get("measurements", {}), dict)

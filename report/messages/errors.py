@@ -124,8 +124,8 @@ CATALOGUE: dict[str, Entry] = {
     "LS213": Entry(
         "workbook fails",
         "{text} cannot be used: {reason}",
-        "a Python file that declares WORKBOOK, a loopsheet.report.workbook.Workbook",
-        "the shipped workbooks are examples; a copy imports by full names, as loopsheet.report.sheet",
+        "a Python file with a class of loopsheet.Method, or a loopsheet.report.workbook.Workbook as WORKBOOK",
+        "the README has an example; a copy of a shipped one imports by full names, as loopsheet.report.sheet",
     ),
     "LS214": Entry(
         "code of the folder",

@@ -1,0 +1,376 @@
+"""A method of one's own in as few lines as the calculation has: what is given, measured, and what follows.
+
+class EndGauge(Method, source="JCGM 100:2008, H.1"):
+    "End-gauge calibration."
+
+    l_S = given("m", "length of the standard at 20 °C")
+    d = given("m", "difference in length")
+    l = let(l_S + d, "length of the end gauge", label="(H.1)")
+
+In the body of the class a name stands for its cell from the line on where it is declared, as an expression of
+sympy: what is measured for the cell of a row, what is computed for a row if its formula names one.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from contextvars import ContextVar
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from sympy import Expr, Float, Indexed, Rational, Sum, Symbol, sympify
+
+from ..derivations.equation import Equation, Kind, Ledger
+from .cells.units import unit_of
+from .column import Axis, Column, Formula, Given, Root, SheetError
+from .quantity import Bounds
+from .sheet import Sheet
+from .workbook import Measured, Parameter, Workbook
+
+__all__ = ["Method", "count", "given", "let", "mean", "measured", "root", "total", "unknown"]
+
+
+@dataclass(frozen=True)
+class _Declared:
+    """What a line of the body says; its name comes with the assignment."""
+
+    meaning: str
+    unit: str
+    column: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class _Input(_Declared):
+    bounds: Bounds = field(default_factory=Bounds)
+    default: str | None = None
+    is_measured: bool = False
+
+
+@dataclass(frozen=True)
+class _Computed(_Declared):
+    sides: tuple[Expr, ...] = ()  # of a definition the last alone
+    label: str = ""
+    because: str = ""
+    ends: Mapping[str, Any] | None = None  # of a root: the interval that it lies in, and where it is begun
+
+
+@dataclass(frozen=True)
+class _Unknown:
+    """What a root will be."""
+
+
+def given(
+    unit: str,
+    meaning: str,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    positive: bool = False,
+    whole: bool = False,
+    default: str | None = None,
+    exact: bool = False,
+    latex: str = "",
+) -> Any:
+    """Declare a number of ``[parameters]``.
+
+    Parameters
+    ----------
+    unit : str
+        Its SI unit, ``K^-1``; in report.toml any that converts to it may stand.
+    meaning : str
+        What it is, for messages and captions.
+    low, high : float, optional
+        The least and the largest value that is allowed, in SI.
+    positive : bool
+        Whether it must be greater than zero.
+    whole : bool
+        Whether it must be a whole number.
+    default : str, optional
+        As printed, with its unit: what holds where it is left out.
+    exact : bool
+        Whether it is a choice or a convention, so that its digits say nothing of precision.
+    latex : str
+        How it is printed; as its name is, without.
+    """
+    column = {"exact": exact, "latex": latex, "positive": positive}
+    return _Input(meaning, unit, column, _bounds(low, high, positive, whole), default)
+
+
+def measured(
+    unit: str,
+    meaning: str,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    positive: bool = False,
+    latex: str = "",
+) -> Any:
+    """Declare a column of the table of measurements; parameters as for :func:`given`."""
+    column = {"latex": latex, "positive": positive}
+    return _Input(meaning, unit, column, _bounds(low, high, positive), is_measured=True)
+
+
+def let(
+    formula: Any,
+    meaning: str,
+    unit: str = "",
+    *,
+    label: str = "",
+    because: str = "definition",
+    like: Any = None,
+    display: str = "",
+    latex: str = "",
+) -> Any:
+    """Declare what is computed.
+
+    Parameters
+    ----------
+    formula : Expr
+        In names of the body; one that names a measured column, but in a sum, has a value for each row.
+    meaning : str
+        What it is.
+    unit : str
+        Its SI unit, which the formula must have; without it, the one that the formula has.
+    label : str
+        The number of its equation, ``(H.2)``; its place among the equations, without.
+    because : str
+        Why it holds, in a few words.
+    like : Expr, optional
+        What is given or measured in the unit in which it shall be shown.
+    display : str
+        That unit by itself.
+    latex : str
+        How it is printed; as its name is, without.
+    """
+    shown = f"like {_name(like)}" if like is not None else display
+    column = {"display": shown, "latex": latex, "positive": False}
+    return _Computed(meaning, unit, column, (_exact(formula),), label, because)
+
+
+def unknown() -> Any:
+    """Announce what a root will be called, so that its equation can name it."""
+    return _Unknown()
+
+
+def root(
+    left: Any,
+    right: Any,
+    meaning: str,
+    unit: str = "1",
+    *,
+    low: Any,
+    high: Any,
+    start: Any = None,
+    label: str = "",
+    because: str = "the method",
+    display: str = "",
+    latex: str = "",
+    steps: int = 8,
+) -> Any:
+    """Declare the root of an equation; that it is the only one is decided before it is sought.
+
+    Parameters
+    ----------
+    left, right : Expr
+        Both sides, in names of the body and in the one that is announced by :func:`unknown`.
+    meaning, unit, label, because, display, latex
+        As for :func:`let`; the unit is that of the unknown.
+    low, high : Expr
+        Between which it lies; they may hang on other names.
+    start : Expr, optional
+        A first guess; the middle, without. It costs steps, never truth.
+    steps : int
+        How many of Newton's steps are tried before it is bisected.
+    """
+    low, high = sympify(low), sympify(high)
+    ends = {"low": low, "high": high, "start": (low + high) / 2 if start is None else sympify(start)}
+    column = {"display": display, "latex": latex, "positive": False}
+    sides = _exact(left), _exact(right)
+    return _Computed(meaning, unit, column, sides, label, because, {**ends, "steps": steps})
+
+
+def total(formula: Any) -> Expr:
+    """The sum over all rows."""
+    axis = _body().axis
+    return Sum(formula, (axis.index, 1, axis.size))
+
+
+def mean(formula: Any) -> Expr:
+    """The mean over all rows."""
+    return total(formula) / count()
+
+
+def count() -> Symbol:
+    """How many rows there are."""
+    return _body().axis.size
+
+
+def _bounds(low: float | None, high: float | None, positive: bool, whole: bool = False) -> Bounds:
+    above = positive and (low is None or low <= 0)
+    return Bounds(0 if above else low, high, low_open=above, integer=whole)
+
+
+def _exact(formula: Any) -> Expr:
+    """A formula with its decimal fractions as they were typed: 0.27027027... was 1/3.7."""
+    formula = sympify(formula)
+    typed = {}
+    for number in formula.atoms(Float):
+        own, turned = repr(float(number)), f"{1 / float(number):.12g}"
+        if len(turned) + 4 < len(own) and math.isclose(1 / float(turned), float(number), rel_tol=1e-15):
+            typed[number] = 1 / Rational(turned)
+    found: Expr = formula.xreplace(typed)
+    return found
+
+
+def _name(cell: Expr) -> str:
+    return str(cell.base.label.name if isinstance(cell, Indexed) else cell)
+
+
+class _Body(dict[str, Any]):
+    """The namespace of a method while it is declared: every name that is assigned becomes a cell."""
+
+    def __init__(self, rows: str, index: str, size: str) -> None:
+        super().__init__()
+        self.axis = Axis(rows, *(Symbol(name, integer=True, positive=True) for name in (index, size)))
+        self.columns: dict[str, Column] = {}
+        self.inputs: list[Measured | Parameter] = []
+        self.equations: list[Equation] = []
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        if name in self.columns:
+            raise SheetError(f"{name} is declared twice", name)
+        if isinstance(value, _Unknown):
+            value = Column(name, None, Given(), positive=False).symbol
+        if isinstance(value, _Declared):
+            if name in (self.axis.index_name, self.axis.size_name):
+                word = "index" if name == self.axis.index_name else "size"
+                what = (
+                    f"the {self.axis.row}'s number" if word == "index" else f"the number of {self.axis.name}"
+                )
+                raise SheetError(
+                    f"{name} is {what}: call that otherwise, {word}='...' behind the title", name
+                )
+            column = self._computed(name, value) if isinstance(value, _Computed) else self._input(name, value)
+            self.columns[name] = column
+            value = column.cell
+        super().__setitem__(name, value)
+
+    def _input(self, name: str, said: _Declared) -> Column:
+        assert isinstance(said, _Input)
+        own = name, said.unit, said.meaning, said.bounds
+        self.inputs.append(Measured(*own) if said.is_measured else Parameter(*own, said.default))
+        rule = Given("measured" if said.is_measured else "parameter")
+        axis = self.axis if said.is_measured else None
+        return Column(name, axis, rule, said.unit, said.meaning, **said.column)
+
+    def _computed(self, name: str, said: _Computed) -> Column:
+        named = {symbol for side in said.sides for symbol in side.free_symbols}
+        axis = self.axis if self.axis.index in named else None
+        column = Column(name, axis, Given(), said.unit, said.meaning, **said.column)
+        sides = said.sides if said.ends else (column.cell, *said.sides)
+        label, kind = (
+            said.label or f"({len(self.equations) + 1})",
+            Kind.ASSUMPTION if said.ends else Kind.DEFINITION,
+        )
+        equation = Equation(label, sides, said.because, kind, said.meaning)
+        self.equations.append(equation)
+        if said.ends:
+            if column.symbol not in named:
+                raise SheetError(
+                    f"the equation of {name} does not name it: write {name} = unknown() above", name
+                )
+            rule = Root(equation, equation, column.symbol, column.symbol, **said.ends)
+            return replace(column, rule=rule)
+        column = replace(column, rule=Formula(equation))
+        if not said.unit:
+            column = replace(column, unit=unit_of(Sheet((*self.columns.values(), column)), column))
+        return column
+
+
+_CURRENT: ContextVar[_Body] = ContextVar("_CURRENT")
+
+
+def _body() -> _Body:
+    """That of the method which is being declared."""
+    try:
+        return _CURRENT.get()
+    except LookupError:
+        raise SheetError("sums and counts stand in the body of a class of Method") from None
+
+
+class _Declaring(type):
+    """Makes a workbook of the body of a class."""
+
+    workbook: Workbook
+
+    @classmethod
+    def __prepare__(
+        cls, name: str, bases: tuple[type, ...], /, *, rows: str = "readings",
+        index: str = "k", size: str = "n", **more: Any,
+    ) -> _Body:  # fmt: skip
+        body = _Body(rows, index, size)
+        if bases:
+            _CURRENT.set(body)
+        if bases and bases != (Method,):
+            raise SheetError("a method is a class of Method alone")
+        return body
+
+    def __new__(
+        cls, name: str, bases: tuple[type, ...], body: Mapping[str, Any], /, *, source: str = "",
+        headline: str = "", rows: str = "", index: str = "", size: str = "",
+    ) -> _Declaring:  # fmt: skip
+        """Take what the body declared; the first line of its docstring is the title.
+
+        Parameters
+        ----------
+        source : str
+            Where the method is published.
+        headline : str
+            The names of the results, first in every view; those of which nothing else is computed, without.
+        rows, index, size : str
+            What the rows of the table of measurements are called, ``readings``, their running number in
+            formulas, ``k``, and how many there are, ``n``.
+        """
+        found = super().__new__(cls, name, bases, dict(body))
+        if bases:
+            assert isinstance(body, _Body)
+            title = (found.__doc__ or name).strip().partition("\n")[0].removesuffix(".")
+            found.workbook = _workbook(name, body, title, source, re.findall(r"\w+", headline))
+        return found
+
+
+class Method(metaclass=_Declaring):
+    """A method of one's own: `class Name(Method, source=...)` with its title and its quantities as its body.
+
+    Attributes
+    ----------
+    workbook : Workbook
+        What it declares, in the order in which it stands there.
+    """
+
+
+def _workbook(name: str, body: _Body, title: str, source: str, headline: Sequence[str]) -> Workbook:
+    columns, equations = tuple(body.columns.values()), tuple(body.equations)
+    for each in headline:
+        if each not in body.columns:
+            raise SheetError(f"the headline names {each}, which is not declared", each)
+    used = {
+        _name(cell)
+        for c in columns
+        for one in c.expressions
+        for cell in one.atoms(Symbol, Indexed)
+        if _name(cell) != c.name
+    }
+    last = [c.name for c in columns if c.axis is None and c.equation and c.name not in used]
+    return Workbook(
+        name=re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower(),
+        title=title,
+        source=source,
+        ledger=lambda: Ledger(equations),
+        measured=tuple(one for one in body.inputs if isinstance(one, Measured)),
+        parameters=tuple(one for one in body.inputs if isinstance(one, Parameter)),
+        sheet=lambda names: Sheet(columns),
+        headline=tuple(headline) or tuple(last),
+    )
