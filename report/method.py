@@ -46,6 +46,7 @@ class _Input(_Declared):
     bounds: Bounds = field(default_factory=Bounds)
     default: str | None = None
     is_measured: bool = False
+    example: str = ""
 
 
 @dataclass(frozen=True)
@@ -72,6 +73,7 @@ def given(
     default: str | None = None,
     exact: bool = False,
     latex: str = "",
+    example: str = "",
 ) -> Any:
     """Declare a number of ``[parameters]``.
 
@@ -93,9 +95,11 @@ def given(
         Whether it is a choice or a convention, so that its digits say nothing of precision.
     latex : str
         How it is printed; as its name is, without.
+    example : str
+        What `loopsheet new` writes for it, as in report.toml; of a column, its numbers with spaces between.
     """
     column = {"exact": exact, "latex": latex, "positive": positive}
-    return _Input(meaning, unit, column, _bounds(low, high, positive, whole), default)
+    return _Input(meaning, unit, column, _bounds(low, high, positive, whole), default, example=example)
 
 
 def measured(
@@ -106,10 +110,11 @@ def measured(
     high: float | None = None,
     positive: bool = False,
     latex: str = "",
+    example: str = "",
 ) -> Any:
     """Declare a column of the table of measurements; parameters as for :func:`given`."""
     column = {"latex": latex, "positive": positive}
-    return _Input(meaning, unit, column, _bounds(low, high, positive), is_measured=True)
+    return _Input(meaning, unit, column, _bounds(low, high, positive), is_measured=True, example=example)
 
 
 def let(
@@ -237,6 +242,7 @@ class _Body(dict[str, Any]):
         self.columns: dict[str, Column] = {}
         self.inputs: list[Measured | Parameter] = []
         self.equations: list[Equation] = []
+        self.examples: dict[str, str] = {}
 
     def __setitem__(self, name: str, value: Any) -> None:
         if name in self.columns:
@@ -261,6 +267,7 @@ class _Body(dict[str, Any]):
         assert isinstance(said, _Input)
         own = name, said.unit, said.meaning, said.bounds
         self.inputs.append(Measured(*own) if said.is_measured else Parameter(*own, said.default))
+        self.examples |= {name: said.example} if said.example else {}
         rule = Given("measured" if said.is_measured else "parameter")
         axis = self.axis if said.is_measured else None
         return Column(name, axis, rule, said.unit, said.meaning, **said.column)
@@ -364,13 +371,23 @@ def _workbook(name: str, body: _Body, title: str, source: str, headline: Sequenc
         if _name(cell) != c.name
     }
     last = [c.name for c in columns if c.axis is None and c.equation and c.name not in used]
+    given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
+    columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
+    rows = zip(*(body.examples.get(one.name, "").split() for one in columns_of), strict=False)
+    head = ("test", *(f"{one.name} [{one.unit}]" for one in columns_of))
     return Workbook(
         name=re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower(),
         title=title,
         source=source,
         ledger=lambda: Ledger(equations),
-        measured=tuple(one for one in body.inputs if isinstance(one, Measured)),
-        parameters=tuple(one for one in body.inputs if isinstance(one, Parameter)),
+        measured=columns_of,
+        parameters=given_to,
         sheet=lambda names: Sheet(columns),
         headline=tuple(headline) or tuple(last),
+        example=(head, *((str(place), *row) for place, row in enumerate(rows, start=1)))
+        if columns_of
+        else (),
+        example_parameters={
+            one.name: body.examples[one.name] for one in given_to if one.name in body.examples
+        },
     )

@@ -165,6 +165,31 @@ def test_a_file_of_two_methods_is_refused(tmp_path: Path, capsys: pytest.Capture
     assert "it declares two methods" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("name", "known"),
+    [
+        ("formula", {"g": 9.8038}),  # 4 pi^2 0.994 times the mean of the squares of 1/T
+        ("line", {"slope": 0.00299, "later": -0.16554}),
+        ("root", {"f": 0.0221745}),
+    ],
+)
+def test_a_folder_to_begin_with(
+    name: str, known: dict[str, float], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "one", "--workbook", name]) == 0
+    assert main(["new", "other", "--workbook", "one/workbook.py"]) == 0
+    both = [Path(folder) for folder in ("one", "other")]
+    assert [sorted(path.name for path in folder.iterdir()) for folder in both] == [
+        sorted({"report.toml", "workbook.py"} | ({"measurements.csv"} if name != "root" else set()))
+    ] * 2
+    report = Study(both[1]).report
+    assert not report.faults
+    assert all(proof.status.passes for proof in report.proofs)
+    found = {cell: report.values.scalar(cell) for cell in known}
+    assert found == pytest.approx(known, rel=2e-3 if name == "line" else 1e-5)
+
+
 def test_the_names_are_there_when_asked_for() -> None:
     """Nothing heavy comes with the package itself."""
     code = "import sys, loopsheet; assert 'sympy' not in sys.modules; loopsheet.Method"

@@ -20,8 +20,11 @@ if TYPE_CHECKING:
 
 __all__ = ["CI", "new", "repository"]
 
+OWN = "workbook.py"
+"""What a method of one's own is called in its folder."""
 
-def new(folder: Path, workbook: Workbook, ci: str = "") -> list[Path]:
+
+def new(folder: Path, workbook: Workbook, ci: str = "", code: bytes = b"") -> list[Path]:
     """Write a report folder that can be built at once.
 
     Parameters
@@ -32,6 +35,8 @@ def new(folder: Path, workbook: Workbook, ci: str = "") -> list[Path]:
         The method; its example becomes the measurements, its parameters are listed with their meaning.
     ci : str
         Where the folder is to be checked after every change: a name of :data:`CI`, or nothing.
+    code : bytes
+        Of a method of one's own, which the folder gets then.
 
     Returns
     -------
@@ -45,7 +50,11 @@ def new(folder: Path, workbook: Workbook, ci: str = "") -> list[Path]:
         If the folder is not empty or cannot be written, or what a service reads is there already; nothing is
         left half-written then.
     """
-    files = {"report.toml": _report(workbook).encode(), "measurements.csv": _measurements(workbook).encode()}
+    files = {"report.toml": _report(workbook, OWN if code else workbook.name).encode()}
+    if code:
+        files[OWN] = code
+    if workbook.measured or not code:
+        files["measurements.csv"] = _measurements(workbook).encode()
     try:
         beside = _for_service(folder, ci, files) if ci else {}
         is_new = _is_new(folder)
@@ -159,17 +168,17 @@ def _measurements(workbook: Workbook) -> str:
     return "".join(",".join(row) + "\n" for row in workbook.example or (header,))
 
 
-def _report(workbook: Workbook) -> str:
-    return "\n".join(_lines(workbook)) + "\n"
+def _report(workbook: Workbook, name: str) -> str:
+    return "\n".join(_lines(workbook, name)) + "\n"
 
 
-def _lines(workbook: Workbook) -> Iterator[str]:
+def _lines(workbook: Workbook, name: str) -> Iterator[str]:
     yield from (
         "# A campaign of your own: put your numbers where the example's are, then 'loopsheet build' here.",
         "# Numbers are written in quotes, as they were printed: the digits say how sure they are.",
         "",
         'title = "My campaign"',
-        f"workbook = {_quote(workbook.name)}",
+        f"workbook = {_quote(name)}",
         f"# {_one_line(workbook.title)}",
         f"# {_one_line(workbook.source)}",
         "",
@@ -177,6 +186,8 @@ def _lines(workbook: Workbook) -> Iterator[str]:
     )
     for parameter in workbook.parameters:
         yield from _parameter(parameter, workbook.example_parameters.get(parameter.name))
+    if not workbook.measured and name == OWN:
+        return
     yield from ("", "[measurements]", 'file = "measurements.csv"')
     for column in workbook.measured:
         yield f"# {column.name}: {_meaning(column)}"

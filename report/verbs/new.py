@@ -8,14 +8,15 @@ from pathlib import Path
 from .common import OK, named
 
 HELP = "make a folder to start a campaign from"
+METHODS = Path(__file__).resolve().parents[2] / "templates" / "methods"
+"""Methods to write one's own from."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     parser.add_argument("folder", metavar="FOLDER", type=named)
-    parser.add_argument(
-        "--workbook", metavar="NAME", default="soft_impact", help="the method (default: soft_impact)"
-    )
+    said = "the method: soft_impact (default); formula, line or root, to begin one's own with; or a file"
+    parser.add_argument("--workbook", metavar="NAME", default="soft_impact", help=said)
     parser.add_argument(
         "--ci", metavar="SERVICE", default="", help="also write what makes it check every change: github"
     )
@@ -29,18 +30,24 @@ def run(options: argparse.Namespace) -> int:
     from ..which_workbook import find_workbook
     from ..workbooks import SHIPPED
 
+    name = options.workbook
+    code = next(
+        (path for path in (METHODS / f"{name}.py", Path(name)) if path.suffix and path.is_file()), None
+    )
     try:
-        workbook = find_workbook(options.workbook, Path())
+        content = b"" if code is None else code.read_bytes()
+        workbook = find_workbook(*((code.name, code.parent, content) if code else (name, Path())))
     except UnknownWorkbook as error:
-        known, hint = listing(SHIPPED), suggest(options.workbook, SHIPPED)
+        names = [*SHIPPED, *sorted(path.stem for path in METHODS.glob("*.py"))]
+        known, hint = listing(names), suggest(name, names)
         raise UsageError(
-            diagnose("LS604", kind="workbook", text=options.workbook, known=known, suggestion=hint)
+            diagnose("LS604", kind="workbook", text=name, known=known, suggestion=hint)
         ) from error
     if options.ci and options.ci not in scaffold.CI:
         known, hint = listing(scaffold.CI), suggest(options.ci, scaffold.CI)
         raise UsageError(diagnose("LS604", kind="service", text=options.ci, known=known, suggestion=hint))
     folder = Path(options.folder)
-    for path in scaffold.new(folder, workbook, options.ci):
+    for path in scaffold.new(folder, workbook, options.ci, content):
         print(path)
     if options.ci and scaffold.repository(folder) is None:
         print(f"{options.ci} reads the last one once {folder} is the root of a repository")
