@@ -3,12 +3,14 @@
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from loopsheet.report.cli import main
 from loopsheet.report.document.material import Material
 from loopsheet.report.result.uncertain import Distributed
 from loopsheet.report.study import Study
+from loopsheet.report.uncertainty import monte_carlo
 from loopsheet.report.uncertainty.monte_carlo import draw
 from loopsheet.report.uncertainty.propagation import Spread
 from loopsheet.report.views import latex
@@ -226,3 +228,20 @@ def test_where_only_second_order_counts_no_table_of_sources_is_empty(tmp_path: P
     article = latex.render(report, [])
     assert "most of it from" in article
     assert "@{}@{}" not in article
+
+
+@pytest.mark.parametrize("level", [0.5, 0.95, 0.9973])
+@pytest.mark.parametrize("number", [1, 2, 99, 400, 10_000])
+def test_draws_that_are_sorted_at_their_ends_tell_what_sorted_ones_do(number: int, level: float) -> None:
+    draws = np.random.default_rng(number).standard_t(5, number)
+    told, parted = monte_carlo._told(draws, level)
+    ordered = np.sort(draws)
+    np.testing.assert_array_equal(np.sort(parted), ordered)
+    for ends, share in zip(told[2:], ((1 - level) / 2, (1 + level) / 2), strict=True):
+        assert ends == pytest.approx(np.quantile(draws, share), rel=1e-12)
+    for tell in (
+        lambda own: monte_carlo._quantile(own, 0.5),
+        lambda own: monte_carlo._shortest(own, level),
+        monte_carlo._tail,
+    ):
+        assert tell(parted) == tell(ordered)

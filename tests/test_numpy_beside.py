@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -102,3 +103,11 @@ def test_a_guess_that_leads_elsewhere_is_noticed(share: float) -> None:
     assert known.any()
     assert (found[known] <= narrow.high[0]).all()
     assert not known.all()
+
+
+@pytest.mark.parametrize(("there", "led"), [(2.0, True), (2.1, False), (np.nan, False)])
+def test_a_step_is_judged_where_it_was_longest(there: float, led: bool) -> None:
+    """Of two rows for three draws: the last draw of the second row went farthest."""
+    line: Any = SimpleNamespace(newton=lambda at, root: (at - root, at - root))
+    here, back = np.array([[1.0, 2.0], [1.0, 2.0], [1.0, there]]), np.array([[1e-3, 0], [0, 0], [0, 0.1]])
+    assert numpy_beside._led(line, here, back, [np.array([1.0, 2.0])]) is led

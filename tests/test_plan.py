@@ -77,6 +77,14 @@ def test_a_part_of_a_plan_tells_its_own_symbols() -> None:
     assert text(lowered(Sheet((Column("free", None, Given()),)))) == "free: given\n"
 
 
+def test_the_values_of_a_column_ask_for_no_condition() -> None:
+    plan, median = lowered(SHEET), "middle_median_1"
+    told = f"a on rows: given\n{median}: median over rows of a\nmiddle = {median}\n"
+    assert text(plan.alone("middle")) == told
+    assert [node.column.name for node in plan.alone("mean").nodes] == ["a", "gap", "mean", "mean"]
+    assert [node.column.name for node in plan.alone("rate").nodes] == ["a", "rate", "rate"]
+
+
 def test_every_node_finds_what_it_names() -> None:
     plan, known = lowered(SHEET), set[str]()
     for node in plan.nodes:

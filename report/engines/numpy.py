@@ -66,7 +66,9 @@ class Program:
     _laid: dict[Any, Laid] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, sheet: Sheet, known: Collection[str] = (), functions: Any = SAME) -> Program:
+    def of(
+        cls, sheet: Sheet, known: Collection[str] = (), functions: Any = SAME, alone: str | None = None
+    ) -> Program:
         """Generate the program of a sheet, or take it as it was printed before.
 
         Parameters
@@ -77,6 +79,8 @@ class Program:
         functions : module
             What computes exponentials, logarithms and powers: NumPy itself is several times as fast, for
             draws by the million, but its last bits hang on the processor.
+        alone : str, optional
+            A column of which nothing is wanted but its values, where it is known that it has them.
 
         Raises
         ------
@@ -88,9 +92,11 @@ class Program:
             from ..plan.lowering import lowered
             from .numpy_texts import program_texts
 
-            return program_texts(sheet, lowered(sheet, known))
+            plan = lowered(sheet, known)
+            return program_texts(sheet, plan.alone(alone) if alone else plan)
 
-        texts = of_sheet(sheet, "NumPy program", sorted(known), make)
+        what = f"NumPy program of {alone} alone" if alone else "NumPy program"
+        texts = of_sheet(sheet, what, sorted(known), make)
         return cls.of_texts(sheet, texts, functions, known)
 
     @classmethod

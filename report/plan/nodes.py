@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
 
-from sympy import Basic, Expr, Integer, Symbol, diff
+from sympy import Basic, Expr, Integer, Symbol, diff, false, true
 from sympy.logic.boolalg import Boolean
 
 from ..column import Axis, Column
@@ -24,6 +24,7 @@ __all__ = [
     "RowMedian",
     "RowSum",
     "Total",
+    "expressions",
     "free_name",
     "taken_over",
 ]
@@ -288,6 +289,24 @@ class LoopNode:
 Node = GivenNode | Total | Part | Map | RootNode | LoopNode
 
 
+def expressions(node: Node) -> Iterator[Basic]:
+    """All that is evaluated for a node."""
+    if isinstance(node, LoopNode):
+        yield from (expression for each in (*node.starts, *node.body) for expression in expressions(each))
+    elif isinstance(node, Total):
+        yield node.terms
+    elif isinstance(node, GivenNode):
+        yield from () if node.allowed is None else (node.allowed,)
+    elif isinstance(node, Part):
+        yield node.value
+    elif isinstance(node, Map):
+        yield from (node.value, node.defined, node.positive, *node.requires)
+    else:
+        signs = (each for each in (node.sign_low, node.sign_high) if each is not None)
+        yield from (node.value, node.form, node.low, node.high, node.start, *signs, *node.turning)
+        yield from node.requires
+
+
 @dataclass(frozen=True)
 class Plan:
     """What is computed, in an order in which each node finds what it names.
@@ -339,3 +358,29 @@ class Plan:
     def totals(self) -> dict[str, Total]:
         """Its sums and medians, by the names of what stands for them."""
         return {node.symbol.name: node for node in self.every if isinstance(node, Total)}
+
+    def alone(self, name: str) -> Plan:
+        """What the values of a column rest on, and nothing that only says whether there are any.
+
+        Parameters
+        ----------
+        name : str
+            Of a column of a plan without loops.
+        """
+        nodes, wanted = list[Node](), {name}
+        for node in reversed(self.nodes):
+            named = self.leaves[node.symbol] if isinstance(node, (Total, Part)) else node.column
+            if named.name in wanted:
+                nodes.append(_bare(node))
+                symbols = {symbol for each in expressions(nodes[-1]) for symbol in each.free_symbols}
+                wanted |= {self.leaves[symbol].name for symbol in symbols if symbol in self.leaves}
+        return Plan(tuple(reversed(nodes)), self.leaves)
+
+
+def _bare(node: Node) -> Node:
+    """A node without what only says whether it has a value."""
+    if isinstance(node, GivenNode):
+        return replace(node, allowed=None)
+    if isinstance(node, Map):
+        return replace(node, requires=(), defined=true, positive=false)
+    return replace(node, requires=()) if isinstance(node, RootNode) else node

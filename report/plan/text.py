@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from typing import Any
 
-from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Part, Plan, RootNode, Total
+from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Part, Plan, RootNode, Total, expressions
 
 __all__ = ["text"]
 
@@ -21,7 +20,7 @@ def text(plan: Plan, columns: Collection[str] | None = None) -> str:
     """
     nodes = [node for node in plan.nodes if columns is None or _names(node) & set(columns)]
     lines = [line for node in nodes for line in _node(plan, node)]
-    named = {symbol.name for node in nodes for each in _expressions(node) for symbol in each.free_symbols}
+    named = {symbol.name for node in nodes for each in expressions(node) for symbol in each.free_symbols}
     told = [(name, _stands_for(leaf)) for name, leaf in plan.named.items() if name in named]
     legend = [f"{name} = {said}" for name, said in sorted(told) if said]
     return "\n".join([*lines, *(["", *legend] if legend else [])]) + "\n"
@@ -72,23 +71,6 @@ def _node(plan: Plan, node: Node) -> Iterator[str]:
         yield from (f"    turning at: {point}" for point in node.turning)
         yield f"    start: {node.start}, {node.steps} steps"
     yield from (f"    requires: {condition}" for condition in node.requires)
-
-
-def _expressions(node: Node) -> Iterator[Any]:
-    if isinstance(node, LoopNode):
-        yield from (expression for each in (*node.starts, *node.body) for expression in _expressions(each))
-    elif isinstance(node, Total):
-        yield node.terms
-    elif isinstance(node, GivenNode):
-        yield from () if node.allowed is None else (node.allowed,)
-    elif isinstance(node, Part):
-        yield node.value
-    elif isinstance(node, Map):
-        yield from (node.value, node.defined, node.positive, *node.requires)
-    else:
-        signs = (each for each in (node.sign_low, node.sign_high) if each is not None)
-        yield from (node.value, node.form, node.low, node.high, node.start, *signs, *node.turning)
-        yield from node.requires
 
 
 def _stands_for(leaf: Leaf) -> str:

@@ -93,14 +93,13 @@ def draw(
     for number, batch in enumerate(drawn.batches(size, most), start=1):
         step(f"drawing {number * size} times")
         own, there = drawn.of(batch, row)
-        ordered = np.sort(own[there])
-        lost += own.size - ordered.size
-        found.append(ordered)
-        if ordered.size:
-            told.append(_told(ordered, budget.level))
+        found.append(own[there])
+        lost += own.size - found[-1].size
+        if found[-1].size:
+            told.append(_told(found[-1], budget.level)[0])
         if number >= FEWEST and len(told) == number and _is_enough(told, tolerance):
             break
-    return _distributed(np.sort(np.concatenate(found)), lost, budget, tolerance, told)
+    return _distributed(np.concatenate(found), lost, budget, tolerance, told)
 
 
 def by_draws(inputs: Inputs, values: Values, budget: Budget) -> Budget:
@@ -159,8 +158,7 @@ class _Draws:
 
     def _beside(self, values: Values) -> Beside | None:
         """What computes nearly all draws, if every cell has a value wherever they are."""
-        program = Program.of(self.sheet, functions=BESIDE)
-        if not Beside.serves(program):
+        if not Beside.serves(self.program):
             return None
         reach = {name: np.zeros(own.shape) for name, own in self.base.items()}
         for source in self.sources:
@@ -175,6 +173,7 @@ class _Draws:
             held = cells.value[column.name].low >= SMALLEST if column.positive else True
             if not np.all(cells.sure[column.name] & held):
                 return None
+        program = Program.of(self.sheet, functions=BESIDE, alone=self.name)
         return Beside(program, laid, self.base, cells.value)
 
     def batches(self, size: int, most: int) -> Iterator[dict[str, Array]]:
@@ -227,7 +226,10 @@ class _Draws:
             return DIVISORS[shape] * (draws.random(size) - draws.random(size))
         if shape is Shape.ARCSINE:
             return DIVISORS[shape] * np.sin(2 * np.pi * draws.random(size))
-        return DIVISORS[shape] * (2 * draws.random(size) - 1)
+        errors = draws.random(size)
+        errors *= 2 * DIVISORS[shape]
+        errors -= DIVISORS[shape]
+        return errors
 
     def of(self, batch: dict[str, Array], row: int) -> tuple[Array, NDArray[np.bool_]]:
         """The values of a row of the column, and whether they have one (size,)."""
@@ -258,13 +260,29 @@ def _tolerance(u: float) -> float:
     return 0.5 * 10.0 ** (math.floor(math.log10(u)) - 1) if u > 0 and math.isfinite(u) else 0.0
 
 
-def _told(ordered: Array, level: float) -> tuple[float, float, float, float]:
-    """Mean, standard deviation and the ends of the interval with equal tails; NaN if there are no draws."""
-    if not ordered.size:
-        return (math.nan,) * 4
-    u = float(ordered.std(ddof=1)) if ordered.size > 1 else 0.0
-    low, high = (_quantile(ordered, (1 + side * level) / 2) for side in (-1, 1))
-    return float(ordered.mean()), u, low, high
+def _told(draws: Array, level: float) -> tuple[tuple[float, float, float, float], Array]:
+    """Mean, standard deviation and the ends of the interval with equal tails; and the draws, :func:`_parted`.
+
+    All are NaN if there are no draws.
+    """
+    parted = _parted(draws, level)
+    if not draws.size:
+        return (math.nan,) * 4, parted
+    u = float(draws.std(ddof=1)) if draws.size > 1 else 0.0
+    low, high = (_quantile(parted, (1 + side * level) / 2) for side in (-1, 1))
+    return (float(draws.mean()), u, low, high), parted
+
+
+def _parted(draws: Array, level: float) -> Array:
+    """The draws, sorted at both ends as far as is asked for below, and parted in their middle."""
+    number = draws.size
+    ends, middle = max(number - math.ceil(level * number), math.isqrt(number)) + 2, (number - 1) // 2
+    if 2 * ends >= number:
+        return np.sort(draws)
+    parted = np.partition(draws, (ends, middle, middle + 1, number - ends))
+    parted[:ends].sort()
+    parted[-ends:].sort()
+    return parted
 
 
 def _quantile(ordered: Array, share: float) -> float:
@@ -299,12 +317,12 @@ def _tail(ordered: Array) -> float:
 
 
 def _distributed(
-    ordered: Array, lost: int, budget: Budget, tolerance: float, told: Sequence[tuple[float, ...]]
+    draws: Array, lost: int, budget: Budget, tolerance: float, told: Sequence[tuple[float, ...]]
 ) -> Distributed:
-    number, nothing = ordered.size + lost, math.nan
+    number, nothing = draws.size + lost, math.nan
+    (mean, u, low, high), ordered = _told(draws, budget.level)
     tail = _tail(ordered)
     median = _quantile(ordered, 0.5) if ordered.size else nothing
-    mean, u, low, high = _told(ordered, budget.level)
     stated = ordered.size > 1 and lost <= WITHOUT * number
     ends = (low, high) if stated else (nothing, nothing)
     return Distributed(
