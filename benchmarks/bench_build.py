@@ -1,7 +1,8 @@
 """Builds of the shipped paper against a marimo export of comparable content, and answers against Python.
 
 A build from nothing, after one number was edited, and of what was built before; and what of these cannot be
-done without, by itself: matplotlib with the figures that show data, the proofs. Prints ratios of medians from
+done without, by itself: matplotlib with the figures that show data, the proofs. Beside two builds the same
+without uncertainties: nothing is propagated, for the report or by its page. Prints ratios of medians from
 interleaved runs. Nothing here is a test.
 """
 
@@ -52,14 +53,17 @@ def builds(cwd: Path) -> dict[str, Callable[[], float]]:
     shutil.copytree(paper, campaign)
     table, digits = campaign / "measurements.csv", count(1)
 
-    def edited() -> float:
+    def edited(*command: str) -> float:
         row = re.sub(r"29\.7\d*", f"29.7{next(digits):03}", (paper / table.name).read_text())
         table.write_text(row)
-        return seconds([loopsheet, "build", "campaign"], cwd)
+        return seconds([*command, "build", "campaign"], cwd)
 
+    without = sys.executable, "-c", WITHOUT
     runs = {
         "build --no-cache": lambda: seconds([loopsheet, "build", "paper", "--no-cache"], cwd),
-        "build, a number edited": edited,
+        "  without uncertainties": lambda: seconds([*without, "build", "paper", "--no-cache"], cwd),
+        "build, a number edited": lambda: edited(loopsheet),
+        "  edited, without": lambda: edited(*without),
         "build, nothing changed": lambda: seconds([loopsheet, "build", "paper"], cwd),
     }
     if (BINARIES / "marimo").exists():
@@ -69,6 +73,16 @@ def builds(cwd: Path) -> dict[str, Callable[[], float]]:
     return runs
 
 
+WITHOUT = """
+import sys
+from unittest.mock import patch
+from loopsheet.report import cli, stages
+from loopsheet.report.result.uncertain import Uncertainties
+from loopsheet.report.views import live_uncertain
+patch.object(stages, "uncertain", lambda *_: Uncertainties({})).start()
+patch.object(live_uncertain, "follows", lambda _: False).start()
+sys.exit(cli.main())
+"""
 DRAWING = """
 import sys, time
 from pathlib import Path
