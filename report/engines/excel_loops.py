@@ -112,4 +112,4 @@ def _renamed(expression: Basic, now: Mapping[str, str]) -> Any:
         if cell.base.label.name in now
     }
     plain = {symbol: new(symbol) for symbol in expression.atoms(Symbol) if symbol.name in now}
-    return expression.xreplace(cells).xreplace(plain)
+    return expression.xreplace(cells | plain)

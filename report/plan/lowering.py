@@ -174,9 +174,10 @@ class Lowering:
         """The nodes of a formula of a column, or of what an iterated one starts from."""
         nodes = list[Node]()
         requires = tuple(self._lower(condition, column, nodes) for condition, _ in column.requires)
-        asked = self._assuming(expression, column)
+        plain = self.plain(expression, column, column.axis)
+        asked = self._assuming(plain)
         sign = positive(asked) if column.positive else false
-        value = self._lower(expression, column, nodes)
+        value = self._lifted(plain, column, None, nodes)
         return [*nodes, Map(column, value, requires, defined(asked), sign)]
 
     def step(self, column: Column, expression: Expr) -> list[Node]:
@@ -205,7 +206,7 @@ class Lowering:
             lower(rule.expression),
             lower(rule.value),
             requires,
-            is_positive(self._assuming(rule.value, column, rule.unknown)),
+            is_positive(self._assuming(self.plain(rule.value, column, column.axis, rule.unknown))),
             rule.steps,
         )
         return [*nodes, node]
@@ -215,9 +216,9 @@ class Lowering:
     ) -> Any:
         return self._lifted(self.plain(expression, column, column.axis, unknown), column, unknown, nodes)
 
-    def _assuming(self, expression: Any, column: Column, unknown: Symbol | None = None) -> Any:
-        plain = self.plain(expression, column, column.axis, unknown)
-        return plain.xreplace(typed_symbols(self.sheet, self.leaves))
+    def _assuming(self, plain: Any) -> Any:
+        named = {symbol: self.leaves[symbol] for symbol in plain.free_symbols if symbol in self.leaves}
+        return plain.xreplace(typed_symbols(self.sheet, named))
 
     def _lifted(self, expression: Any, column: Column, unknown: Symbol | None, nodes: list[Node]) -> Any:
         """The expression with symbols for its sums and medians, which become nodes; not for what moves."""
