@@ -27,7 +27,7 @@ def sheet_data(sheet: Sheet, inputs: Inputs) -> dict[str, Any]:
     data = {name: value for name, value in given.items() if name in needed}
     for column in sheet.columns:
         if isinstance(column.rule, Given) and (own := column.rule.u_of):
-            data[column.name] = [Fraction(printed.u) for printed in inputs.printed(own)]
+            data[column.name] = [Fraction(u) for u in inputs.own_u(own)]
     return data
 
 

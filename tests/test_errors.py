@@ -277,6 +277,9 @@ CASES: dict[str, Callable[[], None]] = {
     "LS314": csv("2,2.940", '"2"nd,2.940'),
     "LS315": csv("2,2.940", "\n2,2.940"),
     "LS316": lambda: campaign(csv="v," * 300),
+    "LS317": toml(
+        "[published]", '[measurements.taken]\nx_p = { from = "values.json", cell = "x_p" }\n[published]'
+    ),
     "LS401": csv("2.940", "2.9 40"),
     "LS402": csv("2.940", '"2,940"'),
     "LS403": csv("2.940", ""),

@@ -193,7 +193,8 @@ def refused(at: Path) -> tuple[str, str]:
     ("said", "code"),
     [
         ('{ from = "ball/out/values.json" }', "LS204"),
-        ('{ from = "ball/out/values.json", cell = "m", unit = "g" }', "LS203"),
+        ('{ from = "ball/out/values.json", cell = "m", units = "g" }', "LS203"),
+        ('{ from = "ball/out/values.json", cell = "m", unit = "um" }', "LS422"),
         ('{ from = "ball/out/values.json", cell = 3 }', "LS205"),
         ('{ from = "ball/out/value.json", cell = "m" }', "LS104"),
         ('{ from = "../density/ball/out/values.json", cell = "m" }', "LS107"),

@@ -299,6 +299,9 @@ class Influences(Form, frozen=True, kw_only=True):
     sources : list of Source
     cells : table of lists
         By how much the standard uncertainty of each source moves a cell, in SI, with its sign.
+    rows : table of lists
+        The same of cells of columns over the rows of the data: the places of the sources that move each, and
+        by how much.
     second : table of number
         The standard uncertainty that terms of second order add to a cell.
     correlations : list
@@ -308,14 +311,28 @@ class Influences(Form, frozen=True, kw_only=True):
     inputs: Text
     sources: list[Source]
     cells: dict[Text, list[float]]
+    rows: dict[Text, list[tuple[int, float]]] | UnsetType = UNSET
     second: dict[Text, float] = field(default_factory=dict)
     correlations: list[tuple[int, int, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        number = len(self.sources)
-        rows = all(len(moved) == number for moved in self.cells.values())
-        if not rows or not all(0 <= n < number for a, b, _ in self.correlations for n in (a, b)):
+        number, several = len(self.sources), {} if self.rows is UNSET else self.rows
+        places = [n for a, b, _ in self.correlations for n in (a, b)]
+        places += [n for moved in several.values() for n, _ in moved]
+        fit = all(len(moved) == number for moved in self.cells.values())
+        if not fit or not all(0 <= n < number for n in places):
             raise ValueError("its sources do not fit together")
+
+    @property
+    def known(self) -> list[str]:
+        """The cells that it tells of."""
+        return [*self.cells, *(() if self.rows is UNSET else self.rows)]
+
+    def of(self, cell: str) -> list[tuple[int, float]] | None:
+        """The places of the sources that move a cell, and by how much; None where nothing is told of it."""
+        if cell in self.cells:
+            return [(n, moved) for n, moved in enumerate(self.cells[cell]) if moved]
+        return None if self.rows is UNSET else self.rows.get(cell)
 
 
 class Result(Form, frozen=True, kw_only=True):

@@ -29,7 +29,8 @@ from .published import PublishedValue, check_published, read_published
 from .sources import Source, open_source, read_bytes
 from .stated import Conventions
 from .tables import TomlTables
-from .taken import Taken, open_result, read_taken
+from .taken import EXAMPLE as TAKING
+from .taken import Taken, alone, open_result, read_taken
 from .tomlfile import TomlFile, read_toml
 from .uncertainty import Stated, read_bare, read_uncertainty
 from .unit_text import parse_unit
@@ -104,7 +105,7 @@ class Inputs:
     limits : tuple of Limits
         Where cells have to lie.
     taken : mapping of str to Taken
-        The parameters whose numbers were taken from other reports.
+        The parameters and measured columns whose numbers were taken from other reports.
     heads : mapping of str to str
         The first line of the measurements as it stands, by what it names.
     texts : mapping of int to mapping of str to str
@@ -140,7 +141,12 @@ class Inputs:
 
         It is if it compares with the source, or brought the workbook along.
         """
-        return self.by_source or any(name.endswith(".py") for name in self.files)
+        return self.by_source or self.own_workbook
+
+    @property
+    def own_workbook(self) -> bool:
+        """Whether the workbook came with the folder."""
+        return any(name.endswith(".py") for name in self.files)
 
     @property
     def free(self) -> tuple[str, ...]:
@@ -166,6 +172,17 @@ class Inputs:
         if name in self.measured:
             return self.measured[name]
         return (self.parameters[name],) if name in self.parameters else ()
+
+    def own_u(self, name: str) -> tuple[float, ...]:
+        """The standard uncertainty of each number of a measured column by itself, in SI.
+
+        What is stated of the column and shared by tests has no part in it, nor has what moves several numbers
+        that were taken from another report.
+        """
+        if (taken := self.taken.get(name)) is not None:
+            own = alone(self.taken, self.measured)
+            return tuple(taken.u(errors, own) for errors in taken.errors)
+        return tuple(printed.u for printed in self.printed(name))
 
 
 def load(
@@ -398,13 +415,16 @@ class _Reader:
             return Measurements((), {}, {})  # all that there is to give are parameters
         if self.workbook is None and "measurements" not in self.toml.data:
             return None  # it cannot be known whether there is anything to measure
-        table = self.tables.keys(("measurements",), ("file", "printed"))
+        table = self.tables.keys(("measurements",), ("file", "printed", "taken"))
         above = self.toml.data
         missing = isinstance(above.get("measurements", {}), dict)
         if "measurements" not in above:  # a misspelt header is one problem, not two
             missing = not any(close(word, ["measurements"]) for word in above)
         name = self.tables.text(("measurements",), "file", "measurements.csv", required=missing)
-        known = None if self.workbook is None else [column.name for column in self.workbook.measured]
+        columns = self.workbook.measured if self.workbook else ()
+        names = [column.name for column in columns]
+        wanted = self.tables.keys(("measurements", "taken"), names) if "taken" in table and names else {}
+        known = [name for name in names if name not in wanted] if self.workbook else None
         modes = self.modes("measurements", known) if "printed" in table else {}
         if name is None:
             return None
@@ -414,9 +434,27 @@ class _Reader:
         )
         if source is None:
             return None
-        return read_measurements(
-            source, self.workbook.measured if self.workbook else None, modes, self.findings
-        )
+        of = self.workbook.measured if self.workbook else None
+        found = read_measurements(source, of, modes, self.findings, wanted)
+        return found and self.take_columns(found, wanted)
+
+    def take_columns(self, measurements: Measurements, wanted: Mapping[str, object]) -> Measurements | None:
+        """Take measured columns from the results of other reports; None, with findings, if one cannot be."""
+        gone = [each.test for each in measurements.left_out]
+        columns = self.workbook.measured if self.workbook else ()
+        taken = {}
+        for of in (of for of in columns if of.name in wanted):
+            path, said = ("measurements", "taken", of.name), wanted[of.name]
+            if not isinstance(said, dict):
+                wrong_type(self.toml, self.findings, path, "a table", f"{of.name} = {TAKING}")
+                continue
+            like = (of, self.toml, self.findings, self.result)
+            taken[of.name] = read_taken(said, path, *like, measurements.tests, gone)
+        known = {name: found for name, found in taken.items() if found}
+        self.taken |= known
+        if known.keys() != wanted.keys():
+            return None
+        return measurements.beside(known, [of.name for of in columns])
 
     def uncertainty(
         self, parameters: dict[str, Printed], measurements: Measurements
@@ -439,7 +477,7 @@ class _Reader:
         if found is None:
             return None
         self.taken[of.name] = found
-        return found.printed
+        return found.printed[0]
 
     def result(self, name: str, at: Location) -> Result | None:
         """Open the result of another report, once: what is wrong with it is one problem."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -12,6 +12,7 @@ from ..distribution import Error
 from ..messages.errors import Findings
 from .csvtable import CsvRow, CsvTable, Field, match_columns, read_table
 from .number_text import NumberError, read_printed, read_value
+from .taken import Taken, alone
 from .unit_text import ParsedUnit, UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
@@ -85,6 +86,27 @@ class Measurements:
     heads: dict[str, str] = field(default_factory=dict)
     texts: dict[int, dict[str, str]] = field(default_factory=dict)
 
+    def beside(self, taken: Mapping[str, Taken], order: Iterable[str]) -> Measurements:
+        """The same with columns that were taken from other reports, all in the order of their names."""
+        columns = self.measured | {name: column.printed for name, column in taken.items()}
+        own, left_out = alone(taken, taken), []
+        for each in self.left_out:
+            spare = {
+                name: column.spare[each.test] for name, column in taken.items() if each.test in column.spare
+            }
+            texts = {name: spare[name][0].text if name in spare else "" for name in taken}
+            stated = {
+                name: (Error(Fraction(taken[name].u(errors, own)), said=taken[name].file),)
+                for name, (_, errors) in spare.items()
+            }
+            left_out.append(replace(each, texts={**each.texts, **texts}, stated={**each.stated, **stated}))
+        return replace(
+            self,
+            measured={name: columns[name] for name in order},
+            header_units=self.header_units | {name: each.printed[0].unit for name, each in taken.items()},
+            left_out=tuple(left_out),
+        )
+
 
 @dataclass(frozen=True)
 class ColumnHead:
@@ -97,7 +119,11 @@ class ColumnHead:
 
 
 def read_measurements(
-    source: Source, measured: Sequence[Measured] | None, modes: Mapping[str, str], findings: Findings
+    source: Source,
+    measured: Sequence[Measured] | None,
+    modes: Mapping[str, str],
+    findings: Findings,
+    elsewhere: Collection[str] = (),
 ) -> Measurements | None:
     """Read the table of the tests; None, with findings, if something is wrong with it.
 
@@ -112,15 +138,18 @@ def read_measurements(
         How the numbers of a column were shortened, where it was not by rounding.
     findings : Findings
         Where findings go.
+    elsewhere : collection of str
+        The columns that are taken from other reports: they must not stand here.
     """
     before = len(findings.found)
-    columns = {column.name: column for column in measured or ()}
+    columns = {column.name: column for column in measured or () if column.name not in elsewhere}
     required = {"test": "test", **{name: f"{name} [{column.unit}]" for name, column in columns.items()}}
     table = read_table(source, list(required.values()), findings)
     if table is None:
         return None
     heads = [read_head(table, field, columns, findings) for field in table.header]
     names = [head.name if head else "" for head in heads]
+    names = [_not_here(table, n, name, elsewhere, findings) for n, name in enumerate(names)]
     if measured is None:
         places = {"test": names.index("test")} if "test" in names else {}
     else:
@@ -188,6 +217,17 @@ def read_measurements(
     lines = dict(zip(taken, map(texts, used), strict=True))
     first = {name: table.header[place].text for name, place in places.items()}
     return Measurements(taken, values, units, left_out, first, lines)
+
+
+def _not_here(table: CsvTable, place: int, name: str, elsewhere: Collection[str], findings: Findings) -> str:
+    """The name in a field of the first line; none, with a finding, where it is of a column that is taken."""
+    of = name.removeprefix("u(").removesuffix(")")
+    if of not in elsewhere:
+        return name
+    hint = f"leave out this column, or what [measurements.taken] says of {of}"
+    code = "LS317" if of == name else "LS433"
+    findings.add(code, table.at(table.header[place]), name=of, suggestion=hint)
+    return ""
 
 
 def _last(table: CsvTable) -> Location:

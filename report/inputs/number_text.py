@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Protocol
 
 from ..distribution import Error
 from ..quantity import Printed
-from .unit_text import parse_unit
+from .unit_text import UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
     from ..messages.errors import Findings, Location
     from ..quantity import Bounds
     from .unit_text import ParsedUnit
 
-__all__ = ["Declared", "NumberError", "read_number", "read_printed", "read_value"]
+__all__ = ["Declared", "NumberError", "read_number", "read_printed", "read_unit_of", "read_value"]
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE](?P<exponent>[+-]?[0-9]+))?")
 _COMMA = re.compile(
@@ -172,3 +172,19 @@ def read_value(
         findings.add("LS406", at, name=declared.name, text=text, unit=unit.text, allowed=allowed)
         return None
     return printed
+
+
+def read_unit_of(text: str, like: Declared, at: Location, findings: Findings) -> ParsedUnit | None:
+    """Read a unit of an input; None, with a finding, if it does not convert to that of its declaration."""
+    expected = parse_unit(like.unit)
+    try:
+        size = parse_unit(text)
+    except UnitError as error:
+        words = {"text": error.text, "suggestion": error.suggestion, "known": examples(expected)}
+        findings.add(error.code, at, **words)
+        return None
+    if size.dimension != expected.dimension:
+        words = {"name": like.name, "text": text, "unit": like.unit, "known": examples(expected)}
+        findings.add("LS422", at, **words)
+        return None
+    return size

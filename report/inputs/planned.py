@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ..messages.errors import Findings, Location, listing, suggest
-from .number_text import read_value
+from .number_text import read_unit_of, read_value
 from .stated import Of, StatementError, read_statement
-from .unit_text import UnitError, examples, parse_unit
+from .taken import alone
+from .unit_text import parse_unit
 
 if TYPE_CHECKING:
     from ..quantity import Printed
     from .inputs import Inputs
     from .number_text import Declared
     from .stated import StatedErrors
-    from .unit_text import ParsedUnit
+    from .taken import Taken, TakenError
 
 __all__ = ["Said", "known", "planned", "read_numbers", "read_u"]
 
@@ -73,7 +74,7 @@ def read_numbers(text: str, option: str, mark: str, like: Declared, unit: str) -
     common = parts[-1][1] or unit
     for number, own, start, behind in parts:
         at = _place(option, text, behind if own else start, len(own or number))
-        size = _unit(own or common, like, at, findings)
+        size = read_unit_of(own or common, like, at, findings)
         value = read_value(number, size, like, _place(option, text, start, len(number)), findings)
         if value is not None:
             found.append(float(value.value))
@@ -161,6 +162,7 @@ def planned(inputs: Inputs, values: Mapping[str, Sequence[float]], like: Sequenc
         for name, column in values.items()
     }
     parameters = {name: (printed,) for name, printed in inputs.parameters.items()}
+    taken = {name: taken for name, taken in inputs.taken.items() if name not in said}
     return replace(
         inputs,
         tests=tests,
@@ -175,13 +177,31 @@ def planned(inputs: Inputs, values: Mapping[str, Sequence[float]], like: Sequenc
         limits=(),
         errata={},
         free_at={},
-        taken={name: taken for name, taken in inputs.taken.items() if name not in said},
+        taken=_taken_again(taken, inputs.measured, like),
     )
 
 
 def _again(group: tuple[int, ...], inputs: Inputs, like: Sequence[int]) -> tuple[int, ...]:
     """The planned tests that are like those of a group."""
     return tuple(test for test, row in enumerate(like, start=1) if inputs.tests[row] in group)
+
+
+def _taken_again(
+    every: Mapping[str, Taken], measured: Collection[str], like: Sequence[int]
+) -> dict[str, Taken]:
+    """What was taken, for planned rows: an error of one measured row alone is another one in each like it."""
+    own = alone(every, measured)
+
+    def again(error: TakenError, test: int) -> TakenError:
+        report, name = error.origin
+        return replace(error, origin=(report, f"{name}, test {test}")) if error.origin in own else error
+
+    def planned(taken: Taken) -> Taken:
+        there = taken.of(like)
+        errors = (tuple(again(e, test) for e in each) for test, each in enumerate(there.errors, start=1))
+        return replace(there, errors=tuple(errors))
+
+    return {name: planned(taken) if name in measured else taken for name, taken in every.items()}
 
 
 def _like(printed: Printed, value: float) -> Printed:
@@ -221,21 +241,6 @@ def _statements(text: str, names: Sequence[str]) -> Iterator[tuple[str, str, int
 
 _WORDS = frozenset({"u", "U", "s", "k", "p", "n", "dof", "t"})
 """What a statement may begin with."""
-
-
-def _unit(text: str, like: Declared, at: Location, findings: Findings) -> ParsedUnit | None:
-    expected = parse_unit(like.unit)
-    try:
-        size = parse_unit(text)
-    except UnitError as error:
-        words = {"text": error.text, "suggestion": error.suggestion, "known": examples(expected)}
-        findings.add(error.code, at, **words)
-        return None
-    if size.dimension != expected.dimension:
-        words = {"name": like.name, "text": text, "unit": like.unit, "known": examples(expected)}
-        findings.add("LS422", at, **words)
-        return None
-    return size
 
 
 def _place(option: str, text: str, start: int, length: int) -> Location:

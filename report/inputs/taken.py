@@ -1,6 +1,9 @@
 """Numbers that another report has computed, with what their uncertainty comes from.
 
+[parameters]
 ball_mass = { from = "balance/values.json", cell = "m" }
+[measurements.taken]
+x_p = { from = "imprints/values.json", cell = "depth", unit = "um" }    # of each test the row of its number
 
 Two numbers of one report, or of two reports that rest on a third, share its errors: each keeps the name that
 it had where it was stated, and the sha256 of what that report was made from.
@@ -9,30 +12,36 @@ it had where it was stated, and the sha256 of what that report was made from.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from ..cells.address import named
+from ..cells.address import address, index_text, named
 from ..distribution import Error, Shape
 from ..messages.errors import Location, listing, suggest
 from ..quantity import Printed
+from .number_text import read_unit_of
 from .parameters import wrong_type
 from .unit_text import UnitError, parse_unit
 
 if TYPE_CHECKING:
+    from ..files.form import Index
     from ..files.values import Influences, Result, Source
     from ..messages.errors import Findings
     from .number_text import Declared
     from .tomlfile import TomlFile
+    from .unit_text import ParsedUnit
 
     Read = Callable[[str, Location], Result | None]
+    Number = tuple[Printed, tuple["TakenError", ...]]
 
-__all__ = ["EXAMPLE", "Origin", "Taken", "TakenError", "open_result", "read_taken"]
+__all__ = ["EXAMPLE", "Origin", "Taken", "TakenError", "alone", "open_result", "read_taken"]
 
 EXAMPLE = '{ from = "balance/values.json", cell = "m" }'
 _KEYS = ("from", "cell")
+_MAY = (*_KEYS, "unit")
+"""What it is shown in; without it, in SI."""
 Origin = tuple[str, str]
 """Of an error: the sha256 of the inputs of the report where it was stated, and its name there."""
 
@@ -57,23 +66,57 @@ class TakenError:
 
 @dataclass(frozen=True)
 class Taken:
-    """A number that was taken.
+    """A parameter or a measured column that was taken.
 
     Parameters
     ----------
-    printed : Printed
-        With all its digits, in SI.
     file, cell : str
-    errors : tuple of TakenError
+    printed : tuple of Printed
+        Its numbers, one a row, with all their digits, in SI.
+    errors : tuple of tuple of TakenError
+        Of each of them.
     correlations : mapping of two origins to float
         Between errors of that report.
+    spare : mapping of int to (Printed, tuple of TakenError)
+        The same of tests that take no part, as far as there are such.
     """
 
-    printed: Printed
     file: str
     cell: str
-    errors: tuple[TakenError, ...]
+    printed: tuple[Printed, ...]
+    errors: tuple[tuple[TakenError, ...], ...]
     correlations: Mapping[tuple[Origin, Origin], float]
+    spare: Mapping[int, Number] = field(default_factory=dict)
+
+    def of(self, rows: Iterable[int]) -> Taken:
+        """The same of some rows."""
+        chosen = tuple(rows)
+        printed, errors = (tuple(self.printed[n] for n in chosen), tuple(self.errors[n] for n in chosen))
+        return replace(self, printed=printed, errors=errors)
+
+    def u(self, errors: Iterable[TakenError], only: Collection[Origin]) -> float:
+        """The standard uncertainty that some errors make of a number, in SI."""
+        some = [error for error in errors if error.origin in only]
+        return math.sqrt(_variance(some, self.correlations))
+
+
+def alone(taken: Mapping[str, Taken], columns: Collection[str]) -> frozenset[Origin]:
+    """The errors of what was taken that move numbers of one test alone, of those that take no part, too.
+
+    Parameters
+    ----------
+    taken : mapping of str to Taken
+    columns : collection of str
+        Those with a row a test.
+    """
+    rows: dict[Origin, set[str]] = {}
+    for name, column in taken.items():
+        spare = ((f"test {test}", errors) for test, (_, errors) in column.spare.items())
+        own = ((f"row {row}" if name in columns else "", each) for row, each in enumerate(column.errors))
+        for row, errors in (*own, *spare):
+            for error in errors:
+                rows.setdefault(error.origin, set()).add(row)
+    return frozenset(origin for origin, moved in rows.items() if len(moved) == 1 and "" not in moved)
 
 
 def read_taken(
@@ -83,6 +126,8 @@ def read_taken(
     toml: TomlFile,
     findings: Findings,
     read: Read,
+    tests: Sequence[int] | None = None,
+    spare: Iterable[int] = (),
 ) -> Taken | None:
     """Read what is to be taken; None, with a finding, if it cannot be.
 
@@ -97,41 +142,40 @@ def read_taken(
     findings : Findings
     read : callable
         Takes the name of a file and where it stands; returns what it holds, or None with a finding.
+    tests : sequence of int or None
+        Whose rows of a column are taken, in this order; None: one number.
+    spare : iterable of int
+        The tests that take no part.
     """
     for key in said:
-        if key not in _KEYS:
-            where, hint = ".".join(path), suggest(key, _KEYS)
+        if key not in _MAY:
+            where, hint = ".".join(path), suggest(key, _MAY)
             at = toml.key(*path, key)
-            findings.add("LS203", at, text=key, table=where, known=listing(_KEYS), suggestion=hint)
+            findings.add("LS203", at, text=key, table=where, known=listing(_MAY), suggestion=hint)
             return None
-    for key in _KEYS:
-        if key not in said:
+    for key in _MAY:
+        if key in _KEYS and key not in said:
             findings.add("LS204", toml.key(*path), text=key, table=".".join(path), example=EXAMPLE)
             return None
-        if not isinstance(said[key], str):
+        if not isinstance(said.get(key, ""), str):
             wrong_type(toml, findings, (*path, key), "text in quotes", EXAMPLE)
             return None
     file, cell, at = str(said["from"]), str(said["cell"]), toml.value(*path, "cell")
     found = read(file, toml.value(*path, "from"))
     if found is None:
         return None
-    value = _value(found, file, cell, of, at, findings)
-    if value is None:
+    unit = read_unit_of(str(said.get("unit", of.unit)), of, toml.value(*path, "unit"), findings)
+    if unit is None:
         return None
-    from msgspec import UNSET
-
-    influences = None if found.influences is UNSET else found.influences
-    if influences is None or cell not in influences.cells:
-        known = listing(influences.cells) if influences else "a file that tells of influences"
-        reason = f"does not tell where the uncertainty of {cell} comes from"
-        findings.add("LS437", at, file=file, reason=reason, known=known)
+    reader, where = _Reader(found, file, cell, of, unit, at, findings), toml.trace(*path)
+    labels = [reader.index] if tests is None else [(test,) for test in tests]
+    if tests is not None and not reader.column():
         return None
-    errors, correlations = tuple(_errors(influences, cell)), _correlations(influences)
-    u = math.sqrt(_variance(errors, correlations))
-    stated = (Error(Fraction(u), Shape.NORMAL, said=f"from {file}, {cell}"),)
-    text, unit = repr(value), parse_unit(of.unit)
-    printed = Printed(text, unit.text, Fraction(value), unit.scale, "rounded", stated, toml.trace(*path))
-    return Taken(printed, file, cell, errors, correlations)
+    numbers = reader.numbers(labels, where)
+    if numbers is None:
+        return None
+    printed, errors = zip(*numbers.values(), strict=True)
+    return Taken(file, cell, printed, errors, reader.correlations, reader.spare(spare, where))
 
 
 def open_result(data: bytes, name: str, at: Location, findings: Findings) -> Result | None:
@@ -147,52 +191,132 @@ def open_result(data: bytes, name: str, at: Location, findings: Findings) -> Res
         return None
 
 
-def _value(
-    found: Result, file: str, cell: str, of: Declared, at: Location, findings: Findings
-) -> float | None:
-    """The value, if it is one that the parameter may have."""
-    name, index = named(cell)
-    column = found.cells.get(name)
-    value, status = column.cells.get(index, (None, "")) if column else (None, "")
-    if column is None or not status:
-        known = list(found.cells)
-        findings.add("LS505", at, text=cell, known=listing(known), suggestion=suggest(cell, known))
-        return None
-    if value is None:
-        findings.add(
-            "LS437", at, file=file, reason=f"has no value of {cell}: {status}", known="a cell with a value"
-        )
-        return None
-    try:
-        unit = parse_unit(column.unit)
-    except UnitError:
-        unit = None
-    if (
-        unit is None
-        or unit.dimension != parse_unit(of.unit).dimension
-        or unit.scale != parse_unit(of.unit).scale
-    ):
-        findings.add("LS422", at, name=of.name, text=column.unit, unit=of.unit, known=of.unit)
-        return None
-    if not of.bounds.allow(value):
-        allowed = f"{of.bounds.said(of.unit)} ({of.meaning})"
-        findings.add("LS406", at, name=of.name, text=repr(value), unit=of.unit, allowed=allowed)
-        return None
-    return float(value)
+class _Reader:
+    """Reads cells of one column of another report."""
 
+    def __init__(
+        self,
+        found: Result,
+        file: str,
+        cell: str,
+        of: Declared,
+        shown: ParsedUnit,
+        at: Location,
+        findings: Findings,
+    ) -> None:
+        from msgspec import UNSET
 
-def _errors(found: Influences, cell: str) -> Iterator[TakenError]:
-    """What moves the cell, and what no source tells of: the part of second order."""
-    for source, moved in zip(found.sources, found.cells[cell], strict=True):
-        if moved:
+        self.found, self.file, self.cell, self.of, self.shown = found, file, cell, of, shown
+        self.at, self.findings = at, findings
+        self.influences = None if found.influences is UNSET else found.influences
+        self.correlations = _correlations(self.influences) if self.influences else {}
+        self.name, self.index = named(cell)
+        column = found.cells.get(self.name)
+        self.unit = column.unit if column else ""
+        self.cells = column.cells if column else {}
+
+    def numbers(self, labels: Sequence[Index], where: str) -> Mapping[Index, Number] | None:
+        """The numbers of some rows with their errors; None, with findings, if one of them cannot be taken."""
+        before = len(self.findings.found)
+        for check in (self.has, self.converts, self.allows, self.tells):
+            check(labels)
+            if len(self.findings.found) > before:
+                return None
+        return {label: self.number(label, where) for label in labels}
+
+    def spare(self, tests: Iterable[int], where: str) -> dict[int, Number]:
+        """The numbers of tests that take no part, as far as there are such; numbers were taken before."""
+        values = {test: self.cells.get((test,), (None, ""))[0] for test in tests}
+        known = (test for test, value in values.items() if value is not None and self.of.bounds.allow(value))
+        return {test: self.number((test,), where) for test in known if self.moved((test,)) is not None}
+
+    def column(self) -> bool:
+        """Whether what is named is a column with a row a test."""
+        rows = [name for name, column in self.found.cells.items() if {*map(len, column.cells)} == {1}]
+        if self.index or self.name not in rows:
+            self.unknown(rows)
+        return not self.index and self.name in rows
+
+    def has(self, labels: Iterable[Index]) -> None:
+        """Find the rows that there are not, and those without a value."""
+        there = [index_text(label) for label, (value, _) in self.cells.items() if label and value is not None]
+        known = f"the rows {listing(there)}" if there else "a cell with a value"
+        missing = [label for label in labels if label not in self.cells]
+        if missing == [self.index]:  # the one cell that is asked for
+            self.unknown(list(self.found.cells))
+        elif missing:
+            self.refuse(f"has no {listing(address(self.name, label) for label in missing)}", known)
+        for label in labels:
+            value, status = self.cells.get(label, (None, ""))
+            if value is None and status:
+                self.refuse(f"has no value of {address(self.name, label)}: {status}", known)
+
+    def converts(self, _: Iterable[Index]) -> None:
+        """Find a unit that is not the one that is wanted: what is in SI needs no conversion."""
+        wanted = parse_unit(self.of.unit)
+        try:
+            unit = parse_unit(self.unit)
+        except UnitError:
+            unit = None
+        if unit is None or unit.dimension != wanted.dimension or unit.scale != wanted.scale:
+            name, own = self.of.name, self.of.unit
+            self.findings.add("LS422", self.at, name=name, text=self.unit, unit=own, known=own)
+
+    def allows(self, labels: Iterable[Index]) -> None:
+        """Find values that the quantity cannot have."""
+        allowed = f"{self.of.bounds.said(self.of.unit)} ({self.of.meaning})"
+        for label in labels:
+            value, name = self.value(label), address(self.of.name, () if label == self.index else label)
+            if not self.of.bounds.allow(value):
+                words = {"text": repr(value), "unit": self.of.unit, "allowed": allowed}
+                self.findings.add("LS406", self.at, name=name, **words)
+
+    def tells(self, labels: Sequence[Index]) -> None:
+        """Find numbers of which nobody knows what their uncertainty comes from."""
+        if silent := [address(self.name, label) for label in labels if self.moved(label) is None]:
+            told = self.influences.known if self.influences else ()
+            known = listing(told) or "a file that tells of influences"
+            whose = self.cell if len(silent) == len(labels) else listing(silent)
+            self.refuse(f"does not tell where the uncertainty of {whose} comes from", known)
+
+    def number(self, label: Index, where: str) -> Number:
+        """A number that can be taken, and its errors."""
+        errors, value = tuple(self.errors(label)), self.value(label)
+        u = math.sqrt(_variance(errors, self.correlations))
+        said = f"from {self.file}, {address(self.name, label)}"
+        stated, unit, exact = (Error(Fraction(u), Shape.NORMAL, said=said),), self.shown, Fraction(value)
+        text = repr(float(exact / unit.scale))
+        return Printed(text, unit.text, exact, unit.scale, "rounded", stated, where), errors
+
+    def errors(self, label: Index) -> Iterator[TakenError]:
+        """What moves the cell, and what no source tells of: the part of second order."""
+        found, cell = self.influences, address(self.name, label)
+        if found is None:
+            return
+        for place, moved in self.moved(label) or ():
+            source = found.sources[place]
             sample = source.sample and (
                 source.sample if source.report else f"{found.inputs}: {source.sample}"
             )
             dof = math.inf if source.dof is None else source.dof
             error = Error(Fraction(1), _shape(source.distribution), dof, "", sample)
             yield TakenError(_origin(found, source), moved, error)
-    if rest := found.second.get(cell, 0.0):
-        yield TakenError((found.inputs, f"second order of {cell}"), rest, Error(Fraction(1)))
+        if rest := found.second.get(cell, 0.0):
+            yield TakenError((found.inputs, f"second order of {cell}"), rest, Error(Fraction(1)))
+
+    def value(self, label: Index) -> float:
+        return float(self.cells[label][0] or 0.0)
+
+    def moved(self, label: Index) -> Sequence[tuple[int, float]] | None:
+        return self.influences.of(address(self.name, label)) if self.influences else None
+
+    def unknown(self, known: Sequence[str]) -> None:
+        """Find that there is no such cell."""
+        words = {"known": listing(known) or "none of a row a test", "suggestion": suggest(self.cell, known)}
+        self.findings.add("LS505", self.at, text=self.cell, **words)
+
+    def refuse(self, reason: str, known: str) -> None:
+        self.findings.add("LS437", self.at, file=self.file, reason=reason, known=known)
 
 
 def _shape(name: str) -> Shape:

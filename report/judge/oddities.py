@@ -273,7 +273,8 @@ class _Oddities:
         printed = self.printed(cells[0])
         if printed is None and any(self.suspect in self.tests(cell) for cell in cells):
             row = self.inputs.tests.index(self.suspect)
-            printed = next((column[row] for column in self.inputs.measured.values()), None)
+            columns = self.inputs.measured.items()
+            printed = next((column[row] for name, column in columns if name not in self.inputs.taken), None)
         found = re.fullmatch(r"(.*):(\d+):(\d+)", printed.where) if printed is not None else None
         if printed is None or found is None:
             return self.inputs.place

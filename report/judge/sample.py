@@ -44,6 +44,10 @@ def part(inputs: Inputs, values: Values, most: int) -> Inputs:
         inputs,
         tests=tuple(inputs.tests[row] for row in chosen),
         measured={name: tuple(column[row] for row in chosen) for name, column in inputs.measured.items()},
+        taken={
+            name: taken.of(chosen) if name in inputs.measured else taken
+            for name, taken in inputs.taken.items()
+        },
         published=(),
         expected=(),
         errata={},

@@ -205,6 +205,12 @@ CATALOGUE: dict[str, Entry] = {
         "empty line", "an empty line between the rows", "empty lines at the end only", "delete it"
     ),
     "LS316": Entry("too many columns", "the first line has {found} fields", "at most {wanted} columns"),
+    "LS317": Entry(
+        "column given and taken",
+        "the column '{name}' is given here, and taken from another report",
+        "one of both",
+        "{suggestion}",
+    ),
     # Numbers and units
     "LS401": Entry(
         "not a number",

@@ -252,8 +252,9 @@ class Report:
         return [last_place(value or 0.0, own, how.digits, most) for value, own in zip(values, u, strict=True)]
 
     def printed(self, name: str) -> tuple[Printed, ...]:
-        """What was printed of a given column; nothing of others."""
-        return self.inputs.printed(name) if isinstance(self.sheet[name].rule, Given) else ()
+        """What was printed of a given column; nothing of others, nor of what another report has computed."""
+        given = isinstance(self.sheet[name].rule, Given) and name not in self.inputs.taken
+        return self.inputs.printed(name) if given else ()
 
     def figures(self, name: str) -> tuple[Numeral | None, ...]:
         """The cells of a column as they are shown: in one notation, or as they were printed."""

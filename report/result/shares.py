@@ -40,6 +40,7 @@ def shares(budget: Budget, inputs: Inputs) -> tuple[dict[str, float], dict[int, 
     for each in budget.contributions:
         name, row, _ = each.source.moves[0]
         own = each.source.name.partition(", ")[0] in {name, address(name, inputs.tests[row : row + 1])}
+        own |= bool(each.source.origin) and name in inputs.measured and len(each.source.moves) == 1
         key = name if own else each.source.name
         columns[key] = columns.get(key, 0.0) + each.share
         if own and name in inputs.measured:

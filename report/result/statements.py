@@ -43,7 +43,8 @@ def of_column(report: Report, name: str) -> str:
 def _own(report: Report, name: str) -> Iterator[str]:
     inputs, printed = report.inputs, report.inputs.printed(name)
     if name in inputs.taken:
-        yield f"{_sizes(report, name, printed)}, taken with its value from {inputs.taken[name].file}"
+        value = "its value" if name in inputs.parameters else "its values"
+        yield f"{_sizes(report, name, printed)}, taken with {value} from {inputs.taken[name].file}"
         return
     said = {None if each.stated is None else tuple(error.said for error in each.stated) for each in printed}
     if said <= {None}:

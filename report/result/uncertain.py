@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -311,8 +311,10 @@ class Influence:
     Parameters
     ----------
     sources : tuple of ErrorSource
-    cells : mapping of str to tuple of float
+    cells : mapping of str to sequence of float
         By the address of a cell, what a standard uncertainty of each source moves it by, in SI.
+    rows : mapping of str to sequence of (int, float)
+        By the address of a cell of many: the places of the sources that move it, and by how much.
     second : mapping of str to float
         The standard uncertainty that terms of second order add, where they count.
     correlations : tuple of (int, int, float)
@@ -320,7 +322,8 @@ class Influence:
     """
 
     sources: tuple[ErrorSource, ...]
-    cells: Mapping[str, tuple[float, ...]]
+    cells: Mapping[str, Sequence[float]]
+    rows: Mapping[str, Sequence[tuple[int, float]]]
     second: Mapping[str, float]
     correlations: tuple[tuple[int, int, float], ...]
 

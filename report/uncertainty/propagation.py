@@ -42,6 +42,8 @@ MOST_BUDGETS = 20
 """Budgets of a report."""
 MOST_CELLS = 300
 """Of a column that is summed; of more, nobody reads eigenvalues."""
+MOST_PASSED = 100_000
+"""Influences on the rows of columns that are passed on to other reports: some megabytes of a file."""
 NOTHING = 1e-12
 """A contribution that is less than this share of the largest is left out of a budget."""
 
@@ -124,16 +126,19 @@ class Spread:
     def variances(self, name: str) -> Array:
         """The variance of every row of a column, of first order and of second (2, rows), in SI."""
         rows = len(self.values.status[name])
-        if name not in self._known:
-            return np.full((2, rows), np.nan)
+        found = np.full((2, rows), np.nan)
+        for cells in self._some(name) if name in self._known else ():
+            own, at = self.contributions(cells), slice(cells[0][1], cells[-1][1] + 1)
+            found[:, at] = self._variance(own), np.nan_to_num(self._more(cells, own))
+        return found
+
+    def _some(self, name: str) -> Iterator[list[tuple[str, int]]]:
+        """All cells of a column, as many at once as memory holds."""
+        rows = len(self.values.status[name])
         width = max(1, self._along.chain.number, self.second.width if self.second else 0)
         some = max(1, AT_ONCE // width)
-        found = np.empty((2, rows))
         for first in range(0, rows, some):
-            cells = [(name, row) for row in range(first, min(first + some, rows))]
-            own = self.contributions(cells)
-            found[:, first : first + some] = self._variance(own), np.nan_to_num(self._more(cells, own))
-        return found
+            yield [(name, row) for row in range(first, min(first + some, rows))]
 
     def _more(self, cells: Sequence[tuple[str, int]], own: Array) -> Array:
         """The variance of second order; NaN where it is not known."""
@@ -233,17 +238,42 @@ class Spread:
             budget = by_draws(self.inputs, self.values, budget)
         return conformity(budget, limits)
 
-    def influence(self, cells: Sequence[tuple[str, int]]) -> Influence:
-        """What every source does to some cells; those without a value are left out."""
-        found = self.contributions(cells)[:, : len(self.sources)]
-        second = np.nan_to_num(self._more(cells, self.contributions(cells)))
+    def influence(self, cells: Sequence[tuple[str, int]], columns: Sequence[str] = ()) -> Influence:
+        """What every source does to some cells; those without a value are left out.
+
+        Parameters
+        ----------
+        cells : sequence of (str, int)
+            Columns and rows.
+        columns : sequence of str
+            Others, of all their rows: most sources move one of these. One that would make more than
+            :data:`MOST_PASSED` numbers of all of them is left out.
+        """
+        known, second = self._influence(cells)
+        rows: dict[str, Sequence[tuple[int, float]]] = {}
+        for name in columns:
+            more: dict[str, Sequence[tuple[int, float]]] = {}
+            for some in self._some(name):
+                found, bent = self._influence(some)
+                more |= {cell: [(n, u) for n, u in enumerate(moved) if u] for cell, moved in found.items()}
+                second |= bent
+                if sum(1 + len(moved) for moved in (*rows.values(), *more.values())) > MOST_PASSED:
+                    break
+            else:
+                rows |= more
+        return Influence(self.sources, known, rows, second, self._pairs)
+
+    def _influence(
+        self, cells: Sequence[tuple[str, int]]
+    ) -> tuple[dict[str, Sequence[float]], dict[str, float]]:
+        """By their addresses what every source does to some cells, and what terms of second order add."""
+        found = self.contributions(cells)
+        second = np.nan_to_num(self._more(cells, found))
         at = [address(name, self.values.labels(self.values.sheet[name])[row]) for name, row in cells]
         known = [n for n, moved in enumerate(found) if np.all(np.isfinite(moved))]
-        return Influence(
-            self.sources,
-            {at[n]: tuple(found[n].tolist()) for n in known},
+        return (
+            {at[n]: found[n, : len(self.sources)].tolist() for n in known},
             {at[n]: math.sqrt(second[n]) for n in known if second[n] > 0},
-            self._pairs,
         )
 
     def _contribution(self, n: int, u: float, share: float) -> Contribution:
@@ -290,6 +320,9 @@ def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Un
         All columns, without a batch.
     headline : sequence of str
         The columns whose cells get a budget each; none: those of which nothing else is computed.
+
+    What is passed on to other reports is about these cells, all scalars and, in a workbook of one's own, all
+    columns over the rows of the data: nobody but its author knows which of them is a result.
     """
     spread, sheet = Spread(inputs, values), values.sheet
     used = {precedent.name for column in sheet.columns for precedent in sheet.precedents(column)}
@@ -300,13 +333,18 @@ def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Un
     ]
     budgets = (spread.budget(name, row) for name, row in cells[:MOST_BUDGETS])
     scalars = [(c.name, 0) for c in sheet.columns if c.axis is None]
-    passed_on = [cell for cell in dict.fromkeys((*cells[:MOST_BUDGETS], *scalars)) if spread.knows(cell[0])]
+    rows = [c.name for c in sheet.columns if inputs.own_workbook and c.axis and not c.axis.parents]
+    passed_on = [
+        cell
+        for cell in dict.fromkeys((*cells[:MOST_BUDGETS], *scalars))
+        if cell[0] not in rows and spread.knows(cell[0])
+    ]
     variances = {name: spread.variances(name) for name in listed}
     u = {name: np.sqrt(first + second) for name, (first, second) in variances.items()}
     return Uncertainties(
         {name: np.where(np.isfinite(found), found, np.nan) for name, found in u.items()},
         tuple(budgets),
         tuple(map(spread.conformity, inputs.limits)),
-        spread.influence(passed_on),
+        spread.influence(passed_on, [name for name in rows if spread.knows(name)]),
         {name: second != 0 for name, (_, second) in variances.items()},
     )

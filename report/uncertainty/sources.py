@@ -73,8 +73,8 @@ def _taken(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
     moves: dict[Origin, list[tuple[str, int, float]]] = {}
     first: dict[Origin, tuple[Taken, TakenError]] = {}
     for name, taken in every:
-        for each in taken.errors:
-            moves.setdefault(each.origin, []).append((name, 0, each.moved))
+        for row, each in ((row, each) for row, errors in enumerate(taken.errors) for each in errors):
+            moves.setdefault(each.origin, []).append((name, row, each.moved))
             first.setdefault(each.origin, (taken, each))
     names = Counter((origin[1], taken.file) for origin, (taken, _) in first.items())
     for origin, (taken, each) in first.items():

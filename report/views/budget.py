@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
+from ..cells.address import address
 from ..quantity import behind
 from ..result.conformity import lines
 from ..result.numbers import decimals, rounded, stated
@@ -143,7 +144,8 @@ def _row(report: Report, budget: Budget, each: Contribution) -> tuple[str, ...]:
     printed = report.inputs.printed(name)[row]
     estimate = f"{printed.text}{unit}"
     if source.origin and each.estimate is not None:  # its own value stands in the other report
-        estimate = f"{name} = {report.stated(name, each.estimate, printed.u)[0].text}{unit}"
+        cell = address(name, report.values.labels(report.sheet[name])[row])
+        estimate = f"{cell} = {report.stated(name, each.estimate, printed.u)[0].text}{unit}"
     contribution, _ = stated(each.u / own_scale, budget.u / own_scale, 3)
     return (
         source.name,

@@ -130,10 +130,17 @@ def _influences(report: Report) -> form.Influences | UnsetType:
     return form.Influences(
         inputs=hashlib.sha256(files.encode()).hexdigest(),
         sources=[_error(source) for source in found.sources],
-        cells={name: [float(f"{each:.15g}") for each in moved] for name, moved in found.cells.items()},
-        second={name: float(f"{each:.15g}") for name, each in found.second.items()},
+        cells={name: list(map(_fifteen, moved)) for name, moved in found.cells.items()},
+        rows={name: [(n, _fifteen(each)) for n, each in moved] for name, moved in found.rows.items()}
+        or UNSET,
+        second={name: _fifteen(each) for name, each in found.second.items()},
         correlations=list(found.correlations),
     )
+
+
+def _fifteen(u: float) -> float:
+    """With the digits that a double surely holds."""
+    return float(f"{u:.15g}")
 
 
 def _error(source: ErrorSource) -> form.Source:

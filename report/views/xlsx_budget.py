@@ -102,7 +102,7 @@ class _Written:
         block = self.grid[name]
         scale = float(block.place.scale)
         style.text(sheet, row, 0, source.name, "name")
-        if each.estimate is not None:
+        if each.estimate is not None and not source.origin:  # its own estimate stands in the other report
             allowed = self.grid[checked(name)].place.cell(cell)
             style.formula(sheet, row, 1, f"={allowed}", each.estimate / scale, style("number"))
         style.text(sheet, row, 2, block.unit, "unit")

@@ -58,9 +58,11 @@ class GivenCells:
             for row, number in enumerate(block.values):
                 sheet.write_number(place.row + row, place.column, number, style("fixed", "0"))
             return
+        taken, places = block.name in self.report.inputs.taken, self.report.places(block.name)
         for row, each in enumerate(printed):
             at = (place.row + row, place.column)
-            form = style("fixed" if fixed else "input", open_format(_decimals(each, place.scale)))
+            decimals = -places[row] if taken else _decimals(each, place.scale)
+            form = style("fixed" if fixed else "input", open_format(decimals))
             sheet.write_number(*at, float(each.value / place.scale), form)
             if row < _MOST_NOTES:
                 sheet.write_comment(*at, self.note(block, each), {"x_scale": 2.2, "y_scale": 1.1})
@@ -74,6 +76,8 @@ class GivenCells:
         given = (
             f"Given as {printed.text} {printed.unit} in {printed.where}." if printed.where else "The default."
         )
+        if printed.stated and block.name in self.report.inputs.taken:
+            given = f"Taken {printed.stated[0].said}."
         told = [f"{block.name}: {block.meaning}.", f"{self.allowed(block)}.", given]
         if printed.stated is not None:
             u = self.report.sure(block.name, printed.u).text
