@@ -157,7 +157,7 @@ class Conventions:
         Takes what says where the number of a parameter is to be taken from; returns it, or None with a
         finding.
     taken : collection of str
-        The parameters of which it did.
+        The parameters and measured columns that were taken.
     """
 
     bare: Shape | None = None

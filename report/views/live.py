@@ -238,7 +238,9 @@ def _given(report: Report, column: Column) -> dict[str, Any]:
     printed, bounds = _printed(report, column.name), report.sheet.bounds[column.name]
     more: dict[str, Any] = {"truncated": True} if printed and printed.mode == "truncated" else {}
     inputs, own = report.inputs, f"u({column.name})"
-    if own in inputs.header_units:
+    if (taken := inputs.taken.get(column.name)) and printed:
+        more |= {"said": taken.file, "u": 1.0, "taken": printed.unit}
+    elif own in inputs.header_units:
         units = (parse_unit(inputs.header_units[name]).scale for name in (column.name, own))
         more |= {"said": f"the column {own}", "u": float(next(units) / next(units))}
     elif column.name in inputs.uncertainty.columns or (column.axis is None and printed and printed.stated):

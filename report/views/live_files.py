@@ -112,7 +112,7 @@ def _toml(report: Report) -> Iterator[str | dict[str, str]]:
     for name, number in report.inputs.parameters.items():
         unit = number.unit if number.unit != "1" else ""
         found = re.fullmatch(r"report\.toml:(\d+):(\d+)", number.where)
-        if found is None:
+        if found is None or name in report.inputs.taken:
             head = re.search(r"^[ \t]*\[[ \t]*parameters[ \t]*\][^\n]*\n?", text, re.MULTILINE)
             if head is not None:
                 pieces.append((head.end(), head.end(), {"parameter": name, "unit": unit, "line": "new"}))
@@ -132,12 +132,30 @@ def _toml(report: Report) -> Iterator[str | dict[str, str]]:
             start = text.index(table) + named.start("name")
             saved = _saved(_path(report, name))
             pieces.append((start, start + len(named["name"]), {"file": saved}))
+    pieces += _taken(report, text)
     done = 0
     for start, end, piece in sorted(pieces, key=lambda piece: piece[:2]):
         yield text[done:start]
         yield piece
         done = end
     yield text[done:]
+
+
+def _taken(report: Report, text: str) -> Iterator[tuple[int, int, str | dict[str, str]]]:
+    """The places where a mark makes a remark of what is said of a taken number, and the files named there."""
+    for name in report.inputs.taken:
+        table = "parameters" if name in report.inputs.parameters else r"measurements[ \t]*\.[ \t]*taken"
+        own, key = _table(text, rf"{table}[ \t]*\.[ \t]*{name}"), rf"""[ \t]*(["']?){name}\1[ \t]*[=.]"""
+        whole = own or _table(text, table)
+        for line in re.finditer(r"^[^\n]*\S[^\n]*$", whole, re.MULTILINE):
+            if own or re.match(key, line.group()):
+                start = text.index(whole) + line.start()
+                yield start, start, {"taken": name}
+                if file := re.search(
+                    r"""\bfrom[ \t]*=[ \t]*(["'])(?P<name>[^"'\n]*/[^"'\n]*)\1""", line.group()
+                ):
+                    at = [start + end for end in file.span("name")]
+                    yield at[0], at[1], {"file": _saved(Path(file["name"]).as_posix())}
 
 
 def _table(text: str, name: str) -> str:

@@ -61,15 +61,19 @@ def uncertain(report: Report) -> dict[str, Any]:
 def errors(report: Report, column: Column) -> list[Any] | dict[str, Any] | None:
     """What is stated of the numbers of a given column: of all, or of each by its label; None: nothing.
 
-    Of a test that is left out, too: the page takes it in again. A text in its place is no uncertainty.
+    Of a test that is left out, too: the page takes it in again. A text in its place is no uncertainty. Of
+    a column from another report it is what each test has by itself.
     """
     said = report.inputs.uncertainty.columns.get(column.name)
     if said is not None and FOLLOWED.issuperset(part.shape for part in said.parts):
         return _stated(said, column.name)
     printed = report.inputs.printed(column.name)
+    own = report.inputs.own_u(column.name) if column.name in report.inputs.taken and column.axis else None
     found = {
-        index_text(label): [_error(report, each, error) for error in each.stated]
-        for label, each in zip(report.values.labels(column), printed, strict=True)
+        index_text(label): [
+            _error(report, each, error) | ({"u": own[row]} if own else {}) for error in each.stated
+        ]
+        for row, (label, each) in enumerate(zip(report.values.labels(column), printed, strict=True))
         if each.stated is not None
     }
     found |= dict(_of_left_out(report, column.name))

@@ -9,6 +9,9 @@ const leftOut = ({ used, reason }) => (used ? "" : reason || "no reason was give
 function measurementsCsv(state) {
   const tests = savedTests(state), heads = { ...LIVE.heads };
   if (tests.some(({ used }) => !used)) heads["left out"] ??= "left out";
+  for (const name of retyped(state)) {
+    if (!(name in LIVE.parameters)) for (const head of [name, `u(${name})`]) heads[head] = `${head} [${LIVE.columns[name].given.taken}]`;
+  }
   const lines = tests.map((test) => Object.keys(heads).map((name) => savedField(test, name)));
   return [Object.values(heads), ...lines].map((fields) => fields.map(csvField).join(",") + "\n").join("");
 }
@@ -18,8 +21,8 @@ function savedField(test, name) {
   const { label, cells } = test, was = LIVE.texts[label]?.[name], of = /^u\((.*)\)$/.exec(name)?.[1];
   if (name === "test") return String(label);
   if (name === "left out") return leftOut(test);
-  if (!(name in cells)) return was ?? (of in cells ? lastDigitUncertainty(cells[of], LIVE.columns[of].given.u) : "");
-  const issued = page.history.issued.tests.find((one) => one.label === label)?.cells[name];
+  if (!(name in cells)) return was ?? (of in cells ? uncertaintyOf(LIVE.columns[of], label, cells[of]) : "");
+  const issued = issuedCell(label, name);
   return was && was !== issued ? (cells[name] === issued ? was : withStated(cells[name], CONCISE.exec(was))) : cells[name];
 }
 
@@ -45,16 +48,28 @@ function refusedInputs(state) {
   return [...measured, ...refused(state.parameters, "")];
 }
 
-// What stands for the uncertainty of a number that came without one: half a unit of its last digit, rectangular; in
-// a unit of which one of the number's has so many.
-function lastDigitUncertainty(text, many) {
-  return NUMBER.test(text) ? brief(many * 10 ** -decimalsOf(text) / 2 / Math.sqrt(3)) : "";
+// What stands for the uncertainty of a number where a column has it: what is stated of it, else half a unit of its
+// last digit, rectangular; in the unit of that column.
+function uncertaintyOf(column, label, text) {
+  const sizes = errorsOf(column, label, text).map(({ u }) => u);
+  return sizes.length ? brief((Math.hypot(...sizes) / column.scale) * column.given.u) : "";
+}
+
+const issuedCell = (label, name) => page.history.issued.tests.find((one) => one.label === label)?.cells[name];
+
+// What came from another report and has other numbers now: all of it is saved as what was typed.
+function retyped(state) {
+  const tests = savedTests(state).filter(({ used }) => used), { parameters } = page.history.issued;
+  const edited = (name) => state.parameters[name] !== parameters[name] || tests.some(({ label, cells }) => cells[name] !== issuedCell(label, name));
+  return Object.keys(LIVE.columns).filter((name) => LIVE.columns[name].given?.taken && edited(name));
 }
 
 function reportToml(state) {
+  const own = retyped(state);
   return LIVE.toml.map((piece) => {
     if (typeof piece === "string") return piece;
     if (piece.file) return piece.file;
+    if (piece.taken) return own.includes(piece.taken) ? "# " : "";
     const text = JSON.stringify(state.parameters[piece.parameter]).slice(1, -1);
     if (!piece.line) return text;
     const same = state.parameters[piece.parameter] === page.history.issued.parameters[piece.parameter];
@@ -71,7 +86,8 @@ function save() {
     return make("a", { href: url, download: name }, name);
   });
   const refused = refusedInputs(now), until = refused.length ? `. No build takes them before this is a number that is allowed: ${refused.join(", ")}.` : "";
-  note("Saved: ", ...links.flatMap((link, n) => (n ? [" ", link] : [link])), until);
+  const own = retyped(now), apart = own.length ? ` No longer taken from another report, nor are shared errors: ${own.join(", ")}.` : "";
+  note("Saved: ", ...links.flatMap((link, n) => (n ? [" ", link] : [link])), until, apart);
   // WebKit drops a download that has not begun when the next one is asked for.
   links.forEach((link, n) => setTimeout(() => link.click(), 500 * n));
   lasting.safe = now;

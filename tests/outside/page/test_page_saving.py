@@ -7,6 +7,8 @@ from pathlib import Path
 import driving
 import pytest
 from driving import Live
+from two_reports import COLUMN, MASS, lab
+from two_reports import folder as written
 
 from loopsheet.report import build, stages
 from loopsheet.report.inputs.folders import PAPER
@@ -142,3 +144,33 @@ def test_no_parameter_writes_more_than_itself(live: Live, tmp_path: Path, text: 
     live.press("Enter")
     saved = tomllib.loads((live.save(tmp_path / "saved") / "report.toml").read_text(encoding="utf-8"))
     assert saved["parameters"]["beta"] == text.replace("\n", " ")
+
+
+@pytest.mark.usefixtures("unrefereed")
+def test_what_was_taken_is_saved_as_it_was_or_as_it_was_typed_over(open_page: Open, tmp_path: Path) -> None:
+    """A number that is typed over is one of this report: its column goes into the table, without links."""
+    file, rows = "lab-out-values.json", "test,v [m/s],e [1]\n1,2.334,0.530\n2,2.940,0.512\n3,4.089,0.479\n"
+    taken = {"ball_mass": MASS["m"]}, rows, {"x_p": COLUMN["x"]}
+    folder = written(tmp_path / "own", "soft_impact", *taken)
+    lab(folder)
+    live = open_page(page_of(folder, tmp_path / "out"))
+    live.type("v", 2, "2.945")
+    saved = live.save(tmp_path / "saved", file)
+    report = Study(saved).computed
+    assert driving.differences(live.cells(), report.values) == []
+    assert report.inputs.taken.keys() == {"ball_mass", "x_p"}
+    assert {each.file for each in report.inputs.taken.values()} == {file}
+    live.type("x_p", 2, "29.61")
+    live.type("ball_mass", "", "0.0084")
+    saved = live.save(tmp_path / "again", file)
+    told = live.text("live-note")
+    assert told.endswith("No longer taken from another report, nor are shared errors: x_p, ball_mass.")
+    report = Study(saved).computed
+    assert driving.differences(live.cells(), report.values) == []
+    assert report.inputs.taken == {}
+    assert report.inputs.parameters["ball_mass"].text == "0.0084"
+    assert [float(each.text) for each in report.inputs.measured["x_p"]] == pytest.approx(
+        [23.5711, 29.61, 41.7254]
+    )
+    # what a reading has alone: gain and datum are stated no more
+    assert [each.u for each in report.inputs.measured["x_p"]] == pytest.approx([1.003 * 0.2e-6] * 3, rel=1e-5)
