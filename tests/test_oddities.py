@@ -19,6 +19,7 @@ from loopsheet.report.document.material import Material
 from loopsheet.report.messages.diagnostics import Check
 from loopsheet.report.messages.errors import InputError
 from loopsheet.report.study import Study
+from loopsheet.report.verbs import common
 from loopsheet.report.views import html, latex
 from loopsheet.report.views.checks import FORMATS
 
@@ -101,10 +102,21 @@ def test_deviations_are_neither_larger_nor_smaller_than_chance_makes_them(
 def test_of_errors_that_are_tied_nobody_says_how_likely_their_squares_are(tmp_path: Path, more: str) -> None:
     """Squares over their own variances are no independent ones then: honest campaigns would be accused."""
     assert told(write(tmp_path, SOUND, stated(0.2) + more)) == []
-    assert "not judged" in checks(tmp_path)["squares chi2_eiv"].message
+    assert checks(tmp_path)["squares chi2_eiv"].skipped
+    assert common.told(checks(tmp_path).values()) == [
+        "not checked: chi2_eiv: errors are shared or correlated, and its weights leave that out"
+    ]
     text = html.render(Study(tmp_path).computed, {})
     assert "Some errors are shared or correlated" in text
     assert "describes these tests within" not in text
+
+
+def test_a_test_that_is_in_no_group_is_told(tmp_path: Path) -> None:
+    """It was measured later, say, and nobody thought of the error that its drop height has."""
+    shared = '[uncertainty.shared."height datum"]\nof = "x_p"\nstated = "u = 1 um"\ngroups = '
+    (warning,) = told(write(tmp_path, SOUND, stated() + f"{shared}[[1, 2], [4]]\n"))
+    assert warning.startswith("warning: height datum: tests 3, 5 and 6 are in no group of it")
+    assert told(write(tmp_path, SOUND, stated() + f"{shared}[[1, 2, 3, 5, 6], [4]]\n")) == []
 
 
 def test_of_two_tests_nothing_is_left_over(tmp_path: Path) -> None:
@@ -369,6 +381,25 @@ def test_what_is_expected_stands_in_a_table(tmp_path: Path) -> None:
 
 
 # --- where it is told
+
+
+def test_build_names_the_report_that_it_replaces(
+    tmp_path: Path, unjudged: None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder, out = write(tmp_path / "in", SLIPPED), tmp_path / "out"
+    words = ["build", str(folder), "--out", str(out), "--to", "json"]
+    for title, said in (
+        ("One", "into {out}"),
+        ("One", "into {out}"),
+        ("Two", "into {out}, in place of 'One'"),
+    ):
+        toml = (folder / "report.toml").read_text(encoding="utf-8")
+        lines = [line for line in toml.splitlines() if not line.startswith("title")]
+        (folder / "report.toml").write_text(
+            "\n".join([f'title = "{title}"', *lines]) + "\n", encoding="utf-8"
+        )
+        main(words)
+        assert capsys.readouterr().out.splitlines()[0].endswith(said.format(out=out))
 
 
 def test_build_tells_it_last(tmp_path: Path, unjudged: None, capsys: pytest.CaptureFixture[str]) -> None:

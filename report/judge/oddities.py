@@ -19,13 +19,15 @@ from .suspects import suspected
 
 if TYPE_CHECKING:
     from ..inputs.inputs import Inputs
+    from ..inputs.uncertainty import SharedError
     from ..quantity import Printed
     from ..result.result import Report
     from ..workbook import SquareSum
 
 __all__ = ["names", "oddities"]
 
-DATA, LIMIT, SQUARES, EXPECTED, LEFT_OUT = "data", "limit", "squares", "expected", "left out"
+DATA, LIMIT, SQUARES, GROUPS = "data", "limit", "squares", "groups"
+EXPECTED, LEFT_OUT = "expected", "left out"
 """The kinds of these checks."""
 CELLS, ROWS, RESULT = "cells", "rows", "result"
 """The checks of the first kind: every cell has a value, every sum is over all rows, there is a result."""
@@ -45,6 +47,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
         DATA: [CELLS, ROWS, RESULT],
         LIMIT: list(map(_name, margins(sheet))),
         SQUARES: [squares.name for squares in inputs.workbook.squares],
+        GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
         EXPECTED: [expectation.address for expectation in inputs.expected],
         LEFT_OUT: [f"test {each.test}" for each in inputs.left_out],
     }
@@ -86,6 +89,7 @@ class _Oddities:
         yield self.of_result()
         yield from map(self.of_limit, self.report.marks.margins)
         yield from map(self.of_squares, self.report.workbook.squares)
+        yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
         yield from self.of_expectations()
         yield from self.of_left_out()
 
@@ -222,8 +226,8 @@ class _Oddities:
             said = "no value" if cell.value is None else f"nothing left over of {squares.axis}"
             return Check(SQUARES, name, True, f"{name}: {said}", self.inputs.place)
         if tied(self.report):
-            said = f"{name}: errors are shared or correlated, and its weights leave that out: not judged"
-            return Check(SQUARES, name, True, said, self.inputs.place)
+            said = f"{name}: errors are shared or correlated, and its weights leave that out"
+            return Check(SQUARES, name, True, said, self.inputs.place, skipped=True)
         large, small = tail(cell.value, dof), head(cell.value, dof)
         found = f"{name} = {self.report.text(cell)} on {dof} degrees of freedom"
         if min(large, small) >= RARE:
@@ -235,6 +239,19 @@ class _Oddities:
         )
         said = f"{found}; {said.format(axis=squares.axis)}"
         return self.check(SQUARES, name, said, _Odd(self, [cell], "is improbable"))
+
+    def of_groups(self, shared: SharedError) -> Check:
+        """Whether every test is in a group of an error that groups share."""
+        rest = [test for test in self.inputs.tests if not any(test in group for group in shared.groups)]
+        if not rest:
+            return Check(
+                GROUPS, shared.name, True, f"{shared.name}: every test is in a group", self.inputs.place
+            )
+        which = (
+            f"test{'s' * (len(rest) > 1)} {_some(list(map(str, rest)))} {'is' if len(rest) == 1 else 'are'}"
+        )
+        said = f"{shared.name}: {which} in no group of it, and so without it; a group may be of one test"
+        return Check(GROUPS, shared.name, True, said, self.inputs.place, note="warning")
 
     def valued(self, cell: Cell) -> str:
         """``alpha[1-2] = 2.73``; a given cell as it was printed."""

@@ -164,7 +164,7 @@ class Budget:
     summed : tuple of Together
         Columns over pairs of rows that the cell sums: pairs share their rows.
     draws : int
-        So many told its distribution and the coverage factor; 0 where the errors' own did.
+        So many told its distribution; 0 where the errors' own did. The coverage factor is that of the errors.
     """
 
     cell: str

@@ -124,11 +124,8 @@ def by_draws(inputs: Inputs, values: Values, budget: Budget) -> Budget:
     errors = (np.concatenate(found) - budget.value) / budget.u
     if errors.size < (1 - WITHOUT) * SOME:
         return replace(budget, factor=math.nan, because="nothing: too many draws have no value")
-    law = Samples(errors)
     told = f"{SOME} draws: terms of first order do not tell its distribution"
-    return replace(
-        budget, factor=law.half(budget.level), because=told, shape=Shape.SAMPLES, law=law, draws=SOME
-    )
+    return replace(budget, because=told, shape=Shape.SAMPLES, law=Samples(errors), draws=SOME)
 
 
 class _Draws:

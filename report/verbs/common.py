@@ -125,8 +125,11 @@ def print_checks(checks: tuple[Check, ...], form: str, title: str, more: Mapping
 
 def told(checks: Iterable[Check]) -> list[str]:
     """What there is to tell of checks, a line each; findings last."""
-    some = sorted((check for check in checks if check.word), key=lambda check: not check.passed)
-    return [f"{check.word}: {check.sentence}" for check in some]
+    every = [
+        (check.word or "not checked" * (check.skipped and check.kind != "engine"), check) for check in checks
+    ]
+    some = sorted((each for each in every if each[0]), key=lambda each: not each[1].passed)
+    return [f"{word}: {check.sentence}" for word, check in some]
 
 
 def tell(checks: Iterable[Check]) -> None:

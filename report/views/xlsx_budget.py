@@ -215,11 +215,9 @@ class _Written:
 
     def assigned(self, budget: Budget, own: str, at: Mapping[str, str]) -> tuple[Callable[[str], str], str]:
         """The coverage factor for the cell of a probability, and the name of the distribution."""
-        level, factor, shape = budget.level, budget.factor, budget.shape
-        if budget.draws:
-            return lambda p: as_issued(p, level, factor), f'"{shape}"'
         plain = f'IF({at["dof"]}>{MOST_DOF},"normal","t")'
-        return lambda p: self.factor(own, {**at, "p": p}, level), self.by_shape(own, at, SHAPES, plain)
+        named = f'"{budget.shape}"' if budget.draws else self.by_shape(own, at, SHAPES, plain)
+        return lambda p: self.factor(own, {**at, "p": p}, budget.level), named
 
     def below(self, own: str, dof: str) -> str:
         """What stands below in the formula of Welch and Satterthwaite: sources of one estimate are one."""

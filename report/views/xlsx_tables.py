@@ -75,8 +75,10 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
     main = [b for b in blocks if b.kind in ("given", "computed")] or list(blocks)
     style.text(sheet, 0, 0, f"{name}: {axis.described}", "title")
     if name in grid.notes:
-        says = "Type over the yellow cells; all else follows. An empty one leaves its test out of all sums."
-        style.text(sheet, 1, 0, says, "subtitle")
+        weighed = any(block.name in report.sheet.weighed for block in blocks)
+        stays = " but standard uncertainties, which stay as issued" * weighed
+        says = f"Type over the yellow cells; all else follows{stays}."
+        style.text(sheet, 1, 0, f"{says} An empty one leaves its test out of all sums.", "subtitle")
         given = [b for b in blocks if b.kind == "given" and b.place.row == FIRST_ROW]
         _write_note(sheet, style, grid.notes[name].column)
         inputs.write_told(sheet, style, given, grid.notes[name])
