@@ -2,13 +2,17 @@
 
 __version__ = "0.1.0"
 
-__all__ = ["Method", "count", "given", "let", "mean", "measured", "root", "total", "unknown"]
+__all__ = ["Method", "count", "given", "let", "load", "mean", "measured", "root", "total", "unknown"]
 
 
 def __getattr__(name: str) -> object:
-    """What declares a method, when it is asked for: it imports sympy."""
+    """What declares a method, and what loads a report, when they are asked for: they import much."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name == "load":
+        from .report.loaded import load
+
+        return load
     from .report import method
 
     return getattr(method, name)

@@ -374,7 +374,7 @@ def _workbook(name: str, body: _Body, title: str, source: str, headline: Sequenc
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
     columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
     rows = zip(*(body.examples.get(one.name, "").split() for one in columns_of), strict=False)
-    head = ("test", *(f"{one.name} [{one.unit}]" for one in columns_of))
+    head = (body.axis.row, *(f"{one.name} [{one.unit}]" for one in columns_of))
     return Workbook(
         name=re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower(),
         title=title,
@@ -384,6 +384,7 @@ def _workbook(name: str, body: _Body, title: str, source: str, headline: Sequenc
         parameters=given_to,
         sheet=lambda names: Sheet(columns),
         headline=tuple(headline) or tuple(last),
+        row=body.axis.row,
         example=(head, *((str(place), *row) for place, row in enumerate(rows, start=1)))
         if columns_of
         else (),

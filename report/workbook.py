@@ -159,6 +159,8 @@ class Workbook:
     sheet : callable
         Takes the names of the given parameters; returns the :class:`Sheet`. What is given gets the bounds
         there that `measured` and `parameters` declare.
+    row : str
+        What a row of the table of measurements is called: its first line may say that in place of ``test``.
     fits : tuple of str
         Names of three cells, if a source's choice of fit is to be told: the mean, the fit to logarithms (as
         published), the fit to the values themselves.
@@ -181,6 +183,7 @@ class Workbook:
     sheet: Callable[[frozenset[str]], Sheet]
     check_parameters: Callable[[frozenset[str]], str | None] = lambda given: None
     headline: tuple[str, ...] = ()
+    row: str = "test"
     squares: tuple[SquareSum, ...] = ()
     """The sums of squares to be no larger and no smaller than chance makes them."""
     fits: tuple[str, ...] = ()

@@ -140,7 +140,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.pytest_plugin": ({"derivations", "report"}, {"pytest", "_pytest"}),
 }
 # Parts that only these modules may import, whatever the table says.
-ASKING = {"report.pytest_plugin", "report.verbs", "report.verification"}
+ASKING = {"report.loaded", "report.pytest_plugin", "report.verbs", "report.verification"}
 ONLY_FROM = {
     "report.cli": {"__main__"},
     "report.build": {"report.verbs", "report.verification"},

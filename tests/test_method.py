@@ -190,6 +190,64 @@ def test_a_folder_to_begin_with(
     assert found == pytest.approx(known, rel=2e-3 if name == "line" else 1e-5)
 
 
+def test_a_report_is_loaded(tmp_path: Path) -> None:
+    """Pairs and scalars, in the units that were typed, with texts for a notebook."""
+    table = "test,v [m/s],e [1],x_p [um]\n1,2.200,0.5350,22.58\n2,3.100,0.5050,31.92\n3,4.300,0.4700,44.61\n"
+    (tmp_path / "measurements.csv").write_text(table, encoding="utf-8")
+    toml = 'title = "<Steel>"\nworkbook = "soft_impact"\n[parameters]\nball_mass = "8.366 g"\n'
+    (tmp_path / "report.toml").write_text(
+        f'{toml}[measurements]\nfile = "measurements.csv"\n', encoding="utf-8"
+    )
+    found = loopsheet.load(tmp_path)
+    depth, alpha, mean_alpha = found["x_p"], found["alpha"], found["alpha_mean"]
+    assert (depth.unit, depth.value.tolist(), depth.index) == ("um", [22.58, 31.92, 44.61], ("1", "2", "3"))
+    assert depth.u == pytest.approx([0.005 / math.sqrt(3)] * 3)
+    assert (alpha.index, len(alpha), alpha.status) == (("1-2", "1-3", "2-3"), 3, ("ok",) * 3)
+    assert float(mean_alpha) == pytest.approx(alpha.value.mean(), rel=1e-14)
+    assert (mean_alpha.value.shape, mean_alpha.index) == ((), ())
+    assert (found.title, found.headline[0]) == ("<Steel>", "alpha_eiv")
+    assert "x_p" in found
+    assert set(found) == set(sheet_names(tmp_path))
+    shown = found._repr_html_()
+    assert "&lt;Steel&gt;" in shown
+    assert mean_alpha.texts[0] in shown
+    assert mean_alpha.texts[0] in repr(found)
+    with pytest.raises(KeyError, match="no quantity 'q': there are v, e, x_p"):
+        found["q"]
+
+
+def sheet_names(folder: Path) -> list[str]:
+    return list(Study(folder).computed.sheet.by_name)
+
+
+def test_a_cell_without_a_value_is_told(tmp_path: Path) -> None:
+    table = "test,v [m/s],e [1],x_p [um]\n1,2.200,0.5350,22.58\n2,3.100,0.5050,2.192\n3,4.300,0.4700,44.61\n"
+    (tmp_path / "measurements.csv").write_text(table, encoding="utf-8")
+    toml = 'workbook = "soft_impact"\n[parameters]\nball_mass = "8.366 g"\n'
+    table_of = '[measurements]\nfile = "measurements.csv"\n'
+    (tmp_path / "report.toml").write_text(toml + table_of, encoding="utf-8")
+    found = loopsheet.load(tmp_path)
+    assert "#NOROOT!" in found["alpha"].status
+    lost = found["alpha"].status.index("#NOROOT!")
+    assert math.isnan(found["alpha"].value[lost])
+    assert found["alpha"].sure[lost] == ""
+    assert any(line.startswith("finding: ") for line in found.findings)
+
+
+@pytest.mark.parametrize(("head", "code"), [("swing", 0), ("test", 0), ("swings", 2)])
+def test_the_rows_may_be_called_as_the_method_calls_them(
+    head: str, code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["new", str(tmp_path / "c"), "--workbook", "formula"]) == 0
+    table = tmp_path / "c" / "measurements.csv"
+    text = table.read_text(encoding="utf-8")
+    assert text.startswith("swing,T [s]\n")
+    table.write_text(text.replace("swing", head, 1), encoding="utf-8")
+    assert main(["show", "g", str(tmp_path / "c")]) == code
+    if code:
+        assert "add 'swing' to the first line" in capsys.readouterr().err
+
+
 def test_the_names_are_there_when_asked_for() -> None:
     """Nothing heavy comes with the package itself."""
     code = "import sys, loopsheet; assert 'sympy' not in sys.modules; loopsheet.Method"

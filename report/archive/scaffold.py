@@ -164,7 +164,7 @@ def _written(files: dict[Path, bytes]) -> Iterator[None]:
 
 
 def _measurements(workbook: Workbook) -> str:
-    header = ("test", *(f"{column.name} [{column.unit}]" for column in workbook.measured))
+    header = (workbook.row, *(f"{column.name} [{column.unit}]" for column in workbook.measured))
     return "".join(",".join(row) + "\n" for row in workbook.example or (header,))
 
 

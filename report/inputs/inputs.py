@@ -435,7 +435,8 @@ class _Reader:
         if source is None:
             return None
         of = self.workbook.measured if self.workbook else None
-        found = read_measurements(source, of, modes, self.findings, wanted)
+        row = self.workbook.row if self.workbook else "test"
+        found = read_measurements(source, of, modes, self.findings, wanted, row)
         return found and self.take_columns(found, wanted)
 
     def take_columns(self, measurements: Measurements, wanted: Mapping[str, object]) -> Measurements | None:

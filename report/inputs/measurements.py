@@ -124,6 +124,7 @@ def read_measurements(
     modes: Mapping[str, str],
     findings: Findings,
     elsewhere: Collection[str] = (),
+    called: str = "test",
 ) -> Measurements | None:
     """Read the table of the tests; None, with findings, if something is wrong with it.
 
@@ -140,15 +141,19 @@ def read_measurements(
         Where findings go.
     elsewhere : collection of str
         The columns that are taken from other reports: they must not stand here.
+    called : str
+        What else the column of the tests' numbers may be called.
     """
     before = len(findings.found)
     columns = {column.name: column for column in measured or () if column.name not in elsewhere}
-    required = {"test": "test", **{name: f"{name} [{column.unit}]" for name, column in columns.items()}}
+    required = {"test": called, **{name: f"{name} [{column.unit}]" for name, column in columns.items()}}
     table = read_table(source, list(required.values()), findings)
     if table is None:
         return None
     heads = [read_head(table, field, columns, findings) for field in table.header]
     names = [head.name if head else "" for head in heads]
+    if "test" not in names and called not in columns:
+        names = ["test" if name == called else name for name in names]
     names = [_not_here(table, n, name, elsewhere, findings) for n, name in enumerate(names)]
     if measured is None:
         places = {"test": names.index("test")} if "test" in names else {}

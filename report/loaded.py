@@ -1,0 +1,167 @@
+"""A report folder for Python users: its cells as arrays with units and standard uncertainties."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .cells.address import index_text
+from .cells.values import CODES
+from .inputs.folders import report_folder
+from .quantity import behind
+from .result.findings import checks
+from .result.result import Report
+from .study import Study
+from .views.escape import Markup, html
+
+__all__ = ["Estimates", "Loaded", "load"]
+
+Array = NDArray[np.float64]
+MOST = 50
+"""Rows that a notebook shows."""
+
+
+@dataclass(frozen=True)
+class Estimates:
+    """Estimates of a column of the sheet.
+
+    Parameters
+    ----------
+    name, meaning, unit : str
+        `unit` is that of the report; ``1`` for a pure number.
+    value, u : float array (rows,)
+        Estimates and standard uncertainties, in that unit; of a scalar both have no axis. NaN where there is
+        none.
+    index : tuple of str
+        What the rows are called: ``2``, ``1-2``; empty for a scalar.
+    status : tuple of str
+        ``ok``, or the code of a cell without a value: ``#NOROOT!``.
+    texts, sure : tuple of str
+        As the report shows the cells and their uncertainties, with units; empty where there is none.
+    """
+
+    name: str
+    meaning: str
+    unit: str
+    value: Array
+    u: Array
+    index: tuple[str, ...]
+    status: tuple[str, ...]
+    texts: tuple[str, ...] = field(repr=False)
+    sure: tuple[str, ...] = field(repr=False)
+
+    def __float__(self) -> float:
+        """The value of a scalar."""
+        return float(self.value)
+
+    def __len__(self) -> int:
+        """How many rows it has."""
+        return len(self.index)
+
+    @property
+    def rows(self) -> Iterator[tuple[str, str, str]]:
+        """Address, cell and uncertainty as texts, row by row."""
+        at = [f"{self.name}[{index}]" for index in self.index] or [self.name]
+        yield from zip(at, self.texts, self.sure, strict=True)
+
+    def _repr_html_(self) -> str:
+        """For a notebook: a table of its cells."""
+        return _table([self])
+
+
+class Loaded(Mapping[str, Estimates]):
+    """A report: its quantities by their names.
+
+    Attributes
+    ----------
+    title : str
+    headline : tuple of str
+        The names of the results.
+    findings : tuple of str
+        What there is to tell of it, as `loopsheet check` tells it: findings and warnings.
+    """
+
+    def __init__(self, report: Report) -> None:
+        self._report, self.title = report, report.title
+        self.headline = tuple(name for name in report.workbook.headline if name in report.sheet)
+        self.findings = tuple(f"{check.word}: {check.sentence}" for check in checks(report) if check.word)
+
+    def __getitem__(self, name: str) -> Estimates:
+        """A column.
+
+        Raises
+        ------
+        KeyError
+            With the names there are.
+        """
+        report = self._report
+        if name not in report.sheet:
+            raise KeyError(f"no quantity '{name}': there are {', '.join(self)}")
+        column, how = report.sheet[name], report.shown[name]
+        cells = list(report.values.cells(name))
+        shape = () if column.axis is None else (len(cells),)
+        printed = [float(number.value / number.scale) for number in report.inputs.printed(name)]
+        known = report.uncertain().u.get(name)
+        u = np.full(len(cells), np.nan) if known is None else known
+        return Estimates(
+            name,
+            column.meaning,
+            how.unit,
+            np.array(printed or report.values.value[name] / how.scale).reshape(shape),
+            (u / how.scale).reshape(shape),
+            tuple(index_text(cell.label) for cell in cells) if shape else (),
+            tuple(CODES[status] for status in report.values.status[name].tolist()),
+            tuple(map(report.text, cells)),
+            tuple(report.sure(name, each).text + behind(how.unit) if each > 0 else "" for each in u.tolist()),
+        )
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._report.sheet.by_name)
+
+    def __len__(self) -> int:
+        return len(self._report.sheet.by_name)
+
+    def __repr__(self) -> str:
+        told = ", ".join(text for name in self.headline for _, text, _ in self[name].rows)
+        return f"<report '{self.title}': {told}>"
+
+    def _repr_html_(self) -> str:
+        """For a notebook: title, results, and what there is to tell."""
+        said = Markup("").join(Markup("<p>{}</p>").format(html(line)) for line in self.findings)
+        results = _table([self[name] for name in self.headline])
+        return Markup("<p><b>{}</b></p>{}{}").format(html(self.title), Markup(results), said)
+
+
+def load(folder: str | Path) -> Loaded:
+    """Compute a report folder.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Or ``paper``, the shipped one. A method of one's own in it is run.
+
+    Raises
+    ------
+    LoopsheetError
+        With all that is wrong with its files, each with its place.
+
+    Examples
+    --------
+    >>> paper = load("paper")
+    >>> paper["alpha_mean"].texts, paper["alpha"].index[0], round(float(paper["alpha_mean"].u), 4)
+    (('1.3026',), '1-2', 0.0035)
+    """
+    return Loaded(Study(report_folder(str(folder))).computed)
+
+
+def _table(quantities: list[Estimates]) -> str:
+    rows = [(row, one.meaning) for one in quantities for row in one.rows]
+    line = Markup("<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td></tr>")
+    shown = [line.format(*map(html, (*row, meaning))) for row, meaning in rows[:MOST]]
+    more = [line.format("…", f"{len(rows) - MOST} more", "", "")] if len(rows) > MOST else []
+    head = Markup("<tr><th></th><th>value</th><th>u</th><th></th></tr>")
+    return Markup("<table>{}{}</table>").format(head, Markup("").join([*shown, *more]))
