@@ -70,6 +70,8 @@ class Chart:
         The axes with a logarithmic scale: ``x``, ``y`` or ``xy``.
     from_zero : bool
         Whether both axes begin at zero.
+    whole : bool
+        Whether every point is drawn where it is, however far from the lines and the other points.
     height : float
         In centimetres, of 16 cm of width.
     """
@@ -80,6 +82,7 @@ class Chart:
     series: tuple[Series, ...]
     log: str = ""
     from_zero: bool = False
+    whole: bool = False
     height: float = 8
 
 

@@ -13,6 +13,7 @@ sympy: what is measured for the cell of a row, what is computed for a row if its
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -24,12 +25,13 @@ from sympy import Expr, Float, Indexed, Rational, Sum, Symbol, sympify
 
 from ..derivations.equation import Equation, Kind, Ledger
 from .cells.units import unit_of
+from .charts import BLUE, VERMILION, Chart, Series
 from .column import Axis, Column, Formula, Given, Root, SheetError
 from .quantity import Bounds
 from .sheet import Sheet
-from .workbook import Measured, Parameter, Workbook
+from .workbook import FigureSpec, Measured, Parameter, Workbook
 
-__all__ = ["Method", "count", "given", "let", "mean", "measured", "root", "total", "unknown"]
+__all__ = ["Method", "count", "given", "let", "mean", "measured", "plot", "root", "total", "unknown"]
 
 
 @dataclass(frozen=True)
@@ -212,6 +214,34 @@ def count() -> Symbol:
     return _body().axis.size
 
 
+def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None:
+    """Show points of two columns, and what is computed beside them.
+
+    Parameters
+    ----------
+    x, y : Expr
+        Columns over the rows.
+    *curves : Expr
+        Computed columns, each drawn as a line in the order of x, or single numbers, each across all of it.
+    caption : str
+        Below the figure; what its axes are, without.
+    log : str
+        The axes with a logarithmic scale: ``x``, ``y`` or ``xy``.
+    """
+    body = _body()
+    across, up, *beside = (body.column(_name(cell)) for cell in (x, y, *curves))
+    for each in (across, up):
+        if each.axis is None:
+            raise SheetError(f"{each.name} is a single number, which is no column to plot", each.name)
+    series = [Series(across.name, up.name, up.meaning, "points")]
+    for column, colour in zip(beside, itertools.cycle((VERMILION, BLUE)), strict=False):
+        style = "level" if column.axis is None else "line"
+        series.append(Series(across.name, column.name, column.meaning, style, colour))
+    said, number = f"{up.meaning} over {across.meaning}", str(len(body.figures) + 1)
+    chart = Chart(said, across.meaning, up.meaning, tuple(series), log, whole=True)
+    body.figures.append(FigureSpec(f"plot_{number}", number, caption or f"{said.capitalize()}.", chart=chart))
+
+
 def _bounds(low: float | None, high: float | None, positive: bool, whole: bool = False) -> Bounds:
     above = positive and (low is None or low <= 0)
     return Bounds(0 if above else low, high, low_open=above, integer=whole)
@@ -243,6 +273,13 @@ class _Body(dict[str, Any]):
         self.inputs: list[Measured | Parameter] = []
         self.equations: list[Equation] = []
         self.examples: dict[str, str] = {}
+        self.figures: list[FigureSpec] = []
+
+    def column(self, name: str) -> Column:
+        """What was declared under a name."""
+        if name not in self.columns:
+            raise SheetError(f"{name} is not declared: a name of the body can be plotted, no formula", name)
+        return self.columns[name]
 
     def __setitem__(self, name: str, value: Any) -> None:
         if name in self.columns:
@@ -277,10 +314,9 @@ class _Body(dict[str, Any]):
         axis = self.axis if self.axis.index in named else None
         column = Column(name, axis, Given(), said.unit, said.meaning, **said.column)
         sides = said.sides if said.ends else (column.cell, *said.sides)
-        label, kind = (
-            said.label or f"({len(self.equations) + 1})",
-            Kind.ASSUMPTION if said.ends else Kind.DEFINITION,
-        )
+        numbers = map("({})".format, itertools.count(len(self.equations) + 1))
+        label = said.label or next(each for each in numbers if each not in {e.label for e in self.equations})
+        kind = Kind.ASSUMPTION if said.ends else Kind.DEFINITION
         equation = Equation(label, sides, said.because, kind, said.meaning)
         self.equations.append(equation)
         if said.ends:
@@ -296,15 +332,15 @@ class _Body(dict[str, Any]):
         return column
 
 
-_CURRENT: ContextVar[_Body] = ContextVar("_CURRENT")
+_CURRENT: ContextVar[_Body | None] = ContextVar("_CURRENT", default=None)
 
 
 def _body() -> _Body:
     """That of the method which is being declared."""
-    try:
-        return _CURRENT.get()
-    except LookupError:
-        raise SheetError("sums and counts stand in the body of a class of Method") from None
+    body = _CURRENT.get()
+    if body is None:
+        raise SheetError("sums, counts and plots stand in the body of a class of Method")
+    return body
 
 
 class _Declaring(type):
@@ -343,6 +379,7 @@ class _Declaring(type):
         found = super().__new__(cls, name, bases, dict(body))
         if bases:
             assert isinstance(body, _Body)
+            _CURRENT.set(None)
             title = (found.__doc__ or name).strip().partition("\n")[0].removesuffix(".")
             found.workbook = _workbook(name, body, title, source, re.findall(r"\w+", headline))
         return found
@@ -385,6 +422,7 @@ def _workbook(name: str, body: _Body, title: str, source: str, headline: Sequenc
         sheet=lambda names: Sheet(columns),
         headline=tuple(headline) or tuple(last),
         row=body.axis.row,
+        figures=tuple(body.figures),
         example=(head, *((str(place), *row) for place, row in enumerate(rows, start=1)))
         if columns_of
         else (),

@@ -1,5 +1,6 @@
 """A method as the body of a class: what a name stands for, and what is told of a wrong line."""
 
+import contextvars
 import math
 import re
 import subprocess
@@ -11,11 +12,13 @@ import pytest
 from sympy import Symbol, pi, sin, sqrt
 
 import loopsheet
+import loopsheet.report.method
 from loopsheet import Method, count, given, let, mean, measured, root, total, unknown
 from loopsheet.report.cli import main
 from loopsheet.report.column import Root, SheetError
 from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study
+from loopsheet.report.views import charts
 from loopsheet.report.workbook import Workbook
 
 README = Path(__file__).parent.parent / "README.md"
@@ -145,6 +148,36 @@ def test_a_wrong_line_is_told(
     told = capsys.readouterr().err
     assert said in told
     assert re.search(r"workbook\.py:\d+", told)
+
+
+def test_points_and_lines_are_declared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every point is in the frame, however far from the line; page and workbook draw the same chart."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "line", "--workbook", "line"]) == 0
+    report = Study(Path("line")).report
+    fit, left = report.workbook.charts
+    assert [(s.x, s.y, s.style) for s in fit.series] == [("x", "y", "points"), ("x", "fitted", "line")]
+    assert [(s.y, s.style) for s in left.series] == [("residual", "points")]
+    assert "lie outside" not in charts.draw(report, fit).legends[0].get_texts()[0].get_text()
+    assert fit.whole
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("plot(x, x**2)", "a name of the body can be plotted, no formula"),
+        ("plot(m, x)", "m is a single number, which is no column to plot"),
+    ],
+)
+def test_what_cannot_be_plotted(line: str, said: str) -> None:
+    body = f"    x = measured('m', 'length')\n    m = let(mean(x), 'mean')\n    {line}\n"
+    with pytest.raises(SheetError, match=re.escape(said)):
+        exec(f"class Wrong(Method):\n{body}", {**vars(loopsheet.report.method)})
+
+
+def test_outside_of_a_body_there_are_no_rows() -> None:
+    with pytest.raises(SheetError, match="stand in the body of a class of Method"):
+        contextvars.Context().run(count)
 
 
 def test_what_else_is_refused() -> None:

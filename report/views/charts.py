@@ -107,7 +107,7 @@ class Frame:
     """The ends of both axes, and which points they leave out."""
 
     def __init__(self, chart: Chart, lines: Array, dots: Array) -> None:
-        self.log = [axis in chart.log for axis in "xy"]
+        self.log, self.whole = [axis in chart.log for axis in "xy"], chart.whole
         self.allowed = [self._allowed(lines, dots, n) for n in (0, 1)]
         self.ends = [self._ends(chart, np.hstack([lines, dots[:, self.holds(dots)]]), n) for n in (0, 1)]
 
@@ -117,6 +117,8 @@ class Frame:
 
     def _allowed(self, lines: Array, dots: Array, n: int) -> tuple[float, float]:
         """Between which values a point is drawn where it is: others must not shrink to nothing for it."""
+        if self.whole:
+            return -np.inf, np.inf
         if lines.size:
             low, high = np.quantile(self.flat(lines, n), [0, 1])
             reach = ROOM * (high - low)

@@ -162,6 +162,8 @@ def _chart(words: Words, chart: Chart) -> dict[str, Any]:
     found["log"] = [int(axis in chart.log) for axis in "xy"]
     if chart.from_zero:
         found["zero"] = 1
+    if chart.whole:
+        found["whole"] = 1
     plain = {field.name: field.default for field in fields(Series)}
     for series in chart.series:
         one = {name: value for name, value in vars(series).items() if value != plain[name]}

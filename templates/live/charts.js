@@ -29,13 +29,13 @@ function tracesOf({ x, y, style }, { log }, { sheet, declared }, sizes) {
 }
 
 // The ends of both axes, and whether a point is drawn where it is: others must not shrink to nothing for its sake.
-function frameOf({ log, zero }, lines, dots) {
+function frameOf({ log, zero, whole }, lines, dots) {
   const flat = (n, value) => (log[n] ? Math.log10(value) : value);
   const sorted = (points, n) => points.map(({ at }) => flat(n, at[n])).sort((a, b) => a - b);
   const allowed = [0, 1].map((n) => {
     const values = sorted(lines.length ? lines : dots, n), part = lines.length ? 0 : 0.25;
     const low = quantile(values, part), high = quantile(values, 1 - part);
-    const reach = lines.length ? ROOM * (high - low) : (n && 5 * (high - low)) || Infinity;
+    const reach = whole ? Infinity : lines.length ? ROOM * (high - low) : (n && 5 * (high - low)) || Infinity;
     return [low - reach, high + reach];
   });
   const holds = ({ at }) => at.every((one, n) => allowed[n][0] <= flat(n, one) && flat(n, one) <= allowed[n][1]);

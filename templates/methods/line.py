@@ -2,7 +2,7 @@
 
 from sympy import sqrt
 
-from loopsheet import Method, count, given, let, mean, measured, total
+from loopsheet import Method, count, given, let, mean, measured, plot, total
 
 
 class Line(Method, source="where it is published", headline="slope intercept later"):
@@ -14,6 +14,9 @@ class Line(Method, source="where it is published", headline="slope intercept lat
     dx = let(x - mean(x), "indication from the mean on")
     slope = let(total(dx * y) / total(dx**2), "slope")
     intercept = let(mean(y) - slope * mean(x), "intercept")
-    residual = let(y - intercept - slope * x, "residual")
+    fitted = let(intercept + slope * x, "correction on the line")
+    residual = let(y - fitted, "residual")
     s = let(sqrt(total(residual**2) / (count() - 2)), "scatter about the line")
     later = let(intercept + slope * x_new, "correction of the later indication")
+    plot(x, y, fitted, caption="Corrections and the line.")
+    plot(x, residual, caption="What is left.")
