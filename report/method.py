@@ -21,7 +21,8 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from sympy import Expr, Float, Indexed, Rational, Sum, Symbol, sympify
+from sympy import Expr, Float, Function, Indexed, Rational, Sum, Symbol, sympify
+from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
 
 from ..derivations.equation import Equation, Kind, Ledger
 from .cells.units import unit_of
@@ -32,6 +33,13 @@ from .sheet import Sheet
 from .workbook import FigureSpec, Measured, Parameter, Workbook
 
 __all__ = ["Method", "count", "given", "let", "mean", "measured", "plot", "root", "total", "unknown"]
+
+
+FUNCTIONS = (
+    *("exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh"),
+    *("Abs", "Max", "Min"),
+)
+"""Besides powers; as sympy calls them."""
 
 
 @dataclass(frozen=True)
@@ -185,13 +193,15 @@ def root(
     meaning, unit, label, because, display, latex
         As for :func:`let`; the unit is that of the unknown.
     low, high : Expr
-        Between which it lies; they may hang on other names.
+        Between which it lies, themselves left out; they may hang on other names.
     start : Expr, optional
         A first guess; the middle, without. It costs steps, never truth.
     steps : int
         How many of Newton's steps are tried before it is bisected.
     """
-    low, high = sympify(low), sympify(high)
+    low, high = _exact(low), _exact(high)
+    if low.is_number and high.is_number and low >= high:
+        raise SheetError(f"the root is sought between {low} and {high}: low is not below high")
     ends = {"low": low, "high": high, "start": (low + high) / 2 if start is None else sympify(start)}
     column = {"display": display, "latex": latex, "positive": False}
     sides = _exact(left), _exact(right)
@@ -250,6 +260,14 @@ def _bounds(low: float | None, high: float | None, positive: bool, whole: bool =
 def _exact(formula: Any) -> Expr:
     """A formula with its decimal fractions as they were typed: 0.27027027... was 1/3.7."""
     formula = sympify(formula)
+    if not isinstance(formula, Expr) or formula.has(
+        ImaginaryUnit, NaN, Infinity, NegativeInfinity, ComplexInfinity
+    ):
+        raise SheetError(f"{formula} is no formula of real numbers")
+    for part in formula.atoms(Function):
+        if part.func.__name__ not in FUNCTIONS:
+            known = ", ".join(sorted(FUNCTIONS))
+            raise SheetError(f"{part.func} is none of the functions that every engine has: {known}")
     typed = {}
     for number in formula.atoms(Float):
         own, turned = repr(float(number)), f"{1 / float(number):.12g}"
@@ -274,6 +292,16 @@ class _Body(dict[str, Any]):
         self.equations: list[Equation] = []
         self.examples: dict[str, str] = {}
         self.figures: list[FigureSpec] = []
+        self.announced: list[str] = []
+
+    @property
+    def whole(self) -> tuple[Column, ...]:
+        """All columns: sums leave out rows in which something was not measured, all of them the same."""
+        every = tuple(self.columns.values())
+        measured = tuple(c for c in every if isinstance(c.rule, Given) and c.axis)
+        return tuple(
+            replace(c, alongside=measured) if any(e.has(Sum) for e in c.expressions) else c for c in every
+        )
 
     def column(self, name: str) -> Column:
         """What was declared under a name."""
@@ -285,6 +313,7 @@ class _Body(dict[str, Any]):
         if name in self.columns:
             raise SheetError(f"{name} is declared twice", name)
         if isinstance(value, _Unknown):
+            self.announced.append(name)
             value = Column(name, None, Given(), positive=False).symbol
         if isinstance(value, _Declared):
             if name in (self.axis.index_name, self.axis.size_name):
@@ -396,10 +425,17 @@ class Method(metaclass=_Declaring):
 
 
 def _workbook(name: str, body: _Body, title: str, source: str, headline: Sequence[str]) -> Workbook:
-    columns, equations = tuple(body.columns.values()), tuple(body.equations)
+    columns, equations = body.whole, tuple(body.equations)
     for each in headline:
         if each not in body.columns:
             raise SheetError(f"the headline names {each}, which is not declared", each)
+    for announced in body.announced:
+        if announced not in body.columns:
+            raise SheetError(
+                f"{announced} is announced as unknown, and no root is declared for it", announced
+            )
+    if not equations:
+        raise SheetError(f"{name} computes nothing: it has no let(...) and no root(...)", name)
     used = {
         _name(cell)
         for c in columns

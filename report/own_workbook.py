@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from .column import SheetError
 from .inputs.declared import mistyped
 from .messages.errors import InputError, Location, LoopsheetError, diagnose
 
@@ -122,7 +123,10 @@ class _Own:
             except (KeyboardInterrupt, LoopsheetError):
                 raise
             except BaseException as error:  # sys.exit() too: it must not end us as if all were well
-                self.refuse(f"{type(error).__name__}: {error}".removesuffix(": "), error)
+                ours = isinstance(error, SheetError)
+                self.refuse(
+                    str(error) if ours else f"{type(error).__name__}: {error}".removesuffix(": "), error
+                )
             if not isinstance(found, kind):
                 self.refuse(f"{what} is no {getattr(kind, '__name__', kind)}")
             return found

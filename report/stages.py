@@ -78,6 +78,8 @@ def prepared(inputs: Inputs, ledger: Callable[[], Ledger]) -> Prepared:
     own = not is_shipped(inputs.workbook)
     try:
         sheet = sheet_of(inputs.workbook, inputs.given, check)
+        if own:
+            _refuse_other_dimensions(sheet)
     except SheetError as error:
         if not own:
             raise  # ours, and our bug
@@ -88,6 +90,27 @@ def prepared(inputs: Inputs, ledger: Callable[[], Ledger]) -> Prepared:
         refusals.refuse_what_is_misnamed(sheet, inputs, narratives(), lambda: _drawings(inputs))
     refusals.refuse_what_is_missing(sheet, inputs)
     return Prepared(inputs, sheet)
+
+
+def _refuse_other_dimensions(sheet: Sheet) -> None:
+    """Refuse columns that would be shown in a unit of another dimension, or in what is no unit."""
+    from .sheet import SheetError
+
+    for column in sheet.columns:
+        like = column.display.removeprefix("like ")
+        written = like if like == column.display else sheet[like].unit if like in sheet else ""
+        try:
+            own = parse_unit(column.unit)
+        except NotAUnit:
+            continue  # an exponent that is a symbol: it is shown in SI
+        try:
+            shown = parse_unit(written) if written else own
+        except NotAUnit as error:
+            said = f"{column.name}: it is to be shown in {written!r}, which is no unit"
+            raise SheetError(said, column.name) from error
+        if shown.dimension != own.dimension:
+            said = f"{column.name}: its unit is {column.unit}, which is not shown in {written}"
+            raise SheetError(said, column.name)
 
 
 def of_cells(inputs: Inputs) -> Sequence[Diagnostic]:

@@ -5,19 +5,24 @@ import math
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import mpmath
+import numpy as np
 import pytest
-from sympy import Symbol, pi, sin, sqrt
+from sympy import Abs, Symbol, pi, sin, sqrt
 
 import loopsheet
 import loopsheet.report.method
 from loopsheet import Method, count, given, let, mean, measured, root, total, unknown
 from loopsheet.report.cli import main
 from loopsheet.report.column import Root, SheetError
+from loopsheet.report.engines.numpy import evaluate
 from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study
+from loopsheet.report.uncertainty.monte_carlo import draw
+from loopsheet.report.uncertainty.propagation import Spread
 from loopsheet.report.views import charts
 from loopsheet.report.workbook import Workbook
 
@@ -136,12 +141,20 @@ def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         ('c = let(2**(b / b) * a ** (b / Symbol("b")), "x") + 1', "unsupported operand"),
         ('f = root(a, 2 * a, "length", "m", low=0, high=1)', "write f = unknown() above"),
         ('c = let(q, "nothing")', "name 'q' is not defined"),
+        ('c = let(2 * a, "twice", like=b)', "c: its unit is m, which is not shown in s"),
+        ('c = let(2 * a, "twice", display="furlung")', "shown in 'furlung', which is no unit"),
+        ('c = let(sympy.erf(b / b), "x")', "erf is none of the functions that every engine has: Abs, "),
+        ('c = let(sympy.I * a, "x")', "I*a is no formula of real numbers"),
+        ('c = let(a > 1, "x")', "a > 1 is no formula of real numbers"),
+        ("q = unknown()", "q is announced as unknown, and no root is declared for it"),
+        ("q = 2 * a", "Colebrook computes nothing"),
+        ('q = unknown(); q = root(q, 1, "x", low=3, high=1)', "between 3 and 1: low is not below high"),
     ],
 )
 def test_a_wrong_line_is_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, said: str
 ) -> None:
-    head = "from sympy import Symbol\n" + PIPE.partition("    Re")[0]
+    head = "import sympy\nfrom sympy import Symbol\n" + PIPE.partition("    Re")[0]
     code = f'{head}    a = given("m", "length")\n    b = given("s", "time")\n    {line}\n'
     where = folder(tmp_path, code, 'a = "1.0 m"\nb = "2.0 s"\n')
     assert main(["check", str(where), "--no-cache"]) == 2
@@ -178,6 +191,77 @@ def test_what_cannot_be_plotted(line: str, said: str) -> None:
 def test_outside_of_a_body_there_are_no_rows() -> None:
     with pytest.raises(SheetError, match="stand in the body of a class of Method"):
         contextvars.Context().run(count)
+
+
+@pytest.mark.parametrize("toml", ["", '[uncertainty]\nT = "u = 0.01 s"\n'])
+def test_of_a_wrong_line_nothing_else_is_told(
+    toml: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Neither that the rows are called as the workbook says, nor that its columns are not known."""
+    assert main(["new", str(tmp_path / "c"), "--workbook", "formula"]) == 0
+    for name, old, new in (
+        ("workbook.py", "positive=True", "positiv=True"),
+        ("report.toml", "# [unc", f"{toml}# [unc"),
+    ):
+        path = tmp_path / "c" / name
+        path.write_text(path.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
+    capsys.readouterr()
+    assert main(["check", str(tmp_path / "c")]) == 2
+    told = capsys.readouterr().err
+    assert "unexpected keyword argument 'positiv'" in told
+    assert told.endswith("\n1 error\n")
+
+
+def test_all_sums_leave_out_the_same_rows(tmp_path: Path) -> None:
+    """A line through centred numbers, of which one was not measured, is that through the others."""
+    assert main(["new", str(tmp_path / "c"), "--workbook", "line"]) == 0
+    report = Study(tmp_path / "c").computed
+    data = {name: own.copy() for name, own in report.values.value.items() if name in report.sheet.bounds}
+    data["y"][0] = math.nan
+    found = evaluate(report.sheet, report.values.given_labels, data)
+    slope, intercept = np.polyfit(data["x"][1:], data["y"][1:], 1)
+    assert found.scalar("slope") == pytest.approx(slope, rel=1e-9)
+    assert found.scalar("intercept") == pytest.approx(intercept, rel=1e-9)
+
+
+def test_a_root_over_a_number_that_may_be_zero(tmp_path: Path, require: Callable[..., str]) -> None:
+    """Its slope has a part that is a plain number, which intervals in JavaScript once did not take."""
+    code = PIPE.partition("    Re")[0] + (
+        '    V = measured("V", "voltage")\n    c = given("V", "scale")\n    x = unknown()\n'
+        '    x = root(x + x**3, V / c, "ratio", low=0, high=3)\n'
+    )
+    where = folder(tmp_path, code.replace("let, root", "let, measured, root"), 'c = "2.0 V"\n')
+    with (where / "report.toml").open("a", encoding="utf-8") as file:
+        file.write('[measurements]\nfile = "m.csv"\n')
+    (where / "m.csv").write_text("reading,V [V]\n1,3.0\n2,5.0\n", encoding="utf-8")
+    require("node")
+    assert main(["check", str(where), "--no-cache"]) == 0
+
+
+def test_at_a_corner_nothing_is_told_of_second_order(tmp_path: Path) -> None:
+    """The mean deviation of three numbers, one of which lies at the mean: draws give .9 of it."""
+
+    class Deviation(Method):
+        """Mean deviation."""
+
+        T = measured("s", "time")
+        m = let(mean(Abs(T - mean(T))), "mean deviation")
+
+    code = (
+        "from sympy import Abs\nfrom loopsheet import Method, let, mean, measured\n\n\nclass D(Method):\n"
+        '    T = measured("s", "time")\n    m = let(mean(Abs(T - mean(T))), "mean deviation")\n'
+    )
+    assert sheet_of(Deviation)["m"].axis is None
+    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
+    (tmp_path / "m.csv").write_text("test,T [s]\n1,1.2\n2,1.5\n3,1.8\n", encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    report = Study(tmp_path).computed
+    budget = Spread(report.inputs, report.values).budget("m", 0)
+    drawn = draw(report.inputs, report.values, budget, 20_000)
+    assert budget.second == 0
+    assert budget.unlooked.startswith("it has a corner here")
+    assert budget.u == pytest.approx(drawn.u, rel=0.15)
 
 
 def test_what_else_is_refused() -> None:

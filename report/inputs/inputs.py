@@ -292,7 +292,7 @@ class _Reader:
         parameters, given = self.parameters()
         measurements = self.measurements()
         uncertainty = Stated({})
-        if measurements is not None and "uncertainty" in toml.data:
+        if self.workbook and measurements is not None and "uncertainty" in toml.data:
             uncertainty, parameters, measurements = self.uncertainty(parameters, measurements)
         computable = not self.findings.found
         published = self.published()

@@ -156,7 +156,9 @@ def read_measurements(
         names = ["test" if name == called else name for name in names]
     names = [_not_here(table, n, name, elsewhere, findings) for n, name in enumerate(names)]
     if measured is None:
-        places = {"test": names.index("test")} if "test" in names else {}
+        if "test" not in names:
+            return None  # its rows may be called as the workbook says, which is not known
+        places = {"test": names.index("test")}
     else:
         optional = [*(f"u({name})" for name in columns), LEFT_OUT]
         places = match_columns(table, names, required, optional, findings)

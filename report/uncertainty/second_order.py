@@ -19,6 +19,7 @@ from ..engines.numpy import Program, evaluate
 from ..judge.chain import Chain
 from ..judge.sensitivity import Numbers
 from ..result.uncertain import ErrorSource
+from ..sheet import Column, Formula
 
 __all__ = ["SecondOrder", "root_of"]
 
@@ -30,6 +31,9 @@ COUNTS = 0.05
 """The terms count from this share of the variance of first order on."""
 LARGEST = 1 << 23
 """Sheets times cells; beyond, the terms are not looked at."""
+
+CORNERS = frozenset({"Abs", "Max", "Min", "Piecewise", "sign"})
+"""Functions with corners or jumps, as sympy calls them."""
 
 _FOURTH = {Shape.RECTANGULAR: 9 / 5, Shape.TRIANGULAR: 12 / 5, Shape.ARCSINE: 3 / 2}
 """The fourth moment over the square of the variance; 3 for a normal error, as JCGM 100 takes all errors."""
@@ -93,6 +97,14 @@ class SecondOrder:
         for node in chain.made.nodes:
             if node.median or any(slope.by in self.jumping for slope in node.slopes):
                 self.jumping.add(node.name)
+        sheet = values.sheet
+        sharp = {column.name for column in sheet.columns if _has_corner(column)}
+        self.cornered = {
+            c.name
+            for c in sheet.columns
+            if c.name in sharp or any(a.name in sharp for a in sheet.ancestors(c))
+        }
+        """What rests on a function that has a corner: near it, derivatives jump."""
         beside = _beside(values, program, sources, root)
         self._along = Numbers(chain, beside).go()
         moved = other_rows(beside, values)
@@ -112,6 +124,8 @@ class SecondOrder:
         """Why nothing is known of a column's cell."""
         if name in self.jumping:
             return "it rests on a median, which other rows take over when inputs move"
+        if name in self.cornered:
+            return "it has a corner here (Abs, Max, Min or cases), where derivatives jump"
         if name in self.torn:
             return f"{STEP:.2g} u from what was given its sums run over other rows"
         return "the sheet has no values so far from what was given"
@@ -129,7 +143,8 @@ class SecondOrder:
         -------
         float array (cells,)
             In the squares of the cells' SI units; 0 where it does not count. NaN where a cell has no value so
-            near to its own, has it of sums over other rows, or rests on a median.
+            near to its own, has it of sums over other rows, or rests on a median; and where terms that count
+            come from a function with corners.
         """
         beside, first = self.by_source(self._along.at(cells)) @ self.root, first @ self.root
         up, down = beside[: len(self.sources)], beside[len(self.sources) :]
@@ -147,8 +162,16 @@ class SecondOrder:
             more = np.where(own + bent + turned > 0, bent + turned, bent)
             little = np.maximum(bent, np.abs(more)) <= COUNTS * own
             unknown = np.array([name in self.jumping | self.torn for name, _ in cells], dtype=bool)
-            found: Array = np.where(unknown, np.nan, np.where(little, 0.0, more))
+            sharp = np.array([name in self.cornered for name, _ in cells], dtype=bool) & ~little
+            found: Array = np.where(unknown | sharp, np.nan, np.where(little, 0.0, more))
         return found
+
+
+def _has_corner(column: Column) -> bool:
+    """Whether its formula has a function with a corner; one of which only a part is known has none."""
+    if not isinstance(column.rule, Formula) or column.mentioned is not None:
+        return False
+    return bool(column.rule.expression.find(lambda part: type(part).__name__ in CORNERS))
 
 
 def _beside(values: Values, program: Program, sources: Sequence[ErrorSource], root: Array) -> Values:

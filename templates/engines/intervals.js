@@ -4,9 +4,12 @@
 
 const ALL = [-Infinity, Infinity];
 
-const side = ([low, high]) => (low > 0 ? 1 : high < 0 ? -1 : 0);
-
 const span = (x) => (x.length ? x : [x, x]);
+
+function side(x) {
+  const [low, high] = span(x);
+  return low > 0 ? 1 : high < 0 ? -1 : 0;
+}
 
 function out(low, high, by = Number.EPSILON) {
   low -= Math.abs(low) * by + Number.MIN_VALUE;

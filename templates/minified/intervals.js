@@ -1,8 +1,8 @@
 const ALL=[-1/0,1/0];
 
-const side=([s,c])=>s>0?1:c<0?-1:0;
-
 const span=n=>n.length?n:[n,n];
+
+function side(n){const[s,t]=span(n);return s>0?1:t<0?-1:0}
 
 function out(u,N,b=Number.EPSILON){return(u-=Math.abs(u)*b+Number.MIN_VALUE)<=(N+=Math.abs(N)*b+Number.MIN_VALUE)?[u,N]:[-1/0,1/0]}
 
