@@ -203,6 +203,7 @@ def test_what_the_law_of_propagation_does_not_tell_is_drawn(
     assert own["above"] == pytest.approx(float(0.5 - half_of_a_product(1)), abs=0.007)
     assert own["guard"] == pytest.approx(1.6448536)  # U as it is told: by propagation
     assert (own["distribution"], own["decision"]) == ("samples", "no decision")
+    assert own["below"] == 0  # there is no lower limit
     words = told(capsys, "y", str(tmp_path))
     assert "the guard bands meet" not in words
     assert re.search(r"conformance probability \d\d\.\d %, by 20000 draws: ", words)

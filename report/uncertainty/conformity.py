@@ -30,6 +30,8 @@ def beyond(z: float, shape: Shape, dof: float, law: Law | None = None) -> float:
     >>> beyond(math.sqrt(3) / 2, Shape.RECTANGULAR, math.inf), round(beyond(1.4, Shape.NORMAL, math.inf), 4)
     (0.25, 0.0808)
     """
+    if math.isinf(z):
+        return 0.0 if z > 0 else 1.0  # beyond no limit lies nothing, whatever draws leave open
     if law is not None:
         return law.above(z)
     if shape in SHARES:
