@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .archive.crate import added
-from .files.manifest import read_manifest
+from .files.manifest import manifest_of
 from .inputs.folders import INPUTS, told
 from .machine.background import Background, Later
 from .machine.provenance import processor, sources
 from .machine.staging import put, staged
 from .machine.timing import timed
-from .messages.errors import LoopsheetError, UsageError, close, diagnose, listing
+from .messages.errors import UsageError, close, diagnose, listing
 from .stages import Step, book, refereed_values, refuse_too_many_rows, silent
 from .study import Recipe, Study
 from .views import FORMATS, ON_REQUEST
@@ -171,11 +171,8 @@ def _names(stage: Path) -> list[str]:
 
 def _begun(title: str, study: Study, out: Path) -> str:
     said = f"building '{title}' from {told(study.folder)} into {out}"
-    try:
-        before = read_manifest(out).title
-    except LoopsheetError:  # there is none, or it is damaged: `verify` tells of that
-        return said
-    return said if before == title else f"{said}, in place of '{before}'"
+    before = manifest_of(out)  # none, or damaged: `verify` tells of that
+    return f"{said}, in place of '{before.title}'" if before and before.title != title else said
 
 
 def _made(

@@ -16,7 +16,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -281,6 +281,11 @@ def _name(cell: Expr) -> str:
     return str(cell.base.label.name if isinstance(cell, Indexed) else cell)
 
 
+def _named(column: Column) -> set[str]:
+    """What the rule of a column names, itself too if it is a root."""
+    return {_name(cell) for one in column.expressions for cell in one.atoms(Symbol, Indexed)}
+
+
 class _Body(dict[str, Any]):
     """The namespace of a method while it is declared: every name that is assigned becomes a cell."""
 
@@ -296,12 +301,23 @@ class _Body(dict[str, Any]):
 
     @property
     def whole(self) -> tuple[Column, ...]:
-        """All columns: sums leave out rows in which something was not measured, all of them the same."""
+        """All columns: the sums that one result rests on leave out the same rows.
+
+        Those are rows in which something was not measured, or has no value that one of these sums, or what is
+        computed from them, asks for; what rests on a sum itself cannot be asked.
+        """
         every = tuple(self.columns.values())
-        measured = tuple(c for c in every if isinstance(c.rule, Given) and c.axis)
-        return tuple(
-            replace(c, alongside=measured) if any(e.has(Sum) for e in c.expressions) else c for c in every
-        )
+        below: dict[str, set[str]] = {}
+        for c in every:
+            below[c.name] = {c.name}.union(*(below.get(name, ()) for name in _named(c)))
+        sums = {c.name for c in every if any(e.has(Sum) for e in c.expressions)}
+        rows = [c for c in every if c.axis and not sums & below[c.name]]
+
+        def asked(total: Column) -> Iterator[Column]:
+            together = set[str]().union(*(names for names in below.values() if total.name in names))
+            return (c for c in rows if isinstance(c.rule, Given) or c.name in together)
+
+        return tuple(replace(c, alongside=tuple(asked(c))) if c.name in sums else c for c in every)
 
     def column(self, name: str) -> Column:
         """What was declared under a name."""
@@ -436,13 +452,7 @@ def _workbook(name: str, body: _Body, title: str, source: str, headline: Sequenc
             )
     if not equations:
         raise SheetError(f"{name} computes nothing: it has no let(...) and no root(...)", name)
-    used = {
-        _name(cell)
-        for c in columns
-        for one in c.expressions
-        for cell in one.atoms(Symbol, Indexed)
-        if _name(cell) != c.name
-    }
+    used = set[str]().union(*(_named(c) - {c.name} for c in columns))
     last = [c.name for c in columns if c.axis is None and c.equation and c.name not in used]
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
     columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))

@@ -387,3 +387,47 @@ def test_the_example_of_the_readme(tmp_path: Path) -> None:
     assert not report.faults
     assert report.values.scalar("g") == pytest.approx(9.81, abs=0.02)
     assert math.isfinite(report.uncertain().u["g"][0])
+
+
+LOGS = """\
+from sympy import log
+from loopsheet import Method, given, let, mean, measured, total
+class Logs(Method):
+    "A power law on logarithmic scales."
+    x = measured("m", "x")
+    y = measured("m", "y")
+    x_0 = given("m", "one metre", exact=True)
+    lx = let(log(x / x_0), "its logarithm")
+    ly = let(log(y / x_0), "its logarithm")
+    dx = let(lx - mean(lx), "from the mean on")
+    slope = let(total(dx * ly) / total(dx**2), "exponent")
+    level = let(mean(ly) - slope * mean(lx), "logarithm of the coefficient")
+    mean_x = let(mean(x), "mean of x")
+"""
+
+
+def test_sums_of_one_result_run_over_the_same_rows(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A row that has no logarithm counts in none of them, as if it were left out; else x is as it was."""
+    rows = [f"{n},{x},{y}" for n, (x, y) in enumerate([(1, 2), (2, 4.1), (-3, 6), (4, 7.9), (5, 10.2)], 1)]
+    found = {}
+    for name, more in (("failing", ("", "", "")), ("aside", (",left out", ",", ",odd"))):
+        at = tmp_path / name
+        at.mkdir()
+        (at / "workbook.py").write_text(LOGS, encoding="utf-8")
+        (at / "report.toml").write_text(
+            'workbook = "workbook.py"\n[parameters]\nx_0 = "1 m"\n[measurements]\nfile = "rows.csv"\n',
+            encoding="utf-8",
+        )
+        table = ["reading,x [m],y [m]" + more[0], *(row + more[2 if row[0] == "3" else 1] for row in rows)]
+        (at / "rows.csv").write_text("\n".join(table), encoding="utf-8")
+        report = Study(at).computed
+        cells = {each: report.values.cell(each).value for each in ("slope", "level", "mean_x")}
+        spread = Spread(report.inputs, report.values)
+        found[name] = cells, [float(spread.u(each)[0]) for each in ("slope", "level")]
+    failing, aside = found["failing"], found["aside"]
+    assert failing[1] == pytest.approx(aside[1], rel=1e-14)
+    assert failing[0] == {**aside[0], "mean_x": pytest.approx(1.8)}
+    told = [check.message for check in Study(tmp_path / "failing").computed.oddities if not check.passed]
+    assert told[-1] == "level, dx and slope are over 4 of 5 readings"

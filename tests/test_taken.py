@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from two_reports import forged
 
 from loopsheet.report.cli import main
 from loopsheet.report.inputs.inputs import load
@@ -216,7 +217,7 @@ def changed(at: Path, **cell: Any) -> None:
     file = at / "ball/out/values.json"
     content = json.loads(file.read_text(encoding="utf-8"))
     content["cells"]["m"] |= cell
-    file.write_text(json.dumps(content), encoding="utf-8")
+    forged(file, content)
 
 
 @pytest.mark.parametrize(
@@ -245,11 +246,43 @@ def test_a_file_that_tells_nothing_of_influences_is_refused(apart: Path) -> None
     file = apart / "ball/out/values.json"
     content = json.loads(file.read_text(encoding="utf-8"))
     del content["influences"]
-    file.write_text(json.dumps(content), encoding="utf-8")
+    forged(file, content)
     with pytest.raises(InputError) as caught:
         load(apart, find_workbook)
     assert [found.code for found in caught.value.diagnostics] == ["LS437"] * 2  # of m and of V
     content["influences"] = {"inputs": "0", "sources": [], "cells": {"m": [1.0]}}
-    file.write_text(json.dumps(content), encoding="utf-8")
+    forged(file, content)
     code, told = refused(apart)
     assert (code, "its sources do not fit together" in told) == ("LS437", True)
+
+
+def test_a_file_is_taken_as_it_was_built_or_from_elsewhere(apart: Path) -> None:
+    """What lies beside its manifest has its fingerprint; without one it came from elsewhere."""
+    file = apart / "ball/out/values.json"
+    content = json.loads(file.read_text(encoding="utf-8"))
+    content["cells"]["m"]["value"] *= 1.001
+    file.write_text(json.dumps(content), encoding="utf-8")
+    code, told = refused(apart)
+    assert (code, "changed after it was built" in told) == ("LS437", True)
+    forged(file, content)
+    load(apart, find_workbook)
+
+
+def test_check_warns_of_outputs_that_are_older_than_their_inputs(
+    apart: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def warnings() -> list[str]:
+        main(["check", str(apart)])
+        return [line for line in capsys.readouterr().out.splitlines() if "is older than" in line]
+
+    build(apart)
+    assert warnings() == []
+    for at in (apart / "ball", apart):
+        with (at / "report.toml").open("a", encoding="utf-8") as file:
+            file.write("# another line\n")
+    taken, own = warnings()
+    assert "ball/out is older" in taken
+    assert "report.toml, and so are the numbers that are taken from it" in taken
+    assert f"{apart.as_posix()}/out is older than what it was built from, report.toml: build it" in own
+    build(apart / "ball")  # whose numbers are the same, and its manifest is not
+    assert len(warnings()) == 1

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import openpyxl
 import pytest
-from two_reports import CAMPAIGN, COLUMN, GIVEN, MASS, OWN, READ, build, folder, lab
+from two_reports import CAMPAIGN, COLUMN, GIVEN, MASS, OWN, READ, build, folder, forged, lab
 
 from loopsheet.report.cli import main
 from loopsheet.report.inputs.inputs import load
@@ -167,7 +167,7 @@ def test_a_file_tells_of_rows_by_the_sources_that_move_them(both: Path) -> None:
 def test_a_shipped_workbook_passes_on_its_scalars_alone(both: Path, issued: Path) -> None:
     file = (issued / "out/values.json").read_bytes()
     assert "rows" not in json.loads(file)["influences"]
-    (both / "lab/out/values.json").write_bytes(file)
+    forged(both / "lab/out/values.json", json.loads(file))
     assert refused(folder(both, CAMPAIGN, {"m": "8 g"}, "test\n1\n2\n", x("x_p"))) == "LS437"
 
 
@@ -236,7 +236,7 @@ def test_a_row_without_a_value_is_told(both: Path) -> None:
     column = content["cells"]["depth"]
     place = column["index"].index(2)
     column["value"][place], column["status"][place] = None, "#DOMAIN!"
-    file.write_text(json.dumps(content), encoding="utf-8")
+    forged(file, content)
     code, text = finding(both)
     assert code == "LS437"
     assert "has no value of depth[2]: #DOMAIN!" in text
@@ -259,7 +259,7 @@ def test_a_file_that_has_changed_is_told(both: Path, change: Any, code: str, wor
     file = both / "lab/out/values.json"
     content = json.loads(file.read_text(encoding="utf-8"))
     change(content)
-    file.write_text(json.dumps(content), encoding="utf-8")
+    forged(file, content)
     folder(both, CAMPAIGN, {"m": "8 g"}, "test\n1\n2\n3\n", COLUMN)
     found, text = finding(both)
     assert (found, word in text) == (code, True)

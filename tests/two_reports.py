@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import Any
 
 from loopsheet.report.cli import main
 
@@ -91,3 +93,9 @@ def lab(at: Path, read: dict[int, str] = READ, parameters: dict[str, str] = GIVE
     """The laboratory's report, built."""
     rows = "".join(f"{label},{text}\n" for label, text in read.items())
     return build(folder(at / "lab", LAB, parameters, f"test,r [um]\n{rows}", {}, more))
+
+
+def forged(file: Path, content: dict[str, Any]) -> None:
+    """Write a values.json of which nobody can tell that it was changed: without its manifest."""
+    file.write_text(json.dumps(content), encoding="utf-8")
+    file.with_name("manifest.json").unlink(missing_ok=True)

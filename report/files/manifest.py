@@ -8,9 +8,9 @@ from typing import Annotated
 
 from msgspec import Meta, field
 
-from .form import Form, Schema, Text, read
+from .form import Form, Malformed, Schema, Text, load, read
 
-__all__ = ["NAME", "Manifest", "read_manifest"]
+__all__ = ["NAME", "Manifest", "manifest_of", "read_manifest"]
 
 NAME = "manifest.json"
 
@@ -68,3 +68,11 @@ def read_manifest(folder: Path) -> Manifest:
         There is none, or it is none of loopsheet's.
     """
     return read(folder / NAME, Manifest, "LS608")
+
+
+def manifest_of(folder: Path) -> Manifest | None:
+    """The manifest of an output folder; None if there is none that can be read."""
+    try:
+        return load(folder / NAME, Manifest)
+    except Malformed:
+        return None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import shlex
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from ..messages.errors import Location, UsageError, diagnose, listing
@@ -16,6 +16,7 @@ __all__ = [
     "WORD",
     "built_from",
     "called",
+    "changed",
     "is_report",
     "output",
     "report_folder",
@@ -144,11 +145,14 @@ def built_from(out: Path, inputs: Mapping[str, str]) -> Path:
 
 def holds(folder: Path, inputs: Mapping[str, str]) -> bool:
     """Whether a folder holds these inputs; no name in a manifest makes us read outside of it."""
+    return bool(inputs) and not any(changed(folder, inputs))
+
+
+def changed(folder: Path, inputs: Mapping[str, str]) -> Iterator[str]:
+    """The names of those inputs that a folder does not hold any more."""
     root = folder.resolve()
     for name, digest in inputs.items():
         file = (root / name).resolve()
-        if not file.is_relative_to(root) or not file.is_file():
-            return False
-        if hashlib.sha256(file.read_bytes()).hexdigest() != digest:
-            return False
-    return bool(inputs)
+        inside = file.is_relative_to(root) and file.is_file()
+        if not inside or hashlib.sha256(file.read_bytes()).hexdigest() != digest:
+            yield name

@@ -484,7 +484,8 @@ class _Reader:
         """Open the result of another report, once: what is wrong with it is one problem."""
         if name not in self.results:
             data = self.bytes_of(name, LARGEST_TABLE, at)
-            self.results[name] = None if data is None else open_result(data, name, at, self.findings)
+            file = self.folder / name
+            self.results[name] = None if data is None else open_result(data, file, name, at, self.findings)
         return self.results[name]
 
     def draws(self, name: str, of: Declared, at: Location) -> tuple[float, ...] | None:

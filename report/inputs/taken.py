@@ -11,6 +11,7 @@ it had where it was stated, and the sha256 of what that report was made from.
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -26,6 +27,8 @@ from .parameters import wrong_type
 from .unit_text import UnitError, parse_unit
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from ..files.form import Index
     from ..files.values import Influences, Result, Source
     from ..messages.errors import Findings
@@ -178,17 +181,26 @@ def read_taken(
     return Taken(file, cell, printed, errors, reader.correlations, reader.spare(spare, where))
 
 
-def open_result(data: bytes, name: str, at: Location, findings: Findings) -> Result | None:
-    """What a values.json holds; None, with a finding, if it is none."""
+def open_result(data: bytes, file: Path, name: str, at: Location, findings: Findings) -> Result | None:
+    """What a values.json holds; None, with a finding, if it is none, or not as it was built."""
     from ..files.form import Malformed, decoded
+    from ..files.manifest import manifest_of
     from ..files.values import Result
 
     try:
-        return decoded(data, Result)
+        found = decoded(data, Result)
     except Malformed as error:
         reason = f"is no values.json: {error}"
         findings.add("LS437", at, file=name, reason=reason, known="what 'build' writes")
         return None
+    # Without its manifest, nobody can tell: it came from elsewhere.
+    manifest = manifest_of(file.parent)
+    built = manifest.outputs.get(file.name) if manifest else None
+    if built not in (None, hashlib.sha256(data).hexdigest()):
+        reason = "was changed after it was built: the manifest beside it has another fingerprint"
+        findings.add("LS437", at, file=name, reason=reason, known="what 'build' writes")
+        return None
+    return found
 
 
 class _Reader:

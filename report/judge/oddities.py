@@ -161,10 +161,11 @@ class _Oddities:
         """Whether all sums, means and fits are over all rows."""
         found: dict[str, list[str]] = {}
         for name in self.first(self.values.counted):
-            cell = self.values.cell(name)
             for axis, rows in self.values.counted[name].items():
                 over = f"over {rows} of {self.values.layouts[axis].size} {axis}"
-                if cell.value is not None and not self.follows(cell, f"is {over}"):
+                cells = (cell for cell in self.values.cells(name) if cell.value is not None)
+                expected = [self.follows(cell, f"is {over}") for cell in cells]
+                if not all(expected):
                     found.setdefault(over, []).append(name)
         said = "; ".join(f"{_some(n)} {'is' if len(n) == 1 else 'are'} {over}" for over, n in found.items())
         if not said:

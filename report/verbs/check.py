@@ -36,6 +36,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Check everything and print it in the format that is asked for."""
     from ..inputs.folders import report_folder
+    from ..outdated import outdated
     from ..result.findings import checks
     from ..study import Study
 
@@ -43,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
         return _accept(options)
     with Progress(sys.stderr) as progress:
         report = Study(report_folder(options.folder), step=progress).report
-    found = checks(report)
+    found = (*checks(report), *outdated(report.inputs))
     if options.format == "text":
         _print(report, found)
     else:
