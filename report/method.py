@@ -21,7 +21,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from sympy import Expr, Float, Function, Indexed, Rational, Sum, Symbol, sympify
+from sympy import Expr, Float, Function, Indexed, Rational, Sum, Symbol, false, sympify, true
 from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
 
 from ..derivations.equation import Equation, Kind, Ledger
@@ -203,9 +203,15 @@ def root(
     if low.is_number and high.is_number and low >= high:
         raise SheetError(f"the root is sought between {low} and {high}: low is not below high")
     ends = {"low": low, "high": high, "start": (low + high) / 2 if start is None else sympify(start)}
-    column = {"display": display, "latex": latex, "positive": False}
+    none = f"no value between {low} and {high}, which do not count, satisfies the equation"
+    # Ends that hang on the row may change places.
+    upright = low < high
+    requires = (
+        () if upright in (true, false) else ((upright, f"{high} is not above {low}, where {meaning} ends"),)
+    )
+    column = {"display": display, "latex": latex, "positive": False, "requires": requires}
     sides = _exact(left), _exact(right)
-    return _Computed(meaning, unit, column, sides, label, because, {**ends, "steps": steps})
+    return _Computed(meaning, unit, column, sides, label, because, {**ends, "steps": steps, "none": none})
 
 
 def total(formula: Any) -> Expr:

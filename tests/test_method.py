@@ -431,3 +431,26 @@ def test_sums_of_one_result_run_over_the_same_rows(
     assert failing[0] == {**aside[0], "mean_x": pytest.approx(1.8)}
     told = [check.message for check in Study(tmp_path / "failing").computed.oddities if not check.passed]
     assert told[-1] == "level, dx and slope are over 4 of 5 readings"
+
+
+@pytest.mark.parametrize(
+    ("equation", "low", "code", "says"),
+    [
+        ("x**2, a", "1", "#NOROOT!", "no value between 1 and 4, which do not count, satisfies the equation"),
+        ("x**3 - 6*x**2 + 11*x, 6*a", "1", "#UNDECIDED!", "near x = 1 to "),
+        ("x**2, a", "5*a", "#DOMAIN!", "4 is not above 5*a, where x ends"),
+    ],
+)
+def test_a_root_at_an_end_is_none(tmp_path: Path, equation: str, low: str, code: str, says: str) -> None:
+    body = f"""
+    a = given("1", "a")
+    x = unknown()
+    x = root({equation}, "x", low={low}, high=4)
+"""
+    head = "from loopsheet import Method, given, root, unknown\nclass R(Method):\n    'A root.'\n"
+    (tmp_path / "workbook.py").write_text(head + body, encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[parameters]\na = "1.0"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    cell = Study(tmp_path).computed.values.cell("x")
+    assert (cell.value, cell.status.code) == (None, code)
+    assert says in cell.why

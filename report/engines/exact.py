@@ -92,7 +92,7 @@ class ExactValues:
 
 def _nearest(value: Any) -> float:
     """The nearest double, whatever precision the caller works with; of nothing, without a sign."""
-    found = value if isinstance(value, float) else to_float(value._mpf_, rnd=round_nearest)
+    found = value if isinstance(value, float | int) else to_float(value._mpf_, rnd=round_nearest)
     return float(found) + 0.0
 
 
