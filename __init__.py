@@ -2,7 +2,20 @@
 
 __version__ = "0.1.0"
 
-__all__ = ["Method", "count", "given", "let", "load", "mean", "measured", "plot", "root", "total", "unknown"]
+__all__ = [
+    "Method",
+    "count",
+    "fit",
+    "given",
+    "let",
+    "load",
+    "mean",
+    "measured",
+    "plot",
+    "root",
+    "total",
+    "unknown",
+]
 
 
 def __getattr__(name: str) -> object:

@@ -161,7 +161,7 @@ class Step:
     claim: Equation
     premises: tuple[Equation, ...]
     eliminate: tuple[Expr, ...]
-    """For each premise in turn, what it is solved for."""
+    """For each premise in turn, what it is solved for: ``X``, the column, of ``X[k] = ...`` for every k."""
     says: str
     multiplier: Expr | None = None
     """Where a premise is not solved: the last premise times this factor, nowhere zero, is the claim."""

@@ -125,10 +125,16 @@ def _rows_named(parts: Iterable[Any]) -> int:
 
 
 def _chosen(sizes: set[Any], statements: Sequence[Statement], least: int) -> dict[Any, int]:
-    """The smallest sizes that agree with all that is said of sizes alone; empty if none so small do."""
+    """The smallest sizes that agree with all that is said of sizes alone; empty if none so small do.
+
+    Where some do, they are as large as conditions of other statements ask for, too.
+    """
     ordered = sorted(sizes, key=str)
     said = [statement for statement in statements if statement.symbols and statement.symbols <= sizes]
+    every = {condition for statement in statements for condition in statement.conditions}
+    more = [condition for condition in every if condition.free_symbols and condition.free_symbols <= sizes]
     choices = product(range(max(_FEWEST, least), _MOST + 1), repeat=len(ordered))
+    agreed: list[dict[Any, int]] = []
     for counts in islice(sorted(choices, key=max), _CHOICES) if ordered else ():
         where = dict(zip(ordered, counts, strict=True))
         if all(
@@ -136,8 +142,10 @@ def _chosen(sizes: set[Any], statements: Sequence[Statement], least: int) -> dic
             and all(condition.subs(where) == true for condition in statement.conditions)
             for statement in said
         ):
-            return where
-    return {}
+            agreed.append(where)
+            if all(condition.subs(where) == true for condition in more):
+                return where
+    return agreed[0] if agreed else {}
 
 
 def _is_evaluable(parts: Iterable[Any]) -> bool:

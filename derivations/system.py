@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from sympy import Expr, Float, Indexed, Rel, true
+from sympy import Expr, Float, Indexed, IndexedBase, Rel, Symbol, true
 from sympy.core.function import AppliedUndef
 
 from .algebra import NOTHING, Solved, definite, settle, solve_for, vanishes
@@ -105,30 +105,35 @@ def prepare(step: Step, vocabulary: Vocabulary) -> System:
     """
     told = Wording(vocabulary).text
     _check_form(step, told)
-    functions = _functions(step, told)
+    functions, columns = _functions(step, told), _columns(step, told)
     pairs = [
         (premise, unknown)
         for premise, unknown in zip(step.premises, step.eliminate, strict=False)
-        if unknown not in functions
+        if unknown not in functions and unknown not in columns
     ]
+
+    def put(expression: Any) -> Any:
+        return _rows_put(expression.xreplace(functions), columns)
+
     unsolved = step.premises[len(step.eliminate) :]
     equations = (step.claim, *(premise for premise, _ in pairs), *unsolved)
-    given = [side.xreplace(functions) for equation in equations for side in equation.sides]
+    given = [put(side) for equation in equations for side in equation.sides]
     given += [condition for equation in (*equations, *step.premises) for condition in equation.conditions]
-    given += [unknown for unknown in step.eliminate if unknown not in functions]
+    given += [unknown for _, unknown in pairs]
     given += [step.multiplier] if step.multiplier else []
     _check_running(given, told)
     cells = Cells.of(given)
 
     def plain(expression: Any) -> Any:
-        return cells.plain(expression.xreplace(functions))
+        return cells.plain(put(expression))
 
     def ends(equation: Equation) -> tuple[Expr, Expr]:
         return plain(equation.sides[0]), plain(equation.sides[-1])
 
     def domain(equation: Equation) -> dict[Any, Any]:
         """Where an equation says something: what it states, and that the cells exist which it names."""
-        exist = cells.exist(side.xreplace(functions) for side in equation.sides)
+        every = any(equation is law for law, _ in columns.values())  # then it speaks of the rows there are
+        exist = () if every else cells.exist(map(put, equation.sides))
         return {plain(condition): condition for condition in (*equation.conditions, *exist)}
 
     conditions = tuple(domain(step.claim))
@@ -199,6 +204,38 @@ def _functions(step: Step, told: Told) -> dict[Expr, Expr]:
                 raise Refused(f"{premise.label} does not give {told(unknown)} in closed form")
             laws[unknown] = premise.sides[-1]
     return laws
+
+
+def _columns(step: Step, told: Told) -> dict[Expr, tuple[Equation, Symbol]]:
+    """Laws for columns, X[k] = ... of every row k, so that they may be put under a sum; with what k is."""
+    laws: dict[Expr, tuple[Equation, Symbol]] = {}
+    for premise, unknown in zip(step.premises, step.eliminate, strict=False):
+        if isinstance(unknown, IndexedBase):
+            cell, index = premise.sides[0], premise.sides[0].free_symbols & premise.sides[0].atoms(Symbol)
+            row = next((s for s in index if cell == unknown[s]), None)
+            if row is None or premise.sides[-1].has(unknown) or unknown in laws:
+                raise Refused(
+                    f"{premise.label} does not give every row of {told(unknown.label)} in closed form"
+                )
+            if any(condition.has(row) for condition in premise.conditions):
+                raise Refused(f"{premise.label} does not hold for every row of {told(unknown.label)}")
+            laws[unknown] = premise, row
+    return laws
+
+
+def _rows_put(expression: Any, columns: Mapping[Expr, tuple[Equation, Symbol]]) -> Any:
+    """An expression without the columns of which every row is known."""
+    for _ in columns:
+        rows = {cell for cell in expression.atoms(Indexed) if cell.base in columns}
+        if not rows:
+            return expression
+        laws = {cell: columns[cell.base] for cell in rows}
+        expression = expression.xreplace(
+            {cell: law.sides[-1].subs(index, cell.indices[0]) for cell, (law, index) in laws.items()}
+        )
+    if any(cell.base in columns for cell in expression.atoms(Indexed)):
+        raise Refused("columns are told by one another in a circle")
+    return expression
 
 
 def _check_running(expressions: list[Any], told: Told) -> None:

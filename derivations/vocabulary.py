@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from sympy import Expr, Indexed, IndexedBase, Symbol
 
-__all__ = ["NO_WORDS", "Quantity", "Vocabulary", "subscripted"]
+__all__ = ["NO_WORDS", "Quantity", "Vocabulary", "spelt", "subscripted"]
+
+_SMALL = "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa varkappa lambda mu nu"
+_SMALL += " xi pi varpi rho varrho sigma varsigma tau upsilon phi varphi chi psi omega"
+_CAPITAL = "Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
+_OTHER = "aleph beth gimel daleth ell eth hbar hslash mho wp"
+_LETTERS = frozenset(f"{_SMALL} {_CAPITAL} {_OTHER}".split())
+"""What LaTeX has a letter for."""
 
 
 def subscripted(name: str, subscript: str) -> str:
@@ -27,6 +34,23 @@ def subscripted(name: str, subscript: str) -> str:
         return name
     join = "_" if "_" not in name else "" if subscript.isdigit() else ","
     return f"{name}{join}{subscript}"
+
+
+def spelt(name: str) -> str:
+    r"""LaTeX of a name that nothing is said of: what follows the first ``_`` is a subscript.
+
+    >>> spelt("x_m"), spelt("alpha")
+    ('x_{m%s}', '\\alpha%s')
+    """
+    head, _, tail = name.partition("_")
+    return _word(head) + (f"_{{{_word(tail)}%s}}" if tail else "%s")
+
+
+def _word(text: str) -> str:
+    if len(text) == 1 or text.isdigit():
+        return text
+    plain = text.replace("_", r"\_")
+    return f"\\{text}" if text in _LETTERS else rf"\mathrm{{{plain}}}"
 
 
 @dataclass(frozen=True)

@@ -24,15 +24,16 @@ from typing import Any
 from sympy import Expr, Float, Function, Indexed, Rational, Sum, Symbol, false, sympify, true
 from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
 
-from ..derivations.equation import Equation, Kind, Ledger
+from ..derivations.equation import Derivation, Equation, Kind, Ledger
 from .cells.units import unit_of
 from .charts import BLUE, VERMILION, Chart, Series
 from .column import Axis, Column, Formula, Given, Root, SheetError
+from .fitted import DeclaredFit
 from .quantity import Bounds
 from .sheet import Sheet
-from .workbook import FigureSpec, Measured, Parameter, Workbook
+from .workbook import FigureSpec, Measured, Parameter, SquareSum, Workbook
 
-__all__ = ["Method", "count", "given", "let", "mean", "measured", "plot", "root", "total", "unknown"]
+__all__ = ["Method", "count", "fit", "given", "let", "mean", "measured", "plot", "root", "total", "unknown"]
 
 
 FUNCTIONS = (
@@ -68,8 +69,21 @@ class _Computed(_Declared):
 
 
 @dataclass(frozen=True)
-class _Unknown:
-    """What a root will be."""
+class _Unknown(_Declared):
+    """What a root or a fit will find."""
+
+    start: Expr | None = None
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """A model whose unknowns make a sum of squares least."""
+
+    observed: Any
+    model: Expr
+    u: Any
+    label: str
+    figures: bool
 
 
 def given(
@@ -164,9 +178,17 @@ def let(
     return _Computed(meaning, unit, column, (_exact(formula),), label, because)
 
 
-def unknown() -> Any:
-    """Announce what a root will be called, so that its equation can name it."""
-    return _Unknown()
+def unknown(meaning: str = "", unit: str = "", *, start: Any = None, latex: str = "") -> Any:
+    """Announce what a root or a parameter of a fit will be called, so that an equation can name it.
+
+    Parameters
+    ----------
+    meaning, unit, latex : str
+        Of a parameter, as for :func:`let`; a root says itself what it is.
+    start : float or Expr, optional
+        Where a fit begins that is not linear in its parameters.
+    """
+    return _Unknown(meaning, unit, {"latex": latex}, None if start is None else _exact(start))
 
 
 def root(
@@ -212,6 +234,31 @@ def root(
     column = {"display": display, "latex": latex, "positive": False, "requires": requires}
     sides = _exact(left), _exact(right)
     return _Computed(meaning, unit, column, sides, label, because, {**ends, "steps": steps, "none": none})
+
+
+def fit(observed: Any, model: Any, *, u: Any = None, label: str = "", figures: bool = True) -> Any:
+    """Declare a fit by least squares: it finds the unknowns that its model names.
+
+    Of ``line = fit(...)`` there are ``line.fitted`` and ``line.residual`` of each row, ``line.S``, the sum of
+    squares, ``line.s``, the scatter, and by scatter ``line.s_a``, the standard uncertainty of a parameter
+    ``a``, and ``line.r_a_b``, the correlation of two. Their `u` is propagated as that of everything else.
+
+    Parameters
+    ----------
+    observed : Expr
+        A column over the rows.
+    model : Expr
+        In names of the body and in those that are announced by :func:`unknown`. If it is linear in these,
+        nothing is iterated; else each needs a start.
+    u : Expr or ``"stated"``, optional
+        The standard uncertainties that rows are weighed by: a formula, or those that are stated of the
+        column. Without, all rows are alike.
+    label : str
+        The number of its equations, ``(H.13)``, which get letters.
+    figures : bool
+        Whether points and curve, and the residuals, are figures of the report.
+    """
+    return _Fit(observed, _exact(model), u, label, figures)
 
 
 def total(formula: Any) -> Expr:
@@ -275,7 +322,7 @@ def _exact(formula: Any) -> Expr:
             known = ", ".join(sorted(FUNCTIONS))
             raise SheetError(f"{part.func} is none of the functions that every engine has: {known}")
     typed = {}
-    for number in formula.atoms(Float):
+    for number in formula.atoms(Float) - {Float(0)}:
         own, turned = repr(float(number)), f"{1 / float(number):.12g}"
         if len(turned) + 4 < len(own) and math.isclose(1 / float(turned), float(number), rel_tol=1e-15):
             typed[number] = 1 / Rational(turned)
@@ -300,10 +347,13 @@ class _Body(dict[str, Any]):
         self.axis = Axis(rows, *(Symbol(name, integer=True, positive=True) for name in (index, size)))
         self.columns: dict[str, Column] = {}
         self.inputs: list[Measured | Parameter] = []
-        self.equations: list[Equation] = []
+        self.entries: list[Equation | Derivation] = []
         self.examples: dict[str, str] = {}
         self.figures: list[FigureSpec] = []
-        self.announced: list[str] = []
+        self.announced: dict[str, _Unknown] = {}
+        self.aside: list[str] = []
+        self.squares: list[SquareSum] = []
+        self.own = map("(L{})".format, itertools.count(1))
 
     @property
     def whole(self) -> tuple[Column, ...]:
@@ -335,8 +385,10 @@ class _Body(dict[str, Any]):
         if name in self.columns:
             raise SheetError(f"{name} is declared twice", name)
         if isinstance(value, _Unknown):
-            self.announced.append(name)
+            self.announced[name] = value
             value = Column(name, None, Given(), positive=False).symbol
+        if isinstance(value, _Fit):
+            value = self._fitted(name, value)
         if isinstance(value, _Declared):
             if name in (self.axis.index_name, self.axis.size_name):
                 word = "index" if name == self.axis.index_name else "size"
@@ -360,21 +412,52 @@ class _Body(dict[str, Any]):
         axis = self.axis if said.is_measured else None
         return Column(name, axis, rule, said.unit, said.meaning, **said.column)
 
+    def _number(self) -> str:
+        """The next number of an equation."""
+        every = Ledger(tuple(self.entries)).equations()
+        taken = dict.fromkeys(equation.number for equation in every if not equation.own)
+        numbers = map("({})".format, itertools.count(len(taken) + 1))
+        return next(number for number in numbers if number not in taken)
+
+    def _fitted(self, name: str, said: _Fit) -> DeclaredFit:
+        """The columns, equations and figures of a fit; what a name of the body stands for is told of it."""
+        if not isinstance(said.observed, Indexed):
+            raise SheetError(f"{name}: {said.observed} is no column over the rows: let(...) it be one", name)
+        sought = {
+            symbol: announced
+            for each, announced in self.announced.items()
+            if each not in self.columns and (symbol := Symbol(each, real=True)) in said.model.free_symbols
+        }
+        found = DeclaredFit(
+            name, self.axis, self.columns, said.observed, said.model, sought, said.u,
+            said.label or self._number(), self.own,
+        )  # fmt: skip
+        for column in found.columns:
+            if column.name in self.columns:
+                raise SheetError(f"{column.name} is declared twice: {name} has one of that name, too", name)
+            self.columns[column.name] = column
+        self.entries += found.entries
+        self.aside += found.aside
+        self.squares += found.squares
+        if said.figures:
+            self.figures += found.figures(len(self.figures) + 1)
+        return found
+
     def _computed(self, name: str, said: _Computed) -> Column:
         named = {symbol for side in said.sides for symbol in side.free_symbols}
         axis = self.axis if self.axis.index in named else None
         column = Column(name, axis, Given(), said.unit, said.meaning, **said.column)
         sides = said.sides if said.ends else (column.cell, *said.sides)
-        numbers = map("({})".format, itertools.count(len(self.equations) + 1))
-        label = said.label or next(each for each in numbers if each not in {e.label for e in self.equations})
         kind = Kind.ASSUMPTION if said.ends else Kind.DEFINITION
-        equation = Equation(label, sides, said.because, kind, said.meaning)
-        self.equations.append(equation)
+        equation = Equation(said.label or self._number(), sides, said.because, kind, said.meaning)
+        self.entries.append(equation)
         if said.ends:
             if column.symbol not in named:
                 raise SheetError(
                     f"the equation of {name} does not name it: write {name} = unknown() above", name
                 )
+            if self.announced.get(name) not in (None, _Unknown("", "", {"latex": ""})):
+                raise SheetError(f"{name} = unknown() is enough: root(...) says what {name} is", name)
             rule = Root(equation, equation, column.symbol, column.symbol, **said.ends)
             return replace(column, rule=rule)
         column = replace(column, rule=Formula(equation))
@@ -447,17 +530,17 @@ class Method(metaclass=_Declaring):
 
 
 def _workbook(name: str, body: _Body, title: str, source: str, headline: Sequence[str]) -> Workbook:
-    columns, equations = body.whole, tuple(body.equations)
+    columns, entries = body.whole, tuple(body.entries)
     for each in headline:
         if each not in body.columns:
             raise SheetError(f"the headline names {each}, which is not declared", each)
     for announced in body.announced:
         if announced not in body.columns:
             raise SheetError(
-                f"{announced} is announced as unknown, and no root is declared for it", announced
+                f"{announced} is announced as unknown, and neither a root nor a fit finds it", announced
             )
-    if not equations:
-        raise SheetError(f"{name} computes nothing: it has no let(...) and no root(...)", name)
+    if not entries:
+        raise SheetError(f"{name} computes nothing: it has no let(...), no root(...) and no fit(...)", name)
     used = set[str]().union(*(_named(c) - {c.name} for c in columns))
     last = [c.name for c in columns if c.axis is None and c.equation and c.name not in used]
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
@@ -468,12 +551,14 @@ def _workbook(name: str, body: _Body, title: str, source: str, headline: Sequenc
         name=re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower(),
         title=title,
         source=source,
-        ledger=lambda: Ledger(equations),
+        ledger=lambda: Ledger(entries),
         measured=columns_of,
         parameters=given_to,
         sheet=lambda names: Sheet(columns),
         headline=tuple(headline) or tuple(last),
         row=body.axis.row,
+        squares=tuple(body.squares),
+        aside=frozenset(body.aside),
         figures=tuple(body.figures),
         example=(head, *((str(place), *row) for place, row in enumerate(rows, start=1)))
         if columns_of

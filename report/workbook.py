@@ -186,6 +186,8 @@ class Workbook:
     row: str = "test"
     squares: tuple[SquareSum, ...] = ()
     """The sums of squares to be no larger and no smaller than chance makes them."""
+    aside: frozenset[str] = frozenset()
+    """What only leads to other cells: it is in no table, but in those that the workbook declares."""
     fits: tuple[str, ...] = ()
     tables: tuple[TableSpec, ...] = ()
     figures: tuple[FigureSpec, ...] = ()

@@ -15,7 +15,7 @@ from sympy import Abs, Symbol, pi, sin, sqrt
 
 import loopsheet
 import loopsheet.report.method
-from loopsheet import Method, count, given, let, mean, measured, root, total, unknown
+from loopsheet import Method, count, given, let, mean, measured, plot, root, total, unknown
 from loopsheet.report.cli import main
 from loopsheet.report.column import Root, SheetError
 from loopsheet.report.engines.numpy import evaluate
@@ -146,7 +146,7 @@ def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         ('c = let(sympy.erf(b / b), "x")', "erf is none of the functions that every engine has: Abs, "),
         ('c = let(sympy.I * a, "x")', "I*a is no formula of real numbers"),
         ('c = let(a > 1, "x")', "a > 1 is no formula of real numbers"),
-        ("q = unknown()", "q is announced as unknown, and no root is declared for it"),
+        ("q = unknown()", "q is announced as unknown, and neither a root nor a fit finds it"),
         ("q = 2 * a", "Colebrook computes nothing"),
         ('q = unknown(); q = root(q, 1, "x", low=3, high=1)', "between 3 and 1: low is not below high"),
     ],
@@ -169,10 +169,29 @@ def test_points_and_lines_are_declared(tmp_path: Path, monkeypatch: pytest.Monke
     assert main(["new", "line", "--workbook", "line"]) == 0
     report = Study(Path("line")).report
     fit, left = report.workbook.charts
-    assert [(s.x, s.y, s.style) for s in fit.series] == [("x", "y", "points"), ("x", "fitted", "line")]
-    assert [(s.y, s.style) for s in left.series] == [("residual", "points")]
+    assert [(s.x, s.y, s.style) for s in fit.series] == [("x", "y", "points"), ("x", "line_fitted", "line")]
+    assert [(s.y, s.style) for s in left.series] == [("line_residual", "points")]
     assert "lie outside" not in charts.draw(report, fit).legends[0].get_texts()[0].get_text()
     assert fit.whole
+
+
+def test_what_is_plotted() -> None:
+    class Cooling(Method):
+        """Cooling."""
+
+        t = measured("s", "time")
+        T = measured("K", "temperature")
+        T_mean = let(mean(T), "mean temperature")
+        later = let(T - T_mean, "temperature from the mean on")
+        plot(t, T, T_mean, later, caption="Cold.", log="x")
+
+    (chart,) = Cooling.workbook.charts
+    assert [(s.x, s.y, s.style) for s in chart.series] == [
+        ("t", "T", "points"),
+        ("t", "T_mean", "level"),
+        ("t", "later", "line"),
+    ]
+    assert (chart.log, Cooling.workbook.figures[0].caption) == ("x", "Cold.")
 
 
 @pytest.mark.parametrize(

@@ -54,7 +54,7 @@ def dimension_of_unit(text: str, exponents: Mapping[str, Expr] | None = None) ->
 class _Checker(Dimensions):
     """Finds the dimension of an expression; remembers which column it works for, for its messages."""
 
-    def __init__(self, sheet: Sheet, column: Column) -> None:
+    def __init__(self, sheet: Sheet | Mapping[str, Column], column: Column) -> None:
         super().__init__(NO_WORDS)  # the columns say what their cells are
         self.sheet, self.column = sheet, column
 
@@ -82,7 +82,7 @@ class _Checker(Dimensions):
         return own if rule.value == rule.unknown else PURE
 
 
-def exponents(sheet: Sheet, column: Column, index: Expr | None) -> dict[str, Expr]:
+def exponents(sheet: Sheet | Mapping[str, Column], column: Column, index: Expr | None) -> dict[str, Expr]:
     """What names in the exponent of a column's unit stand for: cells of the same row."""
     found: dict[str, Expr] = {}
     for name in re.findall(r"\^([A-Za-z_]\w*)", column.unit):
@@ -134,8 +134,14 @@ def check(sheet: Sheet) -> None:
                 checker.relation(limit.inside)
 
 
-def unit_of(sheet: Sheet, column: Column) -> str:
+def unit_of(sheet: Sheet | Mapping[str, Column], column: Column) -> str:
     """The SI unit that a column's formula gives, whatever it declares.
+
+    Parameters
+    ----------
+    sheet : Sheet or mapping of str to Column
+        The columns that the formula names.
+    column : Column
 
     Raises
     ------

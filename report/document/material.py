@@ -121,13 +121,13 @@ class Material:
         return tuple(numbered)
 
     def _default_specs(self) -> Iterable[TableSpec]:
-        sheet = self.report.sheet
-        given = tuple(c.name for c in sheet.columns if c.axis is None and isinstance(c.rule, Given))
-        scalars = tuple(c.name for c in sheet.columns if c.axis is None and c.name not in given)
+        shown = [c for c in self.report.sheet.columns if c.name not in self.report.workbook.aside]
+        given = tuple(c.name for c in shown if c.axis is None and isinstance(c.rule, Given))
+        scalars = tuple(c.name for c in shown if c.axis is None and c.name not in given)
         if given:
             yield TableSpec("given", "Parameters", given)
         for axis in self.tabulated:
-            columns = [c for c in sheet.columns if c.axis == axis]
+            columns = [c for c in shown if c.axis == axis]
             yield TableSpec(axis.name, f"Values of the {axis.name}", tuple(c.name for c in columns))
         if scalars:
             yield TableSpec("scalars", "Results", scalars)

@@ -5,20 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 
-from ...derivations.vocabulary import Vocabulary
+from ...derivations.vocabulary import Vocabulary, spelt
 from ..sheet import Column
 
 __all__ = ["Terms", "join", "latex_names", "name_latex", "with_index"]
 
 Terms = list[tuple[bool, str]]
 """LaTeX of the terms of a sum, each with whether it is subtracted."""
-
-_SMALL = "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa varkappa lambda mu nu"
-_SMALL += " xi pi varpi rho varrho sigma varsigma tau upsilon phi varphi chi psi omega"
-_CAPITAL = "Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
-_OTHER = "aleph beth gimel daleth ell eth hbar hslash mho wp"
-_LETTERS = frozenset(f"{_SMALL} {_CAPITAL} {_OTHER}".split())
-"""What LaTeX has a letter for."""
 
 
 def latex_names(vocabulary: Vocabulary, columns: Iterable[Column] = ()) -> dict[str, str]:
@@ -33,7 +26,7 @@ def latex_names(vocabulary: Vocabulary, columns: Iterable[Column] = ()) -> dict[
     """
     names = {name: quantity.latex for name, quantity in vocabulary.items()}
     for column in columns:
-        names[column.name] = column.latex or names.get(column.name) or _spelt(column.name)
+        names[column.name] = column.latex or names.get(column.name) or spelt(column.name)
     return names
 
 
@@ -54,20 +47,7 @@ def name_latex(name: str, names: Mapping[str, str] | None = None, index: str = "
     >>> name_latex("x_m", index="k"), name_latex("n_pairs"), name_latex("v", {"v": "v'%s"}, "2")
     ('x_{m_{k}}', 'n_{\\mathrm{pairs}}', "v'_{2}")
     """
-    return with_index(names[name] if names and name in names else _spelt(name), index)
-
-
-def _spelt(name: str) -> str:
-    """LaTeX of a name that nothing is said of: what follows the first ``_`` is a subscript."""
-    head, _, tail = name.partition("_")
-    return _word(head) + (f"_{{{_word(tail)}%s}}" if tail else "%s")
-
-
-def _word(text: str) -> str:
-    if len(text) == 1 or text.isdigit():
-        return text
-    plain = text.replace("_", r"\_")
-    return f"\\{text}" if text in _LETTERS else rf"\mathrm{{{plain}}}"
+    return with_index(names[name] if names and name in names else spelt(name), index)
 
 
 def with_index(template: str, index: str = "") -> str:

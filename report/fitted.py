@@ -1,0 +1,181 @@
+"""A fit in the body of a method: its columns, its figures, and what its name stands for."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from itertools import combinations
+from typing import Any
+
+from sympy import Expr, Indexed, Integer, Symbol
+
+from ..derivations.least_squares import FitQuantity, LeastSquares
+from ..derivations.vocabulary import spelt
+from .cells.units import unit_of
+from .charts import VERMILION, Chart, Series
+from .column import Axis, Column, Formula, Given, Iterated, SheetError
+from .named import name_of
+from .quantity import Bounds
+from .workbook import FigureSpec, SquareSum
+
+__all__ = ["DeclaredFit"]
+
+STATED = "stated"
+NONE = (
+    "the steps from the stated start do not settle: begin nearer; or no parameters make the sum of squares "
+    "least, or these rows do not tell them apart"
+)
+
+
+class DeclaredFit:
+    """What the name of a fit stands for: an attribute is a cell, ``line.residual``.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    axis : Axis
+        Of its rows.
+    known : mapping of str to Column
+        What is declared before it.
+    observed, model : Expr
+    sought : mapping of Symbol to declaration
+        The parameters: `meaning`, `unit`, `start` and `column` of each.
+    u : Expr, "stated" or None
+        What rows are weighed by.
+    number : str
+        Of its equations.
+    own : iterator of str
+        Numbers of those that only lead there.
+
+    Attributes
+    ----------
+    columns : tuple of Column
+    entries : tuple of Equation or Derivation
+    aside : tuple of str
+        The columns that only lead there.
+    squares : tuple of SquareSum
+        The sum that tells whether the model describes the rows, if their uncertainties are known.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        axis: Axis,
+        known: Mapping[str, Column],
+        observed: Indexed,
+        model: Expr,
+        sought: Mapping[Symbol, Any],
+        u: Any,
+        number: str,
+        own: Iterator[str],
+    ) -> None:
+        self._axis, self._known, self._model, self._observed = axis, known, model, known[name_of(observed)]
+        if not sought:
+            raise SheetError(f"the model of {name} names no unknown: write a = unknown('...') above", name)
+        stated = []
+        if isinstance(u, str):
+            if u != STATED:
+                raise SheetError(f"{name}: u is a formula, or 'stated', not {u!r}", name)
+            stated = [_stated(self._observed)]
+            u = stated[0].cell
+        words = {each: said.meaning or str(each) for each, said in sought.items()}
+        self._fit = fit = LeastSquares(
+            name, observed, model, self._observed.meaning, words, u, axis.index, axis.size, number, own
+        )
+        lost = [str(each) for each, said in sought.items() if said.start is None and not fit.linear]
+        if lost:
+            raise SheetError(
+                f"the model of {name} is not linear: say where to begin, {lost[0]} = unknown(..., start=...)",
+                name,
+            )
+        self.entries, self.aside = tuple(fit.entries), tuple(part.name for part in fit.helpers)
+        self.squares = (SquareSum(fit.names["S"], axis.name, len(words)),) if stated else ()
+        made = {column.name: column for column in stated}
+        for each, said in sought.items():
+            made[str(each)] = Column(
+                str(each), None, Given(), said.unit or ("" if fit.linear else "1"), words[each],
+                positive=False, latex=said.column["latex"],
+            )  # fmt: skip
+        latex = {name: (made[name].latex or spelt(name)).replace("%s", "") for name in map(str, sought)}
+        letter = self._observed.latex or spelt(self._observed.name)
+        head = re.split("[_%]", letter, maxsplit=1)[0]
+        self._latex = {
+            fit.names["fitted"]: letter.replace(head, rf"\hat{{{head}}}", 1),
+            fit.names["residual"]: rf"\delta {letter}",
+            **{f"s_{name}": f"s({each})" for name, each in latex.items()},
+            **{f"r_{a}_{b}": f"r({latex[a]}, {latex[b]})" for a, b in combinations(latex, 2)},
+        }
+        parts = (*fit.results, *fit.helpers)
+        for part in _in_turn(parts, () if fit.linear else map(str, sought)):
+            column = made.get(part.name) or self._blank(part)
+            if part.step is not None:
+                start = sought[part.cell].start
+                rule: Any = Iterated(
+                    part.equation.at({part.equation.sides[0]: Integer(0)}), part.step, start, NONE
+                )
+                made[part.name] = replace(column, rule=rule)
+                continue
+            column = replace(column, rule=Formula(part.equation), requires=part.needs)
+            made[part.name] = replace(column, unit=column.unit or unit_of({**known, **made}, column))
+        self.columns = (*stated, *(made[part.name] for part in parts))
+        self._rows = made[fit.names["fitted"]], made[fit.names["residual"]]
+
+    def __getattr__(self, name: str) -> Expr:
+        """The cell of one of its quantities."""
+        names = {} if name.startswith("_") else self._fit.names
+        if name not in names:
+            raise AttributeError(f"{name} is nothing that a fit has: there are {', '.join(names)}")
+        return next(column.cell for column in self.columns if column.name == names[name])
+
+    def _blank(self, part: FitQuantity) -> Column:
+        """The column of a part, without what it is computed from."""
+        names, rows = self._fit.names, isinstance(part.cell, Indexed)
+        like = f"like {self._observed.name}" if part.name in (names["fitted"], names["residual"]) else ""
+        latex = self._latex.get(part.name, part.latex)
+        symbol = part.cell.base.label if rows else part.cell
+        more: dict[str, Any] = {"is_u": part.name.startswith("s_"), "spare": part.name == names["s"]}
+        axis, positive = self._axis if rows else None, bool(symbol.is_positive)
+        return Column(part.name, axis, Given(), "", part.title, latex, like, positive=positive, **more)
+
+    def figures(self, number: int) -> Iterator[FigureSpec]:
+        """Points and curve, and what is left over; over the column that the model names, if it is one."""
+        own, (fitted, residual) = self._observed, self._rows
+        named = sorted({name_of(cell) for cell in self._model.atoms(Indexed)})
+        over = self._known[named[0]] if len(named) == 1 else fitted
+
+        def points(up: Column) -> Series:
+            return Series(over.name, up.name, up.meaning, "points")
+
+        curve = Series(over.name, fitted.name, fitted.meaning, "line", VERMILION)
+        for n, up, more, with_it in (
+            (number, own, (curve,), ", with the fit"),
+            (number + 1, residual, (), ""),
+        ):
+            said = f"{up.meaning} over {over.meaning}{with_it}"
+            chart = Chart(said, over.meaning, up.meaning, (points(up), *more), whole=True)
+            yield FigureSpec(f"plot_{n}", str(n), f"{said[:1].upper()}{said[1:]}.", chart=chart)
+
+
+def _stated(of: Column) -> Column:
+    """The stated standard uncertainties of a column."""
+    rule, meaning = Given("uncertainty", Bounds(low=0), of.name), f"standard uncertainty of the {of.meaning}"
+    more: dict[str, Any] = {"display": f"like {of.name}", "positive": False, "exact": True}
+    return Column(f"u_{of.name}", of.axis, rule, of.unit, meaning, **more)
+
+
+def _in_turn(parts: Iterable[FitQuantity], first: Iterable[str]) -> Iterator[FitQuantity]:
+    """Parts in an order in which each follows from those before it, some of which are known."""
+    left = list(parts)
+    waiting = {part.name for part in left} - set(first)
+
+    def waits(part: FitQuantity) -> bool:
+        named = {str(symbol) for symbol in (part.step or part.equation.value).free_symbols}
+        return bool(waiting & named - {part.name})
+
+    while left:
+        ready = next(part for part in left if not waits(part))
+        yield ready
+        left.remove(ready)
+        waiting.discard(ready.name)

@@ -1,0 +1,52 @@
+"""Fits of methods in the page: after an edit they are what a folder with the edit gives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from shutil import copytree
+
+import driving
+import pytest
+from driving import Live
+
+from loopsheet.report.build import build
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.study import Study
+
+EDITS = {
+    "another correction": ("gum_h3", ("b", 4, "-0.170"), "4,23.003,-0.159", "4,23.003,-0.170"),
+    "another temperature": ("gum_h3", ("t", 1, "20.521"), "1,21.521,-0.171", "1,20.521,-0.171"),
+    "another volume": ("misra1a", ("y", 14, "80.50"), "14,760.0,81.78", "14,760.0,80.50"),
+    "another pressure": ("misra1a", ("x", 2, "104.9"), "2,114.9,14.73", "2,104.9,14.73"),
+}
+HELPERS = ("line_N1", "line_J2_1", "curve_N1", "curve_J1", "curve_step1")
+
+
+@pytest.mark.parametrize("name", EDITS)
+def test_the_edited_page_is_what_a_rebuild_gives(
+    open_page: Callable[..., Live], tmp_path: Path, name: str
+) -> None:
+    shipped, typed, old, new = EDITS[name]
+    folder = tmp_path / shipped
+    copytree(PAPER.parent / shipped, folder, ignore=lambda *_: ["out", "__pycache__"])
+    build(Study(folder), tmp_path / "out", ("html",))
+    live = open_page(tmp_path / "out" / "report.html")
+    issued = Study(folder).computed.values
+    live.type(*typed)
+    table = folder / "measurements.csv"
+    before = table.read_text(encoding="utf-8")
+    assert before.count(old) == 1
+    table.write_text(before.replace(old, new), encoding="utf-8")
+    again = Study(folder).computed.values
+    # What is left of a difference of larger numbers is as sure as these are.
+    of_differences = [cell for cell in live.cells() if cell.name.endswith("_residual")]
+    cells = [cell for cell in live.cells() if cell not in of_differences]
+    assert driving.differences(cells, again) == []
+    assert driving.differences(cells, issued) != []
+    for cell in of_differences:
+        row = again.row(again.sheet[cell.name], (int(cell.index),))
+        size = abs(again.value[cell.name.replace("residual", "fitted")][row])
+        assert float(cell.value) == pytest.approx(again.value[cell.name][row], rel=0, abs=1e-13 * size)
+    assert not {cell.name for cell in live.cells()} & set(HELPERS), "what only leads there is in no table"
+    assert set(HELPERS) & again.sheet.by_name.keys()

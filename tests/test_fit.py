@@ -1,0 +1,360 @@
+"""Fits in the body of a method: certified digits, proofs that fail if they are wrong, and what is told."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import re
+import types
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import nist_strd
+import numpy as np
+import pytest
+from nist_strd import Strd, digits
+from sympy import Expr, IndexedBase, Sum, Symbol, exp, sin, symbols
+
+import loopsheet.report.method
+from loopsheet import Method, fit, given, let, measured, unknown
+from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step
+from loopsheet.derivations.least_squares import LeastSquares
+from loopsheet.derivations.proof import check_step, prove
+from loopsheet.derivations.proved import ProofStatus
+from loopsheet.report.cells.values import CODES, Values
+from loopsheet.report.cli import main
+from loopsheet.report.engines import exact
+from loopsheet.report.engines.numpy import evaluate
+from loopsheet.report.fitting.model import Model
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.study import Study
+
+LINEAR, NONLINEAR = nist_strd.linear(), nist_strd.nonlinear()
+Array = nist_strd.Array
+
+# --- against certified values ----------------------------------------------------------------------------
+
+
+def method_of(strd: Strd, start: Array) -> Any:
+    """The set as a method: an author would write it in the body of a class."""
+
+    def fill(body: dict[str, Any]) -> None:
+        where: dict[Expr, Any] = {}
+        for name in (*strd.of, Symbol("y")):
+            body[str(name)] = measured("1", str(name))
+            where[name] = body[str(name)]
+        for parameter, first in zip(strd.parameters, start, strict=True):
+            body[str(parameter)] = unknown(str(parameter), start=float(first))
+            where[parameter] = body[str(parameter)]
+        body["f"] = fit(where[Symbol("y")], strd.value.xreplace(where))
+
+    return types.new_class("Set", (Method,), {}, fill)
+
+
+def computed(strd: Strd, start: Array, engine: Any = evaluate) -> Values:
+    sheet = method_of(strd, start).workbook.sheet(frozenset())
+    data = {**{str(name): column for name, column in strd.of.items()}, "y": strd.y}
+    values = engine(sheet, {"readings": range(1, len(strd.y) + 1)}, data)
+    found: Values = values if engine is evaluate else values.rounded(sheet)
+    return found
+
+
+def cells(values: Values, *names: Any) -> Array:
+    return np.array([values.scalar(str(name)) for name in names])
+
+
+IN_DOUBLES = {
+    "Norris": 11, "Pontius": 11, "NoInt1": 11, "NoInt2": 11, "Longley": 11, "Filip": 7, "Wampler1": 9,
+    "Wampler2": 11, "Wampler3": 9, "Wampler4": 8, "Wampler5": 6,
+}  # fmt: skip
+"""Digits of the worst parameter that doubles keep, of eleven that are looked at: Filip's polynomial of the
+tenth degree and Wampler's of the fifth are close to what rows do not tell apart."""
+
+
+@pytest.mark.parametrize("name", LINEAR)
+def test_linear_sets_come_out_as_certified(name: str) -> None:
+    strd = LINEAR[name]
+    (start,), scatter = strd.starts, [f"s_{each}" for each in strd.parameters]
+    values = computed(strd, start, exact.evaluate)
+    assert digits(cells(values, *strd.parameters), strd.certified) == 11
+    if strd.deviations.any():
+        assert digits(cells(values, *scatter), strd.deviations) == 11
+    else:  # the points lie on the polynomial, as doubles write them
+        assert cells(values, *scatter) == pytest.approx(0, abs=1e-15)
+    doubles = cells(computed(strd, start), *strd.parameters)
+    assert IN_DOUBLES[name] <= digits(doubles, strd.certified)
+    assert digits(doubles * (1 + 1e-5), strd.certified) < min(IN_DOUBLES.values())
+
+
+@pytest.mark.parametrize(
+    "name", ["BoxBOD", "Chwirut2", "Kirby2", "Misra1b", "Misra1d", "Roszman1", "Thurber"]
+)
+def test_nonlinear_sets_come_out_as_certified(name: str) -> None:
+    strd = NONLINEAR[name]
+    values = computed(strd, strd.starts[1])
+    scatter = [f"s_{each}" for each in strd.parameters]
+    assert digits(cells(values, *strd.parameters), strd.certified) > 10
+    assert digits(cells(values, *scatter), strd.deviations) > 10
+    assert digits(cells(values, "f_S"), np.array([strd.squares])) > 9.5
+
+
+@pytest.mark.parametrize("name", ["BoxBOD", "MGH10", "Rat42"])
+def test_from_a_start_that_leads_nowhere_there_is_no_number(name: str) -> None:
+    strd = NONLINEAR[name]
+    values = computed(strd, strd.starts[0])
+    for parameter in strd.parameters:
+        (cell,) = values.cells(str(parameter))
+        assert (CODES[cell.status], cell.value) == ("#NOROOT!", None)
+        assert "begin nearer" in cell.reason
+    assert not (values.status["f_fitted"] == 0).any()
+
+
+def test_weights_are_those_of_the_solver() -> None:
+    """Stated uncertainties and a formula of them, beside least squares by another way."""
+    rng = np.random.default_rng(7)
+    t, size = rng.uniform(0, 3, 14), rng.uniform(0.01, 0.2, 14)
+    y = 2 + 0.3 * t + 1.5 * t**2 + rng.normal(0, size)
+
+    def body_of(u: Any) -> Any:
+        def fill(body: dict[str, Any]) -> None:
+            body["t"], body["y"] = measured("s", "time"), measured("m", "length")
+            body["q"] = measured("m", "other size")
+            for name in "abc":
+                body[name] = unknown(name)
+            model = body["a"] + body["b"] * body["t"] + body["c"] * body["t"] ** 2
+            body["f"] = fit(body["y"], model, u=body["q"] / 2 if u is None else u)
+
+        return types.new_class("Weighed", (Method,), {}, fill)
+
+    symbol = dict(zip("abcty", symbols("a b c t y"), strict=True))
+    a, b, c, x, v = symbol.values()
+    found = Model(v - a - b * x - c * x**2, (a, b, c), (x, v)).fit({x: t, v: y}, {v: size}, [0, 0, 0])
+    for u in ("stated", None):
+        method = body_of(u)
+        sheet = method.workbook.sheet(frozenset())
+        data = {"t": t, "y": y, "q": 2 * size, **({"u_y": size} if u else {})}
+        values = evaluate(sheet, {"readings": range(1, 15)}, data)
+        assert cells(values, *"abc") == pytest.approx(found.parameters, rel=1e-12)
+        assert cells(values, "s_a", "s_b", "s_c") == pytest.approx(found.u_by_scatter, rel=1e-10)
+        assert values.scalar("f_S") == pytest.approx(found.fitted.chi2, rel=1e-12)
+        assert [sheet[name].unit for name in ("a", "b", "c", "f_s")] == ["m", "m*s^-1", "m*s^-2", "1"]
+        assert [square.name for square in method.workbook.squares] == (["f_S"] if u else [])
+
+
+def test_of_rows_without_a_number_nothing_is_told() -> None:
+    strd = LINEAR["Pontius"]
+    some, every = slice(3, None), slice(None)
+    y = strd.y.copy()
+    y[:3] = math.nan
+    values = [
+        computed(strd._replace(y=y[rows], of={name: x[rows] for name, x in strd.of.items()}), strd.starts[0])
+        for rows, y in ((every, y), (some, strd.y))
+    ]
+    for name in ("b0", "b1", "b2", "f_s", "s_b0", "s_b2", "r_b0_b1"):
+        assert values[0].scalar(name) == pytest.approx(values[1].scalar(name), rel=1e-12)
+
+
+# --- what an author writes -------------------------------------------------------------------------------
+
+
+class Decay(Method, rows="counts"):
+    """Decay in a background."""
+
+    t = measured("s", "time")
+    rate = measured("s^-1", "rate")
+    first = given("s^-1", "rate to begin with", positive=True)
+    A = unknown("initial rate", "s^-1", start=2 * first)
+    tau = unknown("life time", "s", start=3.0)
+    decay = fit(rate, A * exp(-t / tau), label="(7)")
+    twice = let(decay.s_tau / tau * 2, "relative uncertainty, k = 2")
+
+
+def test_a_fit_has_cells_equations_and_figures() -> None:
+    book = Decay.workbook
+    sheet = book.sheet(frozenset())
+    assert [sheet[name].unit for name in ("A", "tau", "s_tau", "decay_fitted", "decay_S", "twice")] == [
+        "s^-1", "s", "s", "s^-1", "s^-2", "1",
+    ]  # fmt: skip
+    labels = [equation.label for equation in book.ledger().equations()]
+    assert [label for label in labels if not label.startswith("(L")] == [
+        *("(7g)", "(7h)", "(7a)", "(7b)", "(7c)", "(7d)", "(7e)", "(7f)", "(7i)", "(2)"),
+    ]
+    assert book.headline == ("s_A", "r_A_tau", "decay_S", "twice")
+    assert book.aside >= {"decay_N1", "decay_J2", "decay_step1"}
+    over, left = book.charts
+    assert [(s.x, s.y, s.style) for s in over.series] == [
+        ("t", "rate", "points"),
+        ("t", "decay_fitted", "line"),
+    ]
+    assert [(s.x, s.y) for s in left.series] == [("t", "decay_residual")]
+
+
+HEAD = "    x = measured('m', 'place')\n    y = measured('V', 'voltage')\n    a = unknown('offset')\n"
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("f = fit(y, 2 * x)", "the model of f names no unknown: write a = unknown('...') above"),
+        ("b = unknown('more'); f = fit(y, a * x)", "b is announced as unknown, and neither a root nor a fit"),
+        (
+            "f = fit(y, sin(a) * x)",
+            "the model of f is not linear: say where to begin, a = unknown(..., start=...)",
+        ),
+        ("f = fit(2 * y, a)", "2*y[k] is no column over the rows: let(...) it be one"),
+        ("f = fit(y, a + x)", "f_z (L1): cannot add m and A^-1 kg m^2 s^-3"),
+        ("f = fit(y, a, u='known')", "u is a formula, or 'stated', not 'known'"),
+        ("a_1 = unknown('x', start=1); f = fit(y, a + sin(a_1 * x))", "the model of f is not linear"),
+        ("s_a = let(x, 'x'); f = fit(y, a)", "s_a is declared twice: f has one of that name, too"),
+        (
+            "f = fit(y, a); g = let(f.scatter, 'scatter')",
+            "scatter is nothing that a fit has: there are a, s_a, s, f",
+        ),
+        ("a = root(a, 1, 'x', low=0, high=2)", "a = unknown() is enough: root(...) says what a is"),
+        ("b = unknown('b', 's', start=1); f = fit(y, b * x)", "f_residual (1e): cannot add m s and A^-1"),
+    ],
+)
+def test_a_wrong_fit_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, said: str
+) -> None:
+    words = "from sympy import sin\nfrom loopsheet import Method, fit, let, measured, root, unknown\n"
+    code = f"{words}\n\nclass Wrong(Method):\n    'W.'\n\n{HEAD}    {line}\n"
+    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
+    (tmp_path / "m.csv").write_text("reading,x [m],y [V]\n1,1.0,2.0\n", encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    assert main(["check", str(tmp_path), "--no-cache"]) == 2
+    told = capsys.readouterr().err
+    assert said in told
+    assert re.search(r"workbook\.py:\d+", told)
+
+
+@pytest.mark.parametrize(
+    ("model", "rows", "told"),
+    [
+        ("a + b * x + c * (2 * x + 3)", 6, "these rows do not tell c from a and b"),
+        ("a + b * x", 1, "2 parameters take 2 rows or more"),
+        ("a + b * x", 2, "2 parameters leave nothing over of as many rows"),
+        ("a + b * x + c * x**2", 3, "3 parameters leave nothing over of as many rows"),
+        ("a * b * x", 6, "begin nearer"),
+    ],
+)
+def test_what_rows_do_not_tell_has_no_value(model: str, rows: int, told: str) -> None:
+    names = [name for name in "abc" if name in model]
+    lines = ["x, y = measured('1', 'x'), measured('1', 'y')"]
+    lines += [f"{name} = unknown('{name}', start=1)" for name in names]
+    body = "".join(f"    {line}\n" for line in (*lines, f"f = fit(y, {model})"))
+    scope = dict(vars(loopsheet.report.method))
+    exec(f"class Few(Method):\n{body}", scope)
+    method: Any = scope["Few"]
+    x = np.array([0.1, 0.4, 0.9, 1.3, 1.8, 2.5])[:rows]
+    sheet = method.workbook.sheet(frozenset())
+    values = evaluate(sheet, {"readings": range(1, rows + 1)}, {"x": x, "y": x**3})
+    why = {cell.reason for name in (*names, "f_s") for cell in values.cells(name) if cell.status}
+    assert any(told in each for each in why), why
+    assert all(math.isnan(values.scalar(f"s_{name}")) for name in names)
+
+
+# --- why it holds ----------------------------------------------------------------------------------------
+
+k, n = (Symbol(name, integer=True, positive=True) for name in "kn")
+x, y, u = (IndexedBase(Symbol(name, real=True))[k] for name in "xyu")
+
+
+def squares(model: Expr, parameters: tuple[Symbol, ...], weight: Expr | None = None) -> LeastSquares:
+    own = map("(L{})".format, itertools.count(1))
+    words = {each: str(each) for each in parameters}
+    return LeastSquares("f", y, model, "y", words, weight, k, n, "(1)", own)
+
+
+a, b, c = PARAMETERS = symbols("a b c", real=True)
+MODELS = {
+    "line": (a + b * x, (a, b), None),
+    "weighed line": (a + b * x, (a, b), u),
+    "through the origin": (a * x, (a,), None),
+    "parabola": (a + b * x + c * x**2, PARAMETERS, None),
+    "with an offset": (a * exp(x) + b * sin(x) + 3 * x, (a, b), None),
+    "growth": (a * (1 - exp(-b * x)), (a, b), None),
+    "weighed growth": (a * (1 - exp(-b * x)), (a, b), u),
+}
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_parameters_follow_from_the_normal_equations(name: str) -> None:
+    entries = tuple(squares(*MODELS[name]).entries)
+    found = prove(Ledger(entries))
+    assert all(proof.status.passes for proof in found)
+    proved = [proof.equation for proof in found if proof.status is ProofStatus.PROVED]
+    derived = [entry.claim for entry in entries if isinstance(entry, Derivation)]
+    assert proved == derived
+    assert len(derived) == len(MODELS[name][1]) * (2 if "growth" in name else 1)
+
+
+WRONG = {
+    "a sign": lambda value: -value,
+    "a share left out": lambda value: value.subs(Symbol("f_r1_2", real=True), 0),
+    "a share too much": lambda value: value + Symbol("f_r1_2", real=True),
+    "of another slope": lambda value: value + Symbol("f_d2", real=True) / 10**20,
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+@pytest.mark.parametrize("name", ["line", "parabola", "growth"])
+def test_a_wrong_parameter_is_refuted(name: str, wrong: str) -> None:
+    entries = [entry for entry in squares(*MODELS[name]).entries if isinstance(entry, Derivation)]
+    (entry,) = (e for e in entries if str(e.claim.members[0]) in ("a", "f_step1"))
+    step = entry.steps[-1]
+    left, right = step.claim.members
+    claim = replace(step.claim, members=(left, WRONG[wrong](right)))
+    assert check_step(replace(step, claim=claim)).status is ProofStatus.REFUTED
+
+
+@pytest.mark.parametrize("name", ["line", "weighed line", "growth"])
+def test_a_wrong_reduction_is_refuted(name: str) -> None:
+    """The step that takes a slope out, if one of its definitions said twice as much."""
+    entries = [entry for entry in squares(*MODELS[name]).entries if isinstance(entry, Derivation)]
+    (step,) = (step for each in entries for step in each.steps if " without " in step.claim.title)
+    assert check_step(step).status is ProofStatus.PROVED
+    found = dict[str, ProofStatus]()
+    for place, premise in enumerate(step.premises):
+        if premise.number:
+            left, right = premise.members
+            changed = replace(premise, members=(left, 2 * right))
+            premises = (*step.premises[:place], changed, *step.premises[place + 1 :])
+            found[str(left)] = check_step(replace(step, premises=premises)).status
+    # What is orthogonal stays so, however much is taken of the first slope from what was observed.
+    assert found.pop("f_d1") is ProofStatus.PROVED
+    assert set(found.values()) == {ProofStatus.REFUTED}
+    assert set(found) == {"f_J2_1[k]", "f_z1[k]", "f_r1_2", "f_N1"}
+
+
+def test_a_column_is_put_under_a_sum_only_by_its_law() -> None:
+    """X of X[k] = ... is known for every k; the cell X[k] for one."""
+    X, Y = (IndexedBase(Symbol(name, real=True)) for name in "XY")
+
+    def decided(law: Expr, right: Expr, unknown: Any = X, left: Expr = X[k]) -> Any:
+        premise = Equation("", (left, law), "", Kind.DEFINITION, "law")
+        claim = Equation("(1)", (Sum(X[k], (k, 1, n)), right), "")
+        return check_step(Step(claim, (premise,), (unknown,), ""))
+
+    double = 2 * Sum(Y[k], (k, 1, n))
+    assert decided(2 * Y[k], double).status is ProofStatus.PROVED
+    assert decided(3 * Y[k], double).status is ProofStatus.REFUTED
+    assert decided(2 * Y[k] + Y[1] / 10**30, double).status is ProofStatus.REFUTED
+    assert decided(2 * Y[k], double, X[k]).status is ProofStatus.UNDECIDED
+    assert decided(2 * X[k], double).why == "law does not give every row of X in closed form"
+    assert decided(2 * Y[1], double, left=X[1]).why == "law does not give every row of X in closed form"
+
+
+# --- shipped examples ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("name", "values"), [("gum_h3", 29), ("misra1a", 6)])
+def test_shipped_fits_come_out_as_published(name: str, values: int) -> None:
+    report = Study(PAPER.parent / name).proved
+    assert [comparison.verdict for comparison in report.comparisons] == ["same"] * values
+    assert all(proof.status.passes for proof in report.proofs)
+    code = (PAPER.parent / name / "workbook.py").read_text(encoding="utf-8")
+    declared = [line for line in code.splitlines() if re.match(r"    \w+ = ", line)]
+    assert len(declared) <= {"gum_h3": 10, "misra1a": 6}[name]
