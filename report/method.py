@@ -363,9 +363,11 @@ class _Body(dict[str, Any]):
         computed from them, asks for; what rests on a sum itself cannot be asked.
         """
         every = tuple(self.columns.values())
-        below: dict[str, set[str]] = {}
-        for c in every:
-            below[c.name] = {c.name}.union(*(below.get(name, ()) for name in _named(c)))
+        below = {c.name: {c.name, *_named(c)} & self.columns.keys() for c in every}
+        for _ in every:  # what is iterated rests on itself
+            below = {
+                name: set[str]().union(*(below[each] for each in names)) for name, names in below.items()
+            }
         sums = {c.name for c in every if any(e.has(Sum) for e in c.expressions)}
         rows = [c for c in every if c.axis and not sums & below[c.name]]
 
