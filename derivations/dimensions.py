@@ -15,6 +15,7 @@ from sympy import (
     Add,
     Basic,
     Expr,
+    Float,
     Indexed,
     Integer,
     Integral,
@@ -33,6 +34,7 @@ from sympy import (
     exp,
     expand,
     log,
+    nsimplify,
     sign,
     sstr,
 )
@@ -42,6 +44,7 @@ from sympy.logic.boolalg import BooleanFunction
 from .equation import Equation
 from .reductions import Median
 from .text import text
+from .unit_text import UnitError, coherent, parse_open
 from .vocabulary import Vocabulary
 
 __all__ = [
@@ -62,31 +65,6 @@ Dimension = Mapping[str, Expr]
 PURE: Dimension = {}
 """The dimension of a pure number."""
 
-_UNITS: dict[str, dict[str, int]] = {
-    "kg": {"kg": 1},
-    "m": {"m": 1},
-    "s": {"s": 1},
-    "K": {"K": 1},
-    "A": {"A": 1},
-    "mol": {"mol": 1},
-    "cd": {"cd": 1},
-    "N": {"kg": 1, "m": 1, "s": -2},
-    "J": {"kg": 1, "m": 2, "s": -2},
-    "Pa": {"kg": 1, "m": -1, "s": -2},
-    "W": {"kg": 1, "m": 2, "s": -3},
-    "Hz": {"s": -1},
-    "C": {"A": 1, "s": 1},
-    "V": {"kg": 1, "m": 2, "s": -3, "A": -1},
-    "ohm": {"kg": 1, "m": 2, "s": -3, "A": -2},
-    "S": {"kg": -1, "m": -2, "s": 3, "A": 2},
-    "F": {"kg": -1, "m": -2, "s": 4, "A": 2},
-    "Wb": {"kg": 1, "m": 2, "s": -2, "A": -1},
-    "T": {"kg": 1, "s": -2, "A": -1},
-    "H": {"kg": 1, "m": 2, "s": -2, "A": -2},
-}
-
-_WRITTEN = "write names, multiplied by * and divided by / without parentheses, as J/kg/K for J/(kg*K)"
-
 
 class DimensionError(ValueError):
     """An expression adds, compares or raises what cannot be, or a unit cannot be read."""
@@ -98,8 +76,8 @@ def dimension_of_unit(unit: str, exponents: Mapping[str, Expr] | None = None) ->
     Parameters
     ----------
     unit : str
-        Unit names of SI, multiplied by ``*`` and divided by ``/``, raised by ``^`` to a number, a fraction in
-        parentheses or a name.
+        Units of SI without prefix, in the grammar of :func:`~loopsheet.derivations.unit_text.parse_unit`; an
+        exponent may be a name, too.
     exponents : mapping of str to Expr
         What the names in exponents stand for.
 
@@ -113,36 +91,24 @@ def dimension_of_unit(unit: str, exponents: Mapping[str, Expr] | None = None) ->
     >>> dimension_of_unit("N*s/m") == dimension_of_unit("kg/s")
     True
     """
-    # A name, and a power of it: a number, a fraction in parentheses or a symbol's name.
-    factor = r"([^*/^()]+)(?:\^(\([^()]+\)|[^*/^()]+))?"
-    if not re.fullmatch(rf"{factor}([*/]{factor})*", unit):
-        raise DimensionError(f"{unit!r} is no unit: {_WRITTEN}")
-    total = PURE
-    for divided, named, raised in re.findall(rf"(^|[*/]){factor}", unit):
-        name = named.strip()
-        if name == "1":
-            continue
-        # `N m` would be read as one name.
-        if name not in _UNITS and all(part in _UNITS for part in name.split()):
-            raise DimensionError(f"{unit!r} leaves out a * or a / in {name!r}")
-        if name not in _UNITS:
-            raise DimensionError(f"unknown unit {name!r} in {unit!r}; known are {', '.join(_UNITS)}")
-        exponent = _exponent(raised.strip("() ") or "1", unit, exponents or {})
-        step = power({base: Integer(p) for base, p in _UNITS[name].items()}, exponent)
-        total = product(total, step if divided != "/" else power(step, Integer(-1)))
+    try:
+        found = parse_open(unit)
+    except UnitError as error:
+        hint = f"; {error.suggestion}" if error.suggestion else ""
+        kind = "unknown unit" if error.code == "LS421" else "no unit"
+        raise DimensionError(f"{unit!r} cannot be read: {kind} {error.text!r}{hint}") from None
+    if not found.is_si:
+        raise DimensionError(f"{unit!r} is no unit of SI without prefix, such as {coherent(found)}")
+    total: Dimension = {base: Rational(power) for base, power in found.dimension}
+    for base, name, times in found.open:
+        if name not in (exponents or {}):
+            raise DimensionError(f"unknown exponent {name!r} in the unit {unit!r}")
+        total = product(total, power({base: Rational(times)}, (exponents or {})[name]))
     return total
 
 
-def _exponent(raised: str, unit: str, names: Mapping[str, Expr]) -> Expr:
-    if re.fullmatch(r"-?\d+(/\d+)?", raised):
-        return Rational(raised)
-    if raised not in names:
-        raise DimensionError(f"unknown exponent {raised!r} in the unit {unit!r}")
-    return names[raised]
-
-
 def _tidy(exponent: Expr) -> Expr:
-    exponent = expand(exponent)
+    exponent = expand(nsimplify(exponent, rational=True) if exponent.has(Float) else exponent)
     return exponent if exponent.is_polynomial() else cancel(exponent)
 
 

@@ -524,6 +524,11 @@ class Column:
     mentioned: ClassVar[Mentioned | None] = None
     """Of a column of which only a part is known."""
 
+    @property
+    def written(self) -> str:
+        """The unit that it is declared in: what it is shown in, if that is a unit, else that of SI."""
+        return self.unit if self.display.startswith("like ") else self.display or self.unit
+
     @cached_property
     def symbol(self) -> Symbol:
         """The name as a sympy symbol, with its assumptions."""

@@ -25,6 +25,7 @@ from sympy import Expr, Float, Function, Indexed, Rational, Sum, Symbol, false, 
 from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
 
 from ..derivations.equation import Derivation, Equation, Kind, Ledger
+from ..derivations.unit_text import ParsedUnit, UnitError, coherent, parse_open
 from .cells.units import unit_of
 from .charts import BLUE, VERMILION, Chart, Series
 from .column import Axis, Column, Formula, Given, Root, SheetError
@@ -104,11 +105,12 @@ def given(
     Parameters
     ----------
     unit : str
-        Its SI unit, ``K^-1``; in report.toml any that converts to it may stand.
+        Its unit, ``K^-1`` or ``um``, in which it is shown; in report.toml any that converts to it may stand.
+        Formulas have it in SI, and an angle in radians.
     meaning : str
         What it is, for messages and captions.
     low, high : float, optional
-        The least and the largest value that is allowed, in SI.
+        The least and the largest value that is allowed, in that unit.
     positive : bool
         Whether it must be greater than zero.
     whole : bool
@@ -161,7 +163,7 @@ def let(
     meaning : str
         What it is.
     unit : str
-        Its SI unit, which the formula must have; without it, the one that the formula has.
+        Its unit, which the formula must have, and in which it is shown; without it, that of SI that it has.
     label : str
         The number of its equation, ``(H.2)``; its place among the equations, without.
     because : str
@@ -174,7 +176,7 @@ def let(
         How it is printed; as its name is, without.
     """
     shown = f"like {_name(like)}" if like is not None else display
-    column = {"display": shown, "latex": latex, "positive": False}
+    column = {"latex": latex, "positive": False} | ({"display": shown} if shown else {})
     return _Computed(meaning, unit, column, (_exact(formula),), label, because)
 
 
@@ -215,7 +217,7 @@ def root(
     meaning, unit, label, because, display, latex
         As for :func:`let`; the unit is that of the unknown.
     low, high : Expr
-        Between which it lies, themselves left out; they may hang on other names.
+        Between which it lies, themselves left out, as all formulas in SI; they may hang on other names.
     start : Expr, optional
         A first guess; the middle, without. It costs steps, never truth.
     steps : int
@@ -231,7 +233,8 @@ def root(
     requires = (
         () if upright in (true, false) else ((upright, f"{high} is not above {low}, where {meaning} ends"),)
     )
-    column = {"display": display, "latex": latex, "positive": False, "requires": requires}
+    column = {"latex": latex, "positive": False, "requires": requires}
+    column |= {"display": display} if display else {}
     sides = _exact(left), _exact(right)
     return _Computed(meaning, unit, column, sides, label, because, {**ends, "steps": steps, "none": none})
 
@@ -308,6 +311,21 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
 def _bounds(low: float | None, high: float | None, positive: bool, whole: bool = False) -> Bounds:
     above = positive and (low is None or low <= 0)
     return Bounds(0 if above else low, high, low_open=above, integer=whole)
+
+
+def _size(name: str, unit: str) -> ParsedUnit:
+    try:
+        return parse_open(unit)
+    except UnitError as error:
+        hint = f"; {error.suggestion}" if error.suggestion else ""
+        kind = "is unknown" if error.code == "LS421" else "cannot be read"
+        raise SheetError(f"{name}: the unit {error.text!r} {kind}{hint}", name) from None
+
+
+def _unit(size: ParsedUnit) -> dict[str, Any]:
+    """The unit of a column, in SI, and the one that it is shown in, if that is another."""
+    si = coherent(size)
+    return {"unit": si} if si == size.text else {"unit": si, "display": size.text}
 
 
 def _exact(formula: Any) -> Expr:
@@ -407,12 +425,13 @@ class _Body(dict[str, Any]):
 
     def _input(self, name: str, said: _Declared) -> Column:
         assert isinstance(said, _Input)
-        own = name, said.unit, said.meaning, said.bounds
+        size = _size(name, said.unit)
+        own = name, said.unit, said.meaning, said.bounds.within(size.scale)
         self.inputs.append(Measured(*own) if said.is_measured else Parameter(*own, said.default))
         self.examples |= {name: said.example} if said.example else {}
         rule = Given("measured" if said.is_measured else "parameter")
         axis = self.axis if said.is_measured else None
-        return Column(name, axis, rule, said.unit, said.meaning, **said.column)
+        return Column(name, axis, rule, meaning=said.meaning, **_unit(size), **said.column)
 
     def _number(self) -> str:
         """The next number of an equation."""
@@ -448,7 +467,8 @@ class _Body(dict[str, Any]):
     def _computed(self, name: str, said: _Computed) -> Column:
         named = {symbol for side in said.sides for symbol in side.free_symbols}
         axis = self.axis if self.axis.index in named else None
-        column = Column(name, axis, Given(), said.unit, said.meaning, **said.column)
+        unit = _unit(_size(name, said.unit)) if said.unit else {}
+        column = Column(name, axis, Given(), meaning=said.meaning, **{**unit, **said.column})
         sides = said.sides if said.ends else (column.cell, *said.sides)
         kind = Kind.ASSUMPTION if said.ends else Kind.DEFINITION
         equation = Equation(said.label or self._number(), sides, said.because, kind, said.meaning)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 
+from ..derivations.unit_text import parse_open
 from .distribution import Error, Shape
 
 __all__ = ["LARGEST", "SMALLEST", "Bounds", "Printed", "behind", "span"]
@@ -86,9 +87,22 @@ class Bounds:
         low = low if self.low is None else max(low, self.low)
         return low, (high if self.high is None else min(high, self.high))
 
+    def within(self, scale: Fraction) -> Bounds:
+        """The same in SI, of bounds in a unit of that size: what they allowed as written, they allow."""
+
+        def end(value: float | None, outwards: float) -> float | None:
+            if value is None:
+                return None
+            exact = Fraction(repr(value)) * scale
+            near = float(exact)
+            inside = (Fraction(repr(near)) - exact) * (1 if outwards < 0 else -1) > 0
+            return math.nextafter(near, outwards) if inside else near
+
+        return replace(self, low=end(self.low, -math.inf), high=end(self.high, math.inf))
+
     def said(self, unit: str) -> str:
-        """What is allowed, with the unit of its numbers behind it."""
-        return f"{self}{behind(unit)}"
+        """What is allowed, in a unit."""
+        return f"{self.over(parse_open(unit).scale)}{behind(unit)}"
 
     def __str__(self) -> str:
         """Say what is allowed, as the end of the sentence "it must be ..."."""

@@ -45,8 +45,11 @@ def refuse_what_is_misnamed(
 def refuse_what_is_missing(sheet: Sheet, inputs: Inputs) -> None:
     """A workbook need not say which parameters go together: what its sheet wants must be there."""
     place = Location((inputs.folder / "report.toml").as_posix())
+    declared = inputs.workbook.declared
     missing = [
-        c for c in sheet.columns if isinstance(c.rule, Given) and not inputs.printed(c.rule.u_of or c.name)
+        declared.get(c.name, c)
+        for c in sheet.columns
+        if isinstance(c.rule, Given) and not inputs.printed(c.rule.u_of or c.name)
     ]
     found = [
         diagnose("LS204", place, text=c.name, table="[parameters]", example=f'{c.name} = "1.0 {c.unit}"')

@@ -7,9 +7,9 @@ from dataclasses import replace
 from functools import cache, partial
 from typing import TYPE_CHECKING
 
+from ..derivations.unit_text import UnitError as NotAUnit
+from ..derivations.unit_text import parse_unit
 from .inputs.inputs import Inputs, load
-from .inputs.unit_text import UnitError as NotAUnit
-from .inputs.unit_text import parse_unit
 from .machine.provenance import versions
 from .machine.timing import timed
 from .messages.errors import LoopsheetError, UsageError, diagnose

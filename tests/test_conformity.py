@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from test_budget import FILES
 from test_monte_carlo import SUM
 
+from loopsheet.derivations.unit_text import parse_unit
 from loopsheet.report.cli import main
 from loopsheet.report.distribution import DIVISORS, Shape
 from loopsheet.report.inputs.inputs import Inputs, load
 from loopsheet.report.inputs.limits import Guard, Limits
 from loopsheet.report.inputs.number_text import read_printed
-from loopsheet.report.inputs.unit_text import parse_unit
 from loopsheet.report.messages.errors import Location
 from loopsheet.report.result.uncertain import Budget, Conformity, Decision
 from loopsheet.report.uncertainty.conformity import beyond, conformity

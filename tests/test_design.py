@@ -14,10 +14,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from loopsheet.derivations.unit_text import parse_unit
 from loopsheet.report.cli import main
 from loopsheet.report.inputs.planned import planned, read_numbers, read_u
 from loopsheet.report.inputs.stated import read_statement
-from loopsheet.report.inputs.unit_text import parse_unit
 from loopsheet.report.messages.errors import InputError
 from loopsheet.report.result.result import Report
 from loopsheet.report.stages import computing

@@ -37,7 +37,7 @@ PROVER = {
     for name in (
         *("algebra", "arranged", "cells", "dimensions", "equation", "errata", "evaluation", "facts"),
         *("few_rows", "grounds", "proof", "proved", "rebuilt", "reductions", "sampling", "search", "space"),
-        *("sums", "system", "text", "together", "vocabulary"),
+        *("sums", "system", "text", "together", "unit_text", "vocabulary"),
     )
 }
 ALGEBRA = {"sympy", "mpmath"}
@@ -58,6 +58,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "__main__": ({"report.cli"}, set()),
     "derivations": ({"derivations"}, ALGEBRA),
     **dict.fromkeys(PROVER, (PROVER, ALGEBRA)),
+    "derivations.unit_text": (set(), {"pint"}),
     # --- the rooms of report/, from the ground up: each may look into those that stand before it
     "report.messages": (rooms("messages"), set()),
     "report.files": (rooms("files", "messages"), {"msgspec"}),
@@ -65,29 +66,29 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.machine.provenance": (set(), {"numpy"}),
     "report.laws": (set(), {"numpy", "scipy"}),
     "report.distribution": (rooms("laws"), set()),
-    "report.quantity": (rooms("distribution"), set()),
+    "report.quantity": (rooms("distribution") | {"derivations.unit_text"}, set()),
     "report.content": (set(), ALGEBRA),
     "report.partly": (set(), set()),
     "report.column": (PROVER | rooms("content", "quantity"), ALGEBRA),
     "report.named": (PROVER | rooms("column", "messages", "quantity"), ALGEBRA),
     "report.sheet": (rooms("column", "named", "partly", "quantity"), ALGEBRA),
     "report.charts": (PROVER | rooms("sheet"), ALGEBRA),
-    "report.cells": (DECLARED - rooms("workbook"), ALGEBRA | {"numpy", "pint"}),
+    "report.cells": (DECLARED - rooms("workbook"), ALGEBRA | {"numpy"}),
     "report.workbook": (DECLARED, ALGEBRA),
     "report.inputs": (
         rooms(
             *("cells.address", "charts", "distribution", "files", "inputs", "laws", "messages", "quantity"),
             *("sheet", "workbook"),
-        ),
+        )
+        | {"derivations.unit_text"},
         {"msgspec"},
     ),
-    "report.inputs.unit_text": (rooms("messages"), {"pint"}),
     "report.plan": (DECLARED | rooms("content", "machine.kept", "plan"), ALGEBRA | {"msgspec"}),
     # what engines may ask to fit; what is fitted is printed by them
     "report.fitting.triangle": (set(), {"numpy"}),
     "report.fitting.least_squares": (rooms("fitting.triangle"), {"numpy"}),
     "report.fitting.feet": (rooms("fitting.triangle"), {"numpy"}),
-    "report.engines": (DECLARED | rooms("engines", "inputs.unit_text", "plan"), NUMERIC),
+    "report.engines": (DECLARED | rooms("engines", "plan"), NUMERIC),
     "report.engines.elementary": (set(), {"numpy"}),
     "report.engines.intervals": (rooms("engines.elementary"), {"numpy"}),
     "report.fitting": (
@@ -121,7 +122,6 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
             "archive.differences",
             "document",
             "files",
-            "inputs.unit_text",
             "machine.kept",
             "machine.programs",
             "machine.staging",

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from loopsheet.derivations.unit_text import parse_unit
 from loopsheet.report.inputs.inputs import Inputs, check_cells, load
 from loopsheet.report.inputs.number_text import read_printed
 from loopsheet.report.inputs.published import Pin
-from loopsheet.report.inputs.unit_text import parse_unit
 from loopsheet.report.messages.errors import InputError, UnknownWorkbook, diagnose
 from loopsheet.report.quantity import Bounds, Printed
 from loopsheet.report.workbook import Measured, Parameter, Workbook

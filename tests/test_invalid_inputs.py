@@ -8,11 +8,11 @@ import pytest
 from campaign_judging import Tally, compare
 from random_campaigns import SHEETS, Campaign, Node, digits_of, numpy_reads, printed_once
 
+from loopsheet.derivations.unit_text import parse_unit
 from loopsheet.report.cells.values import Status
 from loopsheet.report.engines import javascript
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.inputs.number_text import read_value
-from loopsheet.report.inputs.unit_text import parse_unit
 from loopsheet.report.messages.errors import Findings, Location
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 

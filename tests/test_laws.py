@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 from scipy import stats
 from test_monte_carlo import SUM
 
+from loopsheet.derivations.unit_text import parse_unit
 from loopsheet.report.cli import main
 from loopsheet.report.distribution import Shape
 from loopsheet.report.inputs.number_text import read_printed
 from loopsheet.report.inputs.stated import Of, StatementError, read_statement
-from loopsheet.report.inputs.unit_text import parse_unit
 from loopsheet.report.laws import Exponential, Law, TruncatedNormal
 from loopsheet.report.messages.errors import InputError
 from loopsheet.report.quantity import Bounds

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from loopsheet.derivations.unit_text import parse_unit
 from loopsheet.report.inputs.number_text import NumberError, read_number, read_printed
-from loopsheet.report.inputs.unit_text import parse_unit
 
 
 @pytest.mark.parametrize(

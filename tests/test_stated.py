@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from loopsheet.derivations.unit_text import parse_unit
 from loopsheet.report.distribution import Shape
 from loopsheet.report.inputs.inputs import Inputs, load
 from loopsheet.report.inputs.number_text import read_printed
 from loopsheet.report.inputs.stated import StatementError, read_statement
-from loopsheet.report.inputs.unit_text import parse_unit
 from loopsheet.report.messages.errors import InputError, render
 from loopsheet.report.which_workbook import find_workbook
 

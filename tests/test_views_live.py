@@ -19,13 +19,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from loopsheet.derivations.unit_text import parse_unit
 from loopsheet.report.document.material import Material
 from loopsheet.report.document.tree import Math
 from loopsheet.report.document.written import placed
 from loopsheet.report.engines import javascript
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.inputs.number_text import NumberError, read_printed, read_value
-from loopsheet.report.inputs.unit_text import parse_unit
 from loopsheet.report.messages.errors import Findings, Location
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.referee import print_as, prints_same

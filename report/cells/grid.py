@@ -38,6 +38,10 @@ STEPS = "steps"
 """The worksheet of the steps to a scalar root."""
 
 
+_READ = 15
+"""Digits of a number that every spreadsheet reads."""
+
+
 def letters(column: int) -> str:
     """The letters of a column that is counted from 0.
 
@@ -55,10 +59,17 @@ def letters(column: int) -> str:
 def factors(scale: Fraction) -> tuple[str, str]:
     """What turns a cell's number into SI, and SI into a cell's number, in whole numbers.
 
+    Spreadsheets read 15 digits of a number: one that has more is a quotient that is nearer than doubles are.
+
     >>> factors(Fraction(1, 1000000)), factors(Fraction(127, 5000)), factors(Fraction(1))
     (('/1000000', '*1000000'), ('*127/5000', '*5000/127'), ('', ''))
     """
-    above, below = scale.numerator, scale.denominator
+    power, digits = Fraction(10) ** (len(str(scale.numerator)) - len(str(scale.denominator))), _READ
+    near = scale
+    while max(len(str(number).rstrip("0")) for number in near.as_integer_ratio()) > _READ:
+        digits -= 1
+        near = (scale / power).limit_denominator(10**digits) * power
+    above, below = near.numerator, near.denominator
     up, down = (f"*{above}" if above > 1 else ""), (f"/{below}" if below > 1 else "")
     back = (f"*{below}" if below > 1 else "") + (f"/{above}" if above > 1 else "")
     return up + down, back

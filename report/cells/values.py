@@ -331,7 +331,7 @@ class Values:
         rule = column.rule
         if status is Status.INPUT:
             allowed = self.sheet.bounds[column.name]
-            told = "" if allowed == Bounds() else f"; it must be {allowed.said(column.unit)}"
+            told = "" if allowed == Bounds() else f"; it must be {allowed.said(column.written)}"
             return f"the datum is missing or invalid{told}"
         if isinstance(rule, Iterated) and status is Status.NOROOT:
             return f"{column.source} did not settle: {rule.none}"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from ...derivations.unit_text import is_pure
 from ..charts import Chart, Series
-from ..result.numbers import is_pure
 from ..result.result import Report
 from ..sheet import Axis, RepeatAxis
 from .material import Material

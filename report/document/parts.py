@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from ...derivations.unit_text import is_pure
 from ..cells.address import index_text
 from ..cells.values import Cell, Status
 from ..quantity import Printed
-from ..result.numbers import Numeral, is_pure
+from ..result.numbers import Numeral
 from ..result.result import Comparison
 from .names import Terms
 

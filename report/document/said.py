@@ -8,12 +8,13 @@ from typing import NamedTuple
 
 from ...derivations.equation import Derivation, Equation, Step
 from ...derivations.proved import IDENTITY, Proof
+from ...derivations.unit_text import is_pure
 from ..cells.address import index_text
 from ..messages.errors import suggest
 from ..result import verdict_words as words
 from ..result.agreement import Agreement
 from ..result.chi_square import RARE, SIGNIFICANT, freedom, head, largest, tail, tied
-from ..result.numbers import is_pure, probability
+from ..result.numbers import probability
 from ..result.statements import statements
 from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
 from ..workbook import FigureSpec

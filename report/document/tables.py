@@ -8,13 +8,14 @@ from functools import cached_property
 from itertools import groupby, islice
 from typing import Any, NamedTuple
 
+from ...derivations.unit_text import is_pure
 from ..cells.address import index_text
 from ..inputs.measurements import LeftOut
 from ..inputs.published import PublishedValue
 from ..quantity import span
 from ..result import verdict_words as words
 from ..result.conformity import conforming, risk
-from ..result.numbers import Numeral, decimals, is_pure, read, rounded, table_format
+from ..result.numbers import Numeral, decimals, read, rounded, table_format
 from ..result.result import Comparison
 from ..result.shares import SEEN, foremost
 from ..result.statements import of_column

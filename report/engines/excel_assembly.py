@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+from ...derivations.unit_text import UnitError, parse_unit
 from ..cells.grid import CHECKED, FIRST_ROW, SCALARS, STEPS, CellBlock, Place, as_issued, checked
 from ..cells.layout import Layout
-from ..inputs.unit_text import UnitError, parse_unit
 from ..plan.kept import as_data
 from ..plan.lowering import lowered
 from ..plan.nodes import RootNode

@@ -6,9 +6,9 @@ import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from ...derivations.unit_text import UnitError, parse_unit
 from ..messages.errors import listing, suggest
 from ..workbook import FigureSpec, Measured, Parameter, TableSpec
-from .unit_text import UnitError, parse_unit
 
 if TYPE_CHECKING:
     from ..sheet import Sheet

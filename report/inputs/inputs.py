@@ -8,6 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from ...derivations.unit_text import parse_unit
 from ..cells.address import parts
 from ..messages.errors import (
     Findings,
@@ -33,7 +34,6 @@ from .taken import EXAMPLE as TAKING
 from .taken import Taken, alone, open_result, read_taken
 from .tomlfile import TomlFile, read_toml
 from .uncertainty import Stated, read_bare, read_uncertainty
-from .unit_text import parse_unit
 
 if TYPE_CHECKING:
     from ..files.values import Result

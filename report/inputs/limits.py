@@ -18,6 +18,7 @@ from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
+from ...derivations.unit_text import UnitError, parse_open
 from ..cells.address import address, named
 from ..distribution import LEVEL
 from ..quantity import behind, span
@@ -25,7 +26,6 @@ from .expected import check_expected
 from .number_text import NumberError, read_number, read_printed
 from .published import convertible
 from .stated import LARGEST, StatementError
-from .unit_text import UnitError, parse_open
 
 if TYPE_CHECKING:
     from ..messages.errors import Findings, Location

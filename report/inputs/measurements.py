@@ -8,12 +8,12 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from ...derivations.unit_text import ParsedUnit, UnitError, examples, is_pure, parse_unit
 from ..distribution import Error
 from ..messages.errors import Findings
 from .csvtable import CsvRow, CsvTable, Field, match_columns, read_table
 from .number_text import NumberError, read_printed, read_value
 from .taken import Taken, alone
-from .unit_text import ParsedUnit, UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
     from ..messages.errors import Location
@@ -257,10 +257,15 @@ def read_head(
         return ColumnHead(column.name, None, 0) if column else None
     name = re.sub(r"\s", "", match["name"]) if match["name"].startswith("u(") else match["name"]
     column = columns.get(name.removeprefix("u(").removesuffix(")"))
-    if match["unit"] is None and column is not None:
+    if column is not None and (match["unit"] is None or (not match["unit"].strip() and _has_scale(column))):
         example = f"{name} [{column.unit}]"
         findings.add("LS304", table.at(field), text=name, unit=column.unit, example=example)
     return ColumnHead(name, match["unit"], match.start("unit"))
+
+
+def _has_scale(column: Declared) -> bool:
+    """Whether it is a pure number that is declared in a unit: one without it would be read as another."""
+    return not is_pure(column.unit) and not parse_unit(column.unit).dimension
 
 
 def _meant(text: str, columns: Mapping[str, Declared]) -> tuple[Declared, str] | None:

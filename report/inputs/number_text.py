@@ -7,14 +7,14 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Protocol
 
+from ...derivations.unit_text import UnitError, examples, parse_unit
 from ..distribution import Error
 from ..quantity import Printed
-from .unit_text import UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
+    from ...derivations.unit_text import ParsedUnit
     from ..messages.errors import Findings, Location
     from ..quantity import Bounds
-    from .unit_text import ParsedUnit
 
 __all__ = ["Declared", "NumberError", "read_number", "read_printed", "read_unit_of", "read_value"]
 

@@ -6,11 +6,11 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from ...derivations.unit_text import ParsedUnit, UnitError, examples, is_pure, parse_unit
 from ..messages.errors import Findings, Location
 from ..quantity import behind
 from .number_text import read_printed, read_value
 from .stated import SHAPES, Conventions, Of, StatementError, read_statement
-from .unit_text import ParsedUnit, UnitError, examples, parse_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -158,7 +158,7 @@ class _Reader:
             known = examples(self.expected)
             self.findings.add(error.code, at, text=error.text, suggestion=error.suggestion, known=known)
             return None
-        if size.dimension == self.expected.dimension:
+        if size.dimension == self.expected.dimension and (text or is_pure(self.parameter.unit)):
             return size
         name, wanted = self.parameter.name, self.parameter.unit
         if text:

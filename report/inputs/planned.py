@@ -9,11 +9,11 @@ from decimal import Decimal, localcontext
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from ...derivations.unit_text import parse_unit
 from ..messages.errors import Findings, Location, listing, suggest
 from .number_text import read_unit_of, read_value
 from .stated import Of, StatementError, read_statement
 from .taken import alone
-from .unit_text import parse_unit
 
 if TYPE_CHECKING:
     from ..quantity import Printed

@@ -7,12 +7,12 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from ...derivations.unit_text import ParsedUnit, UnitError, examples, parse_open, parse_unit
 from ..cells.address import index_text
 from ..messages.errors import Findings, Location, listing, suggest
 from .about import FORMS, About, read_about
 from .csvtable import CsvTable, Field, match_columns, read_table
 from .number_text import NumberError, read_number, read_printed
-from .unit_text import ParsedUnit, UnitError, examples, parse_open, parse_unit
 
 if TYPE_CHECKING:
     from ..quantity import Printed

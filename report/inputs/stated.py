@@ -17,16 +17,16 @@ from math import inf, isqrt
 from statistics import NormalDist
 from typing import TYPE_CHECKING
 
+from ...derivations.unit_text import UnitError, parse_unit
 from ..distribution import Error, Shape
 from ..quantity import Bounds, behind, span
 from .number_text import NumberError, read_number
-from .unit_text import UnitError, parse_unit
 
 if TYPE_CHECKING:
+    from ...derivations.unit_text import ParsedUnit
     from ..messages.errors import Location
     from ..quantity import Printed
     from .number_text import Declared
-    from .unit_text import ParsedUnit
 
     Draws = tuple[float, ...]
     Read = Callable[[str, Declared, Location], Draws | None]

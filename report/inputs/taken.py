@@ -18,23 +18,23 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from ...derivations.unit_text import UnitError, coherent, parse_unit
 from ..cells.address import address, index_text, named
 from ..distribution import Error, Shape
 from ..messages.errors import Location, listing, suggest
 from ..quantity import Printed
 from .number_text import read_unit_of
 from .parameters import wrong_type
-from .unit_text import UnitError, parse_unit
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ...derivations.unit_text import ParsedUnit
     from ..files.form import Index
     from ..files.values import Influences, Result, Source
     from ..messages.errors import Findings
     from .number_text import Declared
     from .tomlfile import TomlFile
-    from .unit_text import ParsedUnit
 
     Read = Callable[[str, Location], Result | None]
     Number = tuple[Printed, tuple["TakenError", ...]]
@@ -270,8 +270,8 @@ class _Reader:
             unit = parse_unit(self.unit)
         except UnitError:
             unit = None
-        if unit is None or unit.dimension != wanted.dimension or unit.scale != wanted.scale:
-            name, own = self.of.name, self.of.unit
+        if unit is None or unit.dimension != wanted.dimension or not unit.is_si:
+            name, own = self.of.name, coherent(wanted)
             self.findings.add("LS422", self.at, name=name, text=self.unit, unit=own, known=own)
 
     def allows(self, labels: Iterable[Index]) -> None:
@@ -280,7 +280,7 @@ class _Reader:
         for label in labels:
             value, name = self.value(label), address(self.of.name, () if label == self.index else label)
             if not self.of.bounds.allow(value):
-                words = {"text": repr(value), "unit": self.of.unit, "allowed": allowed}
+                words = {"text": repr(value), "unit": coherent(parse_unit(self.of.unit)), "allowed": allowed}
                 self.findings.add("LS406", self.at, name=name, **words)
 
     def tells(self, labels: Sequence[Index]) -> None:

@@ -24,12 +24,12 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from ...derivations.unit_text import parse_unit
 from ..messages.errors import listing, suggest
 from .number_text import NumberError, read_number
 from .parameters import wrong_type
 from .readings import correlations_of, read_paired
 from .stated import SCATTER, SHAPES, Conventions, Of, StatedErrors, StatementError, read_statement
-from .unit_text import parse_unit
 
 if TYPE_CHECKING:
     from ..distribution import Error, Shape

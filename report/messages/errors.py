@@ -259,7 +259,7 @@ CATALOGUE: dict[str, Entry] = {
     "LS424": Entry(
         "malformed unit",
         "not a unit: '{text}'",
-        "units with *, /, spaces, parentheses and whole powers up to 12, such as m/s^2 or m·s⁻²",
+        "units with *, /, spaces, parentheses and powers up to 12, such as m/s^2, m·s⁻² or N/m^(3/2)",
         "{suggestion}",
     ),
     "LS425": Entry(

@@ -19,7 +19,6 @@ __all__ = [
     "at",
     "chance",
     "decimals",
-    "is_pure",
     "last_place",
     "order",
     "read",
@@ -335,8 +334,3 @@ def table_format(figures: Iterable[Numeral | None]) -> str:
         minus = "-" if any(text.startswith("-") for text in powers) else ""
         power = f"e{minus}{max(len(text.lstrip('-')) for text in powers)}"
     return f"{sign}{whole}{point}{power}"
-
-
-def is_pure(unit: str) -> bool:
-    """Whether a unit says that a number is a pure one."""
-    return unit.strip() in {"", "1", "-", "–", "—", "−"}

@@ -15,13 +15,13 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ...derivations.unit_text import parse_unit
 from ..cells.marks import Marks
 from ..cells.values import Status, Values
 from ..engines.numpy import Program, evaluate
 from ..inputs.inputs import Inputs
 from ..inputs.planned import Said, planned
 from ..inputs.stated import read_statement
-from ..inputs.unit_text import parse_unit
 from ..result.design import BestChoice, Needed
 from ..sheet import Sheet
 from ..workbook import Design
@@ -114,7 +114,11 @@ class Planner:
             for row, value in enumerate(made.value[own.name].tolist()):
                 if made.status[own.name][row] != Status.OK or not own.bounds.allow(value):
                     at = f"{name} = {chosen[row]:.6g} {self.values.sheet[name].unit}"
-                    got = f"{value:.6g}" if math.isfinite(value) else "no number"
+                    got = (
+                        f"{value / float(parse_unit(own.unit).scale):.6g}"
+                        if math.isfinite(value)
+                        else "no number"
+                    )
                     allowed = own.bounds.said(own.unit)
                     raise NotPlanned(f"at {at} the curve gives {own.name} = {got}, which must be {allowed}")
         return {own.name: made.value[own.name] for own in self.inputs.workbook.measured}

@@ -175,8 +175,8 @@ def _planner(
 
 
 def _needed(planner: Planner, report: Report, planned: Inputs, options: argparse.Namespace) -> Needed | None:
+    from ...derivations.unit_text import UnitError, parse_unit
     from ..inputs.planned import known, read_numbers
-    from ..inputs.unit_text import UnitError, parse_unit
     from ..messages.errors import UsageError, diagnose, listing, suggest
     from ..quantity import Bounds
     from ..workbook import Measured

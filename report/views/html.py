@@ -10,13 +10,13 @@ from functools import cached_property
 from pathlib import Path
 
 from ...derivations.equation import Equation
+from ...derivations.unit_text import is_pure
 from ..cells.values import Cell
 from ..document.material import Material
 from ..document.parts import Item, why_address
 from ..document.tables import Tables
 from ..document.tree import Entry, Math, Number, Refer, Silent, TableColumn, Unit
 from ..machine.staging import put
-from ..result.numbers import is_pure
 from ..result.result import Report
 from . import live
 from .compact import short_markup, short_style

@@ -11,11 +11,11 @@ from functools import cached_property
 from pathlib import Path
 
 from ...derivations.equation import Equation
+from ...derivations.unit_text import is_pure
 from ..document.material import Material
 from ..document.parts import Item
 from ..document.tree import Display, Entry, Math, Number, Refer, Silent, Table, TableColumn, Unit
 from ..machine.staging import put
-from ..result.numbers import is_pure
 from ..result.result import Report
 from .escape import Markup, tex
 from .issued import Issued

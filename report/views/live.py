@@ -14,6 +14,7 @@ from dataclasses import dataclass, fields
 from fractions import Fraction
 from typing import Any
 
+from ...derivations.unit_text import parse_unit
 from ..cells.address import index_text
 from ..charts import Chart, Series
 from ..document.charted import PREFIXES, Words, unit_text
@@ -21,7 +22,6 @@ from ..document.material import Material
 from ..document.parts import slug
 from ..document.tree import Inlines, Math, Unit
 from ..document.written import placed
-from ..inputs.unit_text import parse_unit
 from ..machine.kept import kept
 from ..quantity import Bounds, Printed
 from ..result.chi_square import RARE
@@ -236,7 +236,7 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
 
 def _given(report: Report, column: Column) -> dict[str, Any]:
     """What an input may be, and how large its printed unit is."""
-    meaning = report.workbook.declared.get(column.name, column).meaning
+    declared = report.workbook.declared.get(column.name, column)
     printed, bounds = _printed(report, column.name), report.sheet.bounds[column.name]
     more: dict[str, Any] = {"truncated": True} if printed and printed.mode == "truncated" else {}
     inputs, own = report.inputs, f"u({column.name})"
@@ -250,7 +250,7 @@ def _given(report: Report, column: Column) -> dict[str, Any]:
     return more | {
         "scale": _fraction(printed.scale if printed else parse_unit(column.unit).scale),
         "bounds": limits(bounds),
-        "allowed": f"{bounds.said(column.unit)} ({meaning})",
+        "allowed": f"{bounds.said(declared.unit)} ({declared.meaning})",
     }
 
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 
-from ..result.numbers import RAISED, is_pure
+from ...derivations.unit_text import is_pure
+from ..result.numbers import RAISED
 from .escape import Markup, html, tex
 
 __all__ = ["unit_html", "unit_tex"]
 
 _TOKEN = re.compile(
     r"(?P<name>[^\W\d⁰¹²³⁴⁵⁶⁷⁸⁹]+(?:_\w+)?|[°%])"
-    r"|(?P<power>\s*(?:\^|\*\*)\s*\(?(?P<exponent>[+-]?\w+(?:/\d+)?)\)?|(?P<raised>[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+))"
+    r"|(?P<power>\s*(?:\^|\*\*)\s*\(?(?P<exponent>[+-]?\w+(?:[./]\d+)?)\)?|(?P<raised>[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+))"
     r"|(?P<times>\s*[*·⋅×.]\s*|\s+)|(?P<over>\s*[/∕]\s*)|(?P<other>.)"
 )
 _MICRO = re.compile(r"[uµμ](?=(?:m|g|s|N|Pa|J|A|V|K|in)$)")
@@ -61,7 +62,7 @@ def unit_tex(unit: str, names: Mapping[str, str] | None = None) -> Markup:
     parts = []
     for kind, text in _tokens(unit):
         if kind == "power":
-            printed = text if re.fullmatch(r"-?\d+(/\d+)?", text) else (names or {}).get(text, tex(text))
+            printed = text if re.fullmatch(r"-?\d+([./]\d+)?", text) else (names or {}).get(text, tex(text))
             parts.append(f"^{{{printed}}}")
         elif kind == "name" and text.isascii() and text.isalpha():
             parts.append(text)

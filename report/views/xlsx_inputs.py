@@ -46,7 +46,7 @@ class GivenCells:
         """What a cell must be, as a sentence without its full stop."""
         if block.name in self.counts:
             return f"{block.name} decides how many rows there are: change report.toml and build again"
-        return f"{block.name} must be {block.bounds.said(block.unit)}"
+        return f"{block.name} must be {block.bounds}{behind(block.unit)}"
 
     # --- cells
 
