@@ -4,6 +4,7 @@ import json
 from fractions import Fraction
 from pathlib import Path
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -13,6 +14,7 @@ from loopsheet.report.cells.grid import factors
 from loopsheet.report.cells.units import check
 from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.study import Study
 
@@ -164,3 +166,28 @@ def test_a_spreadsheet_can_read_the_size_of_a_unit(unit: str) -> None:
         assert len(part[1:].rstrip("0")) <= 15
         found = found * int(part[1:]) if part[0] == "*" else found / int(part[1:])
     assert abs(found / scale - 1) < Fraction(1, 10**25)
+
+
+def test_the_shipped_examples_are_what_an_independent_solution_says() -> None:
+    """Of every digit, where the publication prints some."""
+    kepler, pipe, spheres = (Study(PAPER.parent / name).report for name in ("kepler", "colebrook", "hertz"))
+    with mpmath.workdps(50):
+        m = mpmath.radians(5)
+        for row, e in enumerate(["0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9", "0.99"]):
+            found = mpmath.findroot(
+                lambda x, e=e: x - mpmath.mpf(e) * mpmath.sin(x) - m, (m, m + 1), "anderson"
+            )
+            assert kepler.values.value["E"][row] == float(found)
+
+        def residual(f: mpmath.mpf) -> mpmath.mpf:
+            inside = mpmath.mpf("1e-4") / mpmath.mpf("3.7") + mpmath.mpf("2.51") / (100_000 * mpmath.sqrt(f))
+            return 1 / mpmath.sqrt(f) + 2 * mpmath.log10(inside)
+
+        assert pipe.values.scalar("f") == float(mpmath.findroot(residual, (0.01, 0.03), "anderson"))
+        e_c, r_c, h = (
+            mpmath.mpf(2e10) / 2 / (1 - mpmath.mpf("0.09")),
+            mpmath.mpf("0.025"),
+            mpmath.mpf("0.004"),
+        )
+        assert spheres.values.scalar("sigma") == float(-2 * e_c / mpmath.pi * mpmath.sqrt(h / r_c))
+    assert (spheres.shown["K"].unit, spheres.sheet["K"].unit) == ("N/m^(3/2)", "N/m^(3/2)")

@@ -102,7 +102,7 @@ def test_as_issued(told: Told, tmp_path: Path, name: str) -> None:
         spread = Spread(report.inputs, report.values)
         assert found["errors"] == [source.name for source in spread.sources]
         for headline in report.workbook.headline:
-            if report.values.status[headline][0]:
+            if report.values.status[headline][0] or not spread.sources:  # all that was given is exact
                 continue
             (own,) = spread.contributions([(headline, 0)])
             mine = found["cells"][headline]["parts"][0]
