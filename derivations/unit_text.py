@@ -18,7 +18,17 @@ from typing import TYPE_CHECKING, Any, NoReturn
 if TYPE_CHECKING:
     pass
 
-__all__ = ["COMMON", "ParsedUnit", "UnitError", "coherent", "examples", "is_pure", "parse_open", "parse_unit"]
+__all__ = [
+    "COMMON",
+    "ParsedUnit",
+    "UnitError",
+    "coherent",
+    "examples",
+    "is_pure",
+    "misfit",
+    "parse_open",
+    "parse_unit",
+]
 
 _LONGEST = 60
 _HIGHEST = 12
@@ -46,17 +56,20 @@ class ParsedUnit:
         Powers of SI's base units, by name; empty for a pure number and for an angle.
     open : tuple of (str, str, int or Fraction)
         Powers that hang on a cell: of a base unit, the cell's name, and how often it counts.
+    zero : Fraction
+        Its zero in SI: 273.15 of degC, whose differences are those of K.
     """
 
     text: str
     scale: Fraction
     dimension: Dimension
     open: Open = ()
+    zero: Fraction = Fraction(0)
 
     @property
     def is_si(self) -> bool:
         """Whether it is a unit of SI without prefix."""
-        return self.scale == 1
+        return self.scale == 1 and not self.zero
 
 
 class UnitError(ValueError):
@@ -139,6 +152,13 @@ def _table() -> dict[str, tuple[Fraction, Dimension]]:
 COMMON = _table()
 """The commonest units: exact size in SI and dimension."""
 
+_CELSIUS = Fraction(1), (("K", 1),), (), Fraction(27315, 100)
+_FAHRENHEIT = Fraction(5, 9), (("K", 1),), (), Fraction(45967, 180)
+_SHIFTED: dict[str, tuple[Fraction, Dimension, Open, Fraction]] = {
+    **dict.fromkeys(("degC", "°C", "celsius"), _CELSIUS),
+    **dict.fromkeys(("degF", "°F", "fahrenheit"), _FAHRENHEIT),
+}
+"""Units with a zero of their own: they stand by themselves."""
 _BASE = {
     "meter": "m",
     "kilogram": "kg",
@@ -204,6 +224,8 @@ def parse_open(text: str) -> ParsedUnit:
         return ParsedUnit(text, Fraction(1), ())
     if len(text) > _LONGEST:
         raise UnitError("LS424", text, 0)
+    if stripped in _SHIFTED:
+        return ParsedUnit(text, *_SHIFTED[stripped])
     scale, powers = _Parser(stripped, text.index(stripped)).whole()
     fixed = {base: power for (base, cell), power in powers.items() if not cell}
     hanging = sorted((base, cell, power) for (base, cell), power in powers.items() if cell and power)
@@ -213,8 +235,8 @@ def parse_open(text: str) -> ParsedUnit:
 def coherent(unit: ParsedUnit) -> str:
     """The unit of SI without prefix that it is a multiple of; as it is written, if it is that itself.
 
-    >>> coherent(parse_unit("GPa")), coherent(parse_unit("mm^2/h")), coherent(parse_unit("deg"))
-    ('Pa', 'm^2*s^-1', '1')
+    >>> [coherent(parse_unit(text)) for text in ("GPa", "mm^2/h", "deg", "degC")]
+    ['Pa', 'm^2*s^-1', '1', 'K']
     """
     if unit.is_si and (unit.dimension or unit.open or is_pure(unit.text)):
         return unit.text.strip()
@@ -228,6 +250,23 @@ def _behind(power: Power) -> str:
     return "" if power == 1 else f"^{power}" if power == int(power) else f"^({power})"
 
 
+def misfit(unit: ParsedUnit, declared: ParsedUnit) -> str:
+    """Why a number in a unit is none of what is declared in another of its dimension; empty if it is one.
+
+    Nobody knows whether 20 degC of a quantity in K is a temperature or a difference: it is never guessed.
+
+    >>> misfit(parse_unit("K"), parse_unit("degC")), misfit(parse_unit("mm"), parse_unit("m"))
+    ('', '')
+    """
+    if unit.zero and not declared.zero:
+        return (
+            f"declared in {declared.text}: a difference is in K or delta_degC; declare a temperature in degC"
+        )
+    if declared.zero and "delta" in unit.text:
+        return f"this is a temperature, no difference: say {declared.text} or K"
+    return ""
+
+
 def is_pure(unit: str) -> bool:
     """Whether a unit says that a number is a pure one."""
     return unit.strip() in _PURE
@@ -236,6 +275,7 @@ def is_pure(unit: str) -> bool:
 def examples(unit: ParsedUnit) -> str:
     """Return units of the same dimension, for "allowed"."""
     names = [name for name, (_, dimension) in COMMON.items() if dimension == unit.dimension]
+    names += [name for name in _SHIFTED if unit.zero]
     plain = [name for name in names if name.isascii()]
     shown = [unit.text, *(name for name in plain if name != unit.text)][:5]
     if is_pure(unit.text):
@@ -367,7 +407,8 @@ class _Parser:
         except LookupError:
             self.refuse(position, name, "LS421", _suggestion(name))
         except ArithmeticError:
-            self.refuse(position, name, "LS423")
+            hint = "say K or delta_degC of a difference" if name in _SHIFTED else "convert the numbers first"
+            self.refuse(position, name, "LS423", hint)
 
 
 def _suggestion(name: str) -> str:
@@ -375,7 +416,7 @@ def _suggestion(name: str) -> str:
     import difflib  # only errors need it
 
     more = ("inch", "meter", "metre", "gram", "second", "newton", "pascal", "joule", "micron")
-    for known in ([*COMMON, *more], _registry()):
+    for known in ([*COMMON, *_SHIFTED, *more], _registry()):
         by_lower = {each.lower(): each for each in reversed([*known])}
         if near := difflib.get_close_matches(name.lower(), by_lower, n=1, cutoff=0.6):
             return f"did you mean '{by_lower[near[0]]}'?"

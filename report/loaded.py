@@ -104,14 +104,14 @@ class Loaded(Mapping[str, Estimates]):
         column, how = report.sheet[name], report.shown[name]
         cells = list(report.values.cells(name))
         shape = () if column.axis is None else (len(cells),)
-        printed = [float(number.value / number.scale) for number in report.inputs.printed(name)]
+        printed = [float(number.number) for number in report.inputs.printed(name)]
         known = report.uncertain().u.get(name)
         u = np.full(len(cells), np.nan) if known is None else known
         return Estimates(
             name,
             column.meaning,
             how.unit,
-            np.array(printed or report.values.value[name] / how.scale).reshape(shape),
+            np.array(printed or how.of(report.values.value[name])).reshape(shape),
             (u / how.scale).reshape(shape),
             tuple(index_text(cell.label) for cell in cells) if shape else (),
             tuple(CODES[status] for status in report.values.status[name].tolist()),

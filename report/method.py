@@ -426,12 +426,18 @@ class _Body(dict[str, Any]):
     def _input(self, name: str, said: _Declared) -> Column:
         assert isinstance(said, _Input)
         size = _size(name, said.unit)
-        own = name, said.unit, said.meaning, said.bounds.within(size.scale)
+        if size.zero and said.column["positive"]:
+            raise SheetError(f"{name}: above which zero? say low=..., in {said.unit}", name)
+        bounds = said.bounds.within(size.scale, size.zero)
+        own = name, said.unit, said.meaning, bounds
         self.inputs.append(Measured(*own) if said.is_measured else Parameter(*own, said.default))
         self.examples |= {name: said.example} if said.example else {}
+        positive = said.column["positive"] or bool(size.zero and bounds.low is not None and bounds.low > 0)
         rule = Given("measured" if said.is_measured else "parameter")
         axis = self.axis if said.is_measured else None
-        return Column(name, axis, rule, meaning=said.meaning, **_unit(size), **said.column)
+        return Column(
+            name, axis, rule, meaning=said.meaning, **_unit(size), **{**said.column, "positive": positive}
+        )
 
     def _number(self) -> str:
         """The next number of an equation."""

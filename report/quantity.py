@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from typing import Any
 
 from ..derivations.unit_text import parse_open
 from .distribution import Error, Shape
@@ -74,11 +75,11 @@ class Bounds:
             return False
         return not (high is not None and (value > high or (self.high_open and value == high)))
 
-    def over(self, scale: Fraction) -> Bounds:
-        """The same in another unit, `scale` of which are one in SI."""
+    def over(self, scale: Fraction, zero: Fraction = Fraction(0)) -> Bounds:
+        """The same in a unit of that size, whose zero is that in SI."""
 
         def end(value: float | None) -> float | None:
-            return None if value is None else float(Fraction(repr(value)) / scale)
+            return None if value is None else float((Fraction(repr(value)) - zero) / scale)
 
         return replace(self, low=end(self.low), high=end(self.high))
 
@@ -87,13 +88,13 @@ class Bounds:
         low = low if self.low is None else max(low, self.low)
         return low, (high if self.high is None else min(high, self.high))
 
-    def within(self, scale: Fraction) -> Bounds:
-        """The same in SI, of bounds in a unit of that size: what they allowed as written, they allow."""
+    def within(self, scale: Fraction, zero: Fraction = Fraction(0)) -> Bounds:
+        """The same in SI, of bounds in such a unit: what they allowed as written, they allow."""
 
         def end(value: float | None, outwards: float) -> float | None:
             if value is None:
                 return None
-            exact = Fraction(repr(value)) * scale
+            exact = Fraction(repr(value)) * scale + zero
             near = float(exact)
             inside = (Fraction(repr(near)) - exact) * (1 if outwards < 0 else -1) > 0
             return math.nextafter(near, outwards) if inside else near
@@ -102,7 +103,8 @@ class Bounds:
 
     def said(self, unit: str) -> str:
         """What is allowed, in a unit."""
-        return f"{self.over(parse_open(unit).scale)}{behind(unit)}"
+        size = parse_open(unit)
+        return f"{self.over(size.scale, size.zero)}{behind(unit)}"
 
     def __str__(self) -> str:
         """Say what is allowed, as the end of the sentence "it must be ..."."""
@@ -140,6 +142,8 @@ class Printed:
         a statement the digits say it.
     where : str
         ``file:line:column``, for messages and for tracing.
+    zero : Fraction
+        Zero of that unit in SI (273.15 for ``degC``).
     """
 
     text: str
@@ -149,6 +153,16 @@ class Printed:
     mode: str = "rounded"
     stated: tuple[Error, ...] | None = None
     where: str = ""
+    zero: Fraction = Fraction(0)
+
+    def of(self, value: Any) -> Any:
+        """A value in SI, a fraction or a double, as a number of its unit."""
+        return (value - self.zero) / self.scale
+
+    @property
+    def number(self) -> Fraction:
+        """What is printed, as a number of its unit."""
+        return Fraction(self.of(self.value))
 
     @property
     def decimals(self) -> int:

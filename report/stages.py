@@ -299,14 +299,14 @@ def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
     if printed := inputs.printed(like):
         unit = printed[0].unit
     try:
-        scale = float(parse_unit(unit).scale)
+        size = parse_unit(unit)
     except NotAUnit:
-        unit, scale = column.unit, 1.0  # an exponent that is a symbol: SI
+        unit, size = column.unit, parse_unit("1")  # an exponent that is a symbol: SI
     digits = []
     for given in (*sheet.ancestors(column), column):
         if isinstance(given.rule, Given) and not given.exact:
             digits += [each.digits for each in inputs.printed(given.name) if each.value and each.u]
-    return Shown(unit, scale, min(digits, default=5) + 1)
+    return Shown(unit, float(size.scale), min(digits, default=5) + 1, float(size.zero))
 
 
 def refuse_too_many_rows(layouts: Mapping[str, Layout]) -> None:

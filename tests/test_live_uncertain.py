@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import gas
 import numpy as np
 import pytest
 from test_digits import CAMPAIGNS
@@ -78,7 +79,7 @@ def agrees(found: Any, report: Report, before: Report) -> None:
             continue
         name, cells = column.name, found["cells"][column.name]
         # Where it hangs on the last bit of a value how that is rounded, it may be rounded either way.
-        values = [x if x is None else x / report.shown[name].scale for x in cells["values"]]
+        values = [x if x is None else report.shown[name].of(x) for x in cells["values"]]
         texts = [figure and figure.text for figure in shown(values, report.places(name))]
         for row, u in enumerate(known.u[name]):
             kept = known.bent[name][row] or issued.bent[name][row] or not report.values.value[name][row]
@@ -111,6 +112,18 @@ def test_as_issued(told: Told, tmp_path: Path, name: str) -> None:
             np.testing.assert_allclose(
                 mine, own, rtol=1e-4, atol=(0.01 if twice else 1e-6) * np.abs(own).max()
             )
+
+
+def test_temperatures_have_a_zero_of_their_own(told: Told, tmp_path: Path) -> None:
+    """The page reads degC as a build does, and shows it so."""
+    before = Study(gas.folder(tmp_path / "before")).computed
+    agrees(told(before, []), before, before)
+    toml = gas.TOML.replace('R = "', 'T_0 = "-40.0 degF"\nR = "').replace("1.5 delta", "2.25 delta")
+    after = Study(gas.folder(tmp_path / "after", toml, gas.TABLE.replace("-3.2", "-13.7"))).computed
+    found = told(before, [("T", 3, "-13.7"), ("T_0", 0, "-40.0"), ("dT", 0, "2.25")])
+    assert found["cells"]["T"]["values"][2] == 259.45
+    assert found["cells"]["T_0"]["values"] == [233.15]
+    agrees(found, after, before)
 
 
 MEASURED = """test,v [m/s],u(v) [m/s],e [1],x_p [um]

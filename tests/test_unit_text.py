@@ -156,7 +156,7 @@ def test_products_and_quotients_are_what_pint_says(parts: list[tuple[str, int, s
 
 REFUSED = {
     "LS421": ["furlog", "__import__", "None", "import", "Um", "mmm", "nan", "inf", "ｍ", "eval"],
-    "LS423": ["degC", "°C", "degF", "dB", "dBm", "neper", "degC/m"],
+    "LS423": ["degC*m", "1/°C", "degF^2", "dB", "dBm", "neper", "degC/m"],
     "LS424": [
         "m^1e9", "9**9**9", "m**9**9", "m^99999999", "m^13", "m^0",
         "m^(1/0)", "m^(0/3)", "m^(1/13)", "m^.5", "m^3/2", "m^(3/2", "m^alpha", "m^1.23456789",

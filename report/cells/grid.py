@@ -75,6 +75,12 @@ def factors(scale: Fraction) -> tuple[str, str]:
     return up + down, back
 
 
+def _term(number: Fraction) -> str:
+    """What is added, with its sign; nothing of zero."""
+    below = f"/{number.denominator}" if number.denominator > 1 else ""
+    return f"{number.numerator:+}{below}" if number else ""
+
+
 def checked(name: str) -> str:
     """What the cells are called that hold a given column where it is allowed, and a code where it is not.
 
@@ -104,6 +110,8 @@ class Place:
         How many cells.
     scale : Fraction
         The unit of the cells, in SI.
+    zero : Fraction
+        Its zero, in SI.
     """
 
     worksheet: str
@@ -111,6 +119,20 @@ class Place:
     column: int
     rows: int = 1
     scale: Fraction = Fraction(1)
+    zero: Fraction = Fraction(0)
+
+    def to_si(self, number: str) -> str:
+        """The formula of a number of that unit, in SI; as a factor."""
+        said = number + factors(self.scale)[0] + _term(self.zero)
+        return number if said == number else f"({said})"
+
+    def from_si(self, value: str) -> str:
+        """The formula of a value in SI, a factor itself, as a number of that unit."""
+        return (f"({value}{_term(-self.zero)})" if self.zero else value) + factors(self.scale)[1]
+
+    def of(self, value: float) -> float:
+        """A value in SI as a number of that unit."""
+        return (value - float(self.zero)) / float(self.scale)
 
     def cell(self, row: int = 0, seen_from: str = "") -> str:
         """The absolute address of a cell, with its worksheet unless it is seen from there."""

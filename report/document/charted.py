@@ -31,6 +31,8 @@ class Scale:
     title : Letters
     unit : str
     size : float
+    zero : float
+        Zero of the unit in SI.
     prefixed : bool
         Whether the unit takes one of :data:`PREFIXES`.
     """
@@ -38,6 +40,7 @@ class Scale:
     title: Letters
     unit: str
     size: float
+    zero: float
     prefixed: bool
 
     def titled(self, unit: str) -> Letters:
@@ -89,7 +92,7 @@ class Words:
         shown = self.plotted.shown[name]
         # Of a name's letter, such as N and Pa; as SI has it, not as somebody measured in it.
         prefixed = shown.unit[:1].isupper() and shown.unit.isalpha() and shown.scale == 1
-        return Scale(self.letters(title), shown.unit, shown.scale, prefixed)
+        return Scale(self.letters(title), shown.unit, shown.scale, shown.zero, prefixed)
 
     def label(self, series: Series, rows: str = "%s") -> Letters:
         """What the legend says of a series, up to the number behind it."""

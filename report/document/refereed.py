@@ -102,7 +102,9 @@ class RefereedPair:
         if value is None or not math.isfinite(value):
             return None
         printed = self.pair.printed
-        return decimals(value / float(printed.scale), max(0, printed.decimals + 1))
+        return decimals(
+            float((value - float(printed.zero)) / float(printed.scale)), max(0, printed.decimals + 1)
+        )
 
 
 def shown_mismatch(mismatch: float | None) -> Numeral | None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from ...derivations.unit_text import UnitError, parse_unit
+from ...derivations.unit_text import ParsedUnit, UnitError, parse_open, parse_unit
 from ..cells.grid import CHECKED, FIRST_ROW, SCALARS, STEPS, CellBlock, Place, as_issued, checked
 from ..cells.layout import Layout
 from ..plan.kept import as_data
@@ -45,8 +45,8 @@ class _Room:
     rows: int
     column: int = 0
 
-    def next(self, scale: Fraction = Fraction(1)) -> Place:
-        place = Place(self.worksheet, FIRST_ROW, self.column, self.rows, scale)
+    def next(self, scale: Fraction = Fraction(1), zero: Fraction = Fraction(0)) -> Place:
+        place = Place(self.worksheet, FIRST_ROW, self.column, self.rows, scale, zero)
         self.column += 1
         return place
 
@@ -132,7 +132,9 @@ class Assembly:
         for column in given:
             self.put(column, checked(column.name))
         for name, (leaf, axis) in sorted(self.carried.items()):
-            self.places[name] = self.rooms[axis.name].next(self.places[leaf.name].scale)
+            self.places[name] = self.rooms[axis.name].next(
+                self.places[leaf.name].scale, self.places[leaf.name].zero
+            )
         row = _TOP - 2
         for unrolled in self.unrolled.values():
             over = unrolled.column.axis
@@ -147,7 +149,7 @@ class Assembly:
             if column.axis is not None:
                 self.put(column, as_issued(column.name))
             else:
-                self.places[as_issued(column.name)] = Place(STEPS, row := row + 1, 1, 1, self.unit(column)[1])
+                self.places[as_issued(column.name)] = Place(STEPS, row := row + 1, 1, 1, *self.size(column))
 
     def number(self, column: Column) -> int:
         """Of the pass that a column belongs to: -1 for one that belongs to none."""
@@ -156,7 +158,7 @@ class Assembly:
     def put(self, column: Column, name: str) -> None:
         """The next free column of its worksheet."""
         assert column.axis is not None
-        self.places[name] = self.rooms[column.axis.name].next(self.unit(column)[1])
+        self.places[name] = self.rooms[column.axis.name].next(*self.size(column))
 
     def put_scalars(self) -> None:
         """The result, what is given, and the rest, each group under a title."""
@@ -174,7 +176,7 @@ class Assembly:
         row = _TOP
         for group in groups:
             for column in group:
-                self.places[column.name] = place = Place(SCALARS, row, 1, 1, self.unit(column)[1])
+                self.places[column.name] = place = Place(SCALARS, row, 1, 1, *self.size(column))
                 if isinstance(column.rule, Given):
                     self.places[checked(column.name)] = replace(place, column=CHECKED)
                 row += 1
@@ -215,19 +217,25 @@ class Assembly:
                 place = Place(STEPS, table + number - 1, at)
             else:
                 place = Place(STEPS, row + 1 + starts.index(name), 1)
-            self.places[name] = replace(place, scale=self.unit(self.whole[name])[1])
+            scale, zero = self.size(self.whole[name])
+            self.places[name] = replace(place, scale=scale, zero=zero)
         return table + max(own.values(), default=0) + 3
 
-    def unit(self, column: Column) -> tuple[str, Fraction]:
-        """The unit of a column's cells, and its size in SI."""
+    def size(self, column: Column) -> tuple[Fraction, Fraction]:
+        """The unit of a column's cells and its zero, in SI."""
+        unit = self.unit(column)
+        return unit.scale, unit.zero
+
+    def unit(self, column: Column) -> ParsedUnit:
+        """The unit of a column's cells."""
         unit = self.units.get(column.name, "")
         if not unit and column.display.startswith("like "):
             unit = self.units.get(column.display.removeprefix("like "), "")
         unit = unit or column.display or column.unit
         try:
-            return unit, parse_unit(unit).scale
+            return parse_unit(unit)
         except UnitError:
-            return column.unit, Fraction(1)  # an exponent that is a symbol: SI
+            return parse_open(column.unit)  # an exponent that is a symbol: SI
 
     # --- blocks
 
@@ -248,7 +256,7 @@ class Assembly:
                 column.name,
                 column.meaning,
                 place,
-                unit=self.unit(column)[0],
+                unit=self.unit(column).text,
                 source=column.source,
                 shows=("column", column.name),
             )
@@ -272,14 +280,14 @@ class Assembly:
             column = self.whole[leaf.name]
             block = CellBlock(
                 name, "carried", leaf.written, f"{column.name} of each row, for its sums",
-                self.places[name], unit=self.unit(column)[0], of=column.name,
+                self.places[name], unit=self.unit(column).text, of=column.name,
                 shows=("carried", column.name, axis.name, str(leaf.index)),
             )  # fmt: skip
             yield _computed(block, formulas.carried(leaf))
 
     def given_blocks(self, column: Column, block: CellBlock, formulas: Formulas) -> Iterator[CellBlock]:
         """What is typed, and what of it is allowed; how many rows there are is what the worksheets have."""
-        bounds = self.whole.bounds[column.name].over(block.place.scale)
+        bounds = self.whole.bounds[column.name].over(block.place.scale, block.place.zero)
         if any(axis.repeats == column.name for axis in self.whole.axes):
             there = self.counts[column.name]
             bounds = Bounds(there, there)

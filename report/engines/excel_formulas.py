@@ -13,7 +13,7 @@ from typing import Any
 
 from sympy import And, Expr, Float, Rational, Rel, Symbol
 
-from ..cells.grid import Place, as_issued, checked, factors
+from ..cells.grid import Place, as_issued, checked
 from ..cells.layout import Layout
 from ..cells.values import CODES, Status
 from ..named import within
@@ -220,8 +220,7 @@ class _Writing:
         if leaf.kind in ("kept", "size") and leaf.axis:
             axis = leaf.axis.name
             return self.number_kept(axis) if leaf.kind == "kept" else f"ROWS({self.numbers(axis)})"
-        address, to_si = self.address(leaf, rows), factors(self.place_of(leaf).scale)[0]
-        return f"({address}{to_si})" if to_si else address
+        return self.place_of(leaf).to_si(self.address(leaf, rows))
 
     def numbers(self, axis: str) -> str:
         """The range of numbers that name an axis' rows."""
@@ -287,8 +286,8 @@ class _Writing:
 
     def number(self, expression: Expr) -> str:
         """A value in the cells' unit."""
-        if from_si := factors(self.place.scale)[1]:
-            return f"{self.printer.factor(expression)}{from_si}"
+        if self.place.from_si(""):
+            return self.place.from_si(self.printer.factor(expression))
         return str(self.printer.doprint(expression))
 
     def where_it_holds(self, node: Map | RootNode, text: str, otherwise: str) -> str:

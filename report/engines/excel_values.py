@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from decimal import Decimal
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cells.grid import CellBlock
+from ..cells.grid import CellBlock, Place
 from ..cells.layout import precedents
 from ..cells.values import CODES, Status, Values, inherited, rows_kept
 from .kernels import Array
@@ -47,7 +46,7 @@ def filled(
             labels = values.layouts[name].labels[:, int(more[0])]
             shown: tuple[float | str | None, ...] = tuple(map(float, labels))
         else:
-            shown = found[name] if what.endswith("cell") else _cells(values, name, block.place.scale)
+            shown = found[name] if what.endswith("cell") else _cells(values, name, block.place)
         if what == "drawn":
             shown = tuple(None if isinstance(value, str) else value for value in shown)
         elif what == "carried":
@@ -57,10 +56,12 @@ def filled(
         yield replace(block, values=shown, formulas=formulas)
 
 
-def _cells(values: Values, name: str, scale: Fraction) -> tuple[float | str | None, ...]:
+def _cells(values: Values, name: str, place: Place) -> tuple[float | str | None, ...]:
     """A column's values in the unit of its cells; the code where there is none."""
     # Adding zero leaves no minus on a zero.
-    numbers = values.value[name] * float(scale.denominator) / float(scale.numerator) + 0.0
+    scale = place.scale
+    shifted = values.value[name] - float(place.zero)
+    numbers = shifted * float(scale.denominator) / float(scale.numerator) + 0.0
     codes = {int(status): code for status, code in CODES.items()}
     pairs = zip(numbers.tolist(), values.status[name].tolist(), strict=True)
     return tuple(number if not status else codes[status] for number, status in pairs)

@@ -44,6 +44,11 @@ class About:
     level: float = 0.95
 
     @property
+    def is_width(self) -> bool:
+        """Whether it is a difference of values of the cell."""
+        return self.kind in ("u", "u1", "U")
+
+    @property
     def is_pure(self) -> bool:
         """Whether it is a pure number, whatever the unit of the cell."""
         return self.kind in _PURE

@@ -47,7 +47,7 @@ def read_draws(source: Source, of: Declared, findings: Findings) -> tuple[float,
     for row in table.rows:
         field = row.fields[place]
         try:
-            found.append(float(read_number(field.text) * unit.scale))
+            found.append(float(read_number(field.text) * unit.scale + unit.zero))
         except NumberError as error:
             findings.add(error.code, table.at(field), name=of.name, **error.fields)
             if findings.full:

@@ -177,12 +177,18 @@ def _rule(tables: TomlTables) -> Guard:
 def _guard(rule: Guard, text: str, at: Location) -> Guard:
     share = _SHARE.fullmatch(text)
     if share is None:
-        width = _number(text, 0, "LS442")
+        width = _width(text)
         if width.value < 0:
             raise StatementError("LS442", text, 0, "a guard band is 0 or more wide")
         return replace(rule, width=width if width.value else None, at=at)
     times = _number(share["times"] or "1", 0, "LS442").value
     return replace(rule, times=times, at=at)
+
+
+def _width(text: str) -> Printed:
+    """A difference: of a unit with a zero of its own its size alone counts."""
+    number = _number(text, 0, "LS442")
+    return replace(number, value=number.value - number.zero, zero=Fraction(0))
 
 
 def _level(text: str) -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from ...derivations.unit_text import ParsedUnit, UnitError, examples, is_pure, parse_unit
+from ...derivations.unit_text import ParsedUnit, UnitError, examples, is_pure, misfit, parse_unit
 from ..distribution import Error
 from ..messages.errors import Findings
 from .csvtable import CsvRow, CsvTable, Field, match_columns, read_table
@@ -312,6 +312,10 @@ def read_unit(
         at = table.at(field, head.start, max(len(head.unit), 1))
         findings.add("LS422", at, name=head.name, text=head.unit, unit=column.unit, known=examples(expected))
         return head, None
+    if head.name == column.name and (hint := misfit(unit, expected)):
+        at = table.at(field, head.start, len(head.unit))
+        findings.add("LS423", at, text=head.unit, suggestion=hint)
+        return head, None
     return head, unit
 
 
@@ -341,10 +345,10 @@ def _uncertainty(
         fields = {**error.fields, "allowed": "a standard uncertainty of at least 0"}
         findings.add(error.code, table.at(field), name=f"u({name})", **fields)
         return None
-    if u.value < 0:
+    if u.number < 0:
         findings.add("LS407", table.at(field), name=f"u({name})", text=field.text)
         return None
-    return u.value
+    return u.value - u.zero
 
 
 def _with(

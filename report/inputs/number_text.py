@@ -7,7 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Protocol
 
-from ...derivations.unit_text import UnitError, examples, parse_unit
+from ...derivations.unit_text import UnitError, examples, misfit, parse_unit
 from ..distribution import Error
 from ..quantity import Printed
 
@@ -121,8 +121,8 @@ def read_printed(text: str, unit: ParsedUnit, *, mode: str = "rounded", where: s
     NumberError
         If it is not a number, or one that no double could hold together with its last digit.
     """
-    value = read_number(text) * unit.scale
-    printed = Printed(text, unit.text, value, unit.scale, mode, None, where)
+    value = read_number(text) * unit.scale + unit.zero
+    printed = Printed(text, unit.text, value, unit.scale, mode, None, where, unit.zero)
     sizes = [2 * printed.half_unit, *([abs(value)] if value else [])]
     if not all(_SMALLEST <= size <= _LARGEST for size in sizes):
         raise NumberError("LS405", text=text)
@@ -186,5 +186,8 @@ def read_unit_of(text: str, like: Declared, at: Location, findings: Findings) ->
     if size.dimension != expected.dimension:
         words = {"name": like.name, "text": text, "unit": like.unit, "known": examples(expected)}
         findings.add("LS422", at, **words)
+        return None
+    if hint := misfit(size, expected):
+        findings.add("LS423", at, text=text, suggestion=hint)
         return None
     return size

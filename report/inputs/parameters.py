@@ -6,7 +6,7 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from ...derivations.unit_text import ParsedUnit, UnitError, examples, is_pure, parse_unit
+from ...derivations.unit_text import ParsedUnit, UnitError, examples, is_pure, misfit, parse_unit
 from ..messages.errors import Findings, Location
 from ..quantity import behind
 from .number_text import read_printed, read_value
@@ -159,6 +159,9 @@ class _Reader:
             self.findings.add(error.code, at, text=error.text, suggestion=error.suggestion, known=known)
             return None
         if size.dimension == self.expected.dimension and (text or is_pure(self.parameter.unit)):
+            if hint := misfit(size, self.expected):
+                self.findings.add("LS423", self.part(start, len(text)), text=text, suggestion=hint)
+                return None
             return size
         name, wanted = self.parameter.name, self.parameter.unit
         if text:

@@ -208,7 +208,8 @@ def _like(printed: Printed, value: float) -> Printed:
     """A number as another is printed: the text is rounded, what is computed from is not."""
     places = printed.decimals
     with localcontext(prec=_DOUBLES):
-        size = Decimal(value) * printed.scale.denominator / printed.scale.numerator
+        shift = Decimal(printed.zero.numerator) / printed.zero.denominator
+        size = (Decimal(value) - shift) * printed.scale.denominator / printed.scale.numerator
         short = size.quantize(Decimal(1).scaleb(-places))
     text = f"{short:f}" if places >= 0 else f"{short.scaleb(places):f}e{-places}"
     return replace(printed, text=text, value=Fraction(value), where="")

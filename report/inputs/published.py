@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ...derivations.unit_text import ParsedUnit, UnitError, examples, parse_open, parse_unit
@@ -174,6 +175,8 @@ def _value(table: CsvTable, fields: Mapping[str, Field], findings: Findings) -> 
             findings.add("LS508", table.at(fields[name]), name=name)
     pin = _pin(table, fields["recomputed"], findings) if words["recomputed"] else None
     printed = _printed(table, fields, unread, findings)
+    if about is not None and about.is_width:
+        printed = replace(printed, value=printed.value - printed.zero, zero=Fraction(0))
     return PublishedValue(
         fields["source"].text,
         fields["cell"].text,

@@ -137,7 +137,7 @@ class _Part:
                 f"of {number.text} nothing can be exponential: its standard uncertainty is the number itself"
             )
         if (low is not None and value < low) or (high is not None and value > high):
-            ends = span(*("" if end is None else f"{float(end / number.scale):.6g}" for end in (low, high)))
+            ends = span(*("" if end is None else f"{float(number.of(end)):.6g}" for end in (low, high)))
             return f"{number.text} is not {ends}{behind(number.unit)}, as it would have to be"
         return ""
 
@@ -339,7 +339,7 @@ def _cut(part: _Part, fields: list[tuple[str, int]], unit: ParsedUnit, of: Of) -
         absolute, relative, digits = _amount(text[match.end() :], start + match.end(), unit)
         if relative or digits or match["name"] in ends:
             raise StatementError("LS431", text, start, "a bound is a number with its unit, said once")
-        ends[match["name"]] = -absolute if match["sign"] == "-" else absolute
+        ends[match["name"]] = (-absolute if match["sign"] == "-" else absolute) + unit.zero
     low, high = ends.get("min"), ends.get("max")
     if low is not None and high is not None and low >= high:
         raise StatementError("LS431", *fields[-1], "the smaller bound is min")
@@ -442,6 +442,8 @@ def _amount(text: str, start: int, unit: ParsedUnit) -> tuple[Fraction, Fraction
         behind = match["unit"].strip()
         if _DIGITS.fullmatch(behind):
             digits += number
+        elif _RELATIVE.fullmatch(behind) and unit.zero:
+            raise StatementError("LS431", term, at, f"zero {unit.text} is not nothing: say how much, in K")
         elif _RELATIVE.fullmatch(behind) and not (behind == "%" and not unit.dimension):
             relative += number / 100
         elif behind == "%":

@@ -297,8 +297,8 @@ class _Reader:
         u = math.sqrt(_variance(errors, self.correlations))
         said = f"from {self.file}, {address(self.name, label)}"
         stated, unit, exact = (Error(Fraction(u), Shape.NORMAL, said=said),), self.shown, Fraction(value)
-        text = repr(float(exact / unit.scale))
-        return Printed(text, unit.text, exact, unit.scale, "rounded", stated, where), errors
+        text = repr(float((exact - unit.zero) / unit.scale))
+        return Printed(text, unit.text, exact, unit.scale, "rounded", stated, where, unit.zero), errors
 
     def errors(self, label: Index) -> Iterator[TakenError]:
         """What moves the cell, and what no source tells of: the part of second order."""

@@ -356,7 +356,7 @@ def _columns(
             for address in place.cells(range(place.rows), place.worksheet)
         ]
         numbers = [x if isinstance(x, float) and math.isfinite(x) else None for x in found]
-        value[column.name] = [None if x is None else Fraction(x) * place.scale for x in numbers]
+        value[column.name] = [None if x is None else Fraction(x) * place.scale + place.zero for x in numbers]
         rounded[column.name] = [Fraction(0) if x is None else _lost(x) * place.scale for x in numbers]
         status[column.name] = [
             OK if x is not None else held if isinstance(held, str) and held.startswith("#") else "nothing"

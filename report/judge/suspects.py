@@ -69,6 +69,6 @@ def _furthest(report: Report, tests: Sequence[int]) -> tuple[int, str]:
     moved = np.nan_to_num(np.abs(after - before))
     if np.count_nonzero(moved == moved.max()) > 1:
         return 0, ""
-    row, scale, (place,) = int(moved.argmax()), report.shown[column.name].scale, report.places(column.name)
-    was, now = (at(float(each) / scale, place).text for each in (before, after[row]))
+    row, how, (place,) = int(moved.argmax()), report.shown[column.name], report.places(column.name)
+    was, now = (at(how.of(float(each)), place).text for each in (before, after[row]))
     return tests[row], f"without it {column.name} goes from {was} to {now}, further than without another"

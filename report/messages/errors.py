@@ -251,10 +251,10 @@ CATALOGUE: dict[str, Entry] = {
     "LS421": Entry("unknown unit", "unknown unit '{text}'", "{known}", "{suggestion}"),
     "LS422": Entry("wrong dimension", "{name} is in '{text}', which does not convert to {unit}", "{known}"),
     "LS423": Entry(
-        "unit with an offset or a logarithm",
+        "unit with a zero of its own or a logarithm",
         "'{text}' is not a multiple of an SI unit",
-        "units that are plain multiples: no degC, no dB",
-        "convert the numbers first, for example to K",
+        "degC and degF by themselves, and plain multiples: no dB",
+        "{suggestion}",
     ),
     "LS424": Entry(
         "malformed unit",

@@ -73,7 +73,9 @@ class Unknown:
 
     def witness(self, value: float) -> Witness:
         """A value of it, in that unit."""
-        return Witness(self.column, self.index, value / self.scale, self.printed)
+        return Witness(
+            self.column, self.index, value if self.printed is None else self.printed.of(value), self.printed
+        )
 
 
 @dataclass(frozen=True, eq=False)

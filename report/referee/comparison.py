@@ -48,7 +48,7 @@ def print_as(value: float, like: Printed) -> str:
     >>> print_as(4.15439e-05, Printed("41.61", "um", Fraction("4.161e-5"), Fraction(1, 10**6)))
     '41.54'
     """
-    in_unit, places = Fraction(value) / like.scale, like.decimals
+    in_unit, places = like.of(Fraction(value)), like.decimals
     if like.mode == "truncated":
         # A double is a little less or more than the decimal number it stands for: 29.7 is not cut to 29.6.
         near = Context(prec=DIGITS).divide(Decimal(in_unit.numerator), Decimal(in_unit.denominator))
@@ -57,7 +57,7 @@ def print_as(value: float, like: Printed) -> str:
         digits = round(abs(in_unit) * Fraction(10) ** places)
     text = str(digits * 10 ** max(0, -places)).zfill(places + 1)
     point = len(text) - places
-    return f"{'-' if value < 0 else ''}{text[:point]}{'.' if places > 0 else ''}{text[point:]}"
+    return f"{'-' if in_unit < 0 else ''}{text[:point]}{'.' if places > 0 else ''}{text[point:]}"
 
 
 def prints_same(value: float, printed: Printed) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 
@@ -26,9 +27,7 @@ def respelt(of: Printed, units: int) -> Printed:
     mantissa, e, power = of.text.lower().partition("e")
     places = len(mantissa.partition(".")[2])
     text = f"{Decimal(mantissa) + Decimal(units).scaleb(-places):.{places}f}{e}{power}"
-    return Printed(
-        text, of.unit, Fraction(text) * of.scale, of.scale, of.mode, of.stated, of.where
-    )  # fmt: skip
+    return replace(of, text=text, value=Fraction(text) * of.scale + of.zero)
 
 
 def moved(of: Printed, value: Fraction) -> int:

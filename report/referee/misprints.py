@@ -146,7 +146,7 @@ def _last(start: int, way: int, possible: Callable[[int], Best | None]) -> int:
 def _in_order(printed: Printed, low: int, high: int) -> list[int]:
     """The ways to print a cell: those that one slip of the hand makes, then the others, middle ones first."""
     texts = dict.fromkeys(slips(printed.text))
-    slipped = {moved(printed, Fraction(text) * printed.scale) for text in texts}
+    slipped = {moved(printed, Fraction(text) * printed.scale + printed.zero) for text in texts}
     middle = (low + high) // 2
     every = range(max(low, middle - LISTED), min(high, middle + LISTED) + 1)
     near = sorted({*every, *slipped}, key=lambda units: (units not in slipped, abs(units - middle), units))

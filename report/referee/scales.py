@@ -145,4 +145,4 @@ def misplaced_tables(search: Search) -> Iterator[Explained]:
 
 def _other_unit(of: Printed, power: int) -> Printed:
     factor = Fraction(10) ** power
-    return replace(of, value=of.value * factor, scale=of.scale * factor)
+    return replace(of, value=(of.value - of.zero) * factor + of.zero, scale=of.scale * factor)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..cells.marks import Marks
 from ..cells.values import Cell, Status, Values
@@ -47,6 +47,8 @@ class Shown:
         The unit it is shown in, as text; ``1`` for a pure number.
     scale : float
         One such unit in SI.
+    zero : float
+        Zero of that unit in SI: 273.15 for ``degC``.
     digits : int
         Significant digits of a cell whose uncertainty is not known: one more than the least precise input
         behind it.
@@ -55,6 +57,11 @@ class Shown:
     unit: str
     scale: float
     digits: int
+    zero: float = 0.0
+
+    def of(self, value: Any) -> Any:
+        """A value in SI, or an array of them, in that unit; of a difference only its scale is asked."""
+        return (value - self.zero) / self.scale
 
 
 @dataclass(frozen=True)
@@ -238,8 +245,8 @@ class Report:
     def in_unit(self, name: str) -> list[float | None]:
         """The cells of a column in the unit that it is shown in; None where there is no value."""
         # A double divided by a scale such as 1e-6 is not exact; the error is far below any shown digit.
-        scale = self.shown[name].scale
-        return [None if cell.value is None else cell.value / scale for cell in self.values.cells(name)]
+        how = self.shown[name]
+        return [None if cell.value is None else how.of(cell.value) for cell in self.values.cells(name)]
 
     def places(self, name: str) -> list[int]:
         """The power of ten of the last digit that is shown of each cell of a column, in its unit."""
@@ -274,8 +281,8 @@ class Report:
 
     def stated(self, name: str, value: float, u: float) -> tuple[Numeral, Numeral]:
         """A value of a column and its uncertainty, both in SI, as they are shown together in its unit."""
-        scale = self.shown[name].scale
-        return stated(value / scale, u / scale, self.inputs.uncertainty.digits)
+        how = self.shown[name]
+        return stated(how.of(value), u / how.scale, self.inputs.uncertainty.digits)
 
     def sure(self, name: str, u: float) -> Numeral:
         """An uncertainty of a column by itself, in SI, as it is shown in its unit."""

@@ -124,7 +124,7 @@ def bounds(found: Verdict, printed: Printed) -> tuple[str, str] | None:
     if found.bound_low is None or found.bound_high is None:
         return None
     places = max(0, printed.decimals + 1)
-    low, high = (Fraction(end) / printed.scale for end in (found.bound_low, found.bound_high))
+    low, high = (printed.of(Fraction(end)) for end in (found.bound_low, found.bound_high))
     return f"{_whole(low, places, ROUND_FLOOR):f}", f"{_whole(high, places, ROUND_CEILING):f}"
 
 

@@ -113,9 +113,10 @@ class Planner:
         for own in self.inputs.workbook.measured:
             for row, value in enumerate(made.value[own.name].tolist()):
                 if made.status[own.name][row] != Status.OK or not own.bounds.allow(value):
+                    size = parse_unit(own.unit)
                     at = f"{name} = {chosen[row]:.6g} {self.values.sheet[name].unit}"
                     got = (
-                        f"{value / float(parse_unit(own.unit).scale):.6g}"
+                        f"{(value - float(size.zero)) / float(size.scale):.6g}"
                         if math.isfinite(value)
                         else "no number"
                     )

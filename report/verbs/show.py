@@ -74,8 +74,11 @@ def _lines(report: Report, column: Column, labels: Collection[tuple[int, ...]]) 
     uncertain = report.uncertain().u.get(name, nothing)
     for row, (cell, mark) in enumerate(zip(report.values.cells(name), marks, strict=True)):
         if cell.label in wanted_labels:
-            scale = report.shown[name].scale
-            value = cell.reason if cell.value is None else given.get(cell.label) or repr(cell.value / scale)
+            value = (
+                cell.reason
+                if cell.value is None
+                else given.get(cell.label) or repr(report.shown[name].of(cell.value))
+            )
             u = f"  u {report.sure(name, uncertain[row]).plain}" if uncertain[row] > 0 else ""
             yield f"  {cell.address:16} {value}{u}{mark and f'  {mark}'}"
     for count in report.marks.behind(column):

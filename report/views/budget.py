@@ -35,14 +35,14 @@ SHIFTED = 0.05
 
 def sentence(report: Report, budget: Budget) -> str:
     """The result in a line: ``alpha_mean = 1.3026, u = 0.0035, U = 0.0069 with k = 1.96 for 95 %``."""
-    unit, scale = _unit(report, budget.name)
+    unit = behind(report.shown[budget.name].unit)
     if math.isnan(budget.value):
         return report.values.cell(budget.name, budget.label).reason
     if not budget.is_known:
         told = report.text(report.values.cell(budget.name, budget.label))
         return f"{budget.cell} = {told}, and its uncertainty is not known"
     if not budget.u:
-        return f"{budget.cell} = {budget.value / scale!r}{unit}, exactly"
+        return f"{budget.cell} = {report.shown[budget.name].of(budget.value)!r}{unit}, exactly"
     value, u = report.stated(budget.name, budget.value, budget.u)
     told = f"{budget.cell} = {value.text}{unit}, u = {u.text}{unit}"
     if math.isnan(budget.factor):
@@ -199,13 +199,17 @@ def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iter
     """What Monte Carlo told."""
     if drawn is None:
         return
-    unit, scale = _unit(report, budget.name)
+    how = report.shown[budget.name]
+    unit = behind(how.unit)
     u = drawn.u if math.isfinite(drawn.u) else budget.u
 
     def told(value: float) -> str:
         if not math.isfinite(u):
-            return rounded(value / scale, report.shown[budget.name].digits).text
+            return rounded(how.of(value), how.digits).text
         return report.stated(budget.name, value, u)[0].text
+
+    def apart(value: float) -> str:
+        return told(abs(value - budget.value) + how.zero)
 
     def wide(width: float) -> str:
         return report.sure(budget.name, max(width, 0.0)).text
@@ -229,7 +233,7 @@ def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iter
     for name, (low, high) in (("equal tails", drawn.symmetric), ("the shortest", drawn.shortest)):
         around = ""  # where the estimate lies outside, it has no such distances
         if low <= budget.value <= high:
-            around = f"; {told(budget.value)} +{told(high - budget.value)}/-{told(budget.value - low)}"
+            around = f"; {told(budget.value)} +{apart(high)}/-{apart(low)}"
         yield f"{level} between {told(low)} and {told(high)}{unit} ({name}{around})"
     if not drawn.stable:
         yield "its ends are not known to the second digit of u: more draws would tell"

@@ -72,14 +72,18 @@ class Trace:
         return ["–".join(map(str, label)) for label in self.labels]
 
 
-def traces(words: Words, chart: Chart, series: Series, sizes: Sequence[float]) -> Iterator[Trace]:
-    """What a series shows, in units of these sizes."""
+def traces(
+    words: Words, chart: Chart, series: Series, sizes: Sequence[tuple[float, float]]
+) -> Iterator[Trace]:
+    """What a series shows, in units of these sizes, and with these zeros."""
     if series.style == "level":
         return
     values, columns = words.plotted.values, (series.x, series.y)
     axis, of = values.sheet[series.x].axis, words.axis(series)
     assert axis is not None
-    at = np.array([values.value[name] / size for name, size in zip(columns, sizes, strict=True)])
+    at = np.array(
+        [(values.value[name] - zero) / size for name, (size, zero) in zip(columns, sizes, strict=True)]
+    )
     ok = np.all([values.status[name] == Status.OK for name in columns], axis=0)
     for letter in chart.log:
         ok &= at["xy".index(letter)] > 0
@@ -91,15 +95,17 @@ def traces(words: Words, chart: Chart, series: Series, sizes: Sequence[float]) -
         yield Trace([tuple(label) for label in named.tolist()], at[:, here])
 
 
-def _units(words: Words, chart: Chart) -> list[tuple[str, float]]:
-    """The unit of each axis and its size: a multiple of the newton, if that keeps its numbers short."""
+def _units(words: Words, chart: Chart) -> list[tuple[str, float, float]]:
+    """The unit of each axis, its size and zero: a multiple of the newton, if that keeps its numbers short."""
     found = []
     for scale, names in zip(
         words.scales(chart), ([s.x for s in chart.series], [s.y for s in chart.series]), strict=True
     ):
         largest = max(float(np.nanmax(np.abs([*words.plotted.values.value[n], 0.0]))) for n in names)
         sign, size = next((one for one in PREFIXES if largest >= one[1]), PREFIXES[-1])
-        found.append((sign + scale.unit, size) if scale.prefixed else (scale.unit, scale.size))
+        found.append(
+            (sign + scale.unit, size, 0.0) if scale.prefixed else (scale.unit, scale.size, scale.zero)
+        )
     return found
 
 
@@ -150,18 +156,21 @@ def draw(report: Report, chart: Chart) -> Figure:
     figure, axes = drawing.page(chart.height)
     words = Words(report)
     units = _units(words, chart)
-    found = [list(traces(words, chart, series, [size for _, size in units])) for series in chart.series]
+    found = [
+        list(traces(words, chart, series, [(size, zero) for _, size, zero in units]))
+        for series in chart.series
+    ]
     if not any(found):
         drawing.empty(axes, "Nothing to draw: the cells that it shows have no value.")
         return figure
-    for axis, scale, (unit, _) in zip("xy", words.scales(chart), units, strict=True):
+    for axis, scale, (unit, *_) in zip("xy", words.scales(chart), units, strict=True):
         axes.set(
             **{
                 f"{axis}label": mathtext(scale.titled(unit)),
                 f"{axis}scale": "log" if axis in chart.log else "linear",
             }
         )
-    _Picture(words, chart, units[1][1], figure, axes, found).draw()
+    _Picture(words, chart, units[1][1:], figure, axes, found).draw()
     return figure
 
 
@@ -182,9 +191,15 @@ class _Picture:
     """A chart being drawn; all numbers are in the units of its axes."""
 
     def __init__(
-        self, words: Words, chart: Chart, size: float, figure: Figure, axes: Axes, found: list[list[Trace]]
+        self,
+        words: Words,
+        chart: Chart,
+        up: tuple[float, float],
+        figure: Figure,
+        axes: Axes,
+        found: list[list[Trace]],
     ) -> None:
-        self.words, self.size, self.figure, self.axes = words, size, figure, axes
+        self.words, self.up, self.figure, self.axes = words, up, figure, axes
         self.found = list(zip(chart.series, found, strict=True))
         lines, dots = (
             np.hstack([np.empty((2, 0)), *(t.at for s, own in self.found if s.style == style for t in own)])
@@ -306,7 +321,8 @@ class _Picture:
 
     def level(self, series: Series) -> None:
         """A single number as a line over the whole width, named at an end that is free."""
-        value = self.words.plotted.values.scalar(series.y) / self.size
+        size, zero = self.up
+        value = (self.words.plotted.values.scalar(series.y) - zero) / size
         (left, right), (bottom, top) = self.frame.ends
         if not bottom <= value <= top:
             return

@@ -33,7 +33,7 @@ def _rows(plan: Planned) -> Iterator[list[str]]:
         for name, u in plan.u.items():
             value = float(plan.report.values.value[name][row])
             if not math.isfinite(u[row]) or not u[row]:
-                found += [rounded(value / plan.report.shown[name].scale, 6).text, "0"]
+                found += [rounded(plan.report.shown[name].of(value), 6).text, "0"]
             else:
                 found += [figure.text for figure in plan.report.stated(name, value, float(u[row]))]
         yield [*found, percent(plan.of_tests[test])]

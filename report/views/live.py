@@ -11,10 +11,9 @@ import json
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from fractions import Fraction
 from typing import Any
 
-from ...derivations.unit_text import parse_unit
+from ...derivations.unit_text import ParsedUnit, parse_unit
 from ..cells.address import index_text
 from ..charts import Chart, Series
 from ..document.charted import PREFIXES, Words, unit_text
@@ -129,7 +128,7 @@ def data(report: Report, document: Material) -> str:
                         pair.comparison.published.cell,
                         index_text(pair.comparison.published.index),
                         pair.printed.text,
-                        _fraction(pair.printed.scale),
+                        _size(pair.printed),
                         pair.printed.mode == "truncated",
                         *pair.comparison.known,
                     ]
@@ -157,6 +156,8 @@ def _chart(words: Words, chart: Chart) -> dict[str, Any]:
     found: dict[str, Any] = {"height": round(chart.height * 72 / 2.54, 1), "series": []}
     for axis, scale in zip("xy", words.scales(chart), strict=True):
         found[axis] = {"title": scale.title, "unit": unit_text(scale.unit), "size": scale.size}
+        if scale.zero:
+            found[axis]["from"] = scale.zero
         if scale.prefixed:
             found[axis]["prefixes"] = PREFIXES
     found["log"] = [int(axis in chart.log) for axis in "xy"]
@@ -174,14 +175,20 @@ def _chart(words: Words, chart: Chart) -> dict[str, Any]:
     return found
 
 
-def _fraction(value: Fraction) -> list[str]:
-    """A fraction as text: JavaScript's numbers would round it."""
-    return [str(value.numerator), str(value.denominator)]
+def _size(of: Printed | ParsedUnit) -> list[str]:
+    """A unit in SI, as the numerator and the denominator of a fraction, and its zero as another's: as text.
+
+    JavaScript's numbers would round it. A zero that is that of SI goes without saying.
+    """
+    every = (of.scale, of.zero) if of.zero else (of.scale,)
+    return [str(number) for each in every for number in each.as_integer_ratio()]
 
 
 def _least(entry: dict[str, Any]) -> dict[str, Any]:
     """An entry without what the page puts in again (templates/live/trace.js)."""
-    plain = {"unit": "1", "scale": 1.0} | ({} if "given" in entry or "of" in entry else {"digits": 4})
+    plain = {"unit": "1", "scale": 1.0, "zero": 0.0} | (
+        {} if "given" in entry or "of" in entry else {"digits": 4}
+    )
     return {name: value for name, value in entry.items() if plain.get(name) != value}
 
 
@@ -192,6 +199,7 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
         "source": column.source,
         "unit": unit_text(shown.unit).strip("()") or "1",
         "scale": shown.scale,
+        "zero": shown.zero,
     }
     if limits := report.marks.limiting(column.name):
         entry["limits"] = [
@@ -248,7 +256,7 @@ def _given(report: Report, column: Column) -> dict[str, Any]:
     elif column.name in inputs.uncertainty.columns or (column.axis is None and printed and printed.stated):
         more["said"] = "report.toml"
     return more | {
-        "scale": _fraction(printed.scale if printed else parse_unit(column.unit).scale),
+        "scale": _size(printed or parse_unit(column.unit)),
         "bounds": limits(bounds),
         "allowed": f"{bounds.said(declared.unit)} ({declared.meaning})",
     }

@@ -104,7 +104,7 @@ class _Written:
         style.text(sheet, row, 0, source.name, "name")
         if each.estimate is not None and not source.origin:  # its own estimate stands in the other report
             allowed = self.grid[checked(name)].place.cell(cell)
-            style.formula(sheet, row, 1, f"={allowed}", each.estimate / scale, style("number"))
+            style.formula(sheet, row, 1, f"={allowed}", block.place.of(each.estimate), style("number"))
         style.text(sheet, row, 2, block.unit, "unit")
         style.text(sheet, row, 4, source.shape.value, "input")
         dof = min(source.dof, _UNLIMITED)
@@ -152,7 +152,7 @@ class _Written:
             (
                 "value",
                 f"={self.block.place.cell(self.row_of_cell)}",
-                budget.value / scale,
+                self.block.place.of(budget.value),
                 number_format(self.report.figures(budget.name)[self.row_of_cell]),
             ),
             (
@@ -210,7 +210,9 @@ class _Written:
             if found.budget.cell == self.budget.cell:
                 form = self.form(found.guard or self.budget.u)
                 formulas = self.assigned(found.budget, own, at)
-                row = write_limits(self.sheet, self.style, found, self.scale, form, row, dict(at), formulas)
+                row = write_limits(
+                    self.sheet, self.style, found, self.block.place, form, row, dict(at), formulas
+                )
         return row
 
     def assigned(self, budget: Budget, own: str, at: Mapping[str, str]) -> tuple[Callable[[str], str], str]:

@@ -63,7 +63,7 @@ class GivenCells:
             at = (place.row + row, place.column)
             decimals = -places[row] if taken else _decimals(each, place.scale)
             form = style("fixed" if fixed else "input", open_format(decimals))
-            sheet.write_number(*at, float(each.value / place.scale), form)
+            sheet.write_number(*at, float((each.value - place.zero) / place.scale), form)
             if row < _MOST_NOTES:
                 sheet.write_comment(*at, self.note(block, each), {"x_scale": 2.2, "y_scale": 1.1})
         every = (place.row, place.column, place.row + place.rows - 1, place.column)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from ..cells.grid import Place
 from ..distribution import Shape
 from ..result.uncertain import Conformity, Decision
 from .xlsx_style import Style
@@ -72,7 +73,7 @@ def write_limits(
     sheet: Any,
     style: Style,
     found: Conformity,
-    scale: float,
+    place: Place,
     form: str,
     row: int,
     at: dict[str, str],
@@ -85,8 +86,8 @@ def write_limits(
     sheet : xlsxwriter worksheet
     style : Style
     found : Conformity
-    scale : float
-        One unit of the budget in SI.
+    place : Place
+        Of the budget's value, in whose unit all of it is.
     form : str
         The number format of a width.
     row : int
@@ -99,8 +100,8 @@ def write_limits(
     budget, rule, (low, high) = found.budget, found.limits.guard, found.limits.ends
     style.text(sheet, row, 0, "decision rule (JCGM 106)", "head")
     to = _Written(sheet, style, row + 1, dict(at))
-    to.end("low", "lower tolerance limit", "", low / scale, "General")
-    to.end("high", "upper tolerance limit", "", high / scale, "General")
+    to.end("low", "lower tolerance limit", "", place.of(low), "General")
+    to.end("high", "upper tolerance limit", "", place.of(high), "General")
     if math.isnan(found.probability) or math.isnan(found.guard):
         why = budget.because.partition(": ")[2] or found.because
         style.text(sheet, to.row, 0, f"what is decided is not known: {why}")
@@ -110,10 +111,10 @@ def write_limits(
         to.line("level", "coverage probability of its U", "", rule.level, "0.##%")
         to.line("times", "guard band over U", "", float(rule.times))
         width = f"{{times}}*{formulas[0](to.at['level'])}*{{u}}"
-    to.line("guard", "guard band", width, found.guard / scale, form)
+    to.line("guard", "guard band", width, found.guard / float(place.scale), form)
     least, most = found.acceptance
-    to.end("from low", "lower acceptance limit", "{low}+{guard}", least / scale, form)
-    to.end("to high", "upper acceptance limit", "{high}-{guard}", most / scale, form)
+    to.end("from low", "lower acceptance limit", "{low}+{guard}", place.of(least), form)
+    to.end("to high", "upper acceptance limit", "{high}-{guard}", place.of(most), form)
     to.line("shape", "distribution", formulas[1], budget.shape.value)
     z = (budget.value - low) / budget.u, (high - budget.value) / budget.u
     to.end("z low", "above the lower limit, over u", "({value}-{low})/{u}", z[0], "0.00")

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from ...derivations.proved import IDENTITY
 from ..cells.address import index_text
-from ..cells.grid import CHECKED, SCALARS, CellBlock, Grid, checked, factors, letters
+from ..cells.grid import CHECKED, SCALARS, CellBlock, Grid, checked, letters
 from ..document.material import Material
 from ..result.result import Comparison, Report
 from ..result.statements import statements
@@ -195,13 +196,17 @@ def _write_comparison(
         style.text(sheet, row, at, words)
     decimals = printed.decimals
     shown = style("number", f"0.{'0' * decimals}" if decimals > 0 else "0")
-    sheet.write_number(row, 4, float(printed.value / printed.scale), shown)
+    sheet.write_number(row, 4, float(printed.number), shown)
     address = place.cell(report.values.row(report.sheet[value.cell], value.index))
     cells = {name: f"${letters(column)}${row + 1}" for column, (name, _, _) in enumerate(_PUBLISHED)}
-    again = None if cell.value is None else cell.value / float(printed.scale)
-    live = f"=IF(ISNUMBER({address}),{address}{factors(place.scale / printed.scale)[0]},{address})"
+    again = None if cell.value is None else printed.of(cell.value)
+    shown_in = replace(
+        place, scale=place.scale / printed.scale, zero=(place.zero - printed.zero) / printed.scale
+    )
+    again_of = shown_in.to_si(address)
+    live = f"=IF(ISNUMBER({address}),{again_of},{address})"
     style.formula(sheet, row, 5, live, cell.status.code if again is None else again, shown)
-    difference = "" if again is None else again - float(printed.value / printed.scale)
+    difference = "" if again is None else again - float(printed.number)
     live = f'=IF(ISNUMBER({cells["recomputed"]}),{cells["recomputed"]}-{cells["printed"]},"")'
     style.formula(
         sheet, row, 6, live, difference, style("number", _signed(f"0.{'0' * max(0, decimals + 1)}"))

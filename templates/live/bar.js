@@ -71,9 +71,9 @@ function fillLine(id, ...nodes) {
 
 // All digits, in the unit of the report; a given number as it was printed.
 function fullValue(look, name, row) {
-  const { scale, given, unit } = LIVE.columns[name], { texts } = look.column(name);
+  const { scale, zero, given, unit } = LIVE.columns[name], { texts } = look.column(name);
   if (!look.trace.isOk(name, row)) return [make("span", { class: "error" }, CODES[look.trace.sheet.status[name][row]])];
-  const text = given ? texts[row] : repr(look.trace.sheet.value[name][row] / scale).replace(/\.0$/, "");
+  const text = given ? texts[row] : repr((look.trace.sheet.value[name][row] - zero) / scale).replace(/\.0$/, "");
   const [mantissa, power] = text.split("e");
   const shown = (power === undefined || given ? text : `${mantissa} × 10${raised(Number(power))}`).replace("-", MINUS);
   return unit === "1" ? [shown] : [`${shown}\u00a0`, ...part(name, "unit")];

@@ -23,17 +23,17 @@ class Look {
   // The power of ten of the last digit of a computed cell: its uncertainty says it. Where that is as issued, so is the
   // number of digits.
   place(name, row) {
-    const { digits, scale, kept } = LIVE.columns[name], value = this.trace.sheet.value[name][row] / scale;
+    const { digits, scale, zero, kept } = LIVE.columns[name], value = (this.trace.sheet.value[name][row] - zero) / scale;
     const own = kept?.[this.trace.index(name, row)] ?? (LIVE.shared ? 0 : digits);
     return own ? order(value) - own + 1 : lastPlace(value, this.sure.u(name, row) / scale, digits, LIVE.most);
   }
 
   column(name) {
     if (this.known[name]) return this.known[name];
-    const { scale, given } = LIVE.columns[name], texts = given && this.texts(name);
+    const { scale, zero, given } = LIVE.columns[name], texts = given && this.texts(name);
     const figures = given
       ? texts.map(readFigure)
-      : shownColumn(Array.from(this.trace.sheet.value[name], (value) => value / scale), (row) => this.place(name, row));
+      : shownColumn(Array.from(this.trace.sheet.value[name], (value) => (value - zero) / scale), (row) => this.place(name, row));
     const places = figures.reduce((most, figure) => Math.max(most, figure?.fraction.length ?? 0), 0);
     return (this.known[name] = { texts, figures, places });
   }

@@ -14,13 +14,13 @@ function shade(part) {
   return `rgb(${SHADES[n].map((from, k) => Math.round(from + (place - n) * (SHADES[n + 1][k] - from))).join(" ")})`;
 }
 
-// What a series shows, in units of these sizes: all rows, or those of each row of the axis that is repeated.
+// What a series shows, in units of these sizes, with these zeros: all rows, or those of each row of the axis that is repeated.
 function tracesOf({ x, y, style }, { log }, { sheet, declared }, sizes) {
   if (style === "level") return [];
   const { value, status, layouts } = sheet, axis = axisNamed(declared[x].axis), of = axis.kind === "repeat" && axisNamed(axis.of);
   const { labels } = layouts[(of || axis).name], found = [];
   for (let row = 0; row < layouts[axis.name].size; row++) {
-    const at = [value[x][row] / sizes[0], value[y][row] / sizes[1]];
+    const at = [x, y].map((name, n) => (value[name][row] - sizes[n][1]) / sizes[n][0]);
     if (status[x][row] || status[y][row] || at.some((one, n) => one <= 0 && log[n])) continue;
     const parent = of ? layouts[axis.name].rows[of.index][row] : row;
     (found[of ? parent : 0] ??= []).push({ at, row, name: labels[parent].join("–") });
@@ -60,15 +60,15 @@ const sameTraces = (some, others) => JSON.stringify(some) === JSON.stringify(oth
 function drawChart(chart, look) {
   const { trace } = look, { value } = trace.sheet, series = chart.series.map((one) => ({ style: "line", colour: INK, ...one }));
   const units = ["x", "y"].map((axis) => {
-    const { unit, size, prefixes } = chart[axis];
-    if (!prefixes) return [unit, size];
+    const { unit, size, from = 0, prefixes } = chart[axis];
+    if (!prefixes) return [unit, size, from];
     const most = series.reduce((so, one) => value[one[axis]].reduce((a, b) => (Math.abs(b) > a ? Math.abs(b) : a), so), 0);
     const [sign, own] = prefixes.find((one) => most >= one[1]) ?? prefixes.at(-1);
-    return [sign + unit, own];
+    return [sign + unit, own, 0];
   });
-  const own = series.map((one) => tracesOf(one, chart, trace, units.map(([, size]) => size)));
+  const own = series.map((one) => tracesOf(one, chart, trace, units.map(([, ...size]) => size)));
   // Under what an edit moved, in grey, what the report has as issued.
-  const issued = look.issued ? series.map((one) => tracesOf(one, chart, look.issued.trace, units.map(([, size]) => size))) : [];
+  const issued = look.issued ? series.map((one) => tracesOf(one, chart, look.issued.trace, units.map(([, ...size]) => size))) : [];
   const ghosts = issued.map((traces, n) => (sameTraces(traces, own[n]) ? [] : traces)), ghostly = series.map(({ style }, n) => (style === "line" ? ghosts[n]?.flat() ?? [] : [])).flat();
   const [lines, dots] = ["line", "points"].map((style) => own.flatMap((traces, n) => (series[n].style === style ? traces.flat() : [])));
   if (!lines.length && !dots.length) return null;
@@ -83,7 +83,7 @@ function drawChart(chart, look) {
   };
   const draws = {
     level(one) {
-      const at = value[one.y][0] / units[1][1];
+      const at = (value[one.y][0] - units[1][2]) / units[1][1];
       if (!(at >= y[0] && at <= y[1])) return;
       picture.line([...Array(60).keys()].map((n) => ({ at: [x[0] + (n / 59) * (x[1] - x[0]), at] })), one.colour, 1, "5 3");
       const beside = (side, end) => [[x[end], at], [[side, -4, end ? "end" : "start"], [side, 11, end ? "end" : "start"]]];

@@ -73,7 +73,7 @@ function tellDraws(look) {
 
 // From one end to the other, with the digits that the uncertainty lets them have and a power of ten once.
 function rangeOf(name, { u, ends }) {
-  const { scale } = LIVE.columns[name], by = (u > 0 ? u : (ends[1] - ends[0]) / 4) / scale, both = ends.map((end) => end / scale);
+  const { scale, zero } = LIVE.columns[name], by = (u > 0 ? u : (ends[1] - ends[0]) / 4) / scale, both = ends.map((end) => (end - zero) / scale);
   if (!(by > 0)) return brief(both[0]);
   const [low, high] = alike(both, told(by, LIVE.most).place, Math.max(...both.map(Math.abs)));
   return `${figureText({ ...low, exponent: null })} … ${figureText(high)}`;

@@ -124,10 +124,10 @@ const percent = (share) => `${figureText(decimals(100 * share, 0))}\u00a0%`;
 
 // Value, u, k and U of a cell, as texts, and its budget; nothing where there is none.
 function sureOf(look, name, row) {
-  const { scale, kept } = LIVE.columns[name];
+  const { scale, zero, kept } = LIVE.columns[name];
   const sure = LIVE.shared && !kept?.[look.trace.index(name, row)] ? look.sure.u(name, row) : 0;
   if (!(sure > 0 && sure < Infinity)) return null;
-  const { u, factor, from } = look.sure.budget(name, row), value = look.trace.sheet.value[name][row] / scale;
+  const { u, factor, from } = look.sure.budget(name, row), value = (look.trace.sheet.value[name][row] - zero) / scale;
   const of = (width) => stated(value, width / scale, LIVE.most).map(figureText), known = factor > 0;
   return { texts: [...of(u), known ? figureText(rounded(factor, order(factor) - 2)) : "", known ? of(factor * u)[1] : ""], from };
 }

@@ -4,7 +4,7 @@ const BEYOND = "it, or a step towards it, is above 1.8e308, or positive and belo
 
 // What the page is told of the columns, with what goes without saying.
 function wholeColumns(columns) {
-  const whole = ([name, one]) => [name, { unit: "1", scale: 1, digits: one.given || one.of ? undefined : 4, ...one }];
+  const whole = ([name, one]) => [name, { unit: "1", scale: 1, zero: 0, digits: one.given || one.of ? undefined : 4, ...one }];
   return Object.fromEntries(Object.entries(columns).map(whole));
 }
 

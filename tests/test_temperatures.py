@@ -1,0 +1,121 @@
+"""Temperatures in degC have a zero of their own, their differences and uncertainties have not."""
+
+import json
+from pathlib import Path
+
+import gas
+import numpy as np
+import pytest
+
+import loopsheet
+from loopsheet import Method, given
+from loopsheet.derivations.unit_text import UnitError, coherent, parse_unit
+from loopsheet.report.cli import main
+from loopsheet.report.column import SheetError
+from loopsheet.report.document.charted import Words
+from loopsheet.report.study import Study
+from loopsheet.report.views import charts
+
+
+def test_a_temperature_is_shifted_and_a_difference_is_not(tmp_path: Path) -> None:
+    report = Study(gas.folder(tmp_path)).computed
+    value, u = report.values.value, report.uncertain().u
+    assert value["T"].tolist() == [293.15, 294.65, 269.95]
+    assert value["T_0"].item() == 293.15
+    assert value["dT"].item() == 1.5
+    assert value["apart"] == pytest.approx([0, 1.5, -23.2], abs=1e-12)
+    assert value["rho"][0] == pytest.approx(101320 / (287.05 * 293.15), rel=1e-15)
+    assert u["T"].tolist() == [0.1, 0.1, 0.1]
+    assert u["m"].item() == pytest.approx(0.1 / 3**0.5)
+    assert [figure and figure.text for figure in report.figures("warm")] == ["21.50", "23.00", "−1.70"]
+    assert report.figures("warmest")[0].text == "57.68"
+    assert report.shown["apart"].unit == "delta_degC"
+
+
+def test_every_engine_and_view_agrees(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """NumPy, JavaScript and LibreOffice against 50 digits, and published values in other units."""
+    assert main(["check", str(gas.folder(tmp_path)), "--format", "json"]) == 0
+    checks = json.loads(capsys.readouterr().out)["checks"]
+    assert sum(each["kind"] == "engine" for each in checks) == 3
+    assert sum(each["kind"] == "published" for each in checks) == 7
+    assert main(["why", "warm[3]", str(tmp_path)]) == 0
+    assert "in SI     warm[3] = 1.5 + 269.95" in capsys.readouterr().out
+    assert main(["budget", "m", str(tmp_path), "--draws", "4000"]) == 0
+    told = capsys.readouterr().out
+    assert "m = 12.767 degC, u = 0.058 degC" in told
+    assert "acceptance limits 12.20 to 13.80 degC" in told
+    assert "(equal tails; 12.7" in told
+    assert "+0.1" in told.partition("equal tails")[2][:30]
+    loaded = loopsheet.load(tmp_path)
+    assert np.asarray(loaded["T"].value).tolist() == [20.0, 21.5, -3.2]
+    assert float(loaded["m"].value) == pytest.approx(38.3 / 3)
+
+
+def test_a_chart_is_drawn_in_degc(tmp_path: Path) -> None:
+    report = Study(gas.folder(tmp_path)).computed
+    (chart,) = report.workbook.charts
+    words = Words(report)
+    (_, *x), (_, *y) = charts._units(words, chart)
+    (trace,) = charts.traces(words, chart, chart.series[0], [tuple(x), tuple(y)])
+    assert trace.at[0] == pytest.approx([20.0, 21.5, -3.2], abs=1e-12)
+    assert trace.at[1] == pytest.approx([21.5, 23.0, -1.7], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("1.5 delta_degC", "1.5 degC", "declared in delta_degC: a difference is in K or delta_degC"),
+        ('R = "', 'T_0 = "20 delta_degC"\nR = "', "this is a temperature, no difference: say degF or K"),
+        ("u = 0.1 degC", "1 % of reading", "zero degC is not nothing: say how much, in K"),
+        ("u = 0.1 degC", "u = 0.1 degC/m", "say K or delta_degC of a difference"),
+        ("T [degC]", "T [delta_degC]", "this is a temperature, no difference: say degC or K"),
+        ("T [degC]", "T [degc]", "did you mean 'degC'?"),
+        ("T [degC]", "T [kelvin*m/m*degC]", "say K or delta_degC of a difference"),
+        ("3,-3.2", "3,-50.1", "between -50 and 60 degC (temperature)"),
+        ("12 .. 14 degC", "12 .. 14 kg", "which does not convert to K"),
+    ],
+)
+def test_what_is_ambiguous_is_refused(
+    tmp_path: Path, old: str, new: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert (gas.TOML + gas.TABLE).count(old) == 1
+    folder = gas.folder(tmp_path, gas.TOML.replace(old, new), gas.TABLE.replace(old, new))
+    assert main(["build", str(folder)]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_uncertainties_in_a_column_are_differences(tmp_path: Path) -> None:
+    table = "reading,T [degC],u(T) [degC]\n1,293.15,0.2\n2,300,0.2\n3,301,0.3\n".replace("degC]\n", "degF]\n")
+    toml = gas.TOML.replace('T = "u = 0.1 degC"\n', "")
+    report = Study(gas.folder(tmp_path, toml, table.replace("293.15", "20").replace("30", "2"))).computed
+    assert report.uncertain().u["T"] == pytest.approx([0.2 / 1.8, 0.2 / 1.8, 0.3 / 1.8])
+
+
+def test_positive_asks_above_which_zero() -> None:
+    with pytest.raises(SheetError, match=r"T: above which zero\? say low=\.\.\., in degC"):
+
+        class Wrong(Method):
+            """A temperature that is positive, of one kind or the other."""
+
+            T = given("degC", "temperature", positive=True)
+
+
+@pytest.mark.parametrize(("text", "size", "zero"), [("degC", "1", "273.15"), ("°F", "5/9", "45967/180")])
+def test_a_zero_is_exact_and_pints(text: str, size: str, zero: str) -> None:
+    from fractions import Fraction
+
+    import pint
+
+    unit, registry = parse_unit(text), pint.UnitRegistry(non_int_type=Fraction)
+    assert (unit.scale, unit.zero, unit.dimension) == (Fraction(size), Fraction(zero), (("K", 1),))
+    for number in (0, 1, -40):
+        judge = registry.Quantity(Fraction(number), text).to("kelvin").magnitude
+        assert number * unit.scale + unit.zero == judge
+    assert coherent(unit) == "K"
+
+
+@pytest.mark.parametrize("text", ["degC/m", "W/(m^2*°C)", "degC^2", "1/degF", "m degC", "(degC)"])
+def test_it_stands_by_itself(text: str) -> None:
+    with pytest.raises(UnitError) as caught:
+        parse_unit(text)
+    assert (caught.value.code, caught.value.suggestion) == ("LS423", "say K or delta_degC of a difference")
