@@ -268,7 +268,7 @@ CASES: dict[str, Callable[[], None]] = {
     "LS305": csv("v [m/s]", "v (m/s)"),
     "LS306": csv("2,2.940,", "2,2.940,,"),
     "LS307": lambda: campaign(csv="test,v [m/s],e [1],x_p [um]\n1,2,334,0,530,23,5\n2,2,940,0,512,29,7\n"),
-    "LS308": lambda: campaign(csv=CSV.replace(",", ";").replace(".", ",")),
+    "LS308": lambda: campaign(csv=CSV.replace(",", "|")),
     "LS309": csv("test,v [m/s],e [1],x_p [um]\n", ""),
     "LS310": csv("2,2.940,0.512,29.7\n", ""),
     "LS311": csv("2,2.940", "1,2.940"),

@@ -419,7 +419,7 @@ def test_findings_in_report_toml(
         ),
         (CSV.replace("1,2.334", '1,"2.3""34"'), ["LS401 measurements.csv:2:3+9"]),
         (CSV.replace("[m/s]", "[m/s kg]"), ["LS425 measurements.csv:1:13+2"]),
-        (CSV.replace("test,", "test;").replace(",", ";"), ["LS308 measurements.csv:1:5+1"]),
+        (CSV.replace(",", "|"), ["LS308 measurements.csv:1:5+1"]),
         (CSV.replace(",", "\t"), ["LS308 measurements.csv:1:5+1"]),
         (CSV.replace("\n2,", '\n"2,'), ["LS313 measurements.csv:3:1+1"]),
         ("\x89PNG\r\n\x1a\n", ["LS112 measurements.csv:1:1+1"]),

@@ -1,4 +1,9 @@
-"""Comma-separated tables (RFC 4180) with the place of every field, which Python's csv does not keep."""
+"""Comma-separated tables (RFC 4180) with the place of every field, which Python's csv does not keep.
+
+A table of measurements may be separated by semicolons, too, as spreadsheets write it where the comma is
+decimal. Its numbers then have decimal points, or all of them decimal commas, of which one at least can mean
+nothing else.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +25,11 @@ __all__ = ["CsvRow", "CsvTable", "Field", "match_columns", "read_table"]
 _BLANK = " \t\u00a0"
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "vertical bars"}
 _MOST_COLUMNS = 200
-_STOP = re.compile(r"[,\r\n]")
+_STOP = {separator: re.compile(rf"[{separator}\r\n]") for separator in ",;"}
+_COMMA = re.compile(r"(?P<whole>[+-]?[0-9]+),(?P<rest>[0-9]+(?:[eE][+-]?[0-9]+)?(?:\([0-9]+\))?)")
+_THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
+"""What may mean a number and a thousand times it: 1,234."""
+_POINT = re.compile(r"[+-]?[0-9]*\.[0-9].*")
 _QUOTE = re.compile(r'"("?)')
 
 
@@ -67,7 +76,9 @@ class CsvTable(NamedTuple):
         return self.source.at(self.source.line_end(self.header[-1].offset + self.header[-1].length))
 
 
-def read_table(source: Source, known: Sequence[str], findings: Findings) -> CsvTable | None:
+def read_table(
+    source: Source, known: Sequence[str], findings: Findings, semicolons: bool = False
+) -> CsvTable | None:
     """Split a file into fields; None if it is no table at all.
 
     Parameters
@@ -78,8 +89,14 @@ def read_table(source: Source, known: Sequence[str], findings: Findings) -> CsvT
         The names a first line may hold, for the message when it holds none.
     findings : Findings
         Rows with a wrong number of fields, and quotes that do not close.
+    semicolons : bool
+        Whether they may stand between the fields, if no comma stands in the first line.
     """
-    rows = _rows(source, findings)
+    head = source.text.lstrip().partition("\n")[0]
+    separator = ";" if semicolons and ";" in head and "," not in head else ","
+    rows = _rows(source, findings, separator)
+    if separator == ";":
+        rows = _pointed(rows)
     while rows and _is_blank(rows[-1]):
         rows.pop()
     if not rows:
@@ -92,9 +109,9 @@ def read_table(source: Source, known: Sequence[str], findings: Findings) -> CsvT
     if not rows[0].sound:
         return None
     header, body = rows[0].fields, rows[1:]
-    for separator, name in _SEPARATORS.items():
-        if len(header) == 1 and separator in header[0].text:
-            start = source.text.index(separator, header[0].offset)
+    for other, name in _SEPARATORS.items():
+        if len(header) == 1 and other in header[0].text:
+            start = source.text.index(other, header[0].offset)
             findings.add("LS308", source.at(start), text=name)
             return None
     if len(header) > _MOST_COLUMNS:
@@ -108,25 +125,28 @@ def read_table(source: Source, known: Sequence[str], findings: Findings) -> CsvT
         findings.add("LS315", source.at(blank[0].offset))
     full = [row for row in body if not _is_blank(row)]
     wide = [row for row in full if row.sound and len(row.fields) != len(header)]
-    _report_widths(source, wide, len(header), findings)
+    _report_widths(source, wide, len(header), findings, separator)
     good = [row for row in full if row.sound and len(row.fields) == len(header)]
     return CsvTable(source, header, good, len(full))
 
 
-def _report_widths(source: Source, wide: list[CsvRow], wanted: int, findings: Findings) -> None:
+def _report_widths(
+    source: Source, wide: list[CsvRow], wanted: int, findings: Findings, separator: str
+) -> None:
     """Report rows of another width: one finding for all that decimal commas explain, one for each other."""
-    commas = [row for row in wide if _looks_comma(row, wanted)]
+    commas = [row for row in wide if separator == "," and _looks_comma(row, wanted)]
     for row in commas[:1]:
         at = source.at(row.offset, source.line_end(row.offset) - row.offset)
         findings.add("LS307", at, found=len(row.fields), wanted=wanted, count=len(commas))
     for row in wide:
-        if _looks_comma(row, wanted):
+        if row in commas:
             continue
         if len(row.fields) > wanted:
             at = source.at(row.fields[wanted].offset, row.fields[wanted].length)
         else:
             at = source.at(source.line_end(row.fields[-1].offset))
-        more = "a comma separates fields: write 2.334, not 2,334" if len(row.fields) > wanted else ""
+        comma = len(row.fields) > wanted and separator == ","
+        more = "a comma separates fields: write 2.334, not 2,334" if comma else ""
         findings.add("LS306", at, found=len(row.fields), wanted=wanted, suggestion=more)
 
 
@@ -147,17 +167,34 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def _rows(source: Source, findings: Findings) -> list[CsvRow]:
+def _pointed(rows: list[CsvRow]) -> list[CsvRow]:
+    """Rows with decimal points for decimal commas, if it is certain that they are."""
+    texts = [field.text for row in rows for field in row.fields]
+    commas = [text for text in texts if _COMMA.fullmatch(text)]
+    if all(map(_THOUSANDS.fullmatch, commas)) or any(map(_POINT.fullmatch, texts)):
+        return rows  # what has a comma is refused where it is read
+
+    def pointed(field: Field) -> Field:
+        return (
+            field._replace(text=_COMMA.sub(r"\g<whole>.\g<rest>", field.text))
+            if field.text in commas
+            else field
+        )
+
+    return [row._replace(fields=[pointed(field) for field in row.fields]) for row in rows]
+
+
+def _rows(source: Source, findings: Findings, separator: str) -> list[CsvRow]:
     rows = []
     position = 0
     text = source.text
     while position < len(text):
         end = source.line_end(position)
         if '"' in text[position:end]:
-            row, end = _quoted(source, position, findings)
+            row, end = _quoted(source, position, findings, separator)
         else:
             row, offset = CsvRow([], position), position
-            for part in text[position:end].split(","):
+            for part in text[position:end].split(separator):
                 row.fields.append(_field(part, offset))
                 offset += len(part) + 1
         rows.append(row)
@@ -171,7 +208,7 @@ def _field(part: str, offset: int) -> Field:
     return Field(stripped, offset + shift, max(len(stripped), 1), True, offset, offset + len(part))
 
 
-def _quoted(source: Source, position: int, findings: Findings) -> tuple[CsvRow, int]:
+def _quoted(source: Source, position: int, findings: Findings, separator: str) -> tuple[CsvRow, int]:
     """Read a line that has quotes; return it and where it ends, which may be lines later."""
     text, start = source.text, position
     fields: list[Field] = []
@@ -188,26 +225,26 @@ def _quoted(source: Source, position: int, findings: Findings) -> tuple[CsvRow, 
                 findings.add("LS313", source.at(begin))
                 return CsvRow(fields, start, False), len(text)
             content = text[begin + 1 : closing.start()]
-            stop = _stop(text, closing.end())
+            stop = _stop(text, closing.end(), separator)
             field = _field(content.replace('""', '"'), begin + 1)._replace(begin=position, end=stop)
             if '"' in content:
                 field = field._replace(offset=begin, length=closing.end() - begin, exact=False)
             fields.append(field)
             stray = bool(text[closing.end() : stop].strip(_BLANK))
         else:
-            stop = _stop(text, begin)
+            stop = _stop(text, begin, separator)
             fields.append(_field(text[position:stop], position))
             stray = '"' in fields[-1].text
         if stray:
             findings.add("LS314", source.at(begin, stop - begin), text=text[begin:stop].strip(_BLANK))
             sound = False
-        if text[stop : stop + 1] != ",":
+        if text[stop : stop + 1] != separator:
             return CsvRow(fields, start, sound), stop
         position = stop + 1
 
 
-def _stop(text: str, position: int) -> int:
-    stop = _STOP.search(text, position)
+def _stop(text: str, position: int, separator: str) -> int:
+    stop = _STOP[separator].search(text, position)
     return stop.start() if stop else len(text)
 
 

@@ -147,7 +147,7 @@ def read_measurements(
     before = len(findings.found)
     columns = {column.name: column for column in measured or () if column.name not in elsewhere}
     required = {"test": called, **{name: f"{name} [{column.unit}]" for name, column in columns.items()}}
-    table = read_table(source, list(required.values()), findings)
+    table = read_table(source, list(required.values()), findings, semicolons=True)
     if table is None:
         return None
     heads = [read_head(table, field, columns, findings) for field in table.header]

@@ -177,7 +177,7 @@ CATALOGUE: dict[str, Entry] = {
     "LS308": Entry(
         "wrong separator",
         "the fields are separated by {text}",
-        "commas between fields and a decimal point in numbers",
+        "commas between fields, or semicolons in a table of measurements, and a decimal point in numbers",
         "export the table again as comma-separated values, with a decimal point",
     ),
     "LS309": Entry("no header", "the first line holds numbers instead of the names of columns", "{known}"),

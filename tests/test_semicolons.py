@@ -1,0 +1,91 @@
+"""Tables with semicolons: read where their numbers can mean one thing only."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from test_inputs import CSV, TOML, WITH_PUBLISHED, find_workbook
+
+from loopsheet.report.inputs.inputs import Inputs, load
+from loopsheet.report.messages.errors import InputError
+
+Reader = Callable[..., Inputs]
+Findings = Callable[..., list[str]]
+
+
+@pytest.fixture
+def read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Reader:
+    """Give a function that writes a folder and reads it."""
+    monkeypatch.chdir(tmp_path)
+
+    def write_and_load(toml: str = TOML, csv: str = CSV, published: str = "") -> Inputs:
+        for name, text in {"report.toml": toml, "measurements.csv": csv, "published.csv": published}.items():
+            Path(name).write_bytes(text.encode())
+        return load(Path(), find_workbook)
+
+    return write_and_load
+
+
+@pytest.fixture
+def findings(read: Reader) -> Findings:
+    """Give a function that returns the findings of a folder as ``code file:line:column+length``."""
+
+    def collect(*args: str, **files: str) -> list[str]:
+        with pytest.raises(InputError) as caught:
+            read(*args, **files)
+        return [f"{found.code} {found.at}+{found.at.length}" for found in caught.value.diagnostics]
+
+    return collect
+
+
+GERMAN = CSV.replace(",", ";").replace(".", ",")
+
+
+@pytest.mark.parametrize(
+    "csv",
+    [
+        CSV.replace(",", ";"),
+        GERMAN,
+        GERMAN.replace("\n", "\r\n"),
+        "\ufeff" + GERMAN,
+        GERMAN.replace("0,530", '"0,530"').replace("1;", " 1 ;"),
+    ],
+)
+def test_semicolons_may_separate_and_commas_be_decimal(csv: str, read: Reader) -> None:
+    plain = read(csv=CSV).measured
+    other = read(csv=csv).measured
+    assert {name: [(p.text, p.value) for p in column] for name, column in other.items()} == {
+        name: [(p.text, p.value) for p in column] for name, column in plain.items()
+    }
+
+
+def test_uncertainties_and_reasons_in_such_a_table(read: Reader) -> None:
+    rows = ["1;2,334(5);0,530;2,35e1;", "2;2,940(5);0,512;29,7;", '3;2,9;0,5;30;"1,5; 2,5, or so"']
+    found = read(csv="\n".join(["test;v [m/s];e [1];x_p [um];left out", *rows]))
+    assert [p.text for p in found.measured["v"]] == ["2.334", "2.940"]
+    assert found.measured["v"][0].stated[0].width == Fraction(5, 1000)
+    assert [p.text for p in found.measured["x_p"]] == ["2.35e1", "29.7"]
+    assert [each.reason for each in found.left_out] == ["1,5; 2,5, or so"]
+
+
+THOUSANDS = "test;v [m/s];e [1];x_p [um]\n1;2,334;1;2,350\n2;2,940;1;2,970\n"
+
+
+@pytest.mark.parametrize(
+    ("csv", "refused"),
+    [
+        (THOUSANDS, 4),  # each a little more than two, or some two thousand
+        (GERMAN.replace("29,7", "29.7"), 5),
+        (GERMAN.replace("29,7", "1.029,7"), 6),
+    ],
+)
+def test_what_could_be_thousands_is_refused(csv: str, refused: int, findings: Findings) -> None:
+    assert [each.split()[0] for each in findings(csv=csv)] == ["LS402"] * refused
+    assert "LS401 measurements.csv:2:15+9" in findings(csv=GERMAN.replace("23,5", "1,002,970"))
+
+
+def test_semicolons_separate_measurements_alone(findings: Findings) -> None:
+    published = "source;cell;index;value;unit\nT;alpha;1-2;1,234;1\n"
+    assert findings(WITH_PUBLISHED, published=published) == ["LS308 published.csv:1:7+1"]
+    assert findings(csv="test;v [m/s], e;x_p [um]\n1;2,3;4\n2;2,4;5\n")
