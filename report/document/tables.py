@@ -166,7 +166,10 @@ class Tables:
             (TableColumn((axis.row,)), *map(_headed, heads)),
             (Rows(tuple(shown)),),
             spec.number,
-            legend=(*legend, ".", *((" ", *self.rich(spec.note)) if spec.note else ()), *self._known(heads)),
+            legend=(
+                *(*legend, ".", *((" ", *self.rich(spec.note)) if spec.note else ()), *self._known(heads)),
+                *(self._remarks() if not axis.parents and any(head.given for head in heads) else ()),
+            ),
             limits=self._limits(heads),
             cut=cut if len(labels) > most else "",
             wide=len(heads) > 5,
@@ -184,6 +187,20 @@ class Tables:
             if head.given and (said := of_column(self.report, head.name))
         ]
         return (" Stated uncertainties: ", *joined(told, "; "), ".") if told else ()
+
+    def _remarks(self) -> Inlines:
+        """What the table of measurements says of its rows in words."""
+        inputs, told = self.report.inputs, []
+        rows = {**inputs.texts, **{each.test: each.texts for each in inputs.left_out}}
+        for name in inputs.remarks:
+            of: dict[str, list[str]] = {}
+            for test, texts in sorted(rows.items()):
+                if text := texts.get(name):
+                    of.setdefault(text, []).append(str(test))
+            each = [f"{text} ({', '.join(tests)})" for text, tests in of.items()]
+            more = f" and {len(each) - MOST} more" if len(each) > MOST else ""
+            told.append(f"{name}: {', '.join(each[:MOST])}{more}")
+        return (f" Remarks: {'; '.join(told)}.",) if told else ()
 
     def _limits(self, heads: Iterable[Head]) -> Inlines:
         told = self.material.limits(heads)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..messages.errors import Findings, Location
     from .sources import Source
 
-__all__ = ["CsvRow", "CsvTable", "Field", "match_columns", "read_table"]
+__all__ = ["CsvRow", "CsvTable", "Field", "is_number", "match_columns", "read_table"]
 
 _BLANK = " \t\u00a0"
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "vertical bars"}
@@ -117,7 +117,7 @@ def read_table(
     if len(header) > _MOST_COLUMNS:
         findings.add("LS316", source.at(header[0].offset), found=len(header), wanted=_MOST_COLUMNS)
         return None
-    if all(_is_number(field.text) for field in header):
+    if all(is_number(field.text) for field in header):
         findings.add("LS309", source.at(header[0].offset, header[0].length), known=listing(known))
         return None
     blank = [row for row in body if _is_blank(row)]
@@ -159,7 +159,8 @@ def _is_blank(row: CsvRow) -> bool:
     return row.sound and not any(field.text for field in row.fields)
 
 
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
+    """Whether a text is a number, be it one with a comma."""
     try:
         read_number(text)
     except NumberError as error:

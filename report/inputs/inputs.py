@@ -108,6 +108,8 @@ class Inputs:
         The parameters and measured columns whose numbers were taken from other reports.
     heads : mapping of str to str
         The first line of the measurements as it stands, by what it names.
+    remarks : tuple of str
+        The columns of words that come along; nothing is computed from them.
     texts : mapping of int to mapping of str to str
         The row of each test as it stands, by column; that of one that is left out stands with it.
     """
@@ -134,6 +136,7 @@ class Inputs:
     taken: Mapping[str, Taken] = field(default_factory=dict)
     heads: Mapping[str, str] = field(default_factory=dict)
     texts: Mapping[int, Mapping[str, str]] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
 
     @property
     def about_source(self) -> bool:
@@ -324,6 +327,7 @@ class _Reader:
             taken=self.taken,
             heads=measurements.heads,
             texts=measurements.texts,
+            remarks=measurements.remarks,
         )
         if self.findings.found:
             self.findings.found.extend(self.more(inputs))

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ...derivations.unit_text import ParsedUnit, UnitError, examples, is_pure, misfit, parse_unit
 from ..distribution import Error
-from ..messages.errors import Findings
-from .csvtable import CsvRow, CsvTable, Field, match_columns, read_table
+from ..messages.errors import Findings, close
+from .csvtable import CsvRow, CsvTable, Field, is_number, match_columns, read_table
 from .number_text import NumberError, read_printed, read_value
 from .taken import Taken, alone
 
@@ -77,6 +77,7 @@ class Measurements:
 
     What is left out stands apart from them. A unit is that of a column or, called ``u(x_p)``, of its
     uncertainties. The heads are the first line as it stands, the texts the rows of the tests, by column.
+    Remarks are columns of words, which only come along.
     """
 
     tests: tuple[int, ...]
@@ -85,6 +86,7 @@ class Measurements:
     left_out: tuple[LeftOut, ...] = ()
     heads: dict[str, str] = field(default_factory=dict)
     texts: dict[int, dict[str, str]] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
 
     def beside(self, taken: Mapping[str, Taken], order: Iterable[str]) -> Measurements:
         """The same with columns that were taken from other reports, all in the order of their names."""
@@ -155,13 +157,15 @@ def read_measurements(
     if "test" not in names and called not in columns:
         names = ["test" if name == called else name for name in names]
     names = [_not_here(table, n, name, elsewhere, findings) for n, name in enumerate(names)]
+    remarks: tuple[str, ...] = ()
     if measured is None:
         if "test" not in names:
             return None  # its rows may be called as the workbook says, which is not known
         places = {"test": names.index("test")}
     else:
         optional = [*(f"u({name})" for name in columns), LEFT_OUT]
-        places = match_columns(table, names, required, optional, findings)
+        remarks = tuple(_remarks(table, heads, names, [called, *required, *optional, *elsewhere]))
+        places = match_columns(table, names, required, [*optional, *remarks], findings)
     tests = _tests(table, places["test"], findings) if "test" in places else ()
     reasons = [row.fields[places[LEFT_OUT]] for row in table.rows] if LEFT_OUT in places else []
     gone = {place for place, reason in enumerate(reasons) if reason.text}
@@ -223,7 +227,19 @@ def read_measurements(
     )
     lines = dict(zip(taken, map(texts, used), strict=True))
     first = {name: table.header[place].text for name, place in places.items()}
-    return Measurements(taken, values, units, left_out, first, lines)
+    return Measurements(taken, values, units, left_out, first, lines, remarks)
+
+
+def _remarks(
+    table: CsvTable, heads: Sequence[ColumnHead | None], names: Sequence[str], known: Collection[str]
+) -> Iterator[str]:
+    """The columns of words that nothing is computed from: without a unit, and no misspelt name of another."""
+    for place, head in enumerate(heads):
+        if head is None or head.unit is not None or not names[place] or close(names[place], known):
+            continue
+        texts = [row.fields[place].text for row in table.rows]
+        if any(text and not is_number(text) for text in texts):
+            yield names[place]
 
 
 def _not_here(table: CsvTable, place: int, name: str, elsewhere: Collection[str], findings: Findings) -> str:

@@ -1,4 +1,4 @@
-"""The page reads and saves temperatures in degC as a build does."""
+"""The page reads and saves temperatures in degC as a build does, and what is remarked of them."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -16,7 +16,8 @@ from loopsheet.report.study import Study
 def test_a_temperature_that_is_edited_is_saved_as_it_was_typed(
     open_page: Callable[..., Live], tmp_path: Path
 ) -> None:
-    folder = gas.folder(tmp_path / "gas")
+    rows = zip(gas.TABLE.splitlines(), ("remark", "", '"warm, too"', "cold"), strict=True)
+    folder = gas.folder(tmp_path / "gas", table="".join(f"{row},{said}\n" for row, said in rows))
     build.build(Study(folder), tmp_path / "out", ("html",))
     live = open_page(tmp_path / "out" / "report.html")
     assert driving.differences(live.cells(), Study(folder).computed.values) == []
@@ -29,7 +30,7 @@ def test_a_temperature_that_is_edited_is_saved_as_it_was_typed(
     live.type("T", 1, "59.9")
     saved = live.save(tmp_path / "saved", "workbook.py", "published.csv")
     lines = (saved / "measurements.csv").read_text(encoding="utf-8").splitlines()
-    assert lines == ["reading,T [degC]", "1,59.9", "2,21.5", "3,-13.7"]
+    assert lines == ["reading,T [degC],remark", "1,59.9,", '2,21.5,"warm, too"', "3,-13.7,cold"]
     report = Study(saved).computed
     assert report.values.value["T"].tolist() == [333.05, 294.65, 259.45]
     assert driving.differences(live.cells(), report.values) == []
