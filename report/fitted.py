@@ -41,7 +41,7 @@ class DeclaredFit:
         What is declared before it.
     observed, model : Expr
     sought : mapping of Symbol to declaration
-        The parameters: `meaning`, `unit`, `start` and `column` of each.
+        The parameters: `meaning`, `start` and `column` of each, its unit if that is stated.
     u : Expr, "stated" or None
         What rows are weighed by.
     number : str
@@ -94,10 +94,9 @@ class DeclaredFit:
         self.squares = (SquareSum(fit.names["S"], axis.name, len(words)),) if stated else ()
         made = {column.name: column for column in stated}
         for each, said in sought.items():
-            made[str(each)] = Column(
-                str(each), None, Given(), said.unit or ("" if fit.linear else "1"), words[each],
-                positive=False, latex=said.column["latex"],
-            )  # fmt: skip
+            unit = {"unit": "" if fit.linear else "1", **said.column}
+            made[str(each)] = Column(str(each), None, Given(), meaning=words[each], positive=False, **unit)
+        self._weighed, self._shown = u is not None, {f"s_{each}": made[str(each)].display for each in sought}
         latex = {name: (made[name].latex or spelt(name)).replace("%s", "") for name in map(str, sought)}
         letter = self._observed.latex or spelt(self._observed.name)
         head = re.split("[_%]", letter, maxsplit=1)[0]
@@ -132,7 +131,8 @@ class DeclaredFit:
     def _blank(self, part: FitQuantity) -> Column:
         """The column of a part, without what it is computed from."""
         names, rows = self._fit.names, isinstance(part.cell, Indexed)
-        like = f"like {self._observed.name}" if part.name in (names["fitted"], names["residual"]) else ""
+        as_observed = {names["fitted"], names["residual"], *(() if self._weighed else [names["s"]])}
+        like = f"like {self._observed.name}" if part.name in as_observed else self._shown.get(part.name, "")
         latex = self._latex.get(part.name, part.latex)
         symbol = part.cell.base.label if rows else part.cell
         more: dict[str, Any] = {"is_u": part.name.startswith("s_"), "spare": part.name == names["s"]}

@@ -328,6 +328,10 @@ def _unit(size: ParsedUnit) -> dict[str, Any]:
     return {"unit": si} if si == size.text else {"unit": si, "display": size.text}
 
 
+def _stated_unit(name: str, unit: str) -> dict[str, Any]:
+    return _unit(_size(name, unit)) if unit else {}
+
+
 def _exact(formula: Any) -> Expr:
     """A formula with its decimal fractions as they were typed: 0.27027027... was 1/3.7."""
     formula = sympify(formula)
@@ -370,6 +374,7 @@ class _Body(dict[str, Any]):
         self.figures: list[FigureSpec] = []
         self.announced: dict[str, _Unknown] = {}
         self.aside: list[str] = []
+        self.of_fits: dict[str, bool] = {}  # and whether it is a parameter
         self.squares: list[SquareSum] = []
         self.own = map("(L{})".format, itertools.count(1))
 
@@ -451,7 +456,7 @@ class _Body(dict[str, Any]):
         if not isinstance(said.observed, Indexed):
             raise SheetError(f"{name}: {said.observed} is no column over the rows: let(...) it be one", name)
         sought = {
-            symbol: announced
+            symbol: replace(announced, column={**_stated_unit(each, announced.unit), **announced.column})
             for each, announced in self.announced.items()
             if each not in self.columns and (symbol := Symbol(each, real=True)) in said.model.free_symbols
         }
@@ -465,6 +470,7 @@ class _Body(dict[str, Any]):
             self.columns[column.name] = column
         self.entries += found.entries
         self.aside += found.aside
+        self.of_fits |= {column.name: Symbol(column.name, real=True) in sought for column in found.columns}
         self.squares += found.squares
         if said.figures:
             self.figures += found.figures(len(self.figures) + 1)
@@ -473,7 +479,7 @@ class _Body(dict[str, Any]):
     def _computed(self, name: str, said: _Computed) -> Column:
         named = {symbol for side in said.sides for symbol in side.free_symbols}
         axis = self.axis if self.axis.index in named else None
-        unit = _unit(_size(name, said.unit)) if said.unit else {}
+        unit = _stated_unit(name, said.unit)
         column = Column(name, axis, Given(), meaning=said.meaning, **{**unit, **said.column})
         sides = said.sides if said.ends else (column.cell, *said.sides)
         kind = Kind.ASSUMPTION if said.ends else Kind.DEFINITION
@@ -533,7 +539,8 @@ class _Declaring(type):
         source : str
             Where the method is published.
         headline : str
-            The names of the results, first in every view; those of which nothing else is computed, without.
+            The names of the results, first in every view; without, the parameters of fits, and else that of
+            which nothing else is computed.
         rows, index, size : str
             What the rows of the table of measurements are called, ``readings``, their running number in
             formulas, ``k``, and how many there are, ``n``.
@@ -570,7 +577,8 @@ def _workbook(name: str, body: _Body, title: str, source: str, headline: Sequenc
     if not entries:
         raise SheetError(f"{name} computes nothing: it has no let(...), no root(...) and no fit(...)", name)
     used = set[str]().union(*(_named(c) - {c.name} for c in columns))
-    last = [c.name for c in columns if c.axis is None and c.equation and c.name not in used]
+    scalars = (c.name for c in columns if c.axis is None and c.equation)
+    last = [each for each in scalars if body.of_fits.get(each, each not in used)]
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
     columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
     rows = zip(*(body.examples.get(one.name, "").split() for one in columns_of), strict=False)
