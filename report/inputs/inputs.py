@@ -287,8 +287,7 @@ class _Reader:
             self.findings.check()
             raise AssertionError("a folder was refused without a finding")
         self.toml, self.tables = toml, TomlTables(toml, self.findings)
-        sections = ("parameters", "measurements", "uncertainty", "limits", "expected", "published")
-        self.tables.keys((), ("title", "workbook", *sections))
+        self.tables.keys(())
         self.said = Conventions(read_bare(self.tables), self.draws, self.take, self.taken)
         self.workbook = self.open_workbook()
         title = self.title()
@@ -370,10 +369,10 @@ class _Reader:
     # ------------------------------------------------------------------ report.toml
 
     def title(self) -> str | None:
-        return self.tables.text((), "title", "Soft steel, ball drop")
+        return self.tables.text((), "title")
 
     def open_workbook(self) -> Workbook | None:
-        name = self.tables.text((), "workbook", "soft_impact", required=True)
+        name = self.tables.text((), "workbook", required=True)
         if name is None:
             return None
         at = self.toml.value("workbook")
@@ -419,12 +418,12 @@ class _Reader:
             return Measurements((), {}, {})  # all that there is to give are parameters
         if self.workbook is None and "measurements" not in self.toml.data:
             return None  # it cannot be known whether there is anything to measure
-        table = self.tables.keys(("measurements",), ("file", "printed", "taken"))
+        table = self.tables.keys(("measurements",))
         above = self.toml.data
         missing = isinstance(above.get("measurements", {}), dict)
         if "measurements" not in above:  # a misspelt header is one problem, not two
             missing = not any(close(word, ["measurements"]) for word in above)
-        name = self.tables.text(("measurements",), "file", "measurements.csv", required=missing)
+        name = self.tables.text(("measurements",), "file", required=missing)
         columns = self.workbook.measured if self.workbook else ()
         names = [column.name for column in columns]
         wanted = self.tables.keys(("measurements", "taken"), names) if "taken" in table and names else {}
@@ -573,13 +572,13 @@ class _Reader:
     def published(self) -> tuple[PublishedValue, ...]:
         if "published" not in self.toml.data:
             return ()
-        table = self.tables.keys(("published",), ("file", "by", "free", "printed", "errata"))
+        table = self.tables.keys(("published",))
         is_table = isinstance(self.toml.data["published"], dict)
-        name = self.tables.text(("published",), "file", "published.csv", required=is_table)
+        name = self.tables.text(("published",), "file", required=is_table)
         if name is None or not table:
             return ()
         self.free = self.tables.names("published", "free")
-        if by := self.tables.text(("published",), "by", _SOURCE):
+        if by := self.tables.text(("published",), "by"):
             self.by_source = by == _SOURCE
             if not self.by_source:
                 at = self.toml.value("published", "by")

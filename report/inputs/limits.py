@@ -23,6 +23,7 @@ from ..cells.address import address, named
 from ..distribution import LEVEL
 from ..quantity import behind, span
 from .expected import check_expected
+from .keys import fixed
 from .number_text import NumberError, read_number, read_printed
 from .published import convertible
 from .stated import LARGEST, StatementError
@@ -161,10 +162,10 @@ def _number(text: str, start: int, code: str) -> Printed:
 def _rule(tables: TomlTables) -> Guard:
     """The decision rule; what is wrong with it is simple acceptance, and told."""
     path = (SECTION, RULE)
-    tables.keys(path, ("guard", "level"))
+    tables.keys(path)
     found = Guard()
-    for key, example in (("guard", "U"), ("level", "95 %")):
-        if (text := tables.text(path, key, example)) is None:
+    for key in fixed(*path):
+        if (text := tables.text(path, key)) is None:
             continue
         at = tables.toml.value(*path, key)
         try:

@@ -13,6 +13,7 @@ from ..cells.address import index_text
 from ..messages.errors import Findings, Location, listing, suggest
 from .about import FORMS, About, read_about
 from .csvtable import CsvTable, Field, match_columns, read_table
+from .keys import PUBLISHED
 from .number_text import NumberError, read_number, read_printed
 
 if TYPE_CHECKING:
@@ -21,10 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["COLUMNS", "Pin", "PublishedValue", "check_published", "convertible", "read_published"]
 
-_REQUIRED = ("source", "cell", "index", "value", "unit")
-_OPTIONAL = ("label", "expect", "recomputed", "explained", "reason")
+_REQUIRED = tuple(name for name, column in PUBLISHED.items() if column.required)
+_OPTIONAL = tuple(name for name, column in PUBLISHED.items() if not column.required)
 COLUMNS = (*_REQUIRED, *_OPTIONAL)
-"""The columns of published.csv, in the order in which they are best written."""
 _INDEX = re.compile(r"[1-9][0-9]{0,8}(?:-[1-9][0-9]{0,8})?")
 _EXPECT = ("", "differs")
 _ARROW = " -> "

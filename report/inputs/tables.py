@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from ..messages.errors import Findings, Location, close, listing, suggest
+from .keys import TABLES, fixed
 from .parameters import wrong_type
 
 if TYPE_CHECKING:
@@ -28,12 +29,20 @@ class TomlTables:
     def __init__(self, toml: TomlFile, findings: Findings) -> None:
         self.toml, self.findings = toml, findings
 
-    def keys(self, table: tuple[str, ...], known: Iterable[str]) -> dict[str, Any]:
-        """Return a table after a look at its keys; an absent one, or no table at all, is empty."""
+    def keys(self, table: tuple[str, ...], own: Iterable[str] = ()) -> dict[str, Any]:
+        """Return a table after a look at its keys; an absent one, or no table at all, is empty.
+
+        Parameters
+        ----------
+        table : tuple of str
+            Its place, one of :data:`~loopsheet.report.inputs.keys.TABLES`.
+        own : iterable of str
+            What there may be besides: names of the folder's own.
+        """
         data: Any = self.toml.data
         for name in table:
             data = data.get(name, {})
-        known = tuple(known)
+        known = (*own, *fixed(*table))
         where = "[" + ".".join(table) + "]" if table else "report.toml"
         if not isinstance(data, dict):
             # A key above the first table header and a table of the same name look alike to a beginner.
@@ -53,8 +62,15 @@ class TomlTables:
                 )
         return {key: value for key, value in data.items() if key in known}
 
-    def text(self, table: tuple[str, ...], key: str, example: str, required: bool = False) -> str | None:
-        """Return the text of a key, if it is there and is text on one line."""
+    def text(
+        self, table: tuple[str, ...], key: str, example: str | None = None, required: bool = False
+    ) -> str | None:
+        """Return the text of a key, if it is there and is text on one line.
+
+        Messages propose the example: without it, that of :data:`~loopsheet.report.inputs.keys.TABLES`.
+        """
+        if example is None:
+            example = TABLES[table][key].example.strip('"')
         data: Any = self.toml.data
         for name in table:
             data = data.get(name, {})

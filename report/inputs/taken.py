@@ -23,6 +23,7 @@ from ..cells.address import address, index_text, named
 from ..distribution import Error, Shape
 from ..messages.errors import Location, listing, suggest
 from ..quantity import Printed
+from .keys import ANY, TABLES
 from .number_text import read_unit_of
 from .parameters import wrong_type
 
@@ -42,9 +43,7 @@ if TYPE_CHECKING:
 __all__ = ["EXAMPLE", "Origin", "Taken", "TakenError", "alone", "open_result", "read_taken"]
 
 EXAMPLE = '{ from = "balance/values.json", cell = "m" }'
-_KEYS = ("from", "cell")
-_MAY = (*_KEYS, "unit")
-"""What it is shown in; without it, in SI."""
+_KEYS = TABLES["parameters", ANY]
 Origin = tuple[str, str]
 """Of an error: the sha256 of the inputs of the report where it was stated, and its name there."""
 
@@ -151,13 +150,13 @@ def read_taken(
         The tests that take no part.
     """
     for key in said:
-        if key not in _MAY:
-            where, hint = ".".join(path), suggest(key, _MAY)
+        if key not in _KEYS:
+            where, hint = ".".join(path), suggest(key, _KEYS)
             at = toml.key(*path, key)
-            findings.add("LS203", at, text=key, table=where, known=listing(_MAY), suggestion=hint)
+            findings.add("LS203", at, text=key, table=where, known=listing(_KEYS), suggestion=hint)
             return None
-    for key in _MAY:
-        if key in _KEYS and key not in said:
+    for key, of_key in _KEYS.items():
+        if of_key.required and key not in said:
             findings.add("LS204", toml.key(*path), text=key, table=".".join(path), example=EXAMPLE)
             return None
         if not isinstance(said.get(key, ""), str):

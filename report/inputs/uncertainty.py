@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...derivations.unit_text import parse_unit
 from ..messages.errors import listing, suggest
+from .keys import ANY, fixed
 from .number_text import NumberError, read_number
 from .parameters import wrong_type
 from .readings import correlations_of, read_paired
@@ -127,7 +128,7 @@ class Stated:
 
 def read_bare(tables: TomlTables) -> Shape | None:
     """What limits without a word mean, here and behind the numbers of parameters; None: it is not said."""
-    word = tables.text((SECTION,), "plus_minus", "rect")
+    word = tables.text((SECTION,), "plus_minus")
     words = [word for word, shape in SHAPES.items() if shape != "normal"]
     if word is None or word in words:
         return SHAPES[word] if word else None
@@ -159,7 +160,7 @@ def read_uncertainty(
         What the folder says of all uncertainties.
     """
     reader = _Reader(tables, numbers, declared, tests, said)
-    written = tables.keys((SECTION,), (*numbers, "plus_minus", "digits", "paired", "shared", "correlation"))
+    written = tables.keys((SECTION,), numbers)
     paired = read_paired(tables, SECTION, numbers) if "paired" in written else ()
     columns = {name: reader.column(name) for name in written if name in numbers}
     columns |= {name: reader.of_readings(name, name in columns) for name in paired}
@@ -257,7 +258,7 @@ class _Reader:
     def shared(self, name: str) -> SharedError | None:
         """An error that cells share."""
         path = (SECTION, "shared", name)
-        written = self.tables.keys(path, ("of", "stated", "groups"))
+        written = self.tables.keys(path, fixed(SECTION, "shared", ANY))
         of = self.tables.text(path, "of", next(iter(self.numbers), "x_p"), required=True)
         if of is None or of not in self.numbers:
             if of is not None:
