@@ -17,7 +17,7 @@ LOCK := .venv-lock/bin/uv pip compile --quiet --universal --python-version 3.11 
 PYTEST := $(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder $(if $(SEED),--seed $(SEED))
 
 .DEFAULT_GOAL := help
-.PHONY: help report test campaigns seen mutants bench wheel lock clean
+.PHONY: help report test campaigns seen mutants bench docs wheel lock clean
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 
@@ -28,6 +28,7 @@ help:
 	@echo "make seen        the page's scripts or the paper's report were changed and looked at: they are right"
 	@echo 'make mutants     one spot of the sources changed at a time: what no test notices (SEED=7, EACH=40, PART=plan)'
 	@echo 'make bench       the benchmarks'
+	@echo 'make docs        the guide and the reference as pages, in $(OUT)/docs/'
 	@echo 'make wheel       loopsheet as one file in dist/, to be installed without this folder'
 	@echo 'make lock        pin the dependencies of pyproject.toml again (UPGRADE=--upgrade: to the newest)'
 	@echo 'make clean       remove all that was made here'
@@ -56,6 +57,10 @@ mutants: $(VENV)/.test
 bench: $(VENV)/.test $(VENV)/.bench
 	set -e; for script in benchmarks/bench_*.py; do echo "== $$script"; $(BIN)/python "$$script"; done
 
+docs: $(VENV)/.docs
+	$(BIN)/python -m sphinx -q -W --keep-going -E -b html docs '$(OUT)/docs' -d '$(OUT)/docs/.doctrees'
+	@echo 'Look at $(abspath $(OUT))/docs/index.html'
+
 # The stamps: an environment is set up once, and again when what it was made from has changed.
 $(VENV)/.made:
 	@$(PYTHON) -c 'import sys; sys.exit("loopsheet needs Python 3.11 or later, $(PYTHON) is %d.%d: make PYTHON=python3.11 ..." % sys.version_info[:2] if sys.version_info < (3, 11) else 0)'
@@ -64,7 +69,7 @@ $(VENV)/.made:
 
 # Each lock holds all of the runtime lock, so the larger one serves `make report` as well. The build
 # backend is pinned with the rest: nothing is fetched that is not in the lock.
-$(VENV)/.runtime $(VENV)/.test $(VENV)/.bench: $(VENV)/.%: requirements/%.txt pyproject.toml $(VENV)/.made
+$(VENV)/.runtime $(VENV)/.test $(VENV)/.bench $(VENV)/.docs: $(VENV)/.%: requirements/%.txt pyproject.toml $(VENV)/.made
 	$(PIP) install --require-hashes -r $<
 	$(PIP) install --no-deps --no-build-isolation --no-index -e .
 	@touch $@ $(VENV)/.runtime
@@ -81,7 +86,8 @@ wheel: $(VENV)/.runtime
 lock: .venv-lock/bin/uv
 	$(LOCK) pyproject.toml --group build -o requirements/runtime.txt
 	$(LOCK) pyproject.toml --group build --group test -c requirements/runtime.txt -o requirements/test.txt
-	$(LOCK) pyproject.toml --group build --group bench -c requirements/test.txt -o requirements/bench.txt
+	$(LOCK) pyproject.toml --group build --group docs -c requirements/test.txt -o requirements/docs.txt
+	$(LOCK) pyproject.toml --group build --group bench -c requirements/test.txt -c requirements/docs.txt -o requirements/bench.txt
 	$(LOCK) --group crate -o requirements/crate.txt
 	$(LOCK) pyproject.toml --resolution lowest-direct -o requirements/floors.txt
 

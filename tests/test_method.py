@@ -26,8 +26,6 @@ from loopsheet.report.uncertainty.propagation import Spread
 from loopsheet.report.views import charts
 from loopsheet.report.workbook import Workbook
 
-README = Path(__file__).parent.parent / "README.md"
-
 
 def sheet_of(method: type[Method]) -> Sheet:
     return method.workbook.sheet(frozenset())
@@ -391,21 +389,6 @@ def test_the_names_are_there_when_asked_for() -> None:
     assert all(getattr(loopsheet, name) for name in loopsheet.__all__)
     with pytest.raises(AttributeError, match="no attribute 'methods'"):
         loopsheet.methods  # noqa: B018
-
-
-def test_the_example_of_the_readme(tmp_path: Path) -> None:
-    """As it stands there, it is a folder that can be built."""
-    text = README.read_text(encoding="utf-8").partition("## Your own method")[2]
-    code, toml, table = (
-        re.search(rf"```{kind}\n(.*?)```", text, re.DOTALL)[1]  # type: ignore[index]
-        for kind in ("python", "toml", "csv")
-    )
-    for name, content in (("workbook.py", code), ("report.toml", toml), ("measurements.csv", table)):
-        (tmp_path / name).write_text(content, encoding="utf-8")
-    report = Study(tmp_path).report
-    assert not report.faults
-    assert report.values.scalar("g") == pytest.approx(9.81, abs=0.02)
-    assert math.isfinite(report.uncertain().u["g"][0])
 
 
 LOGS = """\

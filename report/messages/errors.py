@@ -1,8 +1,7 @@
 """Every sentence a user may read when something is wrong, by its stable code.
 
-A code never changes its meaning and is never used again. LS1xx are about files, LS2xx about report.toml,
-LS3xx about tables, LS4xx about numbers and units, LS5xx about published values, LS6xx about usage and
-outputs. To add one: a line in :data:`CATALOGUE`, and a case in tests/test_errors.py.
+A code never changes its meaning and is never used again; its first digit says what it is about
+(:data:`GROUPS`). To add one: a line in :data:`CATALOGUE`, and a case in tests/test_errors.py.
 """
 
 from __future__ import annotations
@@ -16,6 +15,7 @@ from .diagnostics import Diagnostic, Location, render, render_all, visible
 __all__ = [
     "CATALOGUE",
     "EXHAUSTED",
+    "GROUPS",
     "Diagnostic",
     "Entry",
     "Findings",
@@ -44,8 +44,17 @@ class Entry(NamedTuple):
     hint: str = ""
 
 
+GROUPS = {
+    "LS1": "Files",
+    "LS2": "report.toml",
+    "LS3": "Tables",
+    "LS4": "Numbers, units and uncertainties",
+    "LS5": "Published values",
+    "LS6": "Usage and outputs",
+}
+"""What codes are about, by how they begin."""
+
 CATALOGUE: dict[str, Entry] = {
-    # Files
     "LS101": Entry(
         "no such folder", "no such folder: '{text}'", hint="'loopsheet new FOLDER' makes one to start from"
     ),
@@ -92,7 +101,6 @@ CATALOGUE: dict[str, Entry] = {
         "comma-separated values (CSV) in UTF-8, with a decimal point",
         "open it there and save the sheet as 'CSV UTF-8'; then name that file in report.toml",
     ),
-    # report.toml
     "LS201": Entry("not TOML", "not TOML: {reason}", "TOML 1.0, https://toml.io", "{suggestion}"),
     "LS202": Entry("TOML too deep", "the file is nested too deeply", "the keys of a report, two levels deep"),
     "LS203": Entry("unknown key", "unknown key '{text}' in {table}", "{known}", "{suggestion}"),
@@ -125,7 +133,8 @@ CATALOGUE: dict[str, Entry] = {
         "workbook fails",
         "{text} cannot be used: {reason}",
         "a Python file with a class of loopsheet.Method, or a loopsheet.report.workbook.Workbook as WORKBOOK",
-        "the README has an example; a copy of a shipped one imports by full names, as loopsheet.report.sheet",
+        "'loopsheet new FOLDER --workbook formula' writes one; "
+        "a copy of a shipped one imports by full names, as loopsheet.report.sheet",
     ),
     "LS214": Entry(
         "code of the folder",
@@ -139,7 +148,6 @@ CATALOGUE: dict[str, Entry] = {
         "'source', if the published values are those of the workbook's own source",
         "leave it out if somebody else published them",
     ),
-    # Tables
     "LS301": Entry(
         "missing column", "the column '{text}' is missing", hint="add '{example}' to the first line"
     ),
@@ -211,7 +219,6 @@ CATALOGUE: dict[str, Entry] = {
         "one of both",
         "{suggestion}",
     ),
-    # Numbers and units
     "LS401": Entry(
         "not a number",
         "{name} is not a number: '{text}'",
@@ -268,7 +275,6 @@ CATALOGUE: dict[str, Entry] = {
         "one meaning, such as J/(kg*K)",
         "put parentheses around what is below the line",
     ),
-    # Uncertainties
     "LS431": Entry(
         "not an uncertainty",
         "'{text}' is not understood as an uncertainty",
@@ -320,7 +326,6 @@ CATALOGUE: dict[str, Entry] = {
         'guard = "U", "0.83 U", "0.2 um" or "0"; level = "95 %"',
         "{suggestion}",
     ),
-    # Published values
     "LS501": Entry(
         "not an index",
         "not an index: '{text}'",
@@ -353,7 +358,6 @@ CATALOGUE: dict[str, Entry] = {
         "{known}; its value by its name alone",
         "write what is published of its uncertainty as it stands there, in quotes if it has a comma",
     ),
-    # Usage and outputs
     "LS601": Entry(
         "output not writable",
         "'{text}' cannot be written: {reason}",
