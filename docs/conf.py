@@ -19,7 +19,8 @@ napoleon_google_docstring = False
 napoleon_use_param = False  # "low, high" stay together
 autodoc_typehints = "none"  # the docstrings say them, with shapes and units
 autodoc_member_order = "bysource"
-highlight_language, smartquotes = "text", False
+highlight_language = "text"
+smartquotes_action = "D"  # dashes; what is quoted is often code
 pygments_style = "friendly"
 
 html_theme = "furo"
