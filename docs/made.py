@@ -115,16 +115,12 @@ def told_of_cells() -> str:
 
 
 def _keys(entries: Mapping[str, keys.Key]) -> str:
+    called = {name: "*a name*" if name == keys.ANY else f"`{name}`" for name in entries}
     rows = (
-        (
-            "*a name*" if name == keys.ANY else f"`{name}`",
-            "yes" if key.required else "",
-            f"`{key.example}`",
-            key.meaning,
-        )
+        (called[name], f"{key.meaning}{' Must be there.' * key.required}", f"`{key.example}`")
         for name, key in entries.items()
     )
-    return _table(("key", "needed", "example", "meaning"), rows)
+    return _table(("key", "meaning", "example"), rows)
 
 
 # --------------------------------------------------------------------------- files that are written
@@ -143,13 +139,13 @@ def _forms(form: type[Form]) -> str:
     parts = []
     for name, told in json.loads(schema(form))["$defs"].items():
         said, meanings = _described(told["description"])
-        needed = told.get("required", ())
+        spare = [f"`{name}`" for name in told["properties"] if name not in told.get("required", ())]
         rows = (
-            (f"`{field}`", _kind(kind), "yes" if field in needed else "", meanings.get(field, ""))
-            for field, kind in told["properties"].items()
+            (f"`{field}`", meanings.get(field, ""), _kind(kind)) for field, kind in told["properties"].items()
         )
-        head = f"({form.__name__.lower()}-{name.lower()})=\n### {name}\n\n{said}\n"
-        parts.append(f"{head}\n{_table(('field', 'form', 'always there', 'meaning'), rows)}")
+        head = f"(json-{name.lower()})=\n### {name}\n\n{said}\n"
+        parts.append(f"{head}\n{_table(('field', 'meaning', 'form'), rows)}")
+        parts.append(f"May be missing: {', '.join(spare)}.\n" if spare else "")
     return "\n".join(parts)
 
 
@@ -169,17 +165,24 @@ def _parts(docstring: str) -> tuple[str, list[tuple[str, str]]]:
 def _kind(told: Mapping[str, Any]) -> str:
     """A type of a JSON schema in words."""
     if "$ref" in told:
-        return told["$ref"].rpartition("/")[2]
+        name = told["$ref"].rpartition("/")[2]
+        return f"[{name}](#json-{name.lower()})"
     if "enum" in told:
         return " or ".join(map(str, told["enum"]))
     if "anyOf" in told:
         return " or ".join(dict.fromkeys(_kind(one) for one in told["anyOf"]))
     if told.get("type") == "array":
-        return f"list of {_kind(told['items'])}" if told.get("items") else "list"
+        return f"list of {_one(told['items'])}" if told.get("items") else "list"
     if told.get("type") == "object":
         inner = told.get("additionalProperties")
-        return f"table of {_kind(inner)}" if isinstance(inner, Mapping) else "table"
+        return f"table of {_one(inner)}" if isinstance(inner, Mapping) else "table"
     return str(told.get("type", "anything"))
+
+
+def _one(told: Mapping[str, Any]) -> str:
+    """The same of the entries of a list or of a table."""
+    kind = _kind(told)
+    return f"({kind})" if " or " in kind else kind
 
 
 # ------------------------------------------------------------------------------------------ Python
