@@ -30,7 +30,7 @@ from .cells.units import unit_of
 from .charts import BLUE, VERMILION, Chart, Series
 from .column import Axis, Column, Formula, Given, Root, SheetError
 from .fitted import DeclaredFit
-from .quantity import Bounds
+from .quantity import Bounds, behind
 from .sheet import Sheet
 from .workbook import FigureSpec, Measured, Parameter, SquareSum, Workbook
 
@@ -219,7 +219,7 @@ def root(
     low, high : Expr
         Between which it lies, themselves left out, as all formulas in SI; they may hang on other names.
     start : Expr, optional
-        A first guess; the middle, without. It costs steps, never truth.
+        A first guess, alike; the middle, without. It costs steps, never truth.
     steps : int
         How many of Newton's steps are tried before it is bisected.
     """
@@ -227,7 +227,9 @@ def root(
     if low.is_number and high.is_number and low >= high:
         raise SheetError(f"the root is sought between {low} and {high}: low is not below high")
     ends = {"low": low, "high": high, "start": (low + high) / 2 if start is None else sympify(start)}
-    none = f"no value between {low} and {high}, which do not count, satisfies the equation"
+    first, last = (f"{float(end):.15g}" if end.is_number else str(end) for end in (low, high))
+    between = f"{first} and {last}" + behind(unit)
+    none = f"no value between {between}, which do not count, satisfies the equation"
     # Ends that hang on the row may change places.
     upright = low < high
     requires = (
@@ -326,6 +328,11 @@ def _unit(size: ParsedUnit) -> dict[str, Any]:
     """The unit of a column, in SI, and the one that it is shown in, if that is another."""
     si = coherent(size)
     return {"unit": si} if si == size.text else {"unit": si, "display": size.text}
+
+
+def _in_si(place: Expr, size: ParsedUnit) -> Expr:
+    """A number in a unit, in SI; what names quantities is in SI."""
+    return place * Rational(size.scale) + Rational(size.zero) if place.is_number else place
 
 
 def _stated_unit(name: str, unit: str) -> dict[str, Any]:
@@ -492,7 +499,11 @@ class _Body(dict[str, Any]):
                 )
             if self.announced.get(name) not in (None, _Unknown("", "", {"latex": ""})):
                 raise SheetError(f"{name} = unknown() is enough: root(...) says what {name} is", name)
-            rule = Root(equation, equation, column.symbol, column.symbol, **said.ends)
+            size = _size(name, said.unit)
+            places = {
+                each: _in_si(place, size) for each, place in said.ends.items() if isinstance(place, Expr)
+            }
+            rule = Root(equation, equation, column.symbol, column.symbol, **{**said.ends, **places})
             return replace(column, rule=rule)
         column = replace(column, rule=Formula(equation))
         if not said.unit:

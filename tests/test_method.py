@@ -456,3 +456,25 @@ def test_a_root_at_an_end_is_none(tmp_path: Path, equation: str, low: str, code:
     cell = Study(tmp_path).computed.values.cell("x")
     assert (cell.value, cell.status.code) == (None, code)
     assert says in cell.why
+
+
+def test_the_ends_of_a_root_have_its_unit(tmp_path: Path) -> None:
+    """Dispersion of water waves; numbers are in the unit that the root is declared in."""
+    (tmp_path / "workbook.py").write_text(
+        "from sympy import pi, tanh\n"
+        "from loopsheet import Method, given, root, unknown\n"
+        "class Waves(Method):\n"
+        "    'Waves.'\n"
+        "    T = given('ms', 'period', default='8000 ms')\n"
+        "    h = given('cm', 'depth', default='1000 cm')\n"
+        "    g = given('m/s^2', 'free fall', default='9.81 m/s^2')\n"
+        "    q = unknown()\n"
+        "    w = (2 * pi / T) ** 2\n"
+        "    q = root(g * q * tanh(q * h), w, 'wave number', 'cm^-1', low=1e-5, high=1)\n",
+        encoding="utf-8",
+    )
+    (tmp_path / "report.toml").write_text('workbook = "workbook.py"\n', encoding="utf-8")
+    wanted = mpmath.findroot(lambda q: 9.81 * q * mpmath.tanh(10 * q) - (mpmath.pi / 4) ** 2, 0.09)
+    found = loopsheet.load(tmp_path)["q"]
+    assert found.unit == "cm^-1"
+    assert float(found.value) == pytest.approx(float(wanted) / 100, rel=1e-14)

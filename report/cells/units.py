@@ -120,7 +120,7 @@ def check(sheet: Sheet) -> None:
             checker.of(rule.expression)
             _expect(checker, rule.value, own)
             for place in (rule.low, rule.high, rule.start, *rule.turning):
-                if place != 0 and place.is_finite is not False:
+                if not place.is_number:  # a number is in SI
                     _expect(checker, place, checker.of_unknown())
             for end in (rule.sign_low, rule.sign_high):
                 if end is not None:

@@ -178,8 +178,8 @@ CATALOGUE: dict[str, Entry] = {
     ),
     "LS307": Entry(
         "row widened by decimal commas",
-        "the row has {found} fields, the first line has {wanted}: decimal commas? ({count} such rows)",
-        "a decimal point; the comma separates fields",
+        "the row has {found} fields, the first line has {wanted}: decimal commas? (rows like this: {count})",
+        "a decimal point; the comma separates fields, or semicolons do in the whole file",
         "write 2.334, not 2,334",
     ),
     "LS308": Entry(
