@@ -4,6 +4,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Method",
+    "claim",
     "count",
     "fit",
     "given",

@@ -34,7 +34,20 @@ from .quantity import Bounds, behind
 from .sheet import Sheet
 from .workbook import FigureSpec, Measured, Parameter, SquareSum, Workbook
 
-__all__ = ["Method", "count", "fit", "given", "let", "mean", "measured", "plot", "root", "total", "unknown"]
+__all__ = [
+    "Method",
+    "claim",
+    "count",
+    "fit",
+    "given",
+    "let",
+    "mean",
+    "measured",
+    "plot",
+    "root",
+    "total",
+    "unknown",
+]
 
 
 FUNCTIONS = (
@@ -282,6 +295,34 @@ def count() -> Symbol:
     return _body().axis.size
 
 
+def claim(
+    left: Any,
+    right: Any,
+    meaning: str,
+    *,
+    because: str = "",
+    from_: Sequence[Any] | None = None,
+    label: str = "",
+) -> None:
+    """State that two formulas are equal whatever was measured: it is proved, or a finding of `check`.
+
+    Parameters
+    ----------
+    left, right : Expr
+        In names of the body; of one that has a value for each row, it is claimed of every row.
+    meaning : str
+        What is claimed, in a few words.
+    because : str
+        Why it holds.
+    from_ : sequence of Expr, optional
+        The quantities whose equations it follows from, all others may have any value; without, all that it
+        rests on, back to what is given and measured.
+    label : str
+        The number of its equation; its place among the equations, without.
+    """
+    _body().claimed(_exact(left), _exact(right), meaning, because, from_, label)
+
+
 def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None:
     """Show points of two columns, and what is computed beside them.
 
@@ -357,6 +398,12 @@ def _exact(formula: Any) -> Expr:
             typed[number] = 1 / Rational(turned)
     found: Expr = formula.xreplace(typed)
     return found
+
+
+def _typed(formula: Expr) -> Expr:
+    """A formula with its decimal fractions as fractions: a proof takes no rounded number."""
+    typed: Expr = formula.xreplace({number: Rational(repr(float(number))) for number in formula.atoms(Float)})
+    return typed
 
 
 def _name(cell: Expr) -> str:
@@ -482,6 +529,48 @@ class _Body(dict[str, Any]):
         if said.figures:
             self.figures += found.figures(len(self.figures) + 1)
         return found
+
+    def claimed(
+        self, left: Expr, right: Expr, meaning: str, because: str, from_: Sequence[Any] | None, label: str
+    ) -> None:
+        """Put a claim into the ledger, with what it is to be derived from."""
+        found = self._premises((left, right) if from_ is None else from_, meaning, everything=from_ is None)
+        row = Symbol("i", integer=True, positive=True)
+        members = tuple(_typed(side).subs(self.axis.index, row) for side in (left, right))
+        conditions = tuple(dict.fromkeys(each for premise, _ in found for each in premise.conditions))
+        equation = Equation(
+            label or self._number(),
+            members,
+            because or "it follows by algebra",
+            title=meaning,
+            conditions=conditions,
+        )
+        zero = Equation(equation.label, (left, left - right), "", title=meaning)
+        unit_of(self.columns, Column(meaning, self.axis, Formula(zero)))  # as long as both have one unit
+        premises, unknowns = zip(*found, strict=True) if found else ((), ())
+        self.entries.append(Derivation.of(equation, premises, unknowns, "Put in what the quantities are."))
+
+    def _premises(
+        self, formulas: Sequence[Any], meaning: str, everything: bool
+    ) -> list[tuple[Equation, Expr]]:
+        """What says of the quantities in formulas what they are, and what each is solved for."""
+        found: dict[str, tuple[Equation, Expr]] = {}
+        left = list(formulas)
+        while left:
+            named = {_name(cell) for cell in left.pop().atoms(Symbol, Indexed)} & self.columns.keys()
+            for column in (self.columns[name] for name in sorted(named - found.keys())):
+                if isinstance(column.rule, Given):
+                    continue
+                if not isinstance(column.rule, Formula):
+                    raise SheetError(
+                        f"{column.name} is sought, it has no formula to put in: say what '{meaning}' follows "
+                        "from without it, from_=[...]",
+                        column.name,
+                    )
+                equation, cell = column.rule.equation, column.cell
+                found[column.name] = equation, cell.base if isinstance(cell, Indexed) else cell
+                left += [equation.value] if everything else []
+        return list(found.values())
 
     def _computed(self, name: str, said: _Computed) -> Column:
         named = {symbol for side in said.sides for symbol in side.free_symbols}

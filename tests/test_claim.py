@@ -1,0 +1,110 @@
+"""What an author of a method claims is proved, or it is a finding."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from loopsheet.derivations.proof import prove
+from loopsheet.derivations.proved import Proof, ProofStatus
+from loopsheet.report import method
+from loopsheet.report.cli import main
+from loopsheet.report.study import Study
+
+BODY = """\
+    x = measured("m", "place")
+    y = measured("V", "voltage")
+    L = given("m", "length", positive=True)
+    dx = let(x - mean(x), "place from the mean on")
+    S = let(total(dx**2), "squares")
+    s = let(sqrt(S / (count() - 1)), "scatter")
+    part = let(x / L, "part")
+    a = unknown("offset")
+    b = unknown("slope")
+    line = fit(y, a + b * x)
+"""
+WORDS = """\
+from sympy import cos, sin, sqrt
+from loopsheet import Method, claim, count, fit, given, let, mean, measured, root, total, unknown
+"""
+CLAIMS = {
+    "(S, total(x**2) - total(x) ** 2 / count(), 'by raw sums')": "(S, total(x**2) - total(x) ** 2, 'w')",
+    "(total(dx), 0, 'nothing is left')": "(total(dx), mean(x), 'w')",
+    "(dx + mean(x), x, 'of each row')": "(dx + mean(x), x + L / 10**30, 'w')",
+    "(s**2 * (count() - 1), total(x * dx), 'squares')": "(s**2 * count(), total(x * dx), 'w')",
+    "(part**2 * L, x**2 / L, 'of a row')": "(part**2 * L, 2 * x**2 / L, 'w')",
+    "(sin(part) ** 2 + 0.5 * cos(part) ** 2 * 2, 1, 'a')": "(sin(part) ** 2 + cos(part), 1.0, 'w')",
+    "(total(line.residual), 0, 'residuals')": "(total(line.residual**2), 0, 'w')",
+    "(total(line.residual * x), 0, 'moments')": "(total(line.residual * x**2), 0, 'w')",
+    "(b, total(dx * y) / S, 'slope')": "(b, total(dx * y) / total(x**2), 'w')",
+    "(a, mean(y) - b * mean(x), 'mean point')": "(a, mean(y) + b * mean(x), 'w')",
+    "(line.S, total(y * line.residual), 'squares')": "(line.S, total(line.fitted * line.residual), 'w')",
+    "(S, total(dx * x), 'by one', from_=[S, dx])": "(total(dx), 0, 'w', from_=[S])",
+}
+"""What holds, and what does not."""
+
+
+def proved(claim: str) -> Proof:
+    scope: dict[str, object] = {}
+    exec(f"{WORDS}\n\nclass Claimed(Method):\n{BODY}    claim{claim}\n", scope)
+    ledger = scope["Claimed"].workbook.ledger()  # type: ignore[attr-defined]
+    return prove(ledger)[-1]
+
+
+@pytest.mark.parametrize("claim", CLAIMS)
+def test_a_claim_is_proved_and_another_is_refuted(claim: str) -> None:
+    right, wrong = proved(claim), proved(CLAIMS[claim])
+    assert right.status is ProofStatus.PROVED
+    assert wrong.status is ProofStatus.REFUTED
+    assert wrong.steps[-1].counterexample
+
+
+def folder(path: Path, line: str) -> Path:
+    code = f'{WORDS}\n\nclass Claimed(Method):\n    """Claims."""\n\n{BODY}    {line}\n'
+    (path / "workbook.py").write_text(code, encoding="utf-8")
+    (path / "m.csv").write_text("reading,x [m],y [V]\n1,1.0,2.0\n2,2.0,3.1\n3,3.5,4.2\n", encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[parameters]\nL = "2.0 m"\n[measurements]\nfile = "m.csv"\n'
+    (path / "report.toml").write_text(toml, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(("right", "code"), [("0", 0), ("mean(x)", 1)])
+def test_a_wrong_claim_is_red(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], right: str, code: int
+) -> None:
+    where = folder(tmp_path, f"claim(total(dx), {right}, 'nothing is left', label='(C)')")
+    assert main(["prove", "(C)", str(where), "--no-cache"]) == code
+    told = capsys.readouterr().out
+    assert ("refuted" in told) == bool(code)
+    assert ("proved: residual 0" in told) != bool(code)
+    assert all(proof.status.passes for proof in Study(where).proved.proofs) != bool(code)
+    assert main(["check", str(where), "--no-cache"]) == code
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("claim(x, y, 'of two kinds')", "of two kinds (6): cannot add A^-1 kg m^2 s^-3 and m"),
+        ("claim(x > y, 1, 'no formula')", "is no formula of real numbers"),
+        (
+            "r = unknown(); r = root(r**3 + r, x, 'r', low=0, high=9); claim(r, x, 'root')",
+            "r is sought, it has no formula to put in: say what 'root' follows from without it, from_=[...]",
+        ),
+    ],
+)
+def test_what_cannot_be_claimed_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, said: str
+) -> None:
+    where = folder(tmp_path, line.replace("x, 'r'", "x / L, 'r'"))
+    assert main(["check", str(where), "--no-cache"]) == 2
+    told = capsys.readouterr().err
+    assert said in told
+    assert "workbook.py:" in told
+
+
+def test_a_claim_stands_in_the_body_of_a_method() -> None:
+    import contextvars
+
+    with pytest.raises(method.SheetError, match="stand in the body of a class of Method"):
+        contextvars.Context().run(method.claim, 1, 1, "one")
