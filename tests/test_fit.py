@@ -180,7 +180,7 @@ def test_a_fit_has_cells_equations_and_figures() -> None:
     assert [label for label in labels if not label.startswith("(L")] == [
         *("(7g)", "(7h)", "(7a)", "(7b)", "(7c)", "(7d)", "(7e)", "(7f)", "(7i)", "(2)"),
     ]
-    assert book.headline == ("s_A", "r_A_tau", "decay_S", "twice")
+    assert book.headline == ("A", "tau", "twice")
     assert book.aside >= {"decay_N1", "decay_J2", "decay_step1"}
     over, left = book.charts
     assert [(s.x, s.y, s.style) for s in over.series] == [
