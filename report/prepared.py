@@ -66,7 +66,7 @@ class Prepared:
         rows = {name: set(map(tuple, layout.labels.tolist())) for name, layout in self.layouts.items()}
         columns = self.sheet.columns
         return check_cells(
-            self.inputs, {c.name: (c.unit, {()} if c.axis is None else rows[c.axis.name]) for c in columns}
+            self.inputs, {c.name: (c.written, {()} if c.axis is None else rows[c.axis.name]) for c in columns}
         )
 
     @property

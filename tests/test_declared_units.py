@@ -119,6 +119,14 @@ def test_an_angle_in_radians_is_one_in_degrees(tmp_path: Path) -> None:
     assert main(["build", str(path)]) == 2  # more than 180 deg, and less than .1 mm
 
 
+def test_limits_of_an_angle_name_their_unit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Without it, degrees would be read as radians."""
+    limits = '[limits]\nturned = "{}"\n'
+    assert main(["build", str(folder(tmp_path, TOML + limits.format("300 .. 400"))), "--to", "json"]) == 2
+    assert "error[LS422]: turned is in '1', which does not convert to arcmin" in capsys.readouterr().err
+    assert main(["build", str(folder(tmp_path, TOML + limits.format("5 .. 6 deg"))), "--to", "json"]) == 0
+
+
 def test_an_unknown_unit_of_a_class_is_told_at_its_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -244,7 +244,7 @@ const does = {
     const values = xs.map((x) => x === null ? NaN : doubled(x));
     return shownColumn(values, (row) => places[row]).map((f) => f && plain(f));
   },
-  beside: (x, text, [n, d], cut) => beside(doubled(x), text, sizeOf([n, d]), cut),
+  beside: (x, text, [n, d], cut) => beside(doubled(x), text, [n, d].map(BigInt), cut),
   read: (given, text) => {
     const found = readInput({ given }, "", text);
     return found.why ? null : hexed(found.value);

@@ -84,7 +84,7 @@ def check_expected(
     tests : sequence of int
         The numbers of the tests that there are.
     cells : mapping of str to (str, collection of tuple of int)
-        For each cell its SI unit and the indices that it has: ``{()}`` for a scalar.
+        For each cell its unit and the indices that it has: ``{()}`` for a scalar.
     findings : Findings
         Where unknown cells, indices and tests go.
     """

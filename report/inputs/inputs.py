@@ -226,7 +226,7 @@ def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[
     inputs : Inputs
         What was read.
     cells : mapping of str to (str, collection of tuple of int)
-        For each cell its SI unit and the indices that it has: ``{()}`` for a scalar.
+        For each cell its unit and the indices that it has: ``{()}`` for a scalar.
 
     Returns
     -------

@@ -18,7 +18,7 @@ from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
-from ...derivations.unit_text import UnitError, parse_open
+from ...derivations.unit_text import UnitError, examples, is_pure, parse_open
 from ..cells.address import address, named
 from ..distribution import LEVEL
 from ..quantity import behind, span
@@ -227,6 +227,8 @@ def check_limits(
         numbers = ((each.low, each.at), (each.high, each.at), (each.guard.width, each.guard.at))
         for number, at in numbers:
             others = convertible(number.unit, unit) if number else None
+            if number and is_pure(number.unit) and not is_pure(unit):
+                others = examples(parse_open(unit))  # 5 of what is shown in deg would be read as radians
             if number and others is not None:
                 findings.add("LS422", at, name=name, text=number.unit, unit=unit, known=others)
                 break

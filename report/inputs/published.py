@@ -243,7 +243,7 @@ def check_published(
     free : mapping of str to Location
         The columns that the publication does not print, with the place that says so.
     cells : mapping of str to (str, collection of tuple of int)
-        For each cell its SI unit and the indices that it has: ``{()}`` for a scalar. A unit that is not
+        For each cell its unit and the indices that it has: ``{()}`` for a scalar. A unit that is not
         fixed, such as ``N/m^alpha``, has no other that it converts to.
     findings : Findings
         Where unknown cells and indices go, and units of another dimension.

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
+from fractions import Fraction
 from typing import Any
 
 from ...derivations.unit_text import ParsedUnit, parse_unit
@@ -176,12 +178,13 @@ def _chart(words: Words, chart: Chart) -> dict[str, Any]:
 
 
 def _size(of: Printed | ParsedUnit) -> list[str]:
-    """A unit in SI, as the numerator and the denominator of a fraction, and its zero as another's: as text.
+    """A unit in SI as a fraction, and the numerator of its zero over the same denominator: as text.
 
-    JavaScript's numbers would round it. A zero that is that of SI goes without saying.
+    JavaScript's numbers would round them. A zero that is that of SI goes without saying.
     """
-    every = (of.scale, of.zero) if of.zero else (of.scale,)
-    return [str(number) for each in every for number in each.as_integer_ratio()]
+    below = math.lcm(of.scale.denominator, of.zero.denominator)
+    every = (of.scale * below, Fraction(below), of.zero * below)
+    return [str(each.numerator) for each in every if each]
 
 
 def _least(entry: dict[str, Any]) -> dict[str, Any]:

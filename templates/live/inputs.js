@@ -35,10 +35,10 @@ function readInput({ given, errors }, index, text) {
   if (text.length > 100 || Math.abs(Number(found[5] ?? 0)) > 300) return { why: `“${text}” is out of all range; ${allowed}` };
   if (concise && given.said) return { why: `“${text}” says how sure it is, and so does ${given.said}: write ${digits}` };
   if (typeof stated === "string") return { why: `“${stated}” in ${given.said} is not a standard uncertainty of at least 0` };
-  const exact = readExact(digits), scale = sizeOf(given.scale), { zero } = scale;
-  const value = { n: exact.n * scale.n * zero.d + zero.n * exact.d * scale.d, d: exact.d * scale.d * zero.d };
+  const exact = readExact(digits), [n, d, zero = 0n] = given.scale.map(BigInt);
+  const value = { n: exact.n * n + zero * exact.d, d: exact.d * d };
   // Its last digit is asked for, too: from it comes the uncertainty.
-  const places = decimalsOf(digits), digit = places < 0 ? { n: scale.n * tenTo(-places), d: scale.d } : { n: scale.n, d: scale.d * tenTo(places) };
+  const places = decimalsOf(digits), digit = places < 0 ? { n: n * tenTo(-places), d } : { n, d: d * tenTo(places) };
   if (!isSane(digit) || (value.n !== 0n && !isSane(value))) return { why: `“${text}” is out of all range; ${allowed}` };
   const { low, high, low_open, high_open, integer } = given.bounds;
   const wrong = [

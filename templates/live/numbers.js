@@ -229,16 +229,11 @@ function nearExact(x) {
   return Number.isFinite(value) ? readExact(value.toExponential(14)) : x;
 }
 
-// A unit in SI and its zero, as exact fractions.
-function sizeOf(texts) {
-  const [n, d, from = 0n, over = 1n] = texts.map(BigInt);
-  return { n, d, zero: { n: from, d: over } };
-}
-
-// A double beside a printed number: printed as that is, how far off in units of its last digit, the same?
-function beside(value, text, scale, truncated) {
+// A double beside a printed number: printed as that is, how far off in units of its last digit, the same? Its unit is n/d
+// in SI, its zero zero/d.
+function beside(value, text, [n, d, zero = 0n], truncated) {
   const exact = ofDouble(value), places = decimalsOf(text), printed = readExact(text);
-  const { zero } = scale, inUnit = { n: (exact.n * zero.d - zero.n * exact.d) * scale.d, d: exact.d * zero.d * scale.n };
+  const inUnit = { n: exact.n * d - zero * exact.d, d: exact.d * n };
   const again = truncated ? fixedExact(nearExact(inUnit), places, (n, d) => n / d) : fixedExact(inUnit, places);
   const off = { n: inUnit.n * printed.d - printed.n * inUnit.d, d: inUnit.d * printed.d };
   const distance = places >= 0 ? { n: off.n * tenTo(places), d: off.d } : { n: off.n, d: off.d * tenTo(-places) };
