@@ -380,7 +380,7 @@ class Iterated:
         The next value, in cells of the sheet, its own among them. Where it is the value itself, the equation
         must hold; how fast it leads there is its own matter.
     start : Expr
-        The first value, in cells that do not rest on it.
+        The first value, in cells that do not rest on it; a number is in SI.
     none : str
         What it means when it does not settle, for the reader.
     """

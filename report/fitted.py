@@ -54,7 +54,7 @@ class DeclaredFit:
     columns : tuple of Column
     entries : tuple of Equation or Derivation
     aside : tuple of str
-        The columns that only lead there.
+        The columns that only lead there, and stated uncertainties, which no table shows.
     squares : tuple of SquareSum
         The sum that tells whether the model describes the rows, if their uncertainties are known.
     """
@@ -74,7 +74,10 @@ class DeclaredFit:
         self._axis, self._known, self._model, self._observed = axis, known, model, known[name_of(observed)]
         if not sought:
             raise SheetError(f"the model of {name} names no unknown: write a = unknown('...') above", name)
-        stated = []
+        own_words = {"s", "S", "fitted", "residual", *(f"s_{each}" for each in sought)}
+        for each in sorted(own_words & {str(each) for each in sought}):
+            raise SheetError(f"{each} is a word of the fit {name} itself: call the parameter otherwise", each)
+        stated: list[Column] = []
         if isinstance(u, str):
             if u != STATED:
                 raise SheetError(f"{name}: u is a formula, or 'stated', not {u!r}", name)
@@ -91,21 +94,14 @@ class DeclaredFit:
                 name,
             )
         self.entries, self.aside = tuple(fit.entries), tuple(part.name for part in fit.helpers)
+        self.aside += tuple(column.name for column in stated)
         self.squares = (SquareSum(fit.names["S"], axis.name, len(words)),) if stated else ()
         made = {column.name: column for column in stated}
         for each, said in sought.items():
             unit = {"unit": "" if fit.linear else "1", **said.column}
             made[str(each)] = Column(str(each), None, Given(), meaning=words[each], positive=False, **unit)
         self._weighed, self._shown = u is not None, {f"s_{each}": made[str(each)].display for each in sought}
-        latex = {name: (made[name].latex or spelt(name)).replace("%s", "") for name in map(str, sought)}
-        letter = self._observed.latex or spelt(self._observed.name)
-        head = re.split("[_%]", letter, maxsplit=1)[0]
-        self._latex = {
-            fit.names["fitted"]: letter.replace(head, rf"\hat{{{head}}}", 1),
-            fit.names["residual"]: rf"\delta {letter}",
-            **{f"s_{name}": f"s({each})" for name, each in latex.items()},
-            **{f"r_{a}_{b}": f"r({latex[a]}, {latex[b]})" for a, b in combinations(latex, 2)},
-        }
+        self._latex = self._printed([made[str(each)] for each in sought])
         parts = (*fit.results, *fit.helpers)
         for part in _in_turn(parts, () if fit.linear else map(str, sought)):
             column = made.get(part.name) or self._blank(part)
@@ -118,7 +114,9 @@ class DeclaredFit:
                 continue
             column = replace(column, rule=Formula(part.equation), requires=part.needs)
             made[part.name] = replace(column, unit=column.unit or unit_of({**known, **made}, column))
-        self.columns = (*stated, *(made[part.name] for part in parts))
+        # Another fit of the same column may have declared them.
+        new = [column for column in stated if known.get(column.name) != column]
+        self.columns = (*new, *(made[part.name] for part in parts))
         self._rows = made[fit.names["fitted"]], made[fit.names["residual"]]
 
     def __getattr__(self, name: str) -> Expr:
@@ -127,6 +125,18 @@ class DeclaredFit:
         if name not in names:
             raise AttributeError(f"{name} is nothing that a fit has: there are {', '.join(names)}")
         return next(column.cell for column in self.columns if column.name == names[name])
+
+    def _printed(self, parameters: Iterable[Column]) -> dict[str, str]:
+        """LaTeX of the results."""
+        latex = {column.name: (column.latex or spelt(column.name)).replace("%s", "") for column in parameters}
+        letter = self._observed.latex or spelt(self._observed.name)
+        head = re.split("[_%]", letter, maxsplit=1)[0]
+        return {
+            self._fit.names["fitted"]: letter.replace(head, rf"\hat{{{head}}}", 1),
+            self._fit.names["residual"]: rf"\delta {letter}",
+            **{f"s_{name}": f"s({each})" for name, each in latex.items()},
+            **{f"r_{a}_{b}": f"r({latex[a]}, {latex[b]})" for a, b in combinations(latex, 2)},
+        }
 
     def _blank(self, part: FitQuantity) -> Column:
         """The column of a part, without what it is computed from."""

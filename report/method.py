@@ -201,7 +201,7 @@ def unknown(meaning: str = "", unit: str = "", *, start: Any = None, latex: str 
     meaning, unit, latex : str
         Of a parameter, as for :func:`let`; a root says itself what it is.
     start : float or Expr, optional
-        Where a fit begins that is not linear in its parameters.
+        Where a fit begins that is not linear in its parameters; a number is in SI.
     """
     return _Unknown(meaning, unit, {"latex": latex}, None if start is None else _exact(start))
 

@@ -16,6 +16,7 @@ import pytest
 from nist_strd import Strd, digits
 from sympy import Expr, IndexedBase, Sum, Symbol, exp, sin, symbols
 
+import loopsheet
 import loopsheet.report.method
 from loopsheet import Method, fit, given, let, measured, unknown
 from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step
@@ -211,6 +212,11 @@ HEAD = "    x = measured('m', 'place')\n    y = measured('V', 'voltage')\n    a 
             "f = fit(y, a); g = let(f.scatter, 'scatter')",
             "scatter is nothing that a fit has: there are a, s_a, s, f",
         ),
+        (
+            "S = unknown('x'); f = fit(y, a + S * x)",
+            "S is a word of the fit f itself: call the parameter otherw",
+        ),
+        ("s_a = unknown('x'); f = fit(y, a + s_a * x)", "s_a is a word of the fit f itself"),
         ("a = root(a, 1, 'x', low=0, high=2)", "a = unknown() is enough: root(...) says what a is"),
         ("b = unknown('b', 's', start=1); f = fit(y, b * x)", "f_residual (1e): cannot add m s and A^-1"),
     ],
@@ -254,6 +260,41 @@ def test_what_rows_do_not_tell_has_no_value(model: str, rows: int, told: str) ->
     why = {cell.reason for name in (*names, "f_s") for cell in values.cells(name) if cell.status}
     assert any(told in each for each in why), why
     assert all(math.isnan(values.scalar(f"s_{name}")) for name in names)
+
+
+WEIGHED = """\
+from sympy import exp
+
+from loopsheet import Method, fit, measured, unknown
+
+
+class Weighed(Method):
+    x = measured("s", "time")
+    y = measured("V", "voltage")
+    a, b = unknown("offset"), unknown("slope")
+    line = fit(y, a + b * x, u="stated")
+    A, tau = unknown("begin", "V", start=2), unknown("time constant", "s", start=5)
+    growth = fit(y, A * exp(x / tau), u="stated")
+"""
+
+
+def test_two_fits_of_one_column_by_its_stated_uncertainties(tmp_path: Path) -> None:
+    """A start that is a number is in SI; the sums of squares tell whether the model describes the rows."""
+    (tmp_path / "workbook.py").write_text(WEIGHED, encoding="utf-8")
+    rows = "1,1.0,2105(20)\n2,2.0,3120(30)\n3,3.5,4650(20)\n4,4.0,5090(40)\n5,5.0,6120(40)\n"
+    (tmp_path / "m.csv").write_text(f"reading,x [s],y [mV]\n{rows}", encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\nx = "exact"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    assert main(["build", str(tmp_path), "--to", "html", "--no-cache"]) == 0
+    report = Study(tmp_path).report
+    assert not report.faults
+    time, size = np.array([1, 2, 3.5, 4, 5]), np.array([0.02, 0.03, 0.02, 0.04, 0.04])
+    volts = np.array([2.105, 3.12, 4.65, 5.09, 6.12])
+    slope, offset = np.polyfit(time, volts, 1, w=1 / size)
+    assert cells(report.values, "a", "b") == pytest.approx([offset, slope], rel=1e-12)
+    found = loopsheet.load(tmp_path).findings
+    assert any("growth_S = " in line and "does not describe" in line for line in found)
+    assert not any("line_S" in line for line in found)
 
 
 # --- why it holds ----------------------------------------------------------------------------------------

@@ -114,8 +114,9 @@ def check(sheet: Sheet) -> None:
         if isinstance(rule, Formula):
             _expect(checker, rule.expression, own)
         elif isinstance(rule, Iterated):
-            for value in rule.expressions:
-                _expect(checker, value, own)
+            _expect(checker, rule.step, own)
+            if not rule.start.is_number:  # a number is one in SI
+                _expect(checker, rule.start, own)
         elif isinstance(rule, Root):
             checker.of(rule.expression)
             _expect(checker, rule.value, own)
