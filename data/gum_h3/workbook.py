@@ -20,3 +20,6 @@ class ThermometerLine(Method, source="JCGM 100:2008, H.3", headline="y_1 y_2 b_3
     of_intercept = total(b) * total(theta**2) - total(b * theta) * total(theta)
     claim(y_1, of_intercept / D, "intercept as printed", label="(H.13a)")
     claim(y_2, (n * total(b * theta) - total(b) * total(theta)) / D, "slope as printed", label="(H.13b)")
+    claim(line.s_y_1**2 * D, line.s**2 * total(theta**2), "scatter of the intercept", label="(H.13c)")
+    claim(line.s_y_2**2 * D, line.s**2 * n, "scatter of the slope", label="(H.13d)")
+    claim(line.r_y_1_y_2**2 * n * total(theta**2), total(theta) ** 2, "correlation", label="(H.13e)")
