@@ -273,13 +273,13 @@ class Weighed(Method):
     y = measured("V", "voltage")
     a, b = unknown("offset"), unknown("slope")
     line = fit(y, a + b * x, u="stated")
-    A, tau = unknown("begin", "V", start=2), unknown("time constant", "s", start=5)
+    A, tau = unknown("begin", "mV", start=2000), unknown("time constant", "ms", start=5000)
     growth = fit(y, A * exp(x / tau), u="stated")
 """
 
 
 def test_two_fits_of_one_column_by_its_stated_uncertainties(tmp_path: Path) -> None:
-    """A start that is a number is in SI; the sums of squares tell whether the model describes the rows."""
+    """A start that is a number is in the unit that is sought; the sums of squares tell whether the model describes the rows."""
     (tmp_path / "workbook.py").write_text(WEIGHED, encoding="utf-8")
     rows = "1,1.0,2105(20)\n2,2.0,3120(30)\n3,3.5,4650(20)\n4,4.0,5090(40)\n5,5.0,6120(40)\n"
     (tmp_path / "m.csv").write_text(f"reading,x [s],y [mV]\n{rows}", encoding="utf-8")
@@ -292,6 +292,7 @@ def test_two_fits_of_one_column_by_its_stated_uncertainties(tmp_path: Path) -> N
     volts = np.array([2.105, 3.12, 4.65, 5.09, 6.12])
     slope, offset = np.polyfit(time, volts, 1, w=1 / size)
     assert cells(report.values, "a", "b") == pytest.approx([offset, slope], rel=1e-12)
+    assert [report.sheet[name].rule.start for name in ("A", "tau")] == [2, 5]
     found = loopsheet.load(tmp_path).findings
     assert any("growth_S = " in line and "does not describe" in line for line in found)
     assert not any("line_S" in line for line in found)

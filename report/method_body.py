@@ -1,0 +1,338 @@
+"""The body of a method while it is declared: what its lines say, and the columns that they become."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from sympy import Expr, Float, Function, Indexed, Rational, Sum, Symbol, sympify
+from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
+
+from ..derivations.equation import Derivation, Equation, Kind, Ledger
+from ..derivations.unit_text import ParsedUnit, UnitError, coherent, parse_open
+from .cells.units import unit_of
+from .column import Axis, Column, Formula, Given, Root, SheetError
+from .fitted import DeclaredFit
+from .named import name_of
+from .quantity import Bounds
+from .sheet import Sheet
+from .workbook import FigureSpec, Measured, Parameter, SquareSum
+
+__all__ = [
+    "FUNCTIONS",
+    "ComputedLine",
+    "Declaration",
+    "FitLine",
+    "InputLine",
+    "MethodBody",
+    "UnknownLine",
+    "exact",
+    "named_by",
+]
+
+
+FUNCTIONS = (
+    *("exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh"),
+    *("Abs", "Max", "Min"),
+)
+"""Besides powers; as sympy calls them."""
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """What a line of the body says; its name comes with the assignment."""
+
+    meaning: str
+    unit: str
+    column: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class InputLine(Declaration):
+    """What is given or measured."""
+
+    bounds: Bounds = field(default_factory=Bounds)
+    default: str | None = None
+    is_measured: bool = False
+    example: str = ""
+
+
+@dataclass(frozen=True)
+class ComputedLine(Declaration):
+    """What a formula computes, or a root is sought for."""
+
+    sides: tuple[Expr, ...] = ()  # of a definition the last alone
+    label: str = ""
+    because: str = ""
+    ends: Mapping[str, Any] | None = None  # of a root: the interval that it lies in, and where it is begun
+
+
+@dataclass(frozen=True)
+class UnknownLine(Declaration):
+    """What a root or a fit will find."""
+
+    start: Expr | None = None
+
+
+@dataclass(frozen=True)
+class FitLine:
+    """A model whose unknowns make a sum of squares least."""
+
+    observed: Any
+    model: Expr
+    u: Any
+    label: str
+    figures: bool
+
+
+def _size(name: str, unit: str) -> ParsedUnit:
+    try:
+        return parse_open(unit)
+    except UnitError as error:
+        hint = f"; {error.suggestion}" if error.suggestion else ""
+        kind = "is unknown" if error.code == "LS421" else "cannot be read"
+        raise SheetError(f"{name}: the unit {error.text!r} {kind}{hint}", name) from None
+
+
+def _unit(size: ParsedUnit) -> dict[str, Any]:
+    """The unit of a column, in SI, and the one that it is shown in, if that is another."""
+    si = coherent(size)
+    return {"unit": si} if si == size.text else {"unit": si, "display": size.text}
+
+
+def _in_si(place: Expr, size: ParsedUnit) -> Expr:
+    """A number in a unit, in SI; what names quantities is in SI."""
+    return place * Rational(size.scale) + Rational(size.zero) if place.is_number else place
+
+
+def _stated_unit(name: str, unit: str) -> dict[str, Any]:
+    return _unit(_size(name, unit)) if unit else {}
+
+
+def _with_unit(name: str, sought: UnknownLine) -> UnknownLine:
+    """The parameter of a fit with its unit, if that is stated, and its start in SI."""
+    start = sought.start
+    if start is not None and sought.unit:
+        start = _in_si(start, _size(name, sought.unit))
+    return replace(sought, column={**_stated_unit(name, sought.unit), **sought.column}, start=start)
+
+
+def exact(formula: Any) -> Expr:
+    """A formula with its decimal fractions as they were typed: 0.27027027... was 1/3.7."""
+    formula = sympify(formula)
+    if not isinstance(formula, Expr) or formula.has(
+        ImaginaryUnit, NaN, Infinity, NegativeInfinity, ComplexInfinity
+    ):
+        raise SheetError(f"{formula} is no formula of real numbers")
+    for part in formula.atoms(Function):
+        if part.func.__name__ not in FUNCTIONS:
+            known = ", ".join(sorted(FUNCTIONS))
+            raise SheetError(f"{part.func} is none of the functions that every engine has: {known}")
+    typed = {}
+    for number in formula.atoms(Float) - {Float(0)}:
+        own, turned = repr(float(number)), f"{1 / float(number):.12g}"
+        if len(turned) + 4 < len(own) and math.isclose(1 / float(turned), float(number), rel_tol=1e-15):
+            typed[number] = 1 / Rational(turned)
+    found: Expr = formula.xreplace(typed)
+    return found
+
+
+def _typed(formula: Expr) -> Expr:
+    """A formula with its decimal fractions as fractions: a proof takes no rounded number."""
+    typed: Expr = formula.xreplace({number: Rational(repr(float(number))) for number in formula.atoms(Float)})
+    return typed
+
+
+def named_by(column: Column) -> set[str]:
+    """What the rule of a column names, itself too if it is a root."""
+    return {name_of(cell) for one in column.expressions for cell in one.atoms(Symbol, Indexed)}
+
+
+class MethodBody(dict[str, Any]):
+    """The namespace of a method while it is declared: every name that is assigned becomes a cell."""
+
+    def __init__(self, rows: str, index: str, size: str) -> None:
+        super().__init__()
+        self.axis = Axis(rows, *(Symbol(name, integer=True, positive=True) for name in (index, size)))
+        self.columns: dict[str, Column] = {}
+        self.inputs: list[Measured | Parameter] = []
+        self.entries: list[Equation | Derivation] = []
+        self.examples: dict[str, str] = {}
+        self.figures: list[FigureSpec] = []
+        self.announced: dict[str, UnknownLine] = {}
+        self.aside: list[str] = []
+        self.of_fits: dict[str, bool] = {}  # and whether it is a parameter
+        self.squares: list[SquareSum] = []
+        self.own = map("(L{})".format, itertools.count(1))
+
+    @property
+    def whole(self) -> tuple[Column, ...]:
+        """All columns: the sums that one result rests on leave out the same rows.
+
+        Those are rows in which something was not measured, or has no value that one of these sums, or what is
+        computed from them, asks for; what rests on a sum itself cannot be asked.
+        """
+        every = tuple(self.columns.values())
+        below = {c.name: {c.name, *named_by(c)} & self.columns.keys() for c in every}
+        for _ in every:  # what is iterated rests on itself
+            below = {
+                name: set[str]().union(*(below[each] for each in names)) for name, names in below.items()
+            }
+        sums = {c.name for c in every if any(e.has(Sum) for e in c.expressions)}
+        rows = [c for c in every if c.axis and not sums & below[c.name]]
+
+        def asked(total: Column) -> Iterator[Column]:
+            together = set[str]().union(*(names for names in below.values() if total.name in names))
+            return (c for c in rows if isinstance(c.rule, Given) or c.name in together)
+
+        return tuple(replace(c, alongside=tuple(asked(c))) if c.name in sums else c for c in every)
+
+    def column(self, name: str) -> Column:
+        """What was declared under a name."""
+        if name not in self.columns:
+            raise SheetError(f"{name} is not declared: a name of the body can be plotted, no formula", name)
+        return self.columns[name]
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        if name in self.columns:
+            raise SheetError(f"{name} is declared twice", name)
+        if isinstance(value, UnknownLine):
+            self.announced[name] = value
+            value = Column(name, None, Given(), positive=False).symbol
+        if isinstance(value, FitLine):
+            value = self._fitted(name, value)
+        if isinstance(value, Declaration):
+            if name in (self.axis.index_name, self.axis.size_name):
+                word = "index" if name == self.axis.index_name else "size"
+                what = (
+                    f"the {self.axis.row}'s number" if word == "index" else f"the number of {self.axis.name}"
+                )
+                raise SheetError(
+                    f"{name} is {what}: call that otherwise, {word}='...' behind the title", name
+                )
+            column = (
+                self._computed(name, value) if isinstance(value, ComputedLine) else self._input(name, value)
+            )
+            self.columns[name] = column
+            value = column.cell
+        super().__setitem__(name, value)
+
+    def _input(self, name: str, said: Declaration) -> Column:
+        assert isinstance(said, InputLine)
+        size = _size(name, said.unit)
+        if size.zero and said.column["positive"]:
+            raise SheetError(f"{name}: above which zero? say low=..., in {said.unit}", name)
+        bounds = said.bounds.within(size.scale, size.zero)
+        own = name, said.unit, said.meaning, bounds
+        self.inputs.append(Measured(*own) if said.is_measured else Parameter(*own, said.default))
+        self.examples |= {name: said.example} if said.example else {}
+        positive = said.column["positive"] or bool(size.zero and bounds.low is not None and bounds.low > 0)
+        rule = Given("measured" if said.is_measured else "parameter")
+        axis = self.axis if said.is_measured else None
+        return Column(
+            name, axis, rule, meaning=said.meaning, **_unit(size), **{**said.column, "positive": positive}
+        )
+
+    def _number(self) -> str:
+        """The next number of an equation."""
+        every = Ledger(tuple(self.entries)).equations()
+        taken = dict.fromkeys(equation.number for equation in every if not equation.own)
+        numbers = map("({})".format, itertools.count(len(taken) + 1))
+        return next(number for number in numbers if number not in taken)
+
+    def _fitted(self, name: str, said: FitLine) -> DeclaredFit:
+        """The columns, equations and figures of a fit; what a name of the body stands for is told of it."""
+        if not isinstance(said.observed, Indexed):
+            raise SheetError(f"{name}: {said.observed} is no column over the rows: let(...) it be one", name)
+        sought = {
+            symbol: _with_unit(each, announced)
+            for each, announced in self.announced.items()
+            if each not in self.columns and (symbol := Symbol(each, real=True)) in said.model.free_symbols
+        }
+        found = DeclaredFit(
+            name, self.axis, self.columns, said.observed, said.model, sought, said.u,
+            said.label or self._number(), self.own,
+        )  # fmt: skip
+        for column in found.columns:
+            if column.name in self.columns:
+                raise SheetError(f"{column.name} is declared twice: {name} has one of that name, too", name)
+            self.columns[column.name] = column
+        self.entries += found.entries
+        self.aside += found.aside
+        self.of_fits |= {column.name: Symbol(column.name, real=True) in sought for column in found.columns}
+        self.squares += found.squares
+        if said.figures:
+            self.figures += found.figures(len(self.figures) + 1)
+        return found
+
+    def claimed(
+        self, left: Expr, right: Expr, meaning: str, because: str, from_: Sequence[Any] | None, label: str
+    ) -> None:
+        """Put a claim into the ledger, with what it is to be derived from."""
+        found = self._premises((left, right) if from_ is None else from_, meaning, everything=from_ is None)
+        row = Symbol("i", integer=True, positive=True)
+        members = tuple(_typed(side).subs(self.axis.index, row) for side in (left, right))
+        conditions = tuple(dict.fromkeys(each for premise, _ in found for each in premise.conditions))
+        equation = Equation(
+            label or self._number(),
+            members,
+            because or "it follows by algebra",
+            title=meaning,
+            conditions=conditions,
+        )
+        zero = Equation(equation.label, (left, left - right), "", title=meaning)
+        unit_of(self.columns, Column(meaning, self.axis, Formula(zero)))  # as long as both have one unit
+        premises, unknowns = zip(*found, strict=True) if found else ((), ())
+        self.entries.append(Derivation.of(equation, premises, unknowns, "Put in what the quantities are."))
+
+    def _premises(
+        self, formulas: Sequence[Any], meaning: str, everything: bool
+    ) -> list[tuple[Equation, Expr]]:
+        """What says of the quantities in formulas what they are, and what each is solved for."""
+        found: dict[str, tuple[Equation, Expr]] = {}
+        left = list(formulas)
+        while left:
+            named = {name_of(cell) for cell in left.pop().atoms(Symbol, Indexed)} & self.columns.keys()
+            for column in (self.columns[name] for name in sorted(named - found.keys())):
+                if isinstance(column.rule, Given):
+                    continue
+                if not isinstance(column.rule, Formula):
+                    raise SheetError(
+                        f"{column.name} is sought, it has no formula to put in: say what '{meaning}' follows "
+                        "from without it, from_=[...]",
+                        column.name,
+                    )
+                equation, cell = column.rule.equation, column.cell
+                found[column.name] = equation, cell.base if isinstance(cell, Indexed) else cell
+                left += [equation.value] if everything else []
+        return list(found.values())
+
+    def _computed(self, name: str, said: ComputedLine) -> Column:
+        named = {symbol for side in said.sides for symbol in side.free_symbols}
+        axis = self.axis if self.axis.index in named else None
+        unit = _stated_unit(name, said.unit)
+        column = Column(name, axis, Given(), meaning=said.meaning, **{**unit, **said.column})
+        sides = said.sides if said.ends else (column.cell, *said.sides)
+        kind = Kind.ASSUMPTION if said.ends else Kind.DEFINITION
+        equation = Equation(said.label or self._number(), sides, said.because, kind, said.meaning)
+        self.entries.append(equation)
+        if said.ends:
+            if column.symbol not in named:
+                raise SheetError(
+                    f"the equation of {name} does not name it: write {name} = unknown() above", name
+                )
+            if self.announced.get(name) not in (None, UnknownLine("", "", {"latex": ""})):
+                raise SheetError(f"{name} = unknown() is enough: root(...) says what {name} is", name)
+            size = _size(name, said.unit)
+            places = {
+                each: _in_si(place, size) for each, place in said.ends.items() if isinstance(place, Expr)
+            }
+            rule = Root(equation, equation, column.symbol, column.symbol, **{**said.ends, **places})
+            return replace(column, rule=rule)
+        column = replace(column, rule=Formula(equation))
+        if not said.unit:
+            column = replace(column, unit=unit_of(Sheet((*self.columns.values(), column)), column))
+        return column
