@@ -279,7 +279,7 @@ class Weighed(Method):
 
 
 def test_two_fits_of_one_column_by_its_stated_uncertainties(tmp_path: Path) -> None:
-    """A start that is a number is in the unit that is sought; the sums of squares tell whether the model describes the rows."""
+    """A start has the unit that is sought; the sums of squares tell whether the model describes the rows."""
     (tmp_path / "workbook.py").write_text(WEIGHED, encoding="utf-8")
     rows = "1,1.0,2105(20)\n2,2.0,3120(30)\n3,3.5,4650(20)\n4,4.0,5090(40)\n5,5.0,6120(40)\n"
     (tmp_path / "m.csv").write_text(f"reading,x [s],y [mV]\n{rows}", encoding="utf-8")

@@ -36,6 +36,8 @@ def test_they_come_along(tmp_path: Path) -> None:
         ("operator", "T_", "unknown column 'T_'"),
         ("operator", "readings", "unknown column 'readings'"),
         ("operator", "left-out", "unknown column 'left-out'"),
+        ("operator", "excluded", "unknown column 'excluded'"),
+        ("operator", "Outlier?", "unknown column 'Outlier?'"),
         ("operator", "operator [1]", "unknown column 'operator'"),
         ("remark", "operator", "'operator'"),
         ("open, 5 %", "open", None),

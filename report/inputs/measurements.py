@@ -37,6 +37,7 @@ MODES = ("rounded", "truncated")
 """How a printed number may have been shortened."""
 
 LEFT_OUT = "left out"
+_EXCLUDING = re.compile(r"(?i)(exclu|omit|reject|discard|skip|ignor|outlier|left[_-]?out|leave[ _-]?out).*")
 """The column that says why a test takes no part; empty where it does."""
 
 _HEAD = re.compile(r"(?P<name>u\([^()\[\]]*\)|[^()\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
@@ -237,6 +238,8 @@ def _remarks(
     for place, head in enumerate(heads):
         if head is None or head.unit is not None or not names[place] or close(names[place], known):
             continue
+        if _EXCLUDING.fullmatch(names[place]):
+            continue  # whoever wrote it thinks that its rows take no part
         texts = [row.fields[place].text for row in table.rows]
         if any(text and not is_number(text) for text in texts):
             yield names[place]

@@ -121,8 +121,10 @@ def _print(report: Report, found: Sequence[Check]) -> None:
     every = report.every_comparison
     same = sum(c.verdict == "same" for c in every)
     known = sum(bool(c.published.expect) and c.as_expected for c in every)
+    other = sum(c.verdict != "same" and not c.published.expect and c.as_expected for c in every)
     if every:
-        print(f"published  {len(every)} values: {same} print the same, {known} differ as is known")
+        of_others = f", {other} come out of other inputs that print as given" if other else ""
+        print(f"published  {len(every)} values: {same} print the same, {known} differ as is known{of_others}")
     for comparison in every:
         if comparison.verdict != "same":
             where = f"{comparison.published.source} {comparison.cell.address}"
