@@ -14,7 +14,20 @@ from itertools import chain, combinations, product
 from string import ascii_lowercase as LETTERS
 from typing import Any
 
-from sympy import Add, Expr, Indexed, IndexedBase, Integer, Rel, Sum, Symbol, diff, sqrt
+from sympy import (
+    Add,
+    Expr,
+    Indexed,
+    IndexedBase,
+    Integer,
+    Rel,
+    StrictGreaterThan,
+    Sum,
+    Symbol,
+    diff,
+    sqrt,
+    true,
+)
 
 from .equation import Derivation, Equation, Kind, Step
 from .normal_equation import normal_equation
@@ -139,7 +152,15 @@ class LeastSquares:
         self.claims: list[Derivation] = []
         self.weight: Expr = Integer(1)
         if u is not None:
-            self.weight = self._helper("w", 1 / u**2, "weight of a row", "w%s", rows=True, positive=True)
+            above = StrictGreaterThan(u, 0)
+            needs = (
+                ()
+                if above == true
+                else ((above, "a standard uncertainty that rows are weighed by is above zero"),)
+            )
+            self.weight = self._helper(
+                "w", 1 / u**2, "weight of a row", "w%s", rows=True, positive=True, needs=needs
+            )
         self.fitted = self._result("fitted", model, f"{what}, fitted", rows=True)
         self.residual = self._result("residual", observed - self.fitted, f"{what}, residual", rows=True)
         self._orthogonal()

@@ -26,6 +26,7 @@ __all__ = [
     "examples",
     "is_pure",
     "misfit",
+    "of_differences",
     "parse_open",
     "parse_unit",
 ]
@@ -230,6 +231,17 @@ def parse_open(text: str) -> ParsedUnit:
     fixed = {base: power for (base, cell), power in powers.items() if not cell}
     hanging = sorted((base, cell, power) for (base, cell), power in powers.items() if cell and power)
     return ParsedUnit(text, scale, _sorted(fixed), tuple(hanging))
+
+
+def of_differences(unit: ParsedUnit) -> ParsedUnit:
+    """The unit of differences of what has a zero of its own; else itself.
+
+    >>> [of_differences(parse_unit(text)).text for text in ("degC", "degF", "mm")]
+    ['K', 'delta_degF', 'mm']
+    """
+    if not unit.zero:
+        return unit
+    return parse_unit("K" if unit.scale == 1 else "delta_degF")
 
 
 def coherent(unit: ParsedUnit) -> str:

@@ -252,6 +252,7 @@ class MethodBody(dict[str, Any]):
             for each, announced in self.announced.items()
             if each not in self.columns and (symbol := Symbol(each, real=True)) in said.model.free_symbols
         }
+        sought = {symbol: self._begun(announced, str(symbol)) for symbol, announced in sought.items()}
         found = DeclaredFit(
             name, self.axis, self.columns, said.observed, said.model, sought, said.u,
             said.label or self._number(), self.own,
@@ -267,6 +268,22 @@ class MethodBody(dict[str, Any]):
         if said.figures:
             self.figures += found.figures(len(self.figures) + 1)
         return found
+
+    def _begun(self, sought: UnknownLine, name: str) -> UnknownLine:
+        """The same with a start that sums nothing: a sum is a column of its own, which only leads there."""
+        if sought.start is None or not sought.start.has(Sum):
+            return sought
+        own = f"{name}_start"
+        said = ComputedLine(
+            f"where the search for {name} begins",
+            sought.unit,
+            {"positive": False},
+            (sought.start,),
+            next(self.own),
+        )
+        self.columns[own] = column = self._computed(own, said)
+        self.aside.append(own)
+        return replace(sought, start=column.cell)
 
     def claimed(
         self, left: Expr, right: Expr, meaning: str, because: str, from_: Sequence[Any] | None, label: str

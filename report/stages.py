@@ -8,7 +8,7 @@ from functools import cache, partial
 from typing import TYPE_CHECKING
 
 from ..derivations.unit_text import UnitError as NotAUnit
-from ..derivations.unit_text import parse_unit
+from ..derivations.unit_text import of_differences, parse_unit
 from .inputs.inputs import Inputs, load
 from .machine.provenance import versions
 from .machine.timing import timed
@@ -302,6 +302,9 @@ def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
         size = parse_unit(unit)
     except NotAUnit:
         unit, size = column.unit, parse_unit("1")  # an exponent that is a symbol: SI
+    if size.zero and (column.is_u or (isinstance(column.rule, Given) and column.rule.u_of)):
+        size = of_differences(size)
+        unit = size.text
     digits = []
     for given in (*sheet.ancestors(column), column):
         if isinstance(given.rule, Given) and not given.exact:
