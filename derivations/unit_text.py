@@ -169,6 +169,8 @@ _BASE = {
     "mole": "mol",
     "candela": "cd",
 }
+_COUNTED = frozenset({"radian", "count"})
+"""Base units of pint that are pure numbers in SI: of Bq, a count per second."""
 _PURE = frozenset({"", "1", "-", "–", "—", "−"})
 _SUPERSCRIPTS = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
 _TOKEN = re.compile(
@@ -466,6 +468,6 @@ def _from_pint(name: str) -> tuple[Fraction, Dimension]:
     powers: dict[str, Power] = {
         _BASE.get(base, base): Fraction(power).limit_denominator(_HIGHEST)
         for base, power in one.unit_items()
-        if base != "radian"
+        if base not in _COUNTED
     }
     return Fraction(size), _sorted(powers)

@@ -89,6 +89,9 @@ def test_every_common_unit_is_what_pint_says(name: str) -> None:
         ("mm^(1/3)", "0.1", (("m", Fraction(1, 3)),)),
         ("(m^0.5)^2", "1", (("m", 1),)),
         ("ppm", "1e-6", ()),
+        ("Bq", "1", (("s", -1),)),
+        ("kBq/kg", "1000", (("kg", -1), ("s", -1))),
+        ("Ci", "3.7e10", (("s", -1),)),
         ("delta_degC", "1", (("K", 1),)),
     ],
 )
