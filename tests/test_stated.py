@@ -114,9 +114,15 @@ def test_what_is_refused_and_where(text: str, culprit: str, start: int) -> None:
 
 
 def test_percent_of_a_pure_number_is_not_guessed() -> None:
-    for unit in ("%", "1"):
-        with pytest.raises(StatementError, match="LS431"):
-            read_statement("u = 0.5 %", parse_unit(unit))
+    for unit, size in (("%", "0.5"), ("percent", "0.5"), ("1", "0.005"), ("ppm", "5000")):
+        of = parse_unit(unit)
+        for text in ("u = 0.5 %", "u = 0.5 percent"):
+            with pytest.raises(StatementError, match="LS431") as refused:
+                read_statement(text, of)
+            hint = f"say '0.5 % of reading', or '{size}' for that much in its unit {unit}"
+            assert refused.value.suggestion == hint
+        assert read_statement(f"u = {size}", of).parts[0].absolute == Fraction(1, 200)
+    assert read_statement("u = 0.5 percent", MM).parts[0].relative == Fraction(1, 200)
     part = read_statement("u = 0.5 % of reading", parse_unit("%")).parts[0]
     assert (part.relative, part.absolute) == (Fraction(1, 200), 0)
 

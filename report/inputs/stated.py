@@ -63,7 +63,8 @@ _NAMED = re.compile(r"(?P<name>t scale|t sd|dof|samples|[uUkpsn])\s*=\s*")
 _END = re.compile(r"(?P<name>min|max)\s*=\s*(?P<sign>[+-]?)|(?P<bounds>truncated)")
 _EXPONENTIAL = "exponential"
 _TERM = re.compile(r"(?P<number>[0-9.][0-9.]*(?:[eE][+-]?[0-9]+)?)\s*(?P<unit>.*)")
-_RELATIVE = re.compile(r"%\s*(?:of\s+(?:the\s+)?(?:reading|value))?")
+_PERCENT = {"%", "percent"}
+_RELATIVE = re.compile(r"(?:%|percent)\s*(?:of\s+(?:the\s+)?(?:reading|value))?")
 _DIGITS = re.compile(r"digits?")
 _KEYS = {"u": {"dof"}, "U": {"k", "p", "dof"}, "s": {"n", "dof"}, "t scale": {"dof"}, "t sd": {"dof"}}
 _ANYWHERE = Bounds()
@@ -444,10 +445,12 @@ def _amount(text: str, start: int, unit: ParsedUnit) -> tuple[Fraction, Fraction
             digits += number
         elif _RELATIVE.fullmatch(behind) and unit.zero:
             raise StatementError("LS431", term, at, f"zero {unit.text} is not nothing: say how much, in K")
-        elif _RELATIVE.fullmatch(behind) and not (behind == "%" and not unit.dimension):
+        elif _RELATIVE.fullmatch(behind) and (behind not in _PERCENT or unit.dimension):
             relative += number / 100
-        elif behind == "%":
-            raise StatementError("LS431", term, at, "say '% of reading', or the size in the unit 1")
+        elif behind in _PERCENT:  # of what is a pure number: of the reading, or of 1?
+            size = f"{float(number / 100 / unit.scale):.15g}"
+            hint = f"say '{match['number']} % of reading', or '{size}' for that much in its unit {unit.text}"
+            raise StatementError("LS431", term, at, hint)
         else:
             absolute += number * _scale(behind, at + match.start("unit"), unit)
     return absolute, relative, digits
