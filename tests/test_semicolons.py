@@ -89,3 +89,37 @@ def test_semicolons_separate_measurements_alone(findings: Findings) -> None:
     published = "source;cell;index;value;unit\nT;alpha;1-2;1,234;1\n"
     assert findings(WITH_PUBLISHED, published=published) == ["LS308 published.csv:1:7+1"]
     assert findings(csv="test;v [m/s], e;x_p [um]\n1;2,3;4\n2;2,4;5\n")
+
+
+def ended(text: str, end: str, head: bool = True) -> str:
+    """The table with the same at the end of each line."""
+    first, rest = text.split("\n", 1)
+    return first + end * head + "\n" + rest.replace("\n", end + "\n")
+
+
+@pytest.mark.parametrize(
+    "csv",
+    [
+        ended(CSV, ","),
+        ended(GERMAN, ";;"),
+        ended(GERMAN, ' ; "" '),
+        ended(CSV, ",", head=False),
+        ended(CSV, ",") + ",,,,\n",
+        CSV.replace("\n", ",\n", 1),
+    ],
+)
+def test_an_empty_column_at_the_end_is_none(csv: str, read: Reader) -> None:
+    assert {name: [p.value for p in column] for name, column in read(csv=csv).measured.items()} == {
+        name: [p.value for p in column] for name, column in read(csv=CSV).measured.items()
+    }
+
+
+@pytest.mark.parametrize(
+    ("csv", "found"),
+    [
+        (ended(CSV, ",").replace("29.7,", "29.7,x"), "LS303 measurements.csv:1:29+1"),
+        (CSV.replace("29.7", "29.7,"), "LS306 measurements.csv:3:20+1"),
+    ],
+)
+def test_what_stands_at_the_end_of_one_row_is_told(csv: str, found: str, findings: Findings) -> None:
+    assert findings(csv=csv) == [found]

@@ -108,7 +108,7 @@ def read_table(
         rows = rows[first:]
     if not rows[0].sound:
         return None
-    header, body = rows[0].fields, rows[1:]
+    header = rows[0].fields
     for other, name in _SEPARATORS.items():
         if len(header) == 1 and other in header[0].text:
             start = source.text.index(other, header[0].offset)
@@ -120,6 +120,7 @@ def read_table(
     if all(is_number(field.text) for field in header):
         findings.add("LS309", source.at(header[0].offset, header[0].length), known=listing(known))
         return None
+    (header, *_), *body = _without_trailing(rows)
     blank = [row for row in body if _is_blank(row)]
     if blank and not first:
         findings.add("LS315", source.at(blank[0].offset))
@@ -147,12 +148,25 @@ def _report_widths(
             at = source.at(source.line_end(row.fields[-1].offset))
         comma = len(row.fields) > wanted and separator == ","
         more = "a comma separates fields: write 2.334, not 2,334" if comma else ""
+        if not any(field.text for field in row.fields[wanted:]) and len(row.fields) > wanted:
+            more = "a separator too many stands at the end of the row"
         findings.add("LS306", at, found=len(row.fields), wanted=wanted, suggestion=more)
 
 
 def _looks_comma(row: CsvRow, wanted: int) -> bool:
     digits = [field.text.lstrip("+-").isdigit() for field in row.fields]
     return wanted < len(row.fields) <= 2 * wanted and all(digits)
+
+
+def _without_trailing(rows: list[CsvRow]) -> list[CsvRow]:
+    """Rows without the empty columns at their end, which a spreadsheet leaves, if they are in all of them."""
+    names = [bool(field.text) for field in rows[0].fields]
+    wanted = len(names) - names[::-1].index(True) if True in names else len(names)
+    full = [row for row in rows[1:] if not _is_blank(row)]
+    behind = [row.fields[wanted:] for row in full]
+    if any(field.text for fields in behind for field in fields) or (wanted == len(names) and not all(behind)):
+        return rows
+    return [row._replace(fields=row.fields[:wanted]) for row in rows]
 
 
 def _is_blank(row: CsvRow) -> bool:
