@@ -226,6 +226,8 @@ class MethodBody(dict[str, Any]):
         if size.zero and said.column["positive"]:
             raise SheetError(f"{name}: above which zero? say low=..., in {said.unit}", name)
         bounds = said.bounds.within(size.scale, size.zero)
+        if size.zero:  # nothing is colder than 0 K
+            bounds = replace(bounds, low=max(bounds.low or 0.0, 0.0))
         own = name, said.unit, said.meaning, bounds
         self.inputs.append(Measured(*own) if said.is_measured else Parameter(*own, said.default))
         self.examples |= {name: said.example} if said.example else {}

@@ -91,6 +91,27 @@ def test_uncertainties_in_a_column_are_differences(tmp_path: Path) -> None:
     assert report.uncertain().u["T"] == pytest.approx([0.2 / 1.8, 0.2 / 1.8, 0.3 / 1.8])
 
 
+@pytest.mark.parametrize(
+    ("unit", "low", "said"),
+    [
+        ("degC", "", "at least -273.15 degC"),
+        ("degF", "low=-500", "at least -459.67 degF"),
+        ("degC", "low=-50, high=60", "between -50 and 60 degC"),
+    ],
+)
+def test_nothing_is_colder_than_0_k(
+    tmp_path: Path, unit: str, low: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code = gas.WORKBOOK.replace(
+        '"degC", "temperature", low=-50, high=60', f'"{unit}", "temperature", {low or "low=None"}'
+    )
+    folder = gas.folder(tmp_path, table=gas.TABLE.replace("-3.2", "-500.0"), code=code)
+    assert main(["build", str(folder)]) == 2
+    told = capsys.readouterr().err
+    assert "LS406" in told
+    assert said in told
+
+
 def test_positive_asks_above_which_zero() -> None:
     with pytest.raises(SheetError, match=r"T: above which zero\? say low=\.\.\., in degC"):
 
