@@ -281,6 +281,15 @@ def misfit(unit: ParsedUnit, declared: ParsedUnit) -> str:
     return ""
 
 
+def of_differences(unit: ParsedUnit) -> str:
+    """The unit of differences of what is in a unit, as text.
+
+    >>> [of_differences(parse_unit(text)) for text in ("°C", "degF", "mm")]
+    ['delta_degC', 'delta_degF', 'mm']
+    """
+    return unit.text if not unit.zero else "delta_degC" if unit.scale == 1 else "delta_degF"
+
+
 def is_pure(unit: str) -> bool:
     """Whether a unit says that a number is a pure one."""
     return unit.strip() in _PURE

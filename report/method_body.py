@@ -12,9 +12,10 @@ from sympy import Expr, Float, Function, Indexed, Rational, Sum, Symbol, sympify
 from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
 
 from ..derivations.equation import Derivation, Equation, Kind, Ledger
-from ..derivations.unit_text import ParsedUnit, UnitError, coherent, parse_open
+from ..derivations.unit_text import ParsedUnit, UnitError, coherent, of_differences, parse_open
 from .cells.units import unit_of
 from .column import Axis, Column, Formula, Given, Root, SheetError
+from .differences import is_difference, shown_in
 from .fitted import DeclaredFit
 from .named import name_of
 from .quantity import Bounds
@@ -263,6 +264,9 @@ class MethodBody(dict[str, Any]):
             if column.name in self.columns:
                 raise SheetError(f"{column.name} is declared twice: {name} has one of that name, too", name)
             self.columns[column.name] = column
+        for column in sorted(found.columns, key=lambda each: each.axis is None):  # scatter rests on residuals
+            said_so = Symbol(column.name, real=True) in sought
+            self.columns[column.name] = self._as_difference(column, said_so)
         self.entries += found.entries
         self.aside += found.aside
         self.of_fits |= {column.name: Symbol(column.name, real=True) in sought for column in found.columns}
@@ -350,8 +354,26 @@ class MethodBody(dict[str, Any]):
                 each: _in_si(place, size) for each, place in said.ends.items() if isinstance(place, Expr)
             }
             rule = Root(equation, equation, column.symbol, column.symbol, **{**said.ends, **places})
-            return replace(column, rule=rule)
+            return self._as_difference(replace(column, rule=rule), said_so=True)
         column = replace(column, rule=Formula(equation))
         if not said.unit:
             column = replace(column, unit=unit_of(Sheet((*self.columns.values(), column)), column))
-        return column
+        return self._as_difference(column, said_so=not column.display.startswith("like "))
+
+    def _as_difference(self, column: Column, said_so: bool) -> Column:
+        """The column, shown in the unit of differences if it is one; refused if said to be in another."""
+        unit, rule = shown_in(column, self.columns), column.rule
+        if not unit.zero:
+            return column
+        if isinstance(rule, Formula | Root) and not column.is_u:
+            apart = is_difference(rule.expression, self.columns, self.axis)
+        else:
+            apart = column.is_u or (isinstance(rule, Given) and rule.u_of != "")
+        shown = of_differences(unit)
+        if apart and said_so:
+            raise SheetError(
+                f"{column.name} is a difference, which stays where all temperatures move: it is in K or "
+                f"{shown}, not in {unit.text}; declare in {unit.text} whatever else is a temperature",
+                column.name,
+            )
+        return replace(column, display=shown) if apart else column

@@ -298,6 +298,8 @@ def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
         like = like or unit.removeprefix("like ")
     if printed := inputs.printed(like):
         unit = printed[0].unit
+        if like != column.name and isinstance(column.rule, Given):
+            unit = of_differences(parse_unit(unit))  # an uncertainty
     try:
         size = parse_unit(unit)
     except NotAUnit:

@@ -140,3 +140,98 @@ def test_it_stands_by_itself(text: str) -> None:
     with pytest.raises(UnitError) as caught:
         parse_unit(text)
     assert (caught.value.code, caught.value.suggestion) == ("LS423", "say K or delta_degC of a difference")
+
+
+TURNS = """\
+from loopsheet import Method, count, fit, given, let, mean, measured, root, total, unknown
+
+
+class Turns(Method, rows="readings"):
+    \"\"\"Differences, some of which are not seen from their formulas alone.\"\"\"
+
+    T = measured("degC", "temperature")
+    T_ref = given("degC", "reference", default="20 degC")
+    p = given("Pa", "pressure", default="101325 Pa")
+    R = given("J/(kg K)", "gas constant", default="287.05 J/(kg K)")
+    ratio = given("1", "ratio", default="2")
+    start = given("K", "a temperature, or a difference: nobody knows", default="150 K")
+    rho = let(p / (R * T), "density")
+    m = let(mean(T), "mean")
+    variance = let(total((T - mean(T)) ** 2) / (count() - 1), "variance")
+    {line}
+"""
+
+
+def turned(folder: Path, line: str) -> Path:
+    toml = 'title = "T"\nworkbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
+    return gas.folder(folder, toml, gas.TABLE, TURNS.format(line=line.replace("\n", "\n    ")))
+
+
+DIFFERENCES = {
+    'x = let(T - T_ref, "x", {})': 1.5,
+    'x = let(m - T_ref, "x", {})': -7.233333,
+    'x = let(abs(T - m), "x", {})': 8.733333,
+    'x = let((T**2 - T_ref**2) / (T + T_ref), "x", {})': 1.5,
+    'x = let(p / (R * rho) - mean(p / (R * rho)), "x", {})': 8.733333,
+    'x = let((total((T - mean(T))**2) / (count() - 1))**0.5, "x", {})': 13.847864,
+    'x = let(variance**0.5 / count()**0.5, "x", {})': 7.995068,
+    'y = let(T * ratio, "hot", "degC")\nx = let((y - T) / 2, "x", {})': 147.325,
+}
+TEMPERATURES = [
+    'x = let(T + (T - T_ref) / 10, "x", {})',
+    'x = let(m, "x", {})',
+    'x = let(p / (R * rho), "x", {})',
+    'x = let(T * ratio, "x", {})',
+    'x = let(ratio * start, "x", {})',
+    'x = let((T**2 - T_ref**2) / (T - T_ref) / 2, "x", {})',
+]
+
+
+@pytest.mark.parametrize(("line", "value"), DIFFERENCES.items())
+def test_a_difference_has_no_zero(tmp_path: Path, line: str, value: float) -> None:
+    report = Study(turned(tmp_path, line.format("like=T"))).computed
+    assert report.shown["x"].unit == "delta_degC"
+    shown = loopsheet.load(tmp_path)["x"]
+    assert np.atleast_1d(shown.value)[-2 if np.ndim(shown.value) else 0] == pytest.approx(value, abs=1e-6)
+
+
+@pytest.mark.parametrize("line", DIFFERENCES)
+@pytest.mark.parametrize(("unit", "delta"), [("degC", "delta_degC"), ("degF", "delta_degF")])
+def test_a_difference_with_a_zero_is_refused(
+    tmp_path: Path, line: str, unit: str, delta: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for said in (f'"{unit}"', f'display="{unit}"'):
+        assert main(["build", str(turned(tmp_path, line.format(said)))]) == 2
+        told = capsys.readouterr().err
+        assert f"all temperatures move: it is in K or {delta}, not in {unit}" in told
+        assert f"workbook.py:{16 + line.count(chr(10))}:" in told
+
+
+@pytest.mark.parametrize("line", TEMPERATURES)
+def test_a_temperature_keeps_its_zero(tmp_path: Path, line: str) -> None:
+    report = Study(turned(tmp_path, line.format('"degC"'))).computed
+    assert report.shown["x"].unit == "degC"
+
+
+def test_a_root_is_a_difference_or_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    line = 'x = unknown()\nx = root({}, 0, "x", "degC", low={}, high={})'
+    assert main(["build", str(turned(tmp_path / "a", line.format("x - (m - T_ref)", -100, 100)))]) == 2
+    assert "not in degC" in capsys.readouterr().err
+    report = Study(turned(tmp_path / "b", line.format("x - 2 * m + T_ref", -100, 100))).computed
+    assert report.shown["x"].unit == "degC"
+
+
+@pytest.mark.parametrize("u", ["None", '"stated"'])
+def test_what_is_left_over_of_a_fit_has_no_zero(tmp_path: Path, u: str) -> None:
+    code = 't = measured("s", "time")\na = unknown("level", "degC")\nb = unknown("slope", "K/s")\n'
+    code += "line = fit(T, a + b * t, u={})"
+    table = "reading,T [degC],t [s]\n1,20.0,0\n2,21.5,1\n3,22.6,2\n4,24.1,3\n"
+    folder = turned(tmp_path, code.format(u))
+    (folder / "measurements.csv").write_text(table)
+    report = Study(folder).computed
+    units = {name: shown.unit for name, shown in report.shown.items() if shown.unit.endswith("degC")}
+    differences = ("line_residual", "s_a", "line_s" if u == "None" else "u_T")
+    assert units == {
+        **dict.fromkeys(("T", "T_ref", "a", "line_fitted"), "degC"),
+        **dict.fromkeys(differences, "delta_degC"),
+    }

@@ -1,0 +1,78 @@
+"""Differences of temperatures, which have no zero: a formula tells them from temperatures.
+
+It is asked whether its value stays where every temperature is moved by as much. What is declared in a unit
+with a zero is a temperature; of all else that is computed, its own formula tells.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping
+
+from sympy import Expr, Indexed, Rational, Symbol
+
+from ..derivations.unit_text import ParsedUnit, UnitError, parse_open
+from .column import Axis, Column, Formula
+from .named import name_of
+
+__all__ = ["is_difference", "shown_in"]
+
+_MOVE = Symbol("move", real=True)
+_FAR = 10**4
+"""By how much, up and down: farther than cells lie apart, so that none is the largest in both."""
+_ROWS = (5, 6, 7)
+"""How many rows are written out in turn: what divides by the degrees of freedom may have none."""
+_DIGITS, _SAME = 50, Rational(1, 10**30)
+"""Of the values that are compared, and by how much of them they may differ."""
+
+
+def shown_in(column: Column, columns: Mapping[str, Column]) -> ParsedUnit:
+    """The unit that a column is declared to be shown in."""
+    like = columns.get(column.display.removeprefix("like "))
+    display = like.display if like and column.display.startswith("like ") else column.display
+    try:
+        return parse_open(display or column.unit)
+    except UnitError:
+        return parse_open(column.unit)  # it is refused elsewhere
+
+
+def is_difference(formula: Expr, columns: Mapping[str, Column], axis: Axis) -> bool:
+    """Whether a formula of temperatures stays where all of them are moved; also if it cannot be told.
+
+    Parameters
+    ----------
+    formula : Expr
+        In SI.
+    columns : mapping of str to Column
+        What it names.
+    axis : Axis
+        The rows that it has a value for, or sums over.
+    """
+    moved, named = _moved(formula, columns)
+    return named and not any(_moves(moved, axis, rows) for rows in _ROWS)
+
+
+def _moved(formula: Expr, columns: Mapping[str, Column]) -> tuple[Expr, bool]:
+    """The formula with temperatures moved, other formulas put in, and whether there are any."""
+    put, named = {}, False
+    for cell in formula.atoms(Symbol, Indexed):
+        column = columns.get(name_of(cell))
+        if column is None or (column.axis is None) is isinstance(cell, Indexed):
+            continue  # the name of a column by itself is part of its cell
+        if shown_in(column, columns).zero:
+            put[cell], named = cell + _MOVE, True
+        elif isinstance(column.rule, Formula):
+            inner, rests = _moved(column.rule.expression, columns)
+            put[cell], named = inner, named or rests
+    return formula.xreplace(put), named
+
+
+def _moves(moved: Expr, axis: Axis, rows: int) -> bool:
+    """Whether the value is seen to move, at drawn values of all cells."""
+    draw = random.Random(rows)
+    few = moved.subs(axis.size, rows).doit().subs(axis.index, 1)
+    cells = sorted(few.atoms(Indexed), key=str)
+    cells += sorted(few.free_symbols - {_MOVE} - {s for cell in cells for s in cell.free_symbols}, key=str)
+    where = {cell: Rational(draw.randint(1000, 9999), 1000) for cell in cells}
+    down, up = (few.xreplace({**where, _MOVE: Rational(by)}).evalf(_DIGITS) for by in (-_FAR, _FAR))
+    return bool(down.is_finite and up.is_finite and abs(up - down) > _SAME * (1 + abs(down)))
