@@ -235,17 +235,6 @@ def parse_open(text: str) -> ParsedUnit:
     return ParsedUnit(text, scale, _sorted(fixed), tuple(hanging))
 
 
-def of_differences(unit: ParsedUnit) -> ParsedUnit:
-    """The unit of differences of what has a zero of its own; else itself.
-
-    >>> [of_differences(parse_unit(text)).text for text in ("degC", "degF", "mm")]
-    ['K', 'delta_degF', 'mm']
-    """
-    if not unit.zero:
-        return unit
-    return parse_unit("K" if unit.scale == 1 else "delta_degF")
-
-
 def coherent(unit: ParsedUnit) -> str:
     """The unit of SI without prefix that it is a multiple of; as it is written, if it is that itself.
 

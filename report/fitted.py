@@ -11,7 +11,6 @@ from typing import Any
 from sympy import Expr, Indexed, Integer, Symbol
 
 from ..derivations.least_squares import FitQuantity, LeastSquares
-from ..derivations.unit_text import ParsedUnit, of_differences, parse_open
 from ..derivations.vocabulary import spelt
 from .cells.units import unit_of
 from .charts import VERMILION, Chart, Series
@@ -142,25 +141,13 @@ class DeclaredFit:
     def _blank(self, part: FitQuantity) -> Column:
         """The column of a part, without what it is computed from."""
         names, rows = self._fit.names, isinstance(part.cell, Indexed)
-        deviations = {names["residual"], *(() if self._weighed else [names["s"]])}
-        like = self._shown.get(part.name, "")
-        if part.name in deviations | {names["fitted"]}:
-            like = f"like {self._observed.name}"
-        if part.name in deviations and (unit := self._own_zero()):
-            like = of_differences(unit).text
+        as_observed = {names["fitted"], names["residual"], *(() if self._weighed else [names["s"]])}
+        like = f"like {self._observed.name}" if part.name in as_observed else self._shown.get(part.name, "")
         latex = self._latex.get(part.name, part.latex)
         symbol = part.cell.base.label if rows else part.cell
         more: dict[str, Any] = {"is_u": part.name.startswith("s_"), "spare": part.name == names["s"]}
         axis, positive = self._axis if rows else None, bool(symbol.is_positive)
         return Column(part.name, axis, Given(), "", part.title, latex, like, positive=positive, **more)
-
-    def _own_zero(self) -> ParsedUnit | None:
-        """The unit of what was observed, if that has a zero of its own."""
-        shown = self._observed
-        while shown.display.startswith("like "):
-            shown = self._known[shown.display.removeprefix("like ")]
-        unit = parse_open(shown.display or shown.unit)
-        return unit if unit.zero else None
 
     def figures(self, number: int) -> Iterator[FigureSpec]:
         """Points and curve, and what is left over; over the column that the model names, if it is one."""

@@ -304,9 +304,6 @@ def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
         size = parse_unit(unit)
     except NotAUnit:
         unit, size = column.unit, parse_unit("1")  # an exponent that is a symbol: SI
-    if size.zero and (column.is_u or (isinstance(column.rule, Given) and column.rule.u_of)):
-        size = of_differences(size)
-        unit = size.text
     digits = []
     for given in (*sheet.ancestors(column), column):
         if isinstance(given.rule, Given) and not given.exact:
