@@ -400,3 +400,35 @@ def test_shipped_fits_come_out_as_published(name: str, values: int) -> None:
     code = (PAPER.parent / name / "workbook.py").read_text(encoding="utf-8")
     declared = [line for line in code.splitlines() if re.match(r"    \w+ = \w+\([^)]", line)]
     assert len(declared) <= {"gum_h3": 10, "misra1a": 6}[name]
+
+
+PLACES = "from loopsheet import Method, fit, mean, measured, unknown\nclass Places(Method):\n    'Places.'\n"
+
+
+def in_folder(tmp_path: Path, body: str, rows: str) -> Any:
+    """What is computed of a method of x and y."""
+    head = PLACES + "    x = measured('1', 'x')\n    y = measured('1', 'y')\n"
+    (tmp_path / "workbook.py").write_text(head + body, encoding="utf-8")
+    (tmp_path / "m.csv").write_text(f"reading,x [1],y [1]\n{rows}", encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    return Study(tmp_path).computed
+
+
+def test_no_row_is_weighed_by_a_negative_uncertainty(tmp_path: Path) -> None:
+    body = "    a = unknown('a')\n    b = unknown('b')\n    line = fit(y, a + b * x, u=0.05 * x)\n"
+    report = in_folder(tmp_path, body, "1,-1,-1.1\n2,1,0.9\n3,2,2.1\n4,3,2.9\n5,4,4.1\n")
+    first, second = (report.values.cell("line_w", (row,)) for row in (1, 2))
+    assert (first.status.code, second.value) == ("#DOMAIN!", pytest.approx(400))
+    assert "a standard uncertainty that rows are weighed by is above zero" in first.why
+
+
+def test_a_start_may_be_a_sum(tmp_path: Path) -> None:
+    """In the workbook, too, whose passes begin there."""
+    from loopsheet.report import stages
+
+    body = "    b = unknown('b', start=0.9 * mean(y) / mean(x))\n    f = fit(y, x**b)\n"
+    report = in_folder(tmp_path, body, "1,1,1.0\n2,2,2.8\n3,3,5.2\n4,4,8.1\n")
+    assert cells(report.values, "b")[0] == pytest.approx(1.506, abs=2e-3)
+    assert "b_start" in report.workbook.aside
+    stages.book(report)
