@@ -9,7 +9,7 @@ import re
 import signal
 import sys
 from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext, redirect_stdout
+from contextlib import AbstractContextManager, nullcontext, redirect_stdout, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO, cast
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .messages.errors import LoopsheetError, UsageError
     from .result.findings import Check
 
-__all__ = ["main"]
+__all__ = ["command", "main"]
 
 _DESCRIPTION = (
     "Reports whose every number is traced to an equation, recomputed and compared with its publication."
@@ -132,6 +132,17 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
     if left:
         raise _wrong(f"'{left[0]}' is a word too many", f"loopsheet {options.verb}")
     return options
+
+
+def command() -> NoReturn:
+    """The program: one command, and the end of the process."""
+    code = main()
+    if code > 128:
+        # Somebody stopped it, in the middle of an import perhaps: Python's own way out may crash there.
+        with suppress(OSError):
+            sys.stdout.flush()
+        os._exit(code)
+    raise SystemExit(code)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
