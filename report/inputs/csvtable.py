@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from itertools import compress
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..messages.errors import close, listing, suggest
@@ -135,12 +136,13 @@ def _report_widths(
     source: Source, wide: list[CsvRow], wanted: int, findings: Findings, separator: str
 ) -> None:
     """Report rows of another width: one finding for all that decimal commas explain, one for each other."""
-    commas = [row for row in wide if separator == "," and _looks_comma(row, wanted)]
+    by_commas = [separator == "," and _looks_comma(row, wanted) for row in wide]
+    commas = list(compress(wide, by_commas))
     for row in commas[:1]:
         at = source.at(row.offset, source.line_end(row.offset) - row.offset)
         findings.add("LS307", at, found=len(row.fields), wanted=wanted, count=len(commas))
-    for row in wide:
-        if row in commas:
+    for row, explained in zip(wide, by_commas, strict=True):
+        if explained:
             continue
         if len(row.fields) > wanted:
             at = source.at(row.fields[wanted].offset, row.fields[wanted].length)
