@@ -24,7 +24,7 @@ from sympy import Expr, Sum, Symbol, false, sympify, true
 from ..derivations.equation import Ledger
 from .charts import BLUE, VERMILION, Chart, Series
 from .column import SheetError
-from .method_body import ComputedLine, FitLine, InputLine, MethodBody, UnknownLine, exact, named_by
+from .method_body import ComputedLine, FitLine, InputLine, MethodBody, UnknownLine, exact
 from .named import name_of
 from .quantity import Bounds, behind
 from .sheet import Sheet
@@ -367,7 +367,7 @@ class Method(metaclass=_Declaring):
 
 
 def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Sequence[str]) -> Workbook:
-    columns, entries = body.whole, tuple(body.entries)
+    entries = tuple(body.entries)
     for each in headline:
         if each not in body.columns:
             raise SheetError(f"the headline names {each}, which is not declared", each)
@@ -378,7 +378,9 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
             )
     if not entries:
         raise SheetError(f"{name} computes nothing: it has no let(...), no root(...) and no fit(...)", name)
-    used = set[str]().union(*(named_by(c) - {c.name} for c in columns))
+    columns = body.whole
+    sheet = Sheet(columns)
+    used = {each.name for c in columns for each in sheet.precedents(c) if each.name != c.name}
     scalars = (c.name for c in columns if c.axis is None and c.equation)
     last = [each for each in scalars if body.of_fits.get(each, each not in used)]
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))

@@ -31,7 +31,6 @@ __all__ = [
     "MethodBody",
     "UnknownLine",
     "exact",
-    "named_by",
 ]
 
 
@@ -147,11 +146,6 @@ def _typed(formula: Expr) -> Expr:
     return typed
 
 
-def named_by(column: Column) -> set[str]:
-    """What the rule of a column names, itself too if it is a root."""
-    return {name_of(cell) for one in column.expressions for cell in one.atoms(Symbol, Indexed)}
-
-
 class MethodBody(dict[str, Any]):
     """The namespace of a method while it is declared: every name that is assigned becomes a cell."""
 
@@ -176,20 +170,16 @@ class MethodBody(dict[str, Any]):
         Those are rows in which something was not measured, or has no value that one of these sums, or what is
         computed from them, asks for; what rests on a sum itself cannot be asked.
         """
-        every = tuple(self.columns.values())
-        below = {c.name: {c.name, *named_by(c)} & self.columns.keys() for c in every}
-        for _ in every:  # what is iterated rests on itself
-            below = {
-                name: set[str]().union(*(below[each] for each in names)) for name, names in below.items()
-            }
-        sums = {c.name for c in every if any(e.has(Sum) for e in c.expressions)}
-        rows = [c for c in every if c.axis and not sums & below[c.name]]
+        sheet = Sheet(tuple(self.columns.values()))
+        below = {c.name: {c.name, *(each.name for each in sheet.ancestors(c))} for c in sheet.columns}
+        sums = {c.name for c in sheet.columns if sheet.summed_axes(c)}
+        rows = [c for c in sheet.columns if c.axis and not sums & below[c.name]]
 
         def asked(total: Column) -> Iterator[Column]:
             together = set[str]().union(*(names for names in below.values() if total.name in names))
             return (c for c in rows if isinstance(c.rule, Given) or c.name in together)
 
-        return tuple(replace(c, alongside=tuple(asked(c))) if c.name in sums else c for c in every)
+        return tuple(replace(c, alongside=tuple(asked(c))) if c.name in sums else c for c in sheet.columns)
 
     def column(self, name: str) -> Column:
         """What was declared under a name."""
