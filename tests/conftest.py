@@ -1,14 +1,19 @@
 """What all tests share: hypothesis, programs outside Python, the shipped paper, campaigns at random."""
 
+import fcntl
+import hashlib
+import json
 import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from pathlib import Path
 from pkgutil import walk_packages
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -19,7 +24,10 @@ from hypothesis.internal.constants_ast import Constants, constants_from_module
 from small_report import end_gauge
 
 import loopsheet
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.machine.background import Background
+from loopsheet.report.machine.kept import SETTING
+from loopsheet.report.machine.provenance import sources
 
 if TYPE_CHECKING:
     from loopsheet.report.result.result import Report
@@ -43,15 +51,45 @@ def constants() -> Constants:
     return found
 
 
-os.environ["LOOPSHEET_CACHE"] = ""
-"""Nothing is kept from one test to another, by no process: what a test looks at was made for it."""
+KEEPS = os.environ.get(SETTING) != ""
+"""Whether anything is kept at all; not where the sources are changed on purpose (tests/mutants.py)."""
+
+os.environ[SETTING] = ""
+"""What a test looks at is made for it, but for what `keeping` gives."""
 
 
-@pytest.fixture(scope="module")
-def keeping(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """What is made of the same bytes is kept from test to test of a file, as it is for users."""
+def shipped(config: pytest.Config) -> Path:
+    """What is kept of these sources' builds of the two larger shipped folders, which lie elsewhere then."""
+    place = config.cache.mkdir("loopsheet")
+    of_these = hashlib.sha256(json.dumps(sources(), sort_keys=True).encode()).hexdigest()[:16]
+    with (place / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not (place / of_these).exists():
+            for older in filter(Path.is_dir, place.iterdir()):
+                shutil.rmtree(older)
+            with TemporaryDirectory(dir=place) as made:
+                for example in (PAPER, PAPER.parent / "worked_example"):
+                    copied = shutil.copytree(example, Path(made, example.name))
+                    command = [sys.executable, "-m", "loopsheet", "build", str(copied)]
+                    environment = {**os.environ, SETTING: str(Path(made, "kept"))}
+                    subprocess.run(command, env=environment, capture_output=True, check=False)
+                Path(made, "kept").rename(place / of_these)
+    return place / of_these
+
+
+@pytest.fixture(scope="module", autouse=True)
+def keeping(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """What is made of the same bytes is kept from test to test of a file, as it is for users.
+
+    It begins with what is kept of the shipped reports. A file that is marked `nothing_kept` has none of it.
+    """
+    if not KEEPS or request.node.get_closest_marker("nothing_kept"):
+        yield
+        return
+    own = tmp_path_factory.mktemp("kept")
+    shutil.copytree(shipped(request.config), own, dirs_exist_ok=True, copy_function=os.link)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("LOOPSHEET_CACHE", str(tmp_path_factory.mktemp("kept")))
+        patch.setenv(SETTING, str(own))
         yield
 
 
