@@ -34,8 +34,8 @@ class Sizes:
         Those with a value that no double holds, which no dependent inherits.
     broken : int
         Cells of them that break a condition.
-    workbook_mutants, page_mutants : int
-        Changed characters in the formulas of the workbook and in the program of the page.
+    program_mutants, workbook_mutants, page_mutants : int
+        Changed characters in the programs of the engines, in the formulas of the workbook and in the page.
     stopped : int
         Builds that are ended at a random moment by each signal.
     malformed : int
@@ -56,6 +56,7 @@ class Sizes:
     of_each_code: int
     overflows: int
     broken: int
+    program_mutants: int
     workbook_mutants: int
     page_mutants: int
     stopped: int
@@ -74,6 +75,7 @@ FEW = Sizes(
     of_each_code=100,
     overflows=5,
     broken=50,
+    program_mutants=80,
     workbook_mutants=30,
     page_mutants=4,
     stopped=1,
@@ -90,6 +92,7 @@ ALL = Sizes(
     of_each_code=5000,
     overflows=200,
     broken=1000,
+    program_mutants=10_000,
     workbook_mutants=150,
     page_mutants=15,
     stopped=100,

@@ -81,7 +81,7 @@ def shipped(config: pytest.Config) -> Path:
 def keeping(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """What is made of the same bytes is kept from test to test of a file, as it is for users.
 
-    It begins with what is kept of the shipped reports. A file that is marked `nothing_kept` has none of it.
+    It begins with what is kept of the shipped reports. What is marked `nothing_kept` has none of it.
     """
     if not KEEPS or request.node.get_closest_marker("nothing_kept"):
         yield
@@ -91,6 +91,12 @@ def keeping(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(SETTING, str(own))
         yield
+
+
+@pytest.fixture(autouse=True)
+def _nothing_kept(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    if request.node.get_closest_marker("nothing_kept"):
+        monkeypatch.setenv(SETTING, "")
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -17,6 +17,7 @@ from loopsheet.report.engines import numpy as engine
 from loopsheet.report.prepared import Prepared
 from loopsheet.report.result.result import Report
 from loopsheet.report.result.uncertain import Budget, Distributed
+from loopsheet.report.sheet import Sheet
 from loopsheet.report.uncertainty.propagation import Spread
 from loopsheet.report.views import html, latex
 from loopsheet.report.views.budget import as_text
@@ -126,7 +127,11 @@ def test_eigenvalues_are_those_of_drawn_campaigns(report: Report) -> None:
     size = {"v": 1e-3, "e": 1e-3, "x_p": np.array([1e-7, 1e-7, 1e-7, 1e-8, 1e-8])}
     for name, step in size.items():
         data[name] = data[name] + step * rng.uniform(-0.05, 0.05, (20_000, 5))
-    alpha = engine.evaluate(report.sheet, made.labels, data).value["alpha"]
+    asked = report.sheet["alpha"]
+    sheet = Sheet((*report.sheet.ancestors(asked), asked))
+    alpha = engine.evaluate(
+        sheet, made.labels, {name: data[name] for name in sheet.by_name.keys() & data}
+    ).value["alpha"]
     drawn = np.linalg.eigvalsh(np.corrcoef(alpha.T))[::-1]
     (together,) = Spread(report.inputs, report.values).budget("alpha_mean", 0).summed
     np.testing.assert_allclose(together.eigenvalues[:4], drawn[:4], rtol=0.03)

@@ -20,7 +20,11 @@ from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
+from loopsheet.report.referee.campaign import Campaign
+from loopsheet.report.referee.problem import Problem
+from loopsheet.report.referee.values import verdicts
 from loopsheet.report.result.result import Report
+from loopsheet.report.result.verdict import EXACT, NOT_FOUND, REACHABLE, UNREACHABLE
 from loopsheet.report.study import Study
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
@@ -240,9 +244,17 @@ def test_the_referee_says_of_a_published_exponent_what_the_digits_allow(tmp_path
     shutil.copytree(FOLDER, copied)
     rows = "source,cell,index,value,unit\nmine,alpha_eiv,,1.25,1\nmine,C_eiv,,1.009e9,N/m^alpha_eiv\n"
     (copied / "published.csv").write_text(rows, encoding="utf-8")
-    words = [one.word for one in Study(copied).refereed.comparisons]
-    assert words[0] in ("unreachable", "not found")
-    assert words[1] in ("exact", "reachable")
+    study = Study(copied)
+    made, values = study.prepared, study.computed.values
+    campaign = Campaign(made.sheet, made.inputs, values, made.data, made.inputs.free)
+    words = [one.verdict for one in verdicts(campaign, made.inputs.published)]
+    assert words[0] in (UNREACHABLE, NOT_FOUND)
+    assert words[1] in (EXACT, REACHABLE)
+    problem = Problem.of(campaign, made.inputs.published)
+    moved = {
+        unknown.column for unknown, rests in zip(problem.unknowns, problem.touched[0], strict=True) if rests
+    }
+    assert {"v", "e", "x_p"} <= moved
 
 
 # --- campaigns ---------------------------------------------------------------------------------------------

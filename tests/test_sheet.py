@@ -26,6 +26,8 @@ from loopsheet.report.sheet import (
 )
 from loopsheet.report.workbook import Measured, Parameter, Workbook
 
+pytestmark = pytest.mark.nothing_kept
+
 
 def whole(name: str) -> Symbol:
     return Symbol(name, integer=True, positive=True)

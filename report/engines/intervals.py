@@ -105,10 +105,10 @@ class Intervals(NDArrayOperatorsMixin):
         size = max(1, self.low.shape[axis] if self.low.ndim else 1)
         return self._summed(size, lambda end: end.sum(axis=axis, keepdims=keepdims))
 
-    def totals(self, starts: NDArray[np.intp]) -> Intervals:
-        """Sums of neighbours along the last dimension, each from a start to the next one."""
-        sizes = np.diff(starts, append=self.low.shape[-1])
-        return self._summed(sizes, lambda end: np.add.reduceat(end, starts, axis=-1))
+    def totals(self, starts: NDArray[np.intp], axis: int = -1) -> Intervals:
+        """Sums of neighbours along a dimension, counted from the last, each from a start to the next one."""
+        sizes = np.diff(starts, append=self.low.shape[axis]).reshape(-1, *[1] * (-1 - axis))
+        return self._summed(sizes, lambda end: np.add.reduceat(end, starts, axis=axis))
 
     def _summed(self, terms: Any, summed: Callable[[Array], Array]) -> Intervals:
         # n - 1 roundings, each of at most half an ulp of a partial sum, whatever the order of adding.
@@ -131,7 +131,7 @@ class Intervals(NDArrayOperatorsMixin):
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
         if ufunc is np.add and method == "reduceat":
-            return inputs[0].totals(inputs[1])
+            return inputs[0].totals(inputs[1], **options)
         run = _UFUNCS.get(ufunc.__name__)
         if run is None or method != "__call__" or options:
             return NotImplemented

@@ -79,16 +79,25 @@ class Pattern:
     by: Numbered
     entries: Numbered
 
-    def of_scalars(self, sources: int) -> tuple[tuple[int, Numbered, Numbered], ...]:
-        """For each scalar: its number behind the sources, its rows, and the places of its entries."""
-        if sources not in self._of_scalars:
-            every = np.unique(self.by[self.by >= sources]).tolist()
-            found = ((number - sources, self.by == number) for number in every)
-            self._of_scalars[sources] = tuple((n, self.rows[own], self.entries[own]) for n, own in found)
-        return self._of_scalars[sources]
+    def by_scalars(self, sources: int) -> tuple[Numbered, Numbered, Numbered, Numbered]:
+        """What comes by way of scalars: their numbers behind the sources, and the places of the entries.
+
+        Those of a row are beside one another; the first of each row, and which row that is, follow.
+        """
+        if sources not in self._by_scalars:
+            own = np.flatnonzero(self.by >= sources)
+            own = own[np.lexsort((self.by[own], self.rows[own]))]
+            first = np.flatnonzero(np.diff(self.rows[own], prepend=-1))
+            self._by_scalars[sources] = (
+                self.by[own] - sources,
+                self.entries[own],
+                first,
+                self.rows[own[first]],
+            )
+        return self._by_scalars[sources]
 
     @cached_property
-    def _of_scalars(self) -> dict[int, tuple[tuple[int, Numbered, Numbered], ...]]:
+    def _by_scalars(self) -> dict[int, tuple[Numbered, Numbered, Numbered, Numbered]]:
         return {}
 
     def only(self, rows: Numbered) -> Pattern:

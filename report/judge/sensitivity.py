@@ -86,9 +86,11 @@ class Along:
         found, sources = self.nothing((*self.batch, number, self.chain.number)), self.chain.number
         direct = cells.by < sources
         found[..., cells.rows[direct], cells.by[direct]] = self.entries[..., cells.entries[direct]]
-        for scalar, rows, entries in cells.of_scalars(sources):
-            slopes, theirs = self.entries[..., entries], self.whole[..., scalar, :]
-            found[..., rows, :] = found[..., rows, :] + slopes[..., None] * theirs[..., None, :]
+        scalars, entries, first, rows = cells.by_scalars(sources)
+        if rows.size:
+            terms = self.entries[..., entries, None] * self.whole[..., scalars, :]
+            terms[..., first, :] = found[..., rows, :] + terms[..., first, :]
+            found[..., rows, :] = np.add.reduceat(terms, first, axis=-2)
         return found
 
     def of(self, name: str) -> Any:
