@@ -14,6 +14,7 @@ from typing import Any
 from sympy import (
     Add,
     Expr,
+    Function,
     Integer,
     Integral,
     Mul,
@@ -49,9 +50,12 @@ from sympy import (
 from .facts import Facts
 from .sums import in_terms
 
-__all__ = ["Solved", "definite", "settle", "solve_for", "vanishes"]
+__all__ = ["Solved", "definite", "is_root", "settle", "solve_for", "vanishes"]
 
 NOTHING = Facts()
+
+_LARGEST = 3000
+"""Operations. The largest that the paper needs has 1300."""
 
 
 @dataclass(frozen=True)
@@ -249,11 +253,47 @@ def vanishes(residual: Expr) -> bool:
     attempts: tuple[Callable[[], Any], ...] = (
         lambda: numerator,
         lambda: expand(powsimp(numerator)),
-        lambda: simplify(numerator),
-        lambda: simplify(residual),
-        lambda: simplify(_undisguised(residual)),
+        lambda: _simplified(numerator),
+        lambda: _simplified(residual),
+        lambda: _simplified(_undisguised(residual)),
     )
     return any(attempt() == 0 for attempt in attempts)
+
+
+def _simplified(expression: Expr) -> Expr:
+    """What sympy makes of an expression that is not so large that nobody would wait for it."""
+    return simplify(expression) if expression.count_ops() <= _LARGEST else expression
+
+
+def is_root(expression: Expr) -> bool:
+    """Whether an expression is not negative where it is real: a product of roots and what is not negative.
+
+    Of the roots all but one must be of what is not negative: those of -1 and -4 have a negative product.
+    """
+    unsure = [factor for factor in Mul.make_args(expression) if not _is_not_negative(factor)]
+    match unsure:
+        case []:
+            return True
+        case [Pow(exp=exponent)]:
+            return bool(exponent.is_Rational and exponent.q % 2 == 0)
+    return False
+
+
+def _is_not_negative(expression: Expr) -> bool:
+    if expression.is_nonnegative:
+        return True
+    if isinstance(expression, Sum):
+        return _is_not_negative(expression.function)
+    if isinstance(expression, (Add, Mul)):
+        return all(map(_is_not_negative, expression.args))
+    if not isinstance(expression, Pow):
+        return False
+    rational = all(part.exp.is_Integer for part in expression.base.atoms(Pow)) and not expression.atoms(
+        Function
+    )
+    return bool(expression.exp.is_even and rational) or (
+        bool(expression.exp.is_real) and _is_not_negative(expression.base)
+    )
 
 
 def definite(expression: Expr) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -24,6 +25,8 @@ AGREES = mpmath.mpf(10) ** (10 - DIGITS)
 """Largest relative residual that counts as zero: ten guard digits for the arithmetic in between."""
 DETERMINES = mpmath.mpf(10) ** (-DIGITS // 2)
 """Smallest relative divisor that counts as not zero."""
+_ROUNDING = mpmath.mpf(10) ** -3
+"""How much less a difference is with twice as many digits if it is rounding; any other stays what it is."""
 _TRIES, _UNDEFINED = 60 * POINTS, 5 * POINTS
 """How many points are drawn, and after how many without a value none is looked for that refutes."""
 
@@ -137,6 +140,37 @@ class _Trial:
         return self.space.describe(point, solved)
 
 
+class _Finer:
+    """The same step with twice as many digits, where these decide: a square root leaves half of them."""
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+
+    @cached_property
+    def trial(self) -> _Trial:
+        """With numbers of a program, 1/3 say, of as many digits."""
+        return _Trial(self.system)
+
+    def is_rounding(self, point: list[Any], found: list[tuple[Any, Any, Any]]) -> bool:
+        """Whether nothing but rounding keeps sides from being real and equal at a point."""
+
+        def vanishes(old: Any, new: Any) -> bool:
+            return bool(abs(new) <= _ROUNDING * abs(old))
+
+        with mpmath.workdps(2 * DIGITS):
+            try:
+                if not self.trial.lies_in_domain(point):
+                    return True  # nor is it more that tells whether this lies in the domain
+                again = list(self.trial.residuals())
+            except UNDEFINED:
+                return False
+            return all(
+                (residual <= AGREES or vanishes(a - b, c - d))
+                and all(vanishes(mpmath.im(old), mpmath.im(new)) for old, new in ((a, c), (b, d)))
+                for (a, b, residual), (c, d, _) in zip(found, again, strict=True)
+            )
+
+
 def magnitude(expression: Any) -> Any:
     """The expression with every term taken positive: its rounding errors are small against this."""
     match expression:
@@ -163,7 +197,7 @@ def examine(system: System, seed: str) -> Outcome:
         claim that is not real.
     """
     with mpmath.workdps(DIGITS):
-        trial = _Trial(system)
+        trial, finer = _Trial(system), _Finer(system)
         counted, unlike, worst = 0, 0, mpmath.mpf(0)
         undefined: list[dict[str, str]] = []
         for point in trial.space.points(seed, _TRIES):
@@ -182,6 +216,9 @@ def examine(system: System, seed: str) -> Outcome:
                 undefined.append(trial.describe(point))
                 if len(undefined) > _UNDEFINED:
                     break
+                continue
+            doubtful = any(residual > AGREES or not (is_real(a) and is_real(b)) for a, b, residual in found)
+            if doubtful and finer.is_rounding(point, found):
                 continue
             for a, b, residual in found:
                 if not residual <= AGREES:  # also where it is not a number

@@ -10,7 +10,7 @@ from typing import Any
 from sympy import Expr, Float, Indexed, IndexedBase, Rel, Symbol, true
 from sympy.core.function import AppliedUndef
 
-from .algebra import NOTHING, Solved, definite, settle, solve_for, vanishes
+from .algebra import NOTHING, Solved, definite, is_root, settle, solve_for, vanishes
 from .cells import Cells, running
 from .equation import Equation, Step
 from .facts import Facts
@@ -74,9 +74,16 @@ class System:
     def residual_is_zero(self) -> bool:
         """Whether every difference of neighbouring members vanishes once the premises are put in."""
         return all(
-            any(vanishes(self._residual(a, b, facts)) for facts in (NOTHING, self.facts))
+            self._are_roots_of_the_same(a, b)
+            or any(vanishes(self._residual(a, b, facts)) for facts in (NOTHING, self.facts))
             for a, b in pairwise(self.claim)
         )
+
+    def _are_roots_of_the_same(self, a: Expr, b: Expr) -> bool:
+        """Whether two members that are not negative have the same square."""
+        if self.multiplied is not None or not all(is_root(settle(part, self.solution)) for part in (a, b)):
+            return False
+        return vanishes(self._residual(a**2, b**2, NOTHING))
 
     def _residual(self, a: Expr, b: Expr, facts: Facts) -> Expr:
         """What must vanish for two members to be equal."""

@@ -19,6 +19,7 @@ BODY = """\
     dx = let(x - mean(x), "place from the mean on")
     S = let(total(dx**2), "squares")
     s = let(sqrt(S / (count() - 1)), "scatter")
+    R = let(total(x * y) ** 2 / (total(x**2) * total(y**2)), "square of a cosine")
     part = let(x / L, "part")
     a = unknown("offset")
     b = unknown("slope")
@@ -40,6 +41,7 @@ CLAIMS = {
     "(b, total(dx * y) / S, 'slope')": "(b, total(dx * y) / total(x**2), 'w')",
     "(a, mean(y) - b * mean(x), 'mean point')": "(a, mean(y) + b * mean(x), 'w')",
     "(line.S, total(y * line.residual), 'squares')": "(line.S, total(line.fitted * line.residual), 'w')",
+    "(sqrt(S) * sqrt(1 - R), sqrt(S - S * R), 'but for rounding')": "(sqrt(1 - R), 1 - R, 'w')",
     "(S, total(dx * x), 'by one', from_=[S, dx])": "(total(dx), 0, 'w', from_=[S])",
 }
 """What holds, and what does not."""
@@ -85,7 +87,7 @@ def test_a_wrong_claim_is_red(
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("claim(x, y, 'of two kinds')", "of two kinds (6): cannot add A^-1 kg m^2 s^-3 and m"),
+        ("claim(x, y, 'of two kinds')", "of two kinds (7): cannot add A^-1 kg m^2 s^-3 and m"),
         ("claim(x > y, 1, 'no formula')", "is no formula of real numbers"),
         (
             "r = unknown(); r = root(r**3 + r, x, 'r', low=0, high=9); claim(r, x, 'root')",
