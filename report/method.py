@@ -19,7 +19,7 @@ from collections.abc import Mapping, Sequence
 from contextvars import ContextVar
 from typing import Any
 
-from sympy import Expr, Sum, Symbol, false, sympify, true
+from sympy import Expr, Symbol, false, sympify, true
 
 from ..derivations.equation import Ledger
 from .charts import BLUE, VERMILION, Chart, Series
@@ -226,9 +226,8 @@ def fit(observed: Any, model: Any, *, u: Any = None, label: str = "", figures: b
 
 
 def total(formula: Any) -> Expr:
-    """The sum over all rows."""
-    axis = _body().axis
-    return Sum(formula, (axis.index, 1, axis.size))
+    """The sum over all rows; in the body of a method it may be written ``sum`` as well."""
+    return _body().total(formula)
 
 
 def mean(formula: Any) -> Expr:

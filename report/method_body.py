@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
-from sympy import Expr, Float, Function, Indexed, Rational, Sum, Symbol, sympify
+from sympy import Add, Expr, Float, Function, Indexed, Max, Min, Rational, Sum, Symbol, sympify
 from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
 
 from ..derivations.equation import Derivation, Equation, Kind, Ledger
@@ -140,6 +141,12 @@ def exact(formula: Any) -> Expr:
     return found
 
 
+def _extreme(name: str, *formulas: Any) -> Expr:
+    if len(formulas) < 2:
+        raise SheetError(f"{name}() is of several formulas, {name}(a, b); it is not taken over rows")
+    return {"max": Max, "min": Min}[name](*map(exact, formulas))
+
+
 def _typed(formula: Expr) -> Expr:
     """A formula with its decimal fractions as fractions: a proof takes no rounded number."""
     typed: Expr = formula.xreplace({number: Rational(repr(float(number))) for number in formula.atoms(Float)})
@@ -162,6 +169,20 @@ class MethodBody(dict[str, Any]):
         self.of_fits: dict[str, bool] = {}  # and whether it is a parameter
         self.squares: list[SquareSum] = []
         self.own = map("(L{})".format, itertools.count(1))
+
+    def __missing__(self, name: str) -> Any:
+        """In a body the sum, the greatest and the least are those of formulas, not of Python's numbers."""
+        if name == "sum":
+            return self.total
+        if name in ("max", "min"):
+            return partial(_extreme, name)
+        raise KeyError(name)
+
+    def total(self, formula: Any) -> Expr:
+        """The sum over all rows; of a list, of what is in it."""
+        if isinstance(formula, Iterable):
+            return Add(*map(exact, formula))
+        return Sum(formula, (self.axis.index, 1, self.axis.size))
 
     @property
     def whole(self) -> tuple[Column, ...]:

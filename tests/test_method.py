@@ -11,13 +11,13 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
-from sympy import Abs, Symbol, pi, sin, sqrt
+from sympy import Abs, Max, Sum, Symbol, pi, sin, sqrt
 
 import loopsheet
 import loopsheet.report.method
 from loopsheet import Method, count, given, let, mean, measured, plot, root, total, unknown
 from loopsheet.report.cli import main
-from loopsheet.report.column import Root, SheetError
+from loopsheet.report.column import Formula, Root, SheetError
 from loopsheet.report.engines.numpy import evaluate
 from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study
@@ -203,6 +203,26 @@ def test_what_cannot_be_plotted(line: str, said: str) -> None:
     body = f"    x = measured('m', 'length')\n    m = let(mean(x), 'mean')\n    {line}\n"
     with pytest.raises(SheetError, match=re.escape(said)):
         exec(f"class Wrong(Method):\n{body}", {**vars(loopsheet.report.method)})
+
+
+def test_sums_and_extremes_may_be_called_as_in_python() -> None:
+    class Named(Method):
+        x = measured("m", "length")
+        S = let(sum(x), "sum")
+        twice = let(sum([S, S]), "of a list")
+        most = let(max(S, twice, x), "largest, of each row")
+
+    rules = {c.name: c.rule.expression for c in sheet_of(Named).columns if isinstance(c.rule, Formula)}
+    assert isinstance(rules["S"], Sum)
+    assert str(rules["twice"]) == "2*S"
+    assert isinstance(rules["most"], Max)
+    with pytest.raises(SheetError, match=re.escape("max() is of several formulas, max(a, b)")):
+
+        class Refused(Method):
+            x = measured("m", "length")
+            most = let(max(x), "largest of all rows")  # type: ignore[call-overload]
+
+    assert sum([1, 2]) == max(3, 2)
 
 
 def test_outside_of_a_body_there_are_no_rows() -> None:
