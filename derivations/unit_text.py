@@ -9,6 +9,7 @@ uses; tests/test_unit_text.py holds every entry equal to pint's. Angles are pure
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -29,6 +30,7 @@ __all__ = [
     "of_differences",
     "parse_open",
     "parse_unit",
+    "well_named",
 ]
 
 _LONGEST = 60
@@ -247,6 +249,49 @@ def coherent(unit: ParsedUnit) -> str:
         if scale == 1 and dimension == unit.dimension and dimension:
             return name
     return "*".join(f"{base}{_behind(power)}" for base, power in unit.dimension) or "1"
+
+
+def well_named(text: str, known: Iterable[str]) -> str:
+    """A product of base units in as few names as it takes, of those that stand in other units.
+
+    >>> [well_named("kg*s^-2", known) for known in (["kN", "mm"], [])]
+    ['N/m', 'kg/s^2']
+    >>> well_named("kg*m^-1*s^-2", []), well_named("kg*m^2*s^-2", ["N"]), well_named("m*s^-2", ["N"])
+    ('Pa', 'N*m', 'm/s^2')
+    """
+    dimension = parse_open(text).dimension
+    powers = dict(dimension)
+    ways = [dimension]
+    if "kg" in powers:  # an acceleration in N/kg is nobody's
+        names = {name for name in map(_plain, _words(known)) if name in COMMON and len(COMMON[name][1]) > 1}
+        whole = coherent(ParsedUnit("", Fraction(2), dimension))
+        for name in sorted(names or {whole} & COMMON.keys()):
+            for power in (1, -1, 2, -2):
+                rest = {base: powers.get(base, 0) - power * own for base, own in COMMON[name][1]}
+                ways.append(((name, power), *_sorted({**powers, **rest})))
+    return _spelt(min(ways, key=lambda way: len(way) + sum(float(abs(power)) for _, power in way)))
+
+
+def _words(units: Iterable[str]) -> Iterator[str]:
+    return (word for unit in units for word in re.findall(r"[^\W\d_]+", unit))
+
+
+def _plain(word: str) -> str:
+    """The unit of SI that a word is a multiple of; nothing, if it is no unit: an exponent in N/m^alpha."""
+    try:
+        return coherent(parse_open(word))
+    except UnitError:
+        return ""
+
+
+def _spelt(way: Dimension) -> str:
+    """Powers of units, with a stroke before the only one that divides."""
+    above = [f"{name}{_behind(power)}" for name, power in way if power > 0]
+    below = [(name, power) for name, power in way if power < 0]
+    if above and len(below) == 1:
+        ((name, power),) = below
+        return f"{'*'.join(above)}/{name}{_behind(-power)}"
+    return "*".join([*above, *(f"{name}{_behind(power)}" for name, power in below)]) or "1"
 
 
 def _behind(power: Power) -> str:

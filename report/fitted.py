@@ -12,7 +12,7 @@ from sympy import Expr, Indexed, Integer, Symbol
 
 from ..derivations.least_squares import FitQuantity, LeastSquares
 from ..derivations.vocabulary import spelt
-from .cells.units import unit_of
+from .cells.units import named_unit_of
 from .charts import VERMILION, Chart, Series
 from .column import Axis, Column, Formula, Given, Iterated, SheetError
 from .named import name_of
@@ -113,7 +113,7 @@ class DeclaredFit:
                 made[part.name] = replace(column, rule=rule)
                 continue
             column = replace(column, rule=Formula(part.equation), requires=part.needs)
-            made[part.name] = replace(column, unit=column.unit or unit_of({**known, **made}, column))
+            made[part.name] = replace(column, unit=column.unit or named_unit_of({**known, **made}, column))
         # Another fit of the same column may have declared them.
         new = [column for column in stated if known.get(column.name) != column]
         self.columns = (*new, *(made[part.name] for part in parts))

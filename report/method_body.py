@@ -13,8 +13,14 @@ from sympy import Add, Expr, Float, Function, Indexed, Max, Min, Rational, Sum, 
 from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
 
 from ..derivations.equation import Derivation, Equation, Kind, Ledger
-from ..derivations.unit_text import ParsedUnit, UnitError, coherent, of_differences, parse_open
-from .cells.units import unit_of
+from ..derivations.unit_text import (
+    ParsedUnit,
+    UnitError,
+    coherent,
+    of_differences,
+    parse_open,
+)
+from .cells.units import named_unit_of, unit_of
 from .column import Axis, Column, Formula, Given, Root, SheetError
 from .differences import is_difference, shown_in
 from .fitted import DeclaredFit
@@ -368,7 +374,7 @@ class MethodBody(dict[str, Any]):
             return self._as_difference(replace(column, rule=rule), said_so=True)
         column = replace(column, rule=Formula(equation))
         if not said.unit:
-            column = replace(column, unit=unit_of(Sheet((*self.columns.values(), column)), column))
+            column = replace(column, unit=named_unit_of({**self.columns, name: column}, column))
         return self._as_difference(column, said_so=not column.display.startswith("like "))
 
     def _as_difference(self, column: Column, said_so: bool) -> Column:

@@ -81,13 +81,14 @@ def shipped(config: pytest.Config) -> Path:
 def keeping(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """What is made of the same bytes is kept from test to test of a file, as it is for users.
 
-    It begins with what is kept of the shipped reports. What is marked `nothing_kept` has none of it.
+    In a run of many it begins with what is kept of the shipped reports. What is marked `nothing_kept` has none of it.
     """
     if not KEEPS or request.node.get_closest_marker("nothing_kept"):
         yield
         return
     own = tmp_path_factory.mktemp("kept")
-    shutil.copytree(shipped(request.config), own, dirs_exist_ok=True, copy_function=os.link)
+    if hasattr(request.config, "workerinput"):  # where one file is run, after an edit, its tests ask for less
+        shutil.copytree(shipped(request.config), own, dirs_exist_ok=True, copy_function=os.link)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(SETTING, str(own))
         yield

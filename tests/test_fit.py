@@ -139,7 +139,7 @@ def test_weights_are_those_of_the_solver() -> None:
         assert cells(values, *"abc") == pytest.approx(found.parameters, rel=1e-12)
         assert cells(values, "s_a", "s_b", "s_c") == pytest.approx(found.u_by_scatter, rel=1e-10)
         assert values.scalar("f_S") == pytest.approx(found.fitted.chi2, rel=1e-12)
-        assert [sheet[name].unit for name in ("a", "b", "c", "f_s")] == ["m", "m*s^-1", "m*s^-2", "1"]
+        assert [sheet[name].unit for name in ("a", "b", "c", "f_s")] == ["m", "m/s", "m/s^2", "1"]
         assert [square.name for square in method.workbook.squares] == (["f_S"] if u else [])
 
 

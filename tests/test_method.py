@@ -65,9 +65,9 @@ def test_rows_and_units_follow_from_the_formula() -> None:
         "s": None,
     }
     assert {name: sheet[name].unit for name in ("g_k", "g", "s")} == {
-        "g_k": "m*s^-2",
+        "g_k": "m/s^2",
         "g": "m/s^2",
-        "s": "m*s^-2",
+        "s": "m/s^2",
     }
 
 

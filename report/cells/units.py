@@ -13,12 +13,13 @@ from sympy import Basic, Expr, Indexed, sstr
 
 from ...derivations import dimensions
 from ...derivations.dimensions import PURE, Dimension, DimensionError, Dimensions, text_of
+from ...derivations.unit_text import well_named
 from ...derivations.vocabulary import NO_WORDS
 from ..named import name_of
 from ..quantity import Bounds
 from ..sheet import Column, Formula, Given, Iterated, Root, Sheet, SheetError
 
-__all__ = ["Dimension", "DimensionMismatch", "check", "dimension_of_unit", "unit_of"]
+__all__ = ["Dimension", "DimensionMismatch", "check", "dimension_of_unit", "named_unit_of", "unit_of"]
 
 
 class DimensionMismatch(SheetError):
@@ -157,6 +158,12 @@ def unit_of(sheet: Sheet | Mapping[str, Column], column: Column) -> str:
             column.rule.expression, f"its unit is {text_of(found)}; write it with names, N/m^alpha:"
         )
     return text_of(found).replace(" ", "*")
+
+
+def named_unit_of(columns: Mapping[str, Column], column: Column) -> str:
+    """The same in names that stand in the units of the columns, as N/m where there are newtons."""
+    units = (each.display or each.unit for each in columns.values())
+    return well_named(unit_of(columns, column), [unit for unit in units if not unit.startswith("like ")])
 
 
 def _expect(checker: _Checker, expression: Expr, own: Dimension) -> None:
