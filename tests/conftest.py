@@ -81,7 +81,7 @@ def shipped(config: pytest.Config) -> Path:
 def keeping(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """What is made of the same bytes is kept from test to test of a file, as it is for users.
 
-    In a run of many it begins with what is kept of the shipped reports. What is marked `nothing_kept` has none of it.
+    In a run of many it begins with what is kept of the shipped reports. What is `nothing_kept` has none.
     """
     if not KEEPS or request.node.get_closest_marker("nothing_kept"):
         yield
