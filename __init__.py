@@ -5,6 +5,7 @@ __version__ = "0.1.0"
 __all__ = [
     "Method",
     "claim",
+    "constant",
     "count",
     "fit",
     "given",

@@ -263,12 +263,13 @@ def well_named(text: str, known: Iterable[str]) -> str:
     powers = dict(dimension)
     ways = [dimension]
     if "kg" in powers:  # an acceleration in N/kg is nobody's
-        names = {name for name in map(_plain, _words(known)) if name in COMMON and len(COMMON[name][1]) > 1}
+        names = {name for name in map(_plain, _words(known)) if "kg" in dict(COMMON.get(name, (1, ()))[1])}
         whole = coherent(ParsedUnit("", Fraction(2), dimension))
-        for name in sorted(names or {whole} & COMMON.keys()):
+        for name in sorted(names - {"kg"} or {whole} & COMMON.keys()):
             for power in (1, -1, 2, -2):
                 rest = {base: powers.get(base, 0) - power * own for base, own in COMMON[name][1]}
-                ways.append(((name, power), *_sorted({**powers, **rest})))
+                if not rest["kg"]:
+                    ways.append(((name, power), *_sorted({**powers, **rest})))
     return _spelt(min(ways, key=lambda way: len(way) + sum(float(abs(power)) for _, power in way)))
 
 

@@ -13,6 +13,7 @@ sympy: what is measured for the cell of a row, what is computed for a row if its
 
 from __future__ import annotations
 
+import difflib
 import itertools
 import re
 from collections.abc import Mapping, Sequence
@@ -24,6 +25,7 @@ from sympy import Expr, Symbol, false, sympify, true
 from ..derivations.equation import Ledger
 from .charts import BLUE, VERMILION, Chart, Series
 from .column import SheetError
+from .messages.errors import listing
 from .method_body import ComputedLine, FitLine, InputLine, MethodBody, UnknownLine, exact
 from .named import name_of
 from .quantity import Bounds, behind
@@ -33,6 +35,7 @@ from .workbook import FigureSpec, Measured, Parameter, Workbook
 __all__ = [
     "Method",
     "claim",
+    "constant",
     "count",
     "fit",
     "given",
@@ -85,6 +88,34 @@ def given(
     """
     column = {"exact": exact, "latex": latex, "positive": positive}
     return InputLine(meaning, unit, column, _bounds(low, high, positive, whole), default, example=example)
+
+
+def constant(name: str, *, latex: str = "") -> Any:
+    """Declare a constant of nature: its value, unit and uncertainty are CODATA's, as scipy has them.
+
+    Parameters
+    ----------
+    name : str
+        As in `scipy.constants.physical_constants`, ``molar gas constant``.
+    latex : str
+        How it is printed; as its name in the body is, without.
+
+    Raises
+    ------
+    SheetError
+        There is none of that name.
+    """
+    from scipy.constants import find, physical_constants
+
+    if name not in physical_constants:
+        near = dict.fromkeys((*find(name), *difflib.get_close_matches(name, physical_constants, 3)))
+        meant = f"; do you mean {listing(list(near)[:5])}?" if near else ""
+        raise SheetError(f"CODATA has no {name!r}{meant}", name)
+    value, words, u = physical_constants[name]
+    unit = "*".join(words.split()) or "1"
+    default = f"{value!r} {unit}" + (f", u = {u!r} {unit}" if u else "")
+    column = {"exact": not u, "latex": latex, "positive": value > 0}
+    return InputLine(f"{name}, CODATA", unit, column, _bounds(None, None, value > 0, False), default)
 
 
 def measured(

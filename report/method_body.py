@@ -223,20 +223,26 @@ class MethodBody(dict[str, Any]):
         if isinstance(value, FitLine):
             value = self._fitted(name, value)
         if isinstance(value, Declaration):
-            if name in (self.axis.index_name, self.axis.size_name):
-                word = "index" if name == self.axis.index_name else "size"
-                what = (
-                    f"the {self.axis.row}'s number" if word == "index" else f"the number of {self.axis.name}"
-                )
-                raise SheetError(
-                    f"{name} is {what}: call that otherwise, {word}='...' behind the title", name
-                )
+            self._refuse_name_of_rows(name, value)
             column = (
                 self._computed(name, value) if isinstance(value, ComputedLine) else self._input(name, value)
             )
             self.columns[name] = column
             value = column.cell
         super().__setitem__(name, value)
+
+    def _refuse_name_of_rows(self, name: str, said: Declaration) -> None:
+        """What counts rows has its name for itself, where there are rows."""
+        begins = isinstance(said, InputLine) and said.is_measured
+        if not (begins or any(isinstance(each, Measured) for each in self.inputs)):
+            return
+        for own, what in (
+            (self.axis.index_name, f"index: it is the {self.axis.row}'s number"),
+            (self.axis.size_name, f"size: it is the number of {self.axis.name}"),
+        ):
+            if own == name or own in self.columns:
+                word, _, says = what.partition(": it is ")
+                raise SheetError(f"{own} is {says}: call that otherwise, {word}='...' behind the title", own)
 
     def _input(self, name: str, said: Declaration) -> Column:
         assert isinstance(said, InputLine)

@@ -11,6 +11,7 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
+from scipy.constants import physical_constants
 from sympy import Abs, Max, Sum, Symbol, pi, sin, sqrt
 
 import loopsheet
@@ -130,8 +131,14 @@ def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ('k = given("1", "stiffness")', "k is the reading's number: call that otherwise, index='...'"),
-        ('n = given("1", "number")', "n is the number of readings: call that otherwise, size='...'"),
+        (
+            'x = measured("m", "w"); k = given("1", "w")',
+            "k is the reading's number: call that otherwise, ind",
+        ),
+        (
+            'n = given("1", "w"); x = measured("m", "w")',
+            "n is the number of readings: call that otherwise, size",
+        ),
         ('a = given("m", "again")', "a is declared twice"),
         ('c = let(a + b, "of two kinds")', "cannot add m and s"),
         ('c = let(a + a, "length", "s")', "the unit s is s, but the formula gives m"),
@@ -153,6 +160,7 @@ def test_a_wrong_line_is_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, said: str
 ) -> None:
     head = "import sympy\nfrom sympy import Symbol\n" + PIPE.partition("    Re")[0]
+    head = head.replace("import Method", "import measured, Method")
     code = f'{head}    a = given("m", "length")\n    b = given("s", "time")\n    {line}\n'
     where = folder(tmp_path, code, 'a = "1.0 m"\nb = "2.0 s"\n')
     assert main(["check", str(where), "--no-cache"]) == 2
@@ -223,6 +231,52 @@ def test_sums_and_extremes_may_be_called_as_in_python() -> None:
             most = let(max(x), "largest of all rows")  # type: ignore[call-overload]
 
     assert sum([1, 2]) == max(3, 2)
+
+
+def test_constants_of_nature_have_their_digits(tmp_path: Path) -> None:
+    code = (
+        "from loopsheet import Method, constant, given, let\nclass Gas(Method):\n"
+        "    p = given('kPa', 'pressure')\n    V = given('L', 'volume')\n"
+        "    T = given('degC', 'temperature')\n"
+        "    R = constant('molar gas constant')\n    G = constant('Newtonian constant of gravitation')\n"
+        "    n = let(p * V / (R * T), 'amount')\n    twice = let(2 * G, 'twice')\n"
+    )
+    path = folder(tmp_path, code, 'p = "101.325 kPa"\nV = "22.41396954 L"\nT = "0 degC"\n')
+    made = loopsheet.load(path)
+    assert made["n"].value == pytest.approx(1, rel=1e-9)  # of an ideal gas
+    assert made["n"].unit == "mol"
+    assert made["G"].value == pytest.approx(6.6743e-11, rel=1e-4)
+    assert made["twice"].u == pytest.approx(2 * made["G"].u)
+    assert made["G"].u > 0 == made["R"].u
+
+
+def test_every_constant_may_be_declared_or_is_refused() -> None:
+    refused = {}
+    for name in physical_constants:
+        try:
+            exec(
+                f"class One(Method):\n    c = constant({name!r})\n    d = let(2 * c, 'twice')\n",
+                {**vars(loopsheet.report.method)},
+            )
+        except SheetError as error:
+            refused[name] = str(error)
+    assert all("unit" in said for said in refused.values()), refused
+    assert len(refused) < 0.1 * len(physical_constants)
+    with pytest.raises(SheetError, match="do you mean molar gas constant"):
+        exec("class One(Method):\n    c = constant('gas constant')\n", {**vars(loopsheet.report.method)})
+
+
+@pytest.mark.parametrize(
+    ("default", "code"),
+    [("2 K", "LS422"), ("two m", "LS401"), ("2", "LS211"), ("2 m, u = 1 s", "LS431")],
+)
+def test_a_default_is_read_as_what_is_given(
+    default: str, code: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = "from loopsheet import Method, given, let\nclass One(Method):\n    a = given('kg', 'a')\n"
+    text += f"    b = given('m', 'b', default={default!r})\n    c = let(a * b, 'c')\n"
+    assert main(["check", str(folder(tmp_path, text, 'a = "1 kg"\n'))]) == 2
+    assert f"error[{code}]" in capsys.readouterr().err
 
 
 def test_outside_of_a_body_there_are_no_rows() -> None:

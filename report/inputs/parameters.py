@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ...derivations.unit_text import ParsedUnit, UnitError, examples, is_pure, misfit, parse_unit
 from ..messages.errors import Findings, Location
 from ..quantity import behind
-from .number_text import read_printed, read_value
+from .number_text import read_value
 from .stated import SHAPES, Conventions, Of, StatementError, read_statement
 
 if TYPE_CHECKING:
@@ -67,8 +67,7 @@ def read_parameters(
         if parameter.name in written:
             number = _Reader(toml, parameter, findings, said).read(written[parameter.name])
         elif parameter.default is not None:
-            digits, _, unit = parameter.default.partition(" ")
-            number = read_printed(digits, parse_unit(unit or "1"))
+            number = _OfDefault(toml, parameter, findings, said).read(parameter.default)
         if number is not None:
             printed[parameter.name] = number
     return printed
@@ -91,7 +90,7 @@ class _Reader:
         self.toml, self.said = toml, said
         self.parameter = parameter
         self.findings = findings
-        self.path = ("parameters", parameter.name)
+        self.path: tuple[str, ...] = ("parameters", parameter.name)
         self.expected = parse_unit(parameter.unit)
         self.suffix = behind(parameter.unit)
 
@@ -120,9 +119,8 @@ class _Reader:
         start = value.find(digits)
         unit, said, begins = _apart(rest, value.find(rest, start + len(digits)) if rest else 0)
         size = self.unit(unit, value.find(unit, start + len(digits)), digits)
-        place = self.toml.value(*self.path, start=start, length=max(len(digits), 1))
-        where = self.toml.trace(*self.path)
-        printed = read_value(digits, size, self.parameter, place, self.findings, where=where)
+        place = self.part(start, max(len(digits), 1))
+        printed = read_value(digits, size, self.parameter, place, self.findings, where=self.where)
         if said and printed and size:
             printed = self.stated(printed, said, begins)
         if printed and printed.stated is not None and self.parameter.bounds.integer:
@@ -173,8 +171,26 @@ class _Reader:
             self.findings.add("LS211", at, name=name, text=digits, unit=wanted, example=example)
         return None
 
+    @property
+    def where(self) -> str:
+        """Where the number stands, for its trace."""
+        return self.toml.trace(*self.path)
+
     def part(self, start: int, length: int) -> Location:
         return self.toml.value(*self.path, start=start, length=length)
+
+
+class _OfDefault(_Reader):
+    """Reads what the workbook declares: what is wrong with it is told where that is named."""
+
+    where = ""
+
+    def __init__(self, *about: Any) -> None:
+        super().__init__(*about)
+        self.path = ("workbook",)
+
+    def part(self, start: int, length: int) -> Location:
+        return self.toml.value(*self.path)
 
 
 def _apart(text: str, start: int) -> tuple[str, str, int]:
