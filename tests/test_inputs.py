@@ -410,7 +410,7 @@ def test_findings_in_report_toml(
         (CSV.replace("\n1,", "\n,"), ["LS403 measurements.csv:2:1+1"]),
         (CSV.replace("\n2,", "\n01,"), ["LS311 measurements.csv:3:1+2"]),
         (CSV.replace("test,", "Test,"), ["LS303 measurements.csv:1:1+4"]),
-        (CSV.replace("test,", "nr,"), ["LS301 measurements.csv:1:26+1", "LS303 measurements.csv:1:1+2"]),
+        (CSV.replace("test,", "nr,"), ["LS303 measurements.csv:1:1+2"]),
         (CSV.replace("v [m/s]", "v [m/s"), ["LS305 measurements.csv:1:6+6"]),
         (CSV.replace("v [m/s]", "v, [m/s]"), None),
         (

@@ -453,7 +453,22 @@ def test_the_rows_may_be_called_as_the_method_calls_them(
     table.write_text(text.replace("swing", head, 1), encoding="utf-8")
     assert main(["show", "g", str(tmp_path / "c")]) == code
     if code:
-        assert "add 'swing' to the first line" in capsys.readouterr().err
+        assert "did you mean 'swing'?" in capsys.readouterr().err
+
+
+def test_rows_without_numbers_are_numbered_as_they_stand(tmp_path: Path) -> None:
+    assert main(["new", str(tmp_path / "c"), "--workbook", "formula"]) == 0
+    table = tmp_path / "c" / "measurements.csv"
+    head, *lines = table.read_text(encoding="utf-8").splitlines()
+    named = [f"{name},{line.partition(',')[2]}" for name, line in zip("CBA", lines, strict=False)]
+    table.write_text("\n".join(["specimen,T [s]", *named, ""]), encoding="utf-8")
+    study = Study(tmp_path / "c")
+    assert study.inputs.tests == (1, 2, 3)
+    assert study.inputs.remarks == ("specimen",)
+    assert study.inputs.texts[2]["specimen"] == "B"
+    table.write_text("\n".join([head, *lines[:3], ""]), encoding="utf-8")
+    again = Study(tmp_path / "c").computed.values
+    assert again.value["g"] == study.computed.values.value["g"]
 
 
 def test_the_names_are_there_when_asked_for() -> None:

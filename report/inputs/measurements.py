@@ -145,7 +145,7 @@ def read_measurements(
     elsewhere : collection of str
         The columns that are taken from other reports: they must not stand here.
     called : str
-        What else the column of the tests' numbers may be called.
+        What else the column of the tests' numbers may be called. Without it, rows are numbered as they stand.
     """
     before = len(findings.found)
     columns = {column.name: column for column in measured or () if column.name not in elsewhere}
@@ -165,9 +165,14 @@ def read_measurements(
         places = {"test": names.index("test")}
     else:
         optional = [*(f"u({name})" for name in columns), LEFT_OUT]
+        if "test" not in names:  # rows are numbered as they stand
+            del required["test"]
+            optional += {"test": None, called: None}
         remarks = tuple(_remarks(table, heads, names, [called, *required, *optional, *elsewhere]))
         places = match_columns(table, names, required, [*optional, *remarks], findings)
-    tests = _tests(table, places["test"], findings) if "test" in places else ()
+    tests = tuple(range(1, len(table.rows) + 1))
+    if "test" in places:
+        tests = _tests(table, places["test"], findings)
     reasons = [row.fields[places[LEFT_OUT]] for row in table.rows] if LEFT_OUT in places else []
     gone = {place for place, reason in enumerate(reasons) if reason.text}
     total = table.total - len(gone)

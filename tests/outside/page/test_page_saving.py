@@ -1,5 +1,6 @@
 """What the page saves builds by itself: with the tests that are left out, and with all other files."""
 
+import shutil
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -81,6 +82,18 @@ def test_what_is_being_typed_is_saved(live: Live, tmp_path: Path) -> None:
     live.page.keyboard.type("29.99")
     lines = (live.save(tmp_path / "saved") / "measurements.csv").read_text(encoding="utf-8").splitlines()
     assert lines[2] == "2,2.940,0.512,29.99"
+
+
+def test_rows_without_numbers_are_saved_without(open_page: Open, tmp_path: Path) -> None:
+    folder = shutil.copytree(PAPER, tmp_path / "own")
+    table = folder / "measurements.csv"
+    head, *lines = [line.partition(",")[2] for line in table.read_text(encoding="utf-8").splitlines()]
+    own = [f"{head},specimen", *(f"{line},{name}" for line, name in zip(lines, "EDCBA", strict=True))]
+    table.write_text("\n".join([*own, ""]), encoding="utf-8")
+    live = open_page(page_of(folder, tmp_path / "out"))
+    live.type("x_p", 2, "29.80")
+    saved = (live.save(tmp_path / "saved") / "measurements.csv").read_text(encoding="utf-8")
+    assert saved.splitlines() == [line.replace("29.7,", "29.80,") for line in own]
 
 
 def test_what_no_build_would_take_is_told(live: Live, tmp_path: Path) -> None:
