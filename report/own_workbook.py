@@ -48,7 +48,7 @@ def own_workbook(path: Path, code: bytes) -> Workbook:
     own = _Own(path, code)
     found: Workbook = own.guarded("WORKBOOK", own.run, Workbook)()
     wrong = [
-        diagnose("LS213", place_of(path, code, field, word), text=path.name, reason=reason)
+        diagnose("LS213", place_of(path, code, field, word), text=path.name, reason=reason, suggestion="")
         for field, word, reason in mistyped(found)
     ]
     if wrong:
@@ -91,6 +91,12 @@ def follows_from_its_bytes(code: bytes) -> bool:
     }
     named = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
     return imported <= _PURE and named.isdisjoint({"open", "exec", "eval", "compile", "__import__"})
+
+
+_HINT = (
+    "it is a Python file with a class of loopsheet.Method (or a Workbook of loopsheet.report as WORKBOOK); "
+    "'loopsheet new FOLDER --workbook formula' writes one"
+)
 
 
 @dataclass(frozen=True)
@@ -142,7 +148,30 @@ class _Own:
                 line = traceback.tb_lineno
             traceback = traceback.tb_next
         at = _place(self.path, self.code, line)
-        raise InputError(diagnose("LS213", at, text=self.path.name, reason=reason)) from error
+        hint = _HINT if error is None else _hint(error)
+        raise InputError(
+            diagnose("LS213", at, text=self.path.name, reason=reason, suggestion=hint)
+        ) from error
+
+
+def _hint(error: BaseException) -> str:
+    """What helps who wrote a line that fails; what a sheet complains of says it itself."""
+    from .method_body import FUNCTIONS
+
+    match error:
+        case SheetError():
+            return ""
+        case NameError(name=name) if name in (*FUNCTIONS, "sqrt", "pi"):
+            return f"write above: from sympy import {name}"
+        case NameError():
+            return "a name stands for its cell from the line on where it is declared"
+        case ImportError():
+            return "a copy of a shipped workbook imports by full names, as loopsheet.report.sheet"
+        case TypeError() if re.search("float|ufunc", str(error)):
+            return "functions are those of sympy, not of math or NumPy: from sympy import sqrt, exp, log, sin"
+        case TypeError() if "truth value" in str(error):
+            return "a formula has no if: write max(a, b) or min(a, b)"
+    return "" if isinstance(error, SyntaxError) else _HINT
 
 
 def place_of(path: Path, code: bytes, field: str, word: str = "") -> Location:

@@ -17,7 +17,7 @@ __all__ = ["of_sheet", "refuse_what_is_misnamed", "refuse_what_is_missing"]
 def of_sheet(inputs: Inputs, error: SheetError) -> InputError:
     """What is wrong with the sheet of a user's own workbook, with its place there."""
     at = place_of_column(*_own_code(inputs), error.about)
-    return InputError(diagnose("LS213", at, text=inputs.workbook.name, reason=str(error)))
+    return InputError(diagnose("LS213", at, text=inputs.workbook.name, reason=str(error), suggestion=""))
 
 
 def _own_code(inputs: Inputs) -> tuple[Path, bytes]:
@@ -35,7 +35,7 @@ def refuse_what_is_misnamed(
     """What a user's own workbook wants shown must be there; parameters as for :func:`~.declared.misnamed`."""
     path, code = _own_code(inputs)
     found = [
-        diagnose("LS213", place_of(path, code, field, word), text=path.name, reason=reason)
+        diagnose("LS213", place_of(path, code, field, word), text=path.name, reason=reason, suggestion="")
         for field, word, reason in misnamed(inputs.workbook, sheet, narratives, drawings)
     ]
     if found:

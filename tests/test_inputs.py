@@ -517,7 +517,7 @@ def test_with_an_unknown_workbook_the_rest_is_still_looked_at(findings: Findings
 
 def test_what_a_workbook_finds_is_shown_with_the_rest(read: Reader) -> None:
     read()
-    error = InputError(diagnose("LS213", text="own.py", reason="it is broken"))
+    error = InputError(diagnose("LS213", text="own.py", reason="it is broken", suggestion=""))
 
     def fail(name: str, folder: Path, code: bytes | None) -> Workbook:
         raise error

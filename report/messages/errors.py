@@ -132,9 +132,7 @@ CATALOGUE: dict[str, Entry] = {
     "LS213": Entry(
         "workbook fails",
         "{text} cannot be used: {reason}",
-        "a Python file with a class of loopsheet.Method, or a loopsheet.report.workbook.Workbook as WORKBOOK",
-        "'loopsheet new FOLDER --workbook formula' writes one; "
-        "a copy of a shipped one imports by full names, as loopsheet.report.sheet",
+        hint="{suggestion}",
     ),
     "LS214": Entry(
         "code of the folder",
