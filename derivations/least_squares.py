@@ -20,6 +20,8 @@ from sympy import (
     Indexed,
     IndexedBase,
     Integer,
+    Piecewise,
+    Rational,
     Rel,
     StrictGreaterThan,
     Sum,
@@ -37,6 +39,12 @@ __all__ = ["FitQuantity", "LeastSquares"]
 _APART = Integer(2**45)
 """What is left of a slope, as a part of it, is more than rounding from one over this on. (Its square has more
 digits than a spreadsheet reads.)"""
+
+
+_PARTS = tuple(Rational(1, 2**n) for n in (0, 2, 4, 8))
+"""Of a step that is too long."""
+_ROUNDING = Rational(1, 2**40)
+"""By what part of itself a sum of squares may grow by rounding."""
 
 
 @dataclass(frozen=True)
@@ -307,8 +315,22 @@ class LeastSquares:
             self._found |= {part.name: part for part in found}
             return
         self.helpers += reversed(found)
+        part = self._part()
         for m in range(self.count):
-            self._seek(m)
+            self._seek(m, part)
+
+    def _part(self) -> Expr:
+        """How much of a step is taken: all of it where the sum of squares does not grow, else less."""
+
+        def squares(part: Rational) -> Expr:
+            pairs = zip(self.parameters, self.unknowns, strict=True)
+            moved = {each: each + part * step for each, step in pairs}
+            return self.total((self.observed - self.model.xreplace(moved)) ** 2)
+
+        now = (1 + _ROUNDING) * self.total(self.residual**2)
+        ways = [(part, squares(part) <= now) for part in _PARTS[:-1]]
+        value = Piecewise(*ways, (_PARTS[-1], True))
+        return self._helper("part", value, "part of the step that is taken", r"\lambda")
 
     def _solved(self, m: int) -> FitQuantity:
         """An unknown, by those behind it."""
@@ -365,13 +387,13 @@ class LeastSquares:
             ),
         )
 
-    def _seek(self, m: int) -> None:
+    def _seek(self, m: int, part_of_step: Expr) -> None:
         """A parameter that steps lead to: it stays where the sum of squares has no slope."""
         parameter, word, slope = self.parameters[m], self.words[m], self._cell(f"{self.called}_G{m + 1}")
         because = "half the slope of the sum of squares, downwards; where that is least, it is zero"
         members, part = (slope, self.total(self.columns[0][m] * self.residual)), self._parts[str(parameter)]
         said = self._said(self.number, members, word, Kind.DEFINITION, because, part=part, defines=slope)
-        step = parameter + self.unknowns[m]
+        step = parameter + part_of_step * self.unknowns[m]
         self._found[str(parameter)] = FitQuantity(str(parameter), word, "", parameter, said, step=step)
         title = f"slope of the sum of squares by {parameter}"
         claim = self._said(next(self.own), (diff(self._squares, parameter), -2 * slope), title)

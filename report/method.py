@@ -23,8 +23,9 @@ from typing import Any
 from sympy import Expr, Symbol, false, sympify, true
 
 from ..derivations.equation import Ledger
+from ..derivations.vocabulary import Quantity, Vocabulary, spelt
 from .charts import BLUE, VERMILION, Chart, Series
-from .column import SheetError
+from .column import Column, SheetError
 from .messages.errors import listing
 from .method_body import ComputedLine, FitLine, InputLine, MethodBody, UnknownLine, exact
 from .named import name_of
@@ -396,6 +397,21 @@ class Method(metaclass=_Declaring):
     """
 
 
+def _has_limits(said: Measured | Parameter) -> bool:
+    return (said.bounds.low, said.bounds.high) != (None, None)
+
+
+def _drawn(said: Measured | Parameter, column: Column) -> Quantity:
+    """What is given, for proofs: it is drawn between its limits, or beyond the only one that it has."""
+    low, high = said.bounds.low, said.bounds.high
+    if low is None or high is None:
+        (end,) = (each for each in (low, high) if each is not None)
+        far = max(abs(end), 1.0) * (1 if high is None else -1)
+        low, high = sorted((end + far / 2, end + 2 * far))
+    latex = column.latex or spelt(column.name)
+    return Quantity(column.name, column.meaning, column.unit, latex, (low, high), bool(column.positive))
+
+
 def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Sequence[str]) -> Workbook:
     entries = tuple(body.entries)
     for each in headline:
@@ -413,6 +429,7 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
     used = {each.name for c in columns for each in sheet.precedents(c) if each.name != c.name}
     scalars = (c.name for c in columns if c.axis is None and c.equation)
     last = [each for each in scalars if body.of_fits.get(each, each not in used)]
+    words = Vocabulary(*(_drawn(one, body.columns[one.name]) for one in body.inputs if _has_limits(one)))
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
     columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
     rows = zip(*(body.examples.get(one.name, "").split() for one in columns_of), strict=False)
@@ -421,7 +438,7 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
         name=re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower(),
         title=title,
         source=source,
-        ledger=lambda: Ledger(entries),
+        ledger=lambda: Ledger(entries, vocabulary=words),
         measured=columns_of,
         parameters=given_to,
         sheet=lambda names: Sheet(columns),
