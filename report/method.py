@@ -94,6 +94,9 @@ def given(
 def constant(name: str, *, latex: str = "") -> Any:
     """Declare a constant of nature: its value, unit and uncertainty are CODATA's, as scipy has them.
 
+    Values that were adjusted together are correlated, which is not known here: of a formula in two of them
+    state it under ``[uncertainty.correlation]``, or take the constant that the formula stands for.
+
     Parameters
     ----------
     name : str
@@ -445,6 +448,7 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
         headline=tuple(headline) or tuple(last),
         row=body.axis.row,
         squares=tuple(body.squares),
+        claims=tuple(body.claims),
         aside=frozenset(body.aside),
         figures=tuple(body.figures),
         example=(head, *((str(place), *row) for place, row in enumerate(rows, start=1)))

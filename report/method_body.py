@@ -27,7 +27,7 @@ from .fitted import DeclaredFit
 from .named import name_of
 from .quantity import Bounds
 from .sheet import Sheet
-from .workbook import FigureSpec, Measured, Parameter, SquareSum
+from .workbook import Claimed, FigureSpec, Measured, Parameter, SquareSum
 
 __all__ = [
     "FUNCTIONS",
@@ -174,6 +174,7 @@ class MethodBody(dict[str, Any]):
         self.aside: list[str] = []
         self.of_fits: dict[str, bool] = {}  # and whether it is a parameter
         self.squares: list[SquareSum] = []
+        self.claims: list[Claimed] = []
         self.own = map("(L{})".format, itertools.count(1))
 
     def __missing__(self, name: str) -> Any:
@@ -331,6 +332,8 @@ class MethodBody(dict[str, Any]):
         )
         zero = Equation(equation.label, (left, left - right), "", title=meaning)
         unit_of(self.columns, Column(meaning, self.axis, Formula(zero)))  # as long as both have one unit
+        of_rows = self.axis.index in {*left.free_symbols, *right.free_symbols}
+        self.claims.append(Claimed(equation.label, meaning, self.axis if of_rows else None, left, right))
         premises, unknowns = zip(*found, strict=True) if found else ((), ())
         self.entries.append(Derivation.of(equation, premises, unknowns, "Put in what the quantities are."))
 

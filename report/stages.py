@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from typing import TYPE_CHECKING
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from .cells.marks import Marks
     from .cells.values import Values
     from .charts import Drawn
+    from .messages.diagnostics import Check
     from .messages.errors import Diagnostic
     from .result.agreement import Agreement
     from .result.result import Comparison, Plotted, Report, Shown
@@ -158,7 +159,7 @@ def evaluated(made: Prepared, ledger: Callable[[], Ledger], step: Step) -> Repor
         uncertain=cache(lambda: uncertain(workbook, values, inputs)),
         versions=versions(),
     )
-    return replace(report, oddities=oddities(report))
+    return replace(report, oddities=(*oddities(report), *_claims(report)))
 
 
 def computing(sheet: Sheet, columns: Sequence[Column]) -> Callable[[Inputs], Marks]:
@@ -182,6 +183,16 @@ def computing(sheet: Sheet, columns: Sequence[Column]) -> Callable[[Inputs], Mar
         return Marks(evaluate(part, made.labels, made.data, program), limits)
 
     return computed
+
+
+def _claims(report: Report) -> Iterator[Check]:
+    """Whether what is claimed holds of the numbers: of some of the rows, where there are many."""
+    from .judge import sample
+    from .judge.claims import claims
+
+    if said := report.workbook.claims:
+        made = Prepared(sample.part(report.inputs, report.values, EXACTLY), report.sheet)
+        yield from claims(said, report.sheet, made.labels, made.exact_data, report.inputs.place)
 
 
 def judged(report: Report, every: bool = True, step: Step = silent) -> Report:

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any
 from .quantity import Bounds
 
 if TYPE_CHECKING:
+    from sympy import Expr
+
     from ..derivations.equation import Ledger
     from .charts import Chart, Drawn
-    from .column import Column
+    from .column import Axis, Column
     from .sheet import Sheet
 
 __all__ = ["Design", "FigureSpec", "Measured", "Parameter", "SquareSum", "TableSpec", "Workbook"]
@@ -115,6 +117,26 @@ class SquareSum:
 
 
 @dataclass(frozen=True)
+class Claimed:
+    """Two formulas in cells of the sheet that are to be equal whatever is measured.
+
+    Parameters
+    ----------
+    label, meaning : str
+        Of its equation.
+    axis : Axis or None
+        Of its rows, if it is one of each row.
+    left, right : Expr
+    """
+
+    label: str
+    meaning: str
+    axis: Axis | None
+    left: Expr
+    right: Expr
+
+
+@dataclass(frozen=True)
 class Design:
     """How rows that are not measured yet are made forward from what is known.
 
@@ -186,6 +208,8 @@ class Workbook:
     row: str = "test"
     squares: tuple[SquareSum, ...] = ()
     """The sums of squares to be no larger and no smaller than chance makes them."""
+    claims: tuple[Claimed, ...] = ()
+    """What is to hold of its cells, whatever is measured."""
     aside: frozenset[str] = frozenset()
     """What only leads to other cells: it is in no table, but in those that the workbook declares."""
     fits: tuple[str, ...] = ()

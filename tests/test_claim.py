@@ -110,3 +110,25 @@ def test_a_claim_stands_in_the_body_of_a_method() -> None:
 
     with pytest.raises(method.SheetError, match="stand in the body of a class of Method"):
         contextvars.Context().run(method.claim, 1, 1, "one")
+
+
+def test_what_is_proved_must_hold_of_the_data(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Each sum leaves out the rows that it has no value for; a proof knows of none."""
+    code = (
+        "from sympy import sqrt\nfrom loopsheet import Method, claim, let, mean, measured\n"
+        "class Means(Method):\n    y = measured('1', 'size')\n    s = let(sqrt(y), 'root')\n"
+        "    a = let(mean(y), 'mean')\n    b = let(mean(s**2), 'the same')\n    claim(a, b, 'means')\n"
+        "    claim(s**2, y, 'of each row')\n"
+    )
+    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
+    toml = 'title = "T"\nworkbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
+    (tmp_path / "report.toml").write_text(f'{toml}[expected]\n"s[1]" = "below"\n', encoding="utf-8")
+    table = tmp_path / "m.csv"
+    for first, found in (("-0.1", 1), ("0.1", 0)):
+        table.write_text(f"test,y [1]\n1,{first}\n2,1.9\n3,1.2\n", encoding="utf-8")
+        own = {c.name: c.passed for c in Study(tmp_path).computed.oddities if c.kind == "claim"}
+        assert own == {"(4)": not found, "(5)": True}
+        if found:
+            assert main(["check", str(tmp_path)]) == 1
+            told = capsys.readouterr().out
+            assert "finding: (4), means, does not hold of these data: its sides differ by -0.55 in SI" in told

@@ -15,6 +15,7 @@ from ..messages.diagnostics import Check, Location
 from ..result.chi_square import RARE, freedom, head, tail, tied
 from ..result.numbers import probability
 from ..sheet import Column, Given, Sheet
+from .claims import CLAIM
 from .suspects import suspected
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
         LIMIT: list(map(_name, margins(sheet))),
         SQUARES: [squares.name for squares in inputs.workbook.squares],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
+        CLAIM: [claim.label for claim in inputs.workbook.claims],
         EXPECTED: [expectation.address for expectation in inputs.expected],
         LEFT_OUT: [f"test {each.test}" for each in inputs.left_out],
     }
