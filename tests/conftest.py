@@ -51,8 +51,11 @@ def constants() -> Constants:
     return found
 
 
-KEEPS = os.environ.get(SETTING) != ""
-"""Whether anything is kept at all; not where the sources are changed on purpose (tests/mutants.py)."""
+KEEPS = (
+    os.environ.setdefault("LOOPSHEET_TESTS_KEEP", "no" if os.environ.get(SETTING) == "" else "yes") == "yes"
+)
+"""Whether anything is kept at all, for workers too; not where the sources are changed on purpose
+(tests/mutants.py)."""
 
 os.environ[SETTING] = ""
 """What a test looks at is made for it, but for what `keeping` gives."""
@@ -68,6 +71,7 @@ def shipped(config: pytest.Config) -> Path:
             for older in filter(Path.is_dir, place.iterdir()):
                 shutil.rmtree(older)
             with TemporaryDirectory(dir=place) as made:
+                Path(made, "kept").mkdir(mode=0o700)
                 for example in (PAPER, PAPER.parent / "worked_example"):
                     copied = shutil.copytree(example, Path(made, example.name))
                     command = [sys.executable, "-m", "loopsheet", "build", str(copied)]
@@ -77,13 +81,14 @@ def shipped(config: pytest.Config) -> Path:
     return place / of_these
 
 
-@pytest.fixture(scope="module", autouse=True)
+@pytest.fixture(scope="module")
 def keeping(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """What is made of the same bytes is kept from test to test of a file, as it is for users.
 
-    In a run of many it begins with what is kept of the shipped reports. What is `nothing_kept` has none.
+    In a run of many it begins with what is kept of the shipped reports. It is not for tests that change how
+    something is made.
     """
-    if not KEEPS or request.node.get_closest_marker("nothing_kept"):
+    if not KEEPS:
         yield
         return
     own = tmp_path_factory.mktemp("kept")
@@ -92,12 +97,6 @@ def keeping(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(SETTING, str(own))
         yield
-
-
-@pytest.fixture(autouse=True)
-def _nothing_kept(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    if request.node.get_closest_marker("nothing_kept"):
-        monkeypatch.setenv(SETTING, "")
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -90,6 +90,16 @@ def test_what_cancels_between_two_cells_cancels() -> None:
     assert found["c"] == pytest.approx([2 + 6 / 3 + 3 * 2 / 3])
 
 
+def test_the_square_of_what_is_nothing_but_rounding() -> None:
+    """It has no slope at 0; as far as rounding goes, 8 eps times the bound of the difference, it has."""
+    d = formula("d", A - B)
+    found = bounded(d, formula("c", d.symbol**2), a=1.0, b=1.0)
+    assert found["value"]["c"] == 0
+    assert found["d"] == pytest.approx([4])
+    assert found["c"] == pytest.approx([2 * (8 * numbers.EPS * 4) * 4], rel=1e-6)
+    assert bounded(d, formula("c", d.symbol**2), a=1.0, b=2.0)["c"] == pytest.approx([1 + 2 * 6])
+
+
 def test_a_row_is_its_own() -> None:
     found = bounded(formula("c", x[k] ** 2 * A, ROWS))
     own = np.array([1.0, 4.0, 25.0])

@@ -25,8 +25,6 @@ from loopsheet.report.plan import derivatives
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Sheet
 
-pytestmark = pytest.mark.nothing_kept
-
 k, n, i, j, p, size = (Symbol(s, integer=True, positive=True) for s in ("k", "n", "i", "j", "p", "size"))
 ROWS = Axis("rows", k, n)
 x, u = Symbol("x", positive=True), Symbol("u", positive=True)

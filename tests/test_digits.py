@@ -30,6 +30,8 @@ from loopsheet.report.verbs.build import summary
 from loopsheet.report.views import html, latex
 from loopsheet.report.views.live_uncertain import digits
 
+pytestmark = pytest.mark.usefixtures("keeping")
+
 TOML = """\
 workbook = "soft_impact"
 [parameters]

@@ -16,8 +16,6 @@ from processors import lesser
 from loopsheet.report.engines import elementary, intervals
 from loopsheet.report.engines.intervals import Intervals
 
-pytestmark = pytest.mark.nothing_kept
-
 NUMBER = 1000
 ULPS = 2.0
 """What the module promises."""

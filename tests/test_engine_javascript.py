@@ -19,8 +19,6 @@ from loopsheet.report.engines import javascript
 from loopsheet.report.engines.javascript import RUNTIME, JavaScriptPrinter
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
-pytestmark = pytest.mark.nothing_kept
-
 x, y = Symbol("x", positive=True), Symbol("y", positive=True)
 
 TOLD = """

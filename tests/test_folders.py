@@ -21,6 +21,9 @@ from loopsheet.report.verbs import VERBS
 Run = Callable[..., tuple[int, str, str]]
 
 
+pytestmark = pytest.mark.usefixtures("keeping")
+
+
 @pytest.fixture
 def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
     """Give `run("build", "gauge", at=folder)`: the exit code, what was printed and what was complained."""

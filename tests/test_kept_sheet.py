@@ -23,8 +23,6 @@ from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
-pytestmark = pytest.mark.nothing_kept
-
 GIVEN = [
     frozenset({"ball_mass", "beta", "points_per_pair"}),
     frozenset({"ball_diameter", "ball_density", "target_mass", "beta", "points_per_pair"}),

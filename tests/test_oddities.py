@@ -23,6 +23,8 @@ from loopsheet.report.verbs import common
 from loopsheet.report.views import html, latex
 from loopsheet.report.views.checks import FORMATS
 
+pytestmark = pytest.mark.usefixtures("keeping")
+
 SLIPPED = Slip("x_p", 2, up=False).of(PAPER)
 TWO = {name: column[:2] for name, column in PAPER.items()}
 BACKWARDS = {**TWO, "x_p": ("29.7", "23.5")}

@@ -26,8 +26,6 @@ from loopsheet.report.sheet import (
 )
 from loopsheet.report.workbook import Measured, Parameter, Workbook
 
-pytestmark = pytest.mark.nothing_kept
-
 
 def whole(name: str) -> Symbol:
     return Symbol(name, integer=True, positive=True)

@@ -22,8 +22,6 @@ from loopsheet.derivations.proved import Proof, ProofStatus
 from loopsheet.derivations.rebuilt import evaluated
 from loopsheet.derivations.soft_impact import LEDGER, XM, XP, E, V, alpha, beta
 
-pytestmark = pytest.mark.nothing_kept
-
 
 @pytest.fixture(scope="module")
 def proofs() -> dict[str, Proof]:

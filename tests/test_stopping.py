@@ -34,8 +34,6 @@ from loopsheet.report.machine.stopping import Stopped, stoppable, unstoppable
 from loopsheet.report.messages.errors import OutputError
 from loopsheet.report.verification import _outputs
 
-pytestmark = pytest.mark.nothing_kept
-
 Hashes = dict[str, str]
 
 

@@ -20,8 +20,6 @@ from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.views import figures
 
-pytestmark = pytest.mark.nothing_kept
-
 
 def parts(study: Study) -> set[str]:
     """What was made of it."""

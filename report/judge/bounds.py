@@ -54,7 +54,16 @@ def bounds(
     for node in made.nodes:
         size = 1 if node.axis is None else layouts[node.axis].size
         sources[node.name], number = np.arange(number, number + size), number + size
-    return _Spread(Chain(made, layouts, sources), Values(sheet, layouts, value, status)).bounds()
+    chain = Chain(made, layouts, sources)
+    found = _Spread(chain, Values(sheet, layouts, value, status)).bounds()
+    # A residual of a line through all points is nothing but rounding, and its square has no slope there. How
+    # far rounding may move it, it has one.
+    room = {name: LIMIT * EPS * np.where(np.isfinite(bound), bound, 0.0) for name, bound in found.items()}
+    moved = {name: np.where(np.abs(own) < room[name], room[name], own) for name, own in value.items()}
+    if all(np.array_equal(moved[name], own, equal_nan=True) for name, own in value.items()):
+        return found
+    again = _Spread(chain, Values(sheet, layouts, moved, status)).bounds()
+    return {name: np.maximum(bound, again[name]) for name, bound in found.items()}
 
 
 EXPANDED = 1 << 24

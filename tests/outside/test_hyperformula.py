@@ -19,6 +19,8 @@ from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.sheet import Given
 
+pytestmark = pytest.mark.usefixtures("keeping")
+
 HERE = Path(__file__).parent
 
 Recalculate = Callable[..., dict[str, Any]]

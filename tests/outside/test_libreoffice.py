@@ -16,6 +16,8 @@ from loopsheet.report.cells.values import Status
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.uncertain import Decision
 
+pytestmark = pytest.mark.usefixtures("keeping")
+
 HOSTILE = "=cmd|' /C calc'!A0"
 
 EDITS: dict[str, spreadsheets.Edits] = {
