@@ -108,6 +108,14 @@ def test_steps_that_are_too_long_are_made_shorter(name: str) -> None:
     assert digits(cells(values, *strd.parameters), strd.certified) > 6
 
 
+def test_a_fit_that_rests_steps_no_more() -> None:
+    """Nothing is left of a step, not even the rounding of 50 digits; what stays is no zero."""
+    strd = NONLINEAR["Misra1a"]
+    values = computed(strd, strd.starts[1], exact.evaluate)
+    names = [name for name in values.value if name.startswith("f_")]
+    assert {"f_step1", "f_step2", "f_d1", "f_d2"} == {n for n in names if not values.value[n].any()}
+
+
 @pytest.mark.parametrize("name", ["Eckerle4", "MGH10", "Rat43"])
 def test_from_a_start_that_leads_nowhere_there_is_no_number(name: str) -> None:
     strd = NONLINEAR[name]

@@ -227,6 +227,7 @@ class _Exact:
             self._put({column.name: begun[column.name]})
         before = last = mpmath.inf
         for number in range(1, _PASSES + 1):
+            earlier = {column.name: self.value[column.name] for column in loop.formulas}
             for column in loop.formulas:
                 self._put({column.name: self._column(column)})
             after = {column.name: self._column(column) for column in loop.iterated}
@@ -244,6 +245,8 @@ class _Exact:
             if number == MOST and moved > ENOUGH:
                 break  # it has no value in doubles
             if moved <= _CLOSE or (moved <= _NEAR and moved >= before):
+                for name, values in earlier.items():
+                    self.value[name] = [*map(_come_to, self.value[name], values)]
                 return
             self._put(after)
             before, last = last, moved
@@ -393,6 +396,12 @@ def _share(new: Any, old: Any) -> Any:
     """What is left of the value of an end that is kept twice, from the values at the other end."""
     share = 1 - new / old
     return share if share > 0 else type(share)(0.5)
+
+
+def _come_to(last: Any, before: Any) -> Any:
+    """What a cell has come to where a loop rests: zero, as steps do, if not one digit of it has stayed."""
+    moves = last is not None and before is not None and 10 * abs(last - before) > abs(last)
+    return mpmath.mpf(0) if moves else last
 
 
 class _Scope:
