@@ -13,8 +13,10 @@ __all__ = [
     "load",
     "mean",
     "measured",
+    "pairs",
     "plot",
     "root",
+    "table",
     "total",
     "unknown",
 ]

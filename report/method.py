@@ -16,7 +16,7 @@ from __future__ import annotations
 import difflib
 import itertools
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextvars import ContextVar
 from typing import Any
 
@@ -31,7 +31,7 @@ from .method_body import ComputedLine, FitLine, InputLine, MethodBody, UnknownLi
 from .named import name_of
 from .quantity import Bounds, behind
 from .sheet import Sheet
-from .workbook import FigureSpec, Measured, Parameter, Workbook
+from .workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook, tables_of
 
 __all__ = [
     "Method",
@@ -43,8 +43,10 @@ __all__ = [
     "let",
     "mean",
     "measured",
+    "pairs",
     "plot",
     "root",
+    "table",
     "total",
     "unknown",
 ]
@@ -266,13 +268,39 @@ def total(formula: Any) -> Expr:
 
 
 def mean(formula: Any) -> Expr:
-    """The mean over all rows."""
-    return total(formula) / count()
+    """The mean over all rows, or over all pairs."""
+    return total(formula) / count(formula)
 
 
-def count() -> Symbol:
-    """How many rows there are."""
-    return _body().axis.size
+def count(formula: Any = 0) -> Symbol:
+    """How many rows there are; of a formula for pairs, how many pairs."""
+    body = _body()
+    return (body.axis_of(formula) or body.axis).size
+
+
+def pairs(
+    *, index: str = "pair", size: str = "pairs", members: str = "i j"
+) -> tuple[Callable[[Any], Expr], ...]:
+    """Take every pair of rows, the first above the second: ``first, second = pairs()``.
+
+    What names both, ``(second(y) - first(y)) / (second(x) - first(x))``, has a value for each pair, and its
+    mean and its sum run over the pairs.
+
+    Parameters
+    ----------
+    index, size, members : str
+        What the running number of a pair is called in formulas, how many there are, and the running numbers
+        of its two rows.
+
+    Returns
+    -------
+    tuple of two callables
+        Each takes a formula for the rows, and returns it for one of both.
+    """
+    both = members.split()
+    if len({index, size, *both}) < 4 or len(both) != 2:
+        raise SheetError(f"the members of a pair have two names, members='i j', not {members!r}")
+    return _body().paired(index, size, both)
 
 
 def claim(
@@ -329,6 +357,27 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
     said, number = f"{up.meaning} over {across.meaning}", str(len(body.figures) + 1)
     chart = Chart(said, across.meaning, up.meaning, tuple(series), log, whole=True)
     body.figures.append(FigureSpec(f"plot_{number}", number, caption or f"{said.capitalize()}.", chart=chart))
+
+
+def table(title: str, *columns: Any, note: str = "") -> None:
+    """Show columns beside each other, or numbers below each other; all that no table shows follows by itself.
+
+    Parameters
+    ----------
+    title : str
+        Its caption.
+    *columns : Expr
+        Names of the body, in their order: all of the rows, all of the pairs, or all single numbers.
+    note : str
+        Below it.
+    """
+    body = _body()
+    shown = [body.column(name_of(cell)) for cell in columns]
+    if len({column.axis for column in shown}) != 1:
+        told = listing([column.name for column in shown]) if shown else "nothing"
+        raise SheetError(f"the table '{title}' is of one kind of rows, or of single numbers, not of {told}")
+    names = tuple(column.name for column in shown)
+    body.tables.append(TableSpec(f"table_{len(body.tables) + 1}", title, names, note))
 
 
 def _bounds(low: float | None, high: float | None, positive: bool, whole: bool = False) -> Bounds:
@@ -433,6 +482,7 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
     scalars = (c.name for c in columns if c.axis is None and c.equation)
     last = [each for each in scalars if body.of_fits.get(each, each not in used)]
     words = Vocabulary(*(_drawn(one, body.columns[one.name]) for one in body.inputs if _has_limits(one)))
+    in_tables = {*body.aside, *(each for spec in body.tables for each in spec.columns)}
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
     columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
     rows = zip(*(body.examples.get(one.name, "").split() for one in columns_of), strict=False)
@@ -450,6 +500,7 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
         squares=tuple(body.squares),
         claims=tuple(body.claims),
         aside=frozenset(body.aside),
+        tables=(*body.tables, *tables_of(sheet, in_tables)) if body.tables else (),
         figures=tuple(body.figures),
         example=(head, *((str(place), *row) for place, row in enumerate(rows, start=1)))
         if columns_of

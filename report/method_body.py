@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -21,13 +21,13 @@ from ..derivations.unit_text import (
     parse_open,
 )
 from .cells.units import named_unit_of, unit_of
-from .column import Axis, Column, Formula, Given, Root, SheetError
+from .column import Axis, Column, Formula, Given, PairAxis, Root, SheetError
 from .differences import is_difference, shown_in
 from .fitted import DeclaredFit
-from .named import name_of
+from .named import name_of, references
 from .quantity import Bounds
 from .sheet import Sheet
-from .workbook import Claimed, FigureSpec, Measured, Parameter, SquareSum
+from .workbook import Claimed, FigureSpec, Measured, Parameter, SquareSum, TableSpec
 
 __all__ = [
     "FUNCTIONS",
@@ -147,6 +147,10 @@ def exact(formula: Any) -> Expr:
     return found
 
 
+def _numbers(*names: str) -> Iterator[Symbol]:
+    return (Symbol(name, integer=True, positive=True) for name in names)
+
+
 def _extreme(name: str, *formulas: Any) -> Expr:
     if len(formulas) < 2:
         raise SheetError(f"{name}() is of several formulas, {name}(a, b); it is not taken over rows")
@@ -164,12 +168,14 @@ class MethodBody(dict[str, Any]):
 
     def __init__(self, rows: str, index: str, size: str) -> None:
         super().__init__()
-        self.axis = Axis(rows, *(Symbol(name, integer=True, positive=True) for name in (index, size)))
+        self.axis = Axis(rows, *_numbers(index, size))
+        self.axes = [self.axis]  # and the pairs of its rows
         self.columns: dict[str, Column] = {}
         self.inputs: list[Measured | Parameter] = []
         self.entries: list[Equation | Derivation] = []
         self.examples: dict[str, str] = {}
         self.figures: list[FigureSpec] = []
+        self.tables: list[TableSpec] = []
         self.announced: dict[str, UnknownLine] = {}
         self.aside: list[str] = []
         self.of_fits: dict[str, bool] = {}  # and whether it is a parameter
@@ -189,7 +195,35 @@ class MethodBody(dict[str, Any]):
         """The sum over all rows; of a list, of what is in it."""
         if isinstance(formula, Iterable):
             return Add(*map(exact, formula))
-        return Sum(formula, (self.axis.index, 1, self.axis.size))
+        over = self.axis_of(formula) or self.axis
+        return Sum(formula, (over.index, 1, over.size))
+
+    def axis_of(self, *formulas: Any) -> Axis | None:
+        """The rows that formulas have a value for each of; None for a single number."""
+        sums = {axis.index: axis for axis in self.axes}
+        cells = (cell for formula in formulas for cell in references(sympify(formula), sums))
+        named = {cell.index for cell in cells if cell.over is None}
+        found = [axis for axis in self.axes if not named.isdisjoint(axis.named)]
+        if len(found) > 1:
+            raise SheetError(
+                "one formula names a row and a pair of rows: say first(...) or second(...) of which"
+            )
+        return found[0] if found else None
+
+    def paired(self, index: str, size: str, members: Sequence[str]) -> tuple[Callable[[Any], Expr], ...]:
+        """Every pair of rows, and what takes a formula for the rows at its first and at its second member."""
+        if len(self.axes) > 1:
+            raise SheetError("pairs() is asked for twice: what it returned before is good for all formulas")
+        number, many, first, second = _numbers(index, size, *members)
+        self.axes.append(PairAxis("pairs", number, many, of=self.axis, first=first, second=second))
+        self._refuse_name_of_rows()
+        return partial(self._of_member, first), partial(self._of_member, second)
+
+    def _of_member(self, member: Symbol, formula: Any) -> Expr:
+        if self.axis_of(formula) != self.axis:
+            raise SheetError(f"{formula} has no value for each row, of which a pair has two")
+        found: Expr = exact(formula).subs(self.axis.index, member)
+        return found
 
     @property
     def whole(self) -> tuple[Column, ...]:
@@ -205,14 +239,15 @@ class MethodBody(dict[str, Any]):
 
         def asked(total: Column) -> Iterator[Column]:
             together = set[str]().union(*(names for names in below.values() if total.name in names))
-            return (c for c in rows if isinstance(c.rule, Given) or c.name in together)
+            there = [c for c in rows if c.axis in sheet.summed_axes(total)]
+            return (c for c in there if isinstance(c.rule, Given) or c.name in together)
 
         return tuple(replace(c, alongside=tuple(asked(c))) if c.name in sums else c for c in sheet.columns)
 
     def column(self, name: str) -> Column:
         """What was declared under a name."""
         if name not in self.columns:
-            raise SheetError(f"{name} is not declared: a name of the body can be plotted, no formula", name)
+            raise SheetError(f"{name} is not declared: a name of the body can be shown, no formula", name)
         return self.columns[name]
 
     def __setitem__(self, name: str, value: Any) -> None:
@@ -224,7 +259,9 @@ class MethodBody(dict[str, Any]):
         if isinstance(value, FitLine):
             value = self._fitted(name, value)
         if isinstance(value, Declaration):
-            self._refuse_name_of_rows(name, value)
+            begins = isinstance(value, InputLine) and value.is_measured
+            if begins or any(isinstance(each, Measured) for each in self.inputs):
+                self._refuse_name_of_rows(name)
             column = (
                 self._computed(name, value) if isinstance(value, ComputedLine) else self._input(name, value)
             )
@@ -232,18 +269,19 @@ class MethodBody(dict[str, Any]):
             value = column.cell
         super().__setitem__(name, value)
 
-    def _refuse_name_of_rows(self, name: str, said: Declaration) -> None:
-        """What counts rows has its name for itself, where there are rows."""
-        begins = isinstance(said, InputLine) and said.is_measured
-        if not (begins or any(isinstance(each, Measured) for each in self.inputs)):
-            return
-        for own, what in (
-            (self.axis.index_name, f"index: it is the {self.axis.row}'s number"),
-            (self.axis.size_name, f"size: it is the number of {self.axis.name}"),
-        ):
+    def _refuse_name_of_rows(self, name: str = "") -> None:
+        """What counts rows, or pairs of them, has its name for itself."""
+        words = {
+            self.axis.index_name: (f"the {self.axis.row}'s number", "index='...' behind the title"),
+            self.axis.size_name: (f"the number of {self.axis.name}", "size='...' behind the title"),
+        }
+        for pairs in self.axes[1:]:
+            words |= dict.fromkeys(pairs.named, ("the number of one of two", "members='...' in pairs()"))
+            words[pairs.index_name] = "the pair's number", "index='...' in pairs()"
+            words[pairs.size_name] = "the number of pairs", "size='...' in pairs()"
+        for own, (says, there) in words.items():
             if own == name or own in self.columns:
-                word, _, says = what.partition(": it is ")
-                raise SheetError(f"{own} is {says}: call that otherwise, {word}='...' behind the title", own)
+                raise SheetError(f"{own} is {says}: call that otherwise, {there}", own)
 
     def _input(self, name: str, said: Declaration) -> Column:
         assert isinstance(said, InputLine)
@@ -280,8 +318,9 @@ class MethodBody(dict[str, Any]):
             if each not in self.columns and (symbol := Symbol(each, real=True)) in said.model.free_symbols
         }
         sought = {symbol: self._begun(announced, str(symbol)) for symbol, announced in sought.items()}
+        rows = self.axis_of(said.observed) or self.axis
         found = DeclaredFit(
-            name, self.axis, self.columns, said.observed, said.model, sought, said.u,
+            name, rows, self.columns, said.observed, said.model, sought, said.u,
             said.label or self._number(), self.own,
         )  # fmt: skip
         for column in found.columns:
@@ -331,9 +370,10 @@ class MethodBody(dict[str, Any]):
             conditions=conditions,
         )
         zero = Equation(equation.label, (left, left - right), "", title=meaning)
-        unit_of(self.columns, Column(meaning, self.axis, Formula(zero)))  # as long as both have one unit
-        of_rows = self.axis.index in {*left.free_symbols, *right.free_symbols}
-        self.claims.append(Claimed(equation.label, meaning, self.axis if of_rows else None, left, right))
+        unit_of(
+            self.columns, Column(meaning, self.axis_of(left, right), Formula(zero))
+        )  # as long as both have one unit
+        self.claims.append(Claimed(equation.label, meaning, self.axis_of(left, right), left, right))
         premises, unknowns = zip(*found, strict=True) if found else ((), ())
         self.entries.append(Derivation.of(equation, premises, unknowns, "Put in what the quantities are."))
 
@@ -361,7 +401,7 @@ class MethodBody(dict[str, Any]):
 
     def _computed(self, name: str, said: ComputedLine) -> Column:
         named = {symbol for side in said.sides for symbol in side.free_symbols}
-        axis = self.axis if self.axis.index in named else None
+        axis = self.axis_of(*said.sides)
         unit = _stated_unit(name, said.unit)
         column = Column(name, axis, Given(), meaning=said.meaning, **{**unit, **said.column})
         sides = said.sides if said.ends else (column.cell, *said.sides)
@@ -392,7 +432,7 @@ class MethodBody(dict[str, Any]):
         if not unit.zero:
             return column
         if isinstance(rule, Formula | Root) and not column.is_u:
-            apart = is_difference(rule.expression, self.columns, self.axis)
+            apart = is_difference(rule.expression, self.columns, column.axis or self.axis)
         else:
             apart = column.is_u or (isinstance(rule, Given) and rule.u_of != "")
         shown = of_differences(unit)

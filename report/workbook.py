@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .column import Axis, Column
     from .sheet import Sheet
 
-__all__ = ["Design", "FigureSpec", "Measured", "Parameter", "SquareSum", "TableSpec", "Workbook"]
+__all__ = ["Design", "FigureSpec", "Measured", "Parameter", "SquareSum", "TableSpec", "Workbook", "tables_of"]
 
 
 @dataclass(frozen=True)
@@ -73,6 +73,28 @@ class TableSpec:
     note: str = ""
     number: str = ""
     """Its number; that of the source's table, where it corresponds to one."""
+
+
+def tables_of(sheet: Sheet, aside: Set[str]) -> Iterator[TableSpec]:
+    """A table of what is given, one for the rows of each axis, and one of the results.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    aside : set of str
+        The columns that none shows. Generated points are too many to be shown.
+    """
+    shown = [column for column in sheet.columns if column.name not in aside]
+    given = tuple(c.name for c in shown if c.axis is None and c.equation is None)
+    if given:
+        yield TableSpec("given", "Parameters", given)
+    for axis in sheet.axes:
+        columns = tuple(column.name for column in shown if column.axis == axis)
+        if columns and not axis.repeats:
+            yield TableSpec(axis.name, f"Values of the {axis.name}", columns)
+    scalars = tuple(c.name for c in shown if c.axis is None and c.name not in given)
+    if scalars:
+        yield TableSpec("scalars", "Results", scalars)
 
 
 @dataclass(frozen=True)

@@ -203,7 +203,7 @@ def test_what_is_plotted() -> None:
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("plot(x, x**2)", "a name of the body can be plotted, no formula"),
+        ("plot(x, x**2)", "a name of the body can be shown, no formula"),
         ("plot(m, x)", "m is a single number, which is no column to plot"),
     ],
 )
@@ -379,6 +379,8 @@ def test_a_file_of_two_methods_is_refused(tmp_path: Path, capsys: pytest.Capture
         ("formula", {"g": 9.8038}),  # 4 pi^2 0.994 times the mean of the squares of 1/T
         ("line", {"slope": 0.00299, "later": -0.16554}),
         ("root", {"f": 0.0221745}),
+        ("blank", {"y": 1.0}),
+        ("fit", {"tau": 3.0442367, "U_0": 5.0049775}),  # as scipy.optimize.curve_fit has them
     ],
 )
 def test_a_folder_to_begin_with(
@@ -389,7 +391,10 @@ def test_a_folder_to_begin_with(
     assert main(["new", "other", "--workbook", "one/workbook.py"]) == 0
     both = [Path(folder) for folder in ("one", "other")]
     assert [sorted(path.name for path in folder.iterdir()) for folder in both] == [
-        sorted({"report.toml", "workbook.py"} | ({"measurements.csv"} if name != "root" else set()))
+        sorted(
+            {"report.toml", "workbook.py"}
+            | ({"measurements.csv"} if name not in ("root", "blank") else set())
+        )
     ] * 2
     report = Study(both[1]).report
     assert not report.faults

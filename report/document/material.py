@@ -18,8 +18,8 @@ from ..messages.diagnostics import Check
 from ..result.numbers import decimals, read, table_format
 from ..result.result import Report
 from ..result.uncertain import Budget
-from ..sheet import Axis, Column, Given, Root
-from ..workbook import FigureSpec, TableSpec
+from ..sheet import Column, Given, Root
+from ..workbook import FigureSpec, TableSpec, tables_of
 from .names import latex_names, name_latex
 from .parts import MARK, MOST, Head, Item, Pair, Remark, SourceGroup, Written, slug
 from .refereed import RefereedPair, figures
@@ -112,30 +112,13 @@ class Material:
     def specs(self) -> tuple[TableSpec, ...]:
         """The workbook's tables with what the sheet has of them; without any, scalars and axes."""
         numbered: list[TableSpec] = []
-        own = 0
-        for spec in self.report.workbook.tables or self._default_specs():
+        own, workbook = 0, self.report.workbook
+        for spec in workbook.tables or tables_of(self.report.sheet, workbook.aside):
             names = tuple(name for name in spec.columns if name in self.report.sheet)
             if names:
                 own += not spec.number
                 numbered.append(replace(spec, columns=names, number=spec.number or str(own)))
         return tuple(numbered)
-
-    def _default_specs(self) -> Iterable[TableSpec]:
-        shown = [c for c in self.report.sheet.columns if c.name not in self.report.workbook.aside]
-        given = tuple(c.name for c in shown if c.axis is None and isinstance(c.rule, Given))
-        scalars = tuple(c.name for c in shown if c.axis is None and c.name not in given)
-        if given:
-            yield TableSpec("given", "Parameters", given)
-        for axis in self.tabulated:
-            columns = [c for c in shown if c.axis == axis]
-            yield TableSpec(axis.name, f"Values of the {axis.name}", tuple(c.name for c in columns))
-        if scalars:
-            yield TableSpec("scalars", "Results", scalars)
-
-    @property
-    def tabulated(self) -> tuple[Axis, ...]:
-        """The axes whose rows are shown; generated points are too many."""
-        return tuple(axis for axis in self.report.sheet.axes if not axis.repeats)
 
     @property
     def untold(self) -> tuple[str, ...]:

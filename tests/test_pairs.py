@@ -1,0 +1,120 @@
+"""Pairs of rows in a method of one's own, and the tables that it declares."""
+
+import re
+from collections.abc import Callable
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import loopsheet
+from loopsheet.report import method
+from loopsheet.report.cli import main
+from loopsheet.report.column import SheetError
+from loopsheet.report.document.material import Material
+from loopsheet.report.study import Study
+
+SEN = """
+from sympy import sqrt
+from loopsheet import Method, claim, count, let, mean, measured, pairs, plot, table, total
+
+class Sen(Method, source="P K Sen, J. Am. Stat. Assoc. 63 (1968) 1379", headline="b"):
+    "Slopes of all pairs."
+    x = measured("s", "time")
+    y = measured("degC", "temperature")
+    first, second = pairs()
+    rise = let(second(y) - first(y), "rise")
+    slope = let(rise / (second(x) - first(x)), "slope of a pair")
+    b = let(mean(slope), "mean slope")
+    spread = let(sqrt(total((slope - b)**2) / (count(slope) - 1)), "scatter of the slopes")
+    level = let(mean(y - b * x), "intercept", like=y)
+    of_both = let(total(first(x) * second(x)), "sum of products")
+    claim(of_both, (total(x)**2 - total(x**2)) / 2, "products of pairs", from_=[of_both])
+    claim(total(rise), total(second(y) - first(y)), "rises")
+    plot(rise, slope)
+    table("Slopes of pairs", slope, rise, note="Not all are alike.")
+"""
+X, Y = (1, 2, 3, 4, 10, 12, 18), (9, 15, 19, 20, 45, 55, 78)
+
+
+def folder(path: Path, code: str = SEN) -> Path:
+    rows = "".join(f"{n},{x},{y}\n" for n, (x, y) in enumerate(zip(X, Y, strict=True), start=1))
+    (path / "workbook.py").write_text(code, encoding="utf-8")
+    (path / "measurements.csv").write_text(f"reading,x [s],y [degC]\n{rows}", encoding="utf-8")
+    (path / "report.toml").write_text(
+        'title = "Sen"\nworkbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
+        '[uncertainty]\nx = "exact"\ny = "u = 0.5 delta_degC"\n',
+        encoding="utf-8",
+    )
+    return path
+
+
+def test_every_pair_has_a_value(tmp_path: Path) -> None:
+    report = Study(folder(tmp_path)).report
+    both = list(combinations(range(7), 2))
+    slopes = np.array([(Y[j] - Y[i]) / (X[j] - X[i]) for i, j in both])
+    assert report.values.value["slope"] == pytest.approx(slopes, rel=1e-14)
+    assert report.sheet["slope"].unit == "K/s"
+    assert report.values.labels(report.sheet["slope"])[1] == (1, 3)
+    found = {name: report.values.scalar(name) for name in ("b", "spread", "level", "of_both")}
+    level = np.mean(np.array(Y) - slopes.mean() * np.array(X)) + 273.15
+    products = sum(X[i] * X[j] for i, j in both)
+    known = {"b": slopes.mean(), "spread": slopes.std(ddof=1), "level": level, "of_both": products}
+    assert found == pytest.approx(known, rel=1e-14)
+
+
+def test_what_pairs_share_is_one_error(tmp_path: Path) -> None:
+    report = Study(folder(tmp_path)).computed
+    u = report.uncertain().u["b"][0]
+    by_y = np.zeros(7)
+    for i, j in combinations(range(7), 2):
+        by_y[[i, j]] += np.array([-1, 1]) / (X[j] - X[i]) / 21
+    assert u == pytest.approx(0.5 * np.sqrt((by_y**2).sum()), rel=1e-12)
+
+
+def test_every_engine_and_proof(
+    tmp_path: Path, require: Callable[..., str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    require("node")
+    require("soffice")
+    assert main(["check", str(folder(tmp_path)), "--no-cache"]) == 1
+    told = capsys.readouterr().out
+    assert re.findall(r"engine +(\w+) .* at most 0\.\d+ eps", told) == ["numpy", "JavaScript", "xlsx"]
+    # Of any number of rows that sum of products is one of powers: true, and no algebra of sums shows it.
+    assert re.findall(r"(?m)^finding: (.*) is", told) == ["(7)"]
+
+
+def test_a_false_claim_of_pairs_is_refuted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    wrong = SEN.replace("total(second(y) - first(y))", "total(first(y) - second(y))")
+    assert main(["check", str(folder(tmp_path, wrong)), "--no-cache"]) == 1
+    told = capsys.readouterr().out
+    assert "(8) is refuted" in told
+    assert "(8), rises, does not hold of these data: its sides differ by" in told
+
+
+def test_a_table_comes_first_and_the_rest_follows(tmp_path: Path) -> None:
+    report = Study(folder(tmp_path)).computed
+    shown = {spec.name: spec.columns for spec in Material(report).specs}
+    assert list(shown) == ["table_1", "readings", "scalars"]
+    assert shown["table_1"] == ("slope", "rise")
+    assert shown["scalars"] == ("b", "spread", "level", "of_both")
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("z = let(first(y) - y, 'both')", "names a row and a pair of rows: say first(...) or second(...)"),
+        ("z = let(first(b), 'none')", "b has no value for each row"),
+        ("z = let(first(slope), 'none')", "has no value for each row"),
+        ("one, other = pairs()", "pairs() is asked for twice"),
+        ("pair = given('1', 'x')", "pair is the pair's number: call that otherwise, index='...' in pairs()"),
+        ("j = given('1', 'x')", "j is the number of one of two: call that otherwise, members='...' in"),
+        ("table('T', x, slope)", "the table 'T' is of one kind of rows, or of single numbers, not of x or"),
+        ("table('T')", "not of nothing"),
+        ("table('T', 2 * x)", "2*x[k] is not declared"),
+    ],
+)
+def test_what_is_refused_of_pairs_and_tables(line: str, said: str) -> None:
+    with pytest.raises(SheetError, match=re.escape(said)):
+        exec(f"{SEN}    {line}\n", {**vars(method), **vars(loopsheet)})
