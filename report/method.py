@@ -381,6 +381,9 @@ def table(title: str, *columns: Any, note: str = "") -> None:
 
 
 def _bounds(low: float | None, high: float | None, positive: bool, whole: bool = False) -> Bounds:
+    for end in (low, high):
+        if end is not None and not isinstance(end, int | float):
+            raise SheetError(f"low and high are numbers, in the unit that is declared, not {end!r}")
     above = positive and (low is None or low <= 0)
     return Bounds(0 if above else low, high, low_open=above, integer=whole)
 

@@ -56,6 +56,11 @@ class Declaration:
     unit: str
     column: Mapping[str, Any]
 
+    def __post_init__(self) -> None:
+        for what, text in (("meaning", self.meaning), ("unit", self.unit)):
+            if not isinstance(text, str):
+                raise SheetError(f"a {what} is a text in quotes, not {text!r}")
+
 
 @dataclass(frozen=True)
 class InputLine(Declaration):
@@ -191,8 +196,10 @@ class MethodBody(dict[str, Any]):
             return partial(_extreme, name)
         raise KeyError(name)
 
-    def total(self, formula: Any) -> Expr:
+    def total(self, formula: Any, *more: Any) -> Expr:
         """The sum over all rows; of a list, of what is in it."""
+        if more:
+            raise SheetError("sum(...) is of one formula, over the rows, or of a list, sum([a, b])")
         if isinstance(formula, Iterable):
             return Add(*map(exact, formula))
         over = self.axis_of(formula) or self.axis
@@ -253,15 +260,16 @@ class MethodBody(dict[str, Any]):
     def __setitem__(self, name: str, value: Any) -> None:
         if name in self.columns:
             raise SheetError(f"{name} is declared twice", name)
+        begins = isinstance(value, InputLine) and value.is_measured
+        has_rows = begins or any(isinstance(each, Measured) for each in self.inputs)
+        if has_rows and isinstance(value, Declaration):
+            self._refuse_name_of_rows(name)
         if isinstance(value, UnknownLine):
             self.announced[name] = value
             value = Column(name, None, Given(), positive=False).symbol
         if isinstance(value, FitLine):
             value = self._fitted(name, value)
         if isinstance(value, Declaration):
-            begins = isinstance(value, InputLine) and value.is_measured
-            if begins or any(isinstance(each, Measured) for each in self.inputs):
-                self._refuse_name_of_rows(name)
             column = (
                 self._computed(name, value) if isinstance(value, ComputedLine) else self._input(name, value)
             )

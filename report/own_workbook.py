@@ -8,6 +8,7 @@ import sys
 import types
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -171,7 +172,22 @@ def _hint(error: BaseException) -> str:
             return "functions are those of sympy, not of math or NumPy: from sympy import sqrt, exp, log, sin"
         case TypeError() if "truth value" in str(error):
             return "a formula has no if: write max(a, b) or min(a, b)"
+        case TypeError() if word := re.match(r"(\w+)\(\) (takes|missing|got)", str(error)):
+            return _called(word[1])
+        case TypeError() if re.search("symbol|Indexed|Symbol", str(error)):
+            return "a name stands for a cell in formulas: it is no number yet, and no list"
     return "" if isinstance(error, SyntaxError) else _HINT
+
+
+def _called(word: str) -> str:
+    """How a word of methods is called."""
+    from . import method
+
+    if word not in method.__all__:
+        return ""
+    said = signature(getattr(method, word))
+    plain = [each.replace(annotation=each.empty) for each in said.parameters.values()]
+    return f"it is {word}{said.replace(parameters=plain, return_annotation=said.empty)}"
 
 
 def place_of(path: Path, code: bytes, field: str, word: str = "") -> Location:
