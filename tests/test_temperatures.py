@@ -1,6 +1,7 @@
 """Temperatures in degC have a zero of their own, their differences and uncertainties have not."""
 
 import json
+import re
 from pathlib import Path
 
 import gas
@@ -40,6 +41,9 @@ def test_every_engine_and_view_agrees(tmp_path: Path, capsys: pytest.CaptureFixt
     assert sum(each["kind"] == "published" for each in checks) == 7
     assert main(["why", "warm[3]", str(tmp_path)]) == 0
     assert "in SI     warm[3] = 1.5 + 269.95" in capsys.readouterr().out
+    assert main(["show", "warm", str(tmp_path)]) == 0
+    digits = re.findall(r"warm\[\d\] +(\S+)", capsys.readouterr().out)
+    assert digits == ["21.5", "23.0", "-1.7"]  # and no rounding of 271.45 - 273.15
     assert main(["budget", "m", str(tmp_path), "--draws", "4000"]) == 0
     told = capsys.readouterr().out
     assert "m = 12.767 degC, u = 0.058 degC" in told

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from decimal import Decimal
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -62,6 +63,15 @@ class Shown:
     def of(self, value: Any) -> Any:
         """A value in SI, or an array of them, in that unit; of a difference only its scale is asked."""
         return (value - self.zero) / self.scale
+
+    def digits_of(self, value: float) -> str:
+        """All digits of a value in SI in that unit, without those that a rounded quotient would add.
+
+        >>> Shown("degC", 1.0, 4, 273.15).digits_of(293.1)
+        '19.95'
+        """
+        exactly, zero, scale = (Decimal(repr(float(each))) for each in (value, self.zero, self.scale))
+        return repr(float((exactly - zero) / scale))
 
 
 @dataclass(frozen=True)

@@ -77,7 +77,7 @@ def _lines(report: Report, column: Column, labels: Collection[tuple[int, ...]]) 
             value = (
                 cell.reason
                 if cell.value is None
-                else given.get(cell.label) or repr(report.shown[name].of(cell.value))
+                else given.get(cell.label) or report.shown[name].digits_of(cell.value)
             )
             u = f"  u {report.sure(name, uncertain[row]).plain}" if uncertain[row] > 0 else ""
             yield f"  {cell.address:16} {value}{u}{mark and f'  {mark}'}"
