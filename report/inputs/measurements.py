@@ -37,6 +37,7 @@ MODES = ("rounded", "truncated")
 """How a printed number may have been shortened."""
 
 LEFT_OUT = "left out"
+_GAP = f"say why it is missing in a column '{LEFT_OUT}': the row takes no part then"
 _EXCLUDING = re.compile(r"(?i)(exclu|omit|reject|discard|skip|ignor|outlier|left[_-]?out|leave[ _-]?out).*")
 """The column that says why a test takes no part; empty where it does."""
 
@@ -199,7 +200,7 @@ def read_measurements(
                 cell = row.fields[places[name]]
                 where = source.trace(cell.offset)
                 printed = read_value(
-                    cell.text, unit, column, table.at(cell), findings, mode=mode, where=where
+                    cell.text, unit, column, table.at(cell), findings, mode=mode, where=where, if_empty=_GAP
                 )
                 if f"u({name})" in places:
                     given = _uncertainty(table, row.fields[places[f"u({name})"]], name, of_u[name], findings)
@@ -348,7 +349,9 @@ def _tests(table: CsvTable, place: int, findings: Findings) -> tuple[int, ...]:
     for row in table.rows:
         field = row.fields[place]
         if not field.text:
-            findings.add("LS403", table.at(field), name="test", allowed="a positive whole number")
+            findings.add(
+                "LS403", table.at(field), name="test", allowed="a positive whole number", suggestion=""
+            )
         elif not _TEST.fullmatch(field.text):
             findings.add("LS312", table.at(field), text=field.text)
         elif int(field.text) in lines:

@@ -138,6 +138,7 @@ def read_value(
     *,
     mode: str = "rounded",
     where: str = "",
+    if_empty: str = "",
 ) -> Printed | None:
     """Read the number of an input as its workbook declares it; None, with a finding, if it is not allowed.
 
@@ -155,6 +156,8 @@ def read_value(
         Where findings go.
     mode, where : str
         As for :class:`Printed`.
+    if_empty : str
+        What to do where there is no number.
     """
     concise = _CONCISE.fullmatch(text)
     digits = concise["digits"] if concise else text
@@ -165,6 +168,7 @@ def read_value(
             printed = replace(printed, stated=(Error(u, said=text),))
     except NumberError as error:
         fields = {**error.fields, "allowed": f"a number ({declared.meaning})"}
+        fields |= {"suggestion": if_empty} if error.code == "LS403" else {}
         findings.add(error.code, at, name=declared.name, **fields)
         return None
     if unit is not None and not declared.bounds.allow(printed.value):

@@ -156,7 +156,7 @@ def _value(table: CsvTable, fields: Mapping[str, Field], findings: Findings) -> 
     allowed = {"source": "where it is printed, such as Table 2", "cell": "the name of a cell, such as alpha"}
     for name, sentence in {**allowed, "unit": "a unit, 1 for a pure number"}.items():
         if not fields[name].text:
-            findings.add("LS403", table.at(fields[name]), name=name, allowed=sentence)
+            findings.add("LS403", table.at(fields[name]), name=name, allowed=sentence, suggestion="")
             unread.add(name)
     about = read_about(fields["cell"].text)
     if about is None and "(" in fields["cell"].text:

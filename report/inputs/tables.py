@@ -94,7 +94,9 @@ class TomlTables:
             self.findings.add("LS112", self.toml.value(*path), text=f"U+{ord(control.group()):04X}")
             return None
         if not value.strip():
-            self.findings.add("LS403", self.toml.value(*path), name=key, allowed=f"text, such as {line}")
+            self.findings.add(
+                "LS403", self.toml.value(*path), name=key, allowed=f"text, such as {line}", suggestion=""
+            )
             return None
         return value.strip()
 

@@ -229,7 +229,7 @@ CATALOGUE: dict[str, Entry] = {
         "a decimal point, and no marks between thousands",
         "write '{example}'{thousands}",
     ),
-    "LS403": Entry("empty cell", "{name} is empty", "{allowed}"),
+    "LS403": Entry("empty cell", "{name} is empty", "{allowed}", "{suggestion}"),
     "LS404": Entry(
         "not finite",
         "{name} is not a finite number: '{text}'",
