@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import lru_cache, reduce
+from functools import lru_cache, partial, reduce
 from statistics import median
 from typing import Any
 
@@ -91,6 +91,10 @@ _GUARD = 10
 """More digits for what is integrated: an abscissa next to an end must not be rounded to it."""
 
 
+_REMEMBERED = 64
+"""Values of an integral that are kept."""
+
+
 @lru_cache(maxsize=8)
 def _nodes(digits: int, halvings: int) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     """Abscissae on (0, 1) and weights of the double-exponential rule.
@@ -162,6 +166,8 @@ class Tape:
         self._levels: list[int] = []
         self._known: list[dict[Any, int]] = [{}]
         self._tapes: list[list[tuple[int, Callable[..., Any], tuple[int, ...]]]] = [[]]
+        self._beneath: dict[int, list[int]] = {}
+        """What a loop names of what stands outside of it, by its slot."""
         self._done = 0
         self.blur = mpmath.mpf(0)
         """How far, relatively, integrals may be off that were not resolved to all digits, since `start`."""
@@ -255,20 +261,37 @@ class Tape:
         tape = self._tapes.pop()
         self._known.pop()
         at = {Integral: self._integral, Sum: self._sum, Median: self._median}[type(expression)]
+        named = {body, *(each for _, _, used in tape for each in used)}
+        named |= {each for inner, _, _ in tape for each in self._beneath.get(inner, ())}
+        beneath = sorted(each for each in named if self._levels[each] < level)
+        # The loop stands in the innermost loop that anything in it runs with, and is taken out of all others.
+        outer = max(self._levels[each] for each in (*ends, *beneath))
+        slot = self._fresh(expression, outer)
+        self._beneath[slot] = beneath
+        run: Callable[..., Any] = partial(at, tape, running, body)
+        if isinstance(expression, Integral):
+            run = self._remembering(run, beneath)
         # A body that does not run with the variable is no part of the tape: it must be there before.
         arguments = (*ends, *((body,) if self._levels[body] < level else ()))
-        # The loop stands in the innermost loop that anything in it runs with, and is taken out of all others.
-        outer = max(
-            [self._levels[slot] for slot in ends]
-            + [self._levels[slot] for _, _, used in tape for slot in used if self._levels[slot] < level]
-            + ([self._levels[body]] if self._levels[body] < level else []),
-            default=0,
-        )
-        slot = self._fresh(expression, outer)
-        self._tapes[outer].append(
-            (slot, lambda start, stop, *_: at(tape, running, body, start, stop), arguments)
-        )
+        self._tapes[outer].append((slot, lambda start, stop, *_: run(start, stop), arguments))
         return slot
+
+    def _remembering(self, run: Callable[..., Any], beneath: Sequence[int]) -> Callable[..., Any]:
+        """An integral that is not computed again where nothing in it has moved: in most steps of a search."""
+        known: dict[Any, tuple[Any, Any]] = {}
+
+        def remembered(*ends: Any) -> Any:
+            moves = (self._slots[slot] for slot in beneath)
+            key = (mpmath.mp.prec, *ends, *(tuple(v) if isinstance(v, list) else v for v in moves))
+            if key not in known:
+                if len(known) >= _REMEMBERED:
+                    known.clear()
+                known[key] = run(*ends)
+            value, blur = known[key]
+            self.blur = max(self.blur, blur)
+            return value
+
+        return remembered
 
     # --- running it ------------------------------------------------------------------------------------
 
@@ -304,7 +327,8 @@ class Tape:
     def _median(self, *loop: Any) -> Any:
         return median(self._terms(*loop))
 
-    def _integral(self, tape: Any, running: int, body: int, low: Any, high: Any) -> Any:
+    def _integral(self, tape: Any, running: int, body: int, low: Any, high: Any) -> tuple[Any, Any]:
+        """The integral, and by what part of itself it may be off where it was not resolved to all digits."""
         digits = mpmath.mp.dps
         for halvings in range(_FINEST + 1):
             places, weights = _nodes(digits, halvings)
@@ -319,8 +343,7 @@ class Tape:
                 # c down to 1e-7 of the interval: a gap of 1e-35 leaves 43 digits of 50.
                 gap = abs(fine - 2 * mpmath.fdot(weights[::2], values[::2]))
             if gap <= mpmath.mpf(10) ** (-7 * digits // 10) * size:
-                return (high - low) * fine
+                return (high - low) * fine, mpmath.mpf(0)
         if not gap <= _BLURRED * size:
             raise ValueError("the integral was not resolved")
-        self.blur = max(self.blur, gap / size)
-        return (high - low) * fine
+        return (high - low) * fine, gap / size

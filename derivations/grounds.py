@@ -35,6 +35,7 @@ def is_assumed(premise: Equation) -> bool:
 # --- what an equation says -------------------------------------------------------------------------------
 
 
+@lru_cache(maxsize=8192)
 def says(said: Equation, equation: Equation) -> bool:
     """Whether an equation says all that another one does, up to a number that multiplies it.
 
