@@ -388,7 +388,8 @@ def book(report: Report) -> tuple[Grid, bytes]:
     units = {name: how.unit for name, how in report.shown.items()}
     try:
         first, values = report.workbook.headline, report.marks.values
-        grid = excel_grid.grid(report.sheet, values, units, first, for_a_grid(report))
+        words = len(report.inputs.remarks)
+        grid = excel_grid.grid(report.sheet, values, units, first, for_a_grid(report), words)
     except NotPrintable as error:
         raise UsageError(
             diagnose("LS606", reason=error, known="functions that every spreadsheet has")

@@ -21,6 +21,14 @@ class Gas(Method, source="R Boyle", rows="readings"):
     warmest = let(mean(warm), "mean of warmer", "degF")
     plot(T, warm, m)
 """
+IN_TABLES = f"""\
+{WORKBOOK}
+from dataclasses import replace
+from loopsheet.report.workbook import TableSpec
+TABLES = TableSpec("measured", "Measured", ("T",)), TableSpec("computed", "Computed", ("rho", "warm"))
+WORKBOOK = replace(Gas.workbook, tables=TABLES)
+"""
+"""What is measured in one table, what is computed in another."""
 TOML = """\
 title = "Gas"
 workbook = "workbook.py"
@@ -45,6 +53,14 @@ reading,T [degC]
 2,21.5
 3,-3.2
 """
+NAMED = """\
+reading,note,specimen,T [degC],left out
+1,,=1+1,20.0,
+2,"the door was open, 5 % of the time",@x <b>y</b>,21.5,
+3,,#9 {\\a},-3.2,
+4,,17,30,fell
+"""
+"""A name is what is there for every row, wherever its column stands."""
 PUBLISHED = """\
 source,cell,index,value,unit
 here,m,,12.77,degC

@@ -1,12 +1,18 @@
-"""Columns of words beside what was measured come along, and nothing is computed from them."""
+"""Columns of words beside what was measured come along: they name rows, and nothing is computed from them."""
 
+import io
 from pathlib import Path
 
 import gas
+import openpyxl
 import pytest
 
-from loopsheet.report import build
+from loopsheet.report import build, stages
 from loopsheet.report.cli import main
+from loopsheet.report.document.material import Material
+from loopsheet.report.document.parts import Item
+from loopsheet.report.document.tables import Tables
+from loopsheet.report.document.tree import Table
 from loopsheet.report.study import Study
 
 TABLE = """\
@@ -18,6 +24,13 @@ reading,operator,T [degC],remark,left out
 """
 
 
+def words(table: Table) -> list[list[str]]:
+    """The heads and rows of a table, as far as they are words."""
+    head = ["".join(map(str, column.head)) for column in table.columns if column.kind != "number"]
+    rows = [["".join(map(str, cell)) for cell in row.cells if isinstance(cell, tuple)] for row in table.rows]
+    return [head, *rows]
+
+
 def test_they_come_along(tmp_path: Path) -> None:
     plain = Study(gas.folder(tmp_path / "plain")).computed
     report = Study(gas.folder(tmp_path / "told", table=TABLE)).computed
@@ -25,9 +38,92 @@ def test_they_come_along(tmp_path: Path) -> None:
     assert report.values.value["m"].tolist() == plain.values.value["m"].tolist()
     build.build(Study(tmp_path / "told"), tmp_path / "out", ("html", "latex", "json"))
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
-    said = "Remarks: operator: A &lt;b&gt;Smith&lt;/b&gt; (1, 3), B Jones (2, 4); remark: door open, 5 % (2)."
-    assert said in page
-    assert r"door open,{} 5 \% (2)" in (tmp_path / "out" / "report.tex").read_text(encoding="utf-8")
+    assert "<th>2<td class=row>B Jones<td class=row>door open, 5 %<td><input " in page
+    assert "<td class=row>A &lt;b&gt;Smith&lt;/b&gt;<td" in page
+    tex = (tmp_path / "out" / "report.tex").read_text(encoding="utf-8")
+    assert r"2 & B Jones & door open,{} 5 \% & 21.5 &" in tex
+    assert "4, left out & B Jones &  & " in tex
+    (values,) = (one for one in Tables(Material(report)).data.values() if "reading" in one.columns[0].head)
+    assert not any(isinstance(cell, Item) for row in values.rows for cell in row.cells[:3])
+
+
+NOTE = "the door was open, 5 % of the time"
+
+
+def test_a_name_stands_beside_its_row_in_every_table(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = gas.folder(tmp_path, table=gas.NAMED, code=gas.IN_TABLES)
+    report = Study(folder).computed
+    assert report.inputs.naming == ("specimen",)
+    tables = Tables(Material(report)).data
+    assert words(tables["measured"]) == [
+        ["reading", "note", "specimen"],
+        ["1", "", "=1+1"],
+        ["2", NOTE, "@x <b>y</b>"],
+        ["3", "", r"#9 {\a}"],
+        ["4", "", "17"],
+    ]
+    assert [column.kind for column in tables["measured"].columns] == ["left", "words", "row", "number"]
+    assert words(tables["computed"]) == [
+        ["reading", "specimen"],
+        ["1", "=1+1"],
+        ["2", "@x <b>y</b>"],
+        ["3", r"#9 {\a}"],
+    ]
+    assert main(["show", "warm", str(folder)]) == 0
+    lines = [line.split("  u ")[0] for line in capsys.readouterr().out.splitlines() if "warm[" in line]
+    assert lines[:2] == ["  warm[1]          =1+1         21.5", "  warm[2]          @x <b>y</b>  23.0"]
+    assert main(["show", "m", str(folder)]) == 0  # of no row
+    assert "12.766" in capsys.readouterr().out
+    build.build(Study(folder), tmp_path / "out", ("html", "latex"))
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert page.count("<td class=row>@x &lt;b&gt;y&lt;/b&gt;<td") == 2
+    assert f"<td class=words>{NOTE}<td" in page
+    assert "test 4 (17), fell" in page
+    tex = (tmp_path / "out" / "report.tex").read_text(encoding="utf-8")
+    assert r"3 & \#9 \{\textbackslash{}a\} & " in tex
+    assert r"2 & the door was open,{} 5 \% of the time & @x " in tex
+    assert r"\begin{tabular}{@{}l>{\raggedright\arraybackslash}p{0.2\linewidth}lS" in tex
+
+
+def test_what_not_every_row_has_is_no_name(tmp_path: Path) -> None:
+    table = gas.NAMED.replace("#9 {\\a}", "")
+    assert table != gas.NAMED
+    report = Study(gas.folder(tmp_path, table=table, code=gas.IN_TABLES)).computed
+    assert report.inputs.naming == ()
+    assert words(Tables(Material(report)).data["computed"])[:2] == [["reading"], ["1"]]
+    (told,) = (check.message for check in report.oddities if check.name == "test 4")
+    assert told == "test 4, fell"
+
+
+def test_a_worksheet_has_them_as_texts_that_no_formula_reads(tmp_path: Path) -> None:
+    plain, told = (
+        Study(gas.folder(tmp_path / name, table=table))
+        for name, table in (("plain", gas.TABLE + "4,30\n"), ("told", gas.NAMED.replace(",fell", ",")))
+    )
+    (_, bare), (grid, book) = (stages.book(study.computed) for study in (plain, told))
+    assert [place.column for place in grid.words["readings"]] == [1, 2]
+    sheet, other = (openpyxl.load_workbook(io.BytesIO(each))["readings"] for each in (book, bare))
+    first = grid["T"].place.row + 1
+    rows = [[cell.value for cell in row[:3]] for row in sheet.iter_rows(first, first + 3)]
+    assert rows == [[1, None, "=1+1"], [2, NOTE, "@x <b>y</b>"], [3, None, r"#9 {\a}"], [4, None, "17"]]
+    assert {cell.data_type for row in sheet.iter_rows(first, first + 3, 3, 3) for cell in row} == {"s"}
+    assert [cell.value for cell in sheet[first - 4][1:3]] == ["note", "specimen"]
+    assert sheet.freeze_panes == f"D{first}"
+    # A name that begins as a code does is none.
+    red = [str(each.sqref) for each in sheet.conditional_formatting if each.rules[0].type == "beginsWith"]
+    assert red == [f"D{first}:{red[0].partition(':')[2]}"]
+    # All else is as it would be without them, two columns further to the left.
+    assert sheet.max_column == other.max_column + 2
+    assert other.freeze_panes == f"B{first}"
+
+
+def test_the_words_of_a_row_that_is_left_out_stand_with_it(tmp_path: Path) -> None:
+    grid, book = stages.book(Study(gas.folder(tmp_path, table=gas.NAMED)).computed)
+    sheet = openpyxl.load_workbook(io.BytesIO(book))["readings"]
+    row = grid["T"].place.row + grid["T"].place.rows + 3
+    assert [cell.value for cell in sheet[row][:4]] == ["4", "", "17", "30 [degC]"]
 
 
 @pytest.mark.parametrize(

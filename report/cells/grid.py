@@ -238,12 +238,15 @@ class Grid:
     drawn : Drawn or None
     notes : mapping of worksheet name to Place
         Free cells beside the given columns of an axis, for what is wrong with them.
+    words : mapping of worksheet name to tuple of Place
+        Free columns beside the numbers of its rows, for what is said of them in words.
     """
 
     blocks: tuple[CellBlock, ...]
     axes: Mapping[str, Axis]
     drawn: Drawn | None = None
     notes: Mapping[str, Place] = field(default_factory=dict)
+    words: Mapping[str, tuple[Place, ...]] = field(default_factory=dict)
 
     @cached_property
     def by_name(self) -> Mapping[str, CellBlock]:

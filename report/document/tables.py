@@ -29,6 +29,7 @@ from .refereed import GOOD, RefereedPair, shown_mismatch
 from .tree import (
     Bar,
     Code,
+    Entry,
     Hint,
     Inlines,
     Math,
@@ -51,6 +52,8 @@ MOST_SOURCES, LEAST_SHARE = 3, 0.05
 """The sources of an uncertainty that are named, and the least share of the variance of one."""
 MOST_BARS = 12
 """The sources whose shares are drawn; those of no whole percent are none of them."""
+MOST_LETTERS = 24
+"""What stands beside a row in words, and is longer, is broken into lines."""
 OFF_BY = "recomputed minus published, in units of the last published digit"
 
 
@@ -154,25 +157,29 @@ class Tables:
         labels = self.report.values.labels(self.report.sheet[spec.columns[0]])
         most = MOST if axis.parents else len(labels)  # what was measured is shown whole
         rows = islice(zip(labels, *columns, strict=True), most)
-        shown = [Row(((_dashed(label),), *items)) for label, *items in rows]
-        if not axis.parents and any(head.given for head in heads):
-            for each in self.report.inputs.left_out:
-                shown.insert(each.place, _left_out(each, heads))
+        inputs, measured = self.report.inputs, any(head.given for head in heads) and not axis.parents
+        words = () if axis.parents else inputs.remarks if measured else inputs.naming
+
+        def row(label: tuple[int, ...], items: Iterable[Entry], state: str = "") -> Row:
+            told = (_run(inputs.rows[label[0]][name]) for name in words)
+            return Row(((_dashed(label),), *told, *items), state)
+
+        shown = [row(label, items) for label, *items in rows]
+        if measured:
+            for each in inputs.left_out:
+                shown.insert(each.place, row((each.test,), _left_out(each, heads), "excluded"))
         legend = joined((self._legend(head) for head in heads), "; ")
         cut = f"The first {most} {axis.name} are shown; values.json has all of them."
         return Table(
             spec.name,
             self.rich(spec.title),
-            (TableColumn((axis.row,)), *map(_headed, heads)),
+            (TableColumn((axis.row,)), *map(self._worded, words), *map(_headed, heads)),
             (Rows(tuple(shown)),),
             spec.number,
-            legend=(
-                *(*legend, ".", *((" ", *self.rich(spec.note)) if spec.note else ()), *self._known(heads)),
-                *(self._remarks() if not axis.parents and any(head.given for head in heads) else ()),
-            ),
+            legend=(*legend, ".", *((" ", *self.rich(spec.note)) if spec.note else ()), *self._known(heads)),
             limits=self._limits(heads),
             cut=cut if len(labels) > most else "",
-            wide=len(heads) > 5,
+            wide=len(words) + len(heads) > 5,
         )
 
     def _legend(self, head: Head) -> Inlines:
@@ -188,19 +195,12 @@ class Tables:
         ]
         return (" Stated uncertainties: ", *joined(told, "; "), ".") if told else ()
 
-    def _remarks(self) -> Inlines:
-        """What the table of measurements says of its rows in words."""
-        inputs, told = self.report.inputs, []
-        rows = {**inputs.texts, **{each.test: each.texts for each in inputs.left_out}}
-        for name in inputs.remarks:
-            of: dict[str, list[str]] = {}
-            for test, texts in sorted(rows.items()):
-                if text := texts.get(name):
-                    of.setdefault(text, []).append(str(test))
-            each = [f"{text} ({', '.join(tests)})" for text, tests in of.items()]
-            more = f" and {len(each) - MOST} more" if len(each) > MOST else ""
-            told.append(f"{name}: {', '.join(each[:MOST])}{more}")
-        return (f" Remarks: {'; '.join(told)}.",) if told else ()
+    def _worded(self, name: str) -> TableColumn:
+        """A column of words beside the rows: names stay on their line, sentences are broken."""
+        texts = (name, *(row[name] for row in self.report.inputs.rows.values()))
+        if max(map(len, texts)) <= MOST_LETTERS:
+            return TableColumn((name,), "row")
+        return TableColumn((name,), "words", share=0.2)
 
     def _limits(self, heads: Iterable[Head]) -> Inlines:
         told = self.material.limits(heads)
@@ -493,14 +493,12 @@ def _headed(head: Head) -> TableColumn:
     return TableColumn((_symbol(head),), "number", head.format, unit=(_unit(head.unit),))
 
 
-def _left_out(test: LeftOut, heads: Iterable[Head]) -> Row:
+def _left_out(test: LeftOut, heads: Iterable[Head]) -> Iterator[Silent]:
     """What was printed of a test that takes no part."""
     label = (test.test,)
-    cells = (
-        Silent(head.name, label, test.texts.get(head.name, ""), described(head, label) if head.given else "")
-        for head in heads
-    )
-    return Row(((_dashed(label),), *cells), "excluded")
+    for head in heads:
+        told = described(head, label) if head.given else ""
+        yield Silent(head.name, label, test.texts.get(head.name, ""), told)
 
 
 def _refused(found: TableVerdict | RefereedPair) -> dict[str, str]:

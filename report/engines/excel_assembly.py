@@ -1,8 +1,8 @@
 """A sheet as a workbook's cells: puts every quantity in its place and every formula in its cell.
 
-An axis has a worksheet: the numbers of its rows, its columns in the order of the sheet, what is drawn of
-it, and, to the right, the cells on the way to its roots. Scalars stand one below the other on the
-worksheet ``report``; the cells on the way to a scalar root have the worksheet ``steps``.
+An axis has a worksheet: the numbers of its rows, room for words beside them, its columns in the order of
+the sheet, what is drawn of it, and, to the right, the cells on the way to its roots. Scalars stand one below
+the other on the worksheet ``report``; the cells on the way to a scalar root have the worksheet ``steps``.
 """
 
 from __future__ import annotations
@@ -64,6 +64,7 @@ class Assembly:
         counts: Mapping[str, float],
         units: Mapping[str, str],
         first: Sequence[str],
+        worded: int,
     ) -> None:
         self.sheet, self.judged, self.whole, self.layouts, self.counts = sheet, judged, whole, layouts, counts
         self.units, self.first = units, first
@@ -71,6 +72,7 @@ class Assembly:
         self.rooms = {axis.name: _Room(self.names[axis.name], layouts[axis.name].size) for axis in whole.axes}
         self.places: dict[str, Place] = {}
         self.notes: dict[str, Place] = {}
+        self.worded, self.words = worded, dict[str, tuple[Place, ...]]()
         self.indices: dict[str, tuple[Place, ...]] = {}
         self.plan = ordered(lowered(whole))
         roots = {node.column.name: node for node in self.plan.nodes if isinstance(node, RootNode)}
@@ -110,6 +112,7 @@ class Assembly:
             "blocks": as_data(blocks),
             "roots": [auxiliary_texts(self.whole, unrolled) for unrolled in self.unrolled.values()],
             "notes": as_data(self.notes),
+            "words": as_data(self.words),
         }
 
     # --- places
@@ -118,7 +121,10 @@ class Assembly:
         """Give every quantity its place."""
         for axis in self.whole.axes:
             parts = self.layouts[axis.name].labels.shape[1]
-            self.indices[axis.name] = tuple(self.rooms[axis.name].next() for _ in range(parts))
+            room = self.rooms[axis.name]
+            self.indices[axis.name] = tuple(room.next() for _ in range(parts))
+            if not axis.parents:
+                self.words[room.worksheet] = tuple(room.next() for _ in range(self.worded))
         self.put_scalars()
         given = [c for c in self.whole.columns if c.axis is not None and isinstance(c.rule, Given)]
         for column in given:

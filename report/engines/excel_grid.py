@@ -37,6 +37,7 @@ def grid(
     units: Mapping[str, str],
     first: Sequence[str] = (),
     drawn: Drawn | None = None,
+    worded: int = 0,
 ) -> Grid:
     """Lay a sheet out as the cells of a workbook, with the values that they have now.
 
@@ -52,6 +53,8 @@ def grid(
         The scalars that are the result.
     drawn : Drawn or None
         What is drawn as native charts.
+    worded : int
+        How many columns of words stand beside the numbers of rows that are made of no others.
 
     Raises
     ------
@@ -71,16 +74,17 @@ def grid(
     def make() -> dict[str, Any]:
         from .excel_assembly import Assembly
 
-        return Assembly(worksheets, sheet, values.sheet, whole, layouts, counts, units, first).told()
+        return Assembly(worksheets, sheet, values.sheet, whole, layouts, counts, units, first, worded).told()
 
     own = [layouts[axis.name].labels.tolist() for axis in whole.axes if not axis.parents]
     words = [(column.meaning, column.unit, column.display, column.source) for column in whole.columns]
     names = [list(each.by_name) for each in (sheet, values.sheet)]
-    hangs_on = repr((names, own, sorted(counts.items()), words, sorted(units.items()), list(first)))
+    hangs_on = repr((names, own, sorted(counts.items()), words, sorted(units.items()), list(first), worded))
     told = of_sheet(whole, "formulas of the workbook", [hangs_on], make)
     axes = dict(zip(worksheets.values(), whole.axes, strict=True))
     blocks = filled(of_data(told["blocks"], tuple[CellBlock, ...]), told["roots"], every)
-    return Grid(tuple(blocks), axes, drawn, of_data(told["notes"], dict[str, Place]))
+    notes = of_data(told["notes"], dict[str, Place])
+    return Grid(tuple(blocks), axes, drawn, notes, of_data(told["words"], dict[str, tuple[Place, ...]]))
 
 
 def with_passes(drawn: Drawn | None, sheet: Sheet) -> Drawn | None:

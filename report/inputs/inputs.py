@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -155,6 +156,21 @@ class Inputs:
     def free(self) -> tuple[str, ...]:
         """The columns that the publication does not print: they may have any value."""
         return tuple(self.free_at)
+
+    @cached_property
+    def rows(self) -> Mapping[int, Mapping[str, str]]:
+        """The row of each test as it stands, by column, also of those that are left out."""
+        return {**self.texts, **{each.test: each.texts for each in self.left_out}}
+
+    @cached_property
+    def naming(self) -> tuple[str, ...]:
+        """The column of words that says which row is which: the first with a word for every test; or none."""
+        return tuple(name for name in self.remarks if all(self.texts[test][name] for test in self.tests))[:1]
+
+    def called(self, test: int) -> str:
+        """A row in a sentence: its number, and its name if it has one, ``3 (S-17)``."""
+        names = [self.rows[test][name] for name in self.naming]
+        return f"{test} ({names[0]})" if any(names) else str(test)
 
     @property
     def amended(self) -> Inputs:

@@ -142,7 +142,8 @@ class _Oddities:
         of = _some(list(weighed.values()))
         for row, test in enumerate(self.inputs.tests):
             if weighed and not any(self.values.value[name][row] for name in weighed):
-                yield f"test {test} has {of} without uncertainty, so that no other test would count beside it"
+                said = f"test {self.inputs.called(test)} has {of} without uncertainty"
+                yield f"{said}, so that no other test would count beside it"
 
     def without_value(self, column: Column, cells: Sequence[Cell]) -> str:
         """``alpha: 4 of 10 pairs have no value: alpha[1-2] and alpha[2-3] #NOROOT!: ...``."""
@@ -272,7 +273,7 @@ class _Oddities:
     def of_left_out(self) -> Iterator[Check]:
         """The tests that somebody left out, and what is not compared for that."""
         for each in self.inputs.left_out:
-            said = f"test {each.test}, {each.reason}"
+            said = f"test {self.inputs.called(each.test)}, {each.reason}"
             if rests := sum(each.test in value.index for value in self.inputs.aside):
                 said += f"; {rests} published {'value rests' if rests == 1 else 'values rest'} on it"
             yield Check(LEFT_OUT, f"test {each.test}", True, said, each.at, note="left out")
@@ -282,7 +283,7 @@ class _Oddities:
         if not odd.open:
             return Check(kind, name, True, f"{said}, as is expected", self.inputs.place)
         if any(self.suspect in self.tests(cell) for cell in odd.open):
-            said += f"; look at test {self.suspect} first: {self.because}"
+            said += f"; look at test {self.inputs.called(self.suspect)} first: {self.because}"
         warns = kind in (LIMIT, SQUARES)
         return Check(kind, name, warns, said, self.place(odd.open), note="warning" * warns)
 

@@ -59,4 +59,4 @@ def foremost(report: Report, budget: Budget) -> tuple[str, float] | None:
     if axis is None or len(tests) < 2:
         return None
     (test, share), (_, less), *_ = tests.items()
-    return (f"{axis.row} {test}", share) if 0 < less < share - SEEN else None
+    return (f"{axis.row} {report.inputs.called(test)}", share) if 0 < less < share - SEEN else None

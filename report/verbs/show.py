@@ -70,6 +70,13 @@ def _lines(report: Report, column: Column, labels: Collection[tuple[int, ...]]) 
     if name in report.inputs.taken:  # what was computed has those that its uncertainty tells
         texts = [figure.plain if figure else "" for figure in report.figures(name)]
     given = dict(zip(every, texts, strict=True)) if len(texts) == len(every) else {}
+    inputs, over = report.inputs, column.axis
+    names = {
+        label: f"{inputs.rows[label[0]][name]}  "
+        for name in inputs.naming
+        for label in (every if over is not None and not over.parents else ())
+    }
+    wide = max(map(len, names.values()), default=0)
     nothing = [0.0] * len(every)
     uncertain = report.uncertain().u.get(name, nothing)
     for row, (cell, mark) in enumerate(zip(report.values.cells(name), marks, strict=True)):
@@ -80,7 +87,8 @@ def _lines(report: Report, column: Column, labels: Collection[tuple[int, ...]]) 
                 else given.get(cell.label) or report.shown[name].digits_of(cell.value)
             )
             u = f"  u {report.sure(name, uncertain[row]).plain}" if uncertain[row] > 0 else ""
-            yield f"  {cell.address:16} {value}{u}{mark and f'  {mark}'}"
+            called = names.get(cell.label, "").ljust(wide)
+            yield f"  {cell.address:16} {called}{value}{u}{mark and f'  {mark}'}"
     for count in report.marks.behind(column):
         if count.number or count.margin.limit.source:
             yield f"  {count.said}"

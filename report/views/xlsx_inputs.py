@@ -113,6 +113,9 @@ class GivenCells:
             for block in (block for block in blocks if block.name in each.texts):
                 text, unit = each.texts[block.name], self.report.inputs.header_units[block.name]
                 style.text(sheet, row, block.place.column, text + said(unit), "aside")
+            words = self.grid.words.get(note.worksheet, ())
+            for place, name in zip(words, self.report.inputs.remarks, strict=False):
+                style.text(sheet, row, place.column, each.texts[name], "aside")
             style.text(sheet, row, note.column, each.reason, "aside")
         return 2 + len(left_out)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..cells.grid import FIRST_ROW, STEPS, CellBlock, Grid, letters
+from ..cells.grid import FIRST_ROW, STEPS, CellBlock, Grid, Place, letters
 from ..result.result import Report
 from ..sheet import RepeatAxis
 from .xlsx_inputs import GivenCells
@@ -80,9 +80,13 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
         says = f"Type over the yellow cells; all else follows{stays}."
         style.text(sheet, 1, 0, f"{says} An empty one leaves its test out of all sums.", "subtitle")
         given = [b for b in blocks if b.kind == "given" and b.place.row == FIRST_ROW]
-        _write_note(sheet, style, grid.notes[name].column)
+        says = "whether the given cells are what they may be"
+        _write_head(sheet, style, grid.notes[name].column, _NOTE_WIDTH, "check", says)
         inputs.write_told(sheet, style, given, grid.notes[name])
         below = inputs.write_left_out(sheet, style, given, grid.notes[name])
+    words = grid.words.get(name, ())
+    for place, column in zip(words, report.inputs.remarks, strict=False):  # rows made of others have none
+        _write_words(sheet, style, report, place, column)
     for block in blocks:
         if block.place.row == FIRST_ROW:
             _write_header(sheet, style, report, block)
@@ -93,11 +97,14 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
     meanings = [(b.meaning, _SMALL * _width(b)) for b in blocks if b.place.row == FIRST_ROW]
     sheet.set_row(_MEANING, 0.82 * height(meanings, 2))
     sheet.set_row(_NAME, 20)
+    named = [report.inputs.remarks.index(column) + 1 for column in report.inputs.naming if words]
     indices = len([b for b in blocks if b.kind == "index"])
-    sheet.freeze_panes(FIRST_ROW, indices)
+    sheet.freeze_panes(FIRST_ROW, indices + sum(named))
     last, size = max(b.place.column for b in blocks), max(b.place.rows for b in blocks)
-    mark_errors(sheet, style, FIRST_ROW, 0, FIRST_ROW + size - 1, last)
-    sheet.ignore_errors({"formula_differs": f"A1:{letters(last)}{FIRST_ROW + size}"})
+    first = words[-1].column + 1 if words else 0
+    mark_errors(sheet, style, FIRST_ROW, first, FIRST_ROW + size - 1, last)
+    every = f"A1:{letters(last)}{FIRST_ROW + size}"
+    sheet.ignore_errors({"formula_differs": every, **({"number_stored_as_text": every} if words else {})})
     sheet.set_landscape()
     sheet.set_paper(9)
     sheet.fit_to_pages(1, 0)
@@ -136,16 +143,26 @@ def _write_header(sheet: Any, style: Style, report: Report, block: CellBlock) ->
         style.text(sheet, _SYMBOL, at, "", "symbol")
 
 
-def _write_note(sheet: Any, style: Style, at: int) -> None:
-    """Write the header of the column that says what is wrong with the given cells of its row."""
-    sheet.set_column(at, at, _NOTE_WIDTH)
-    for row, words, name in (
-        (_NAME, "check", "head"),
-        (_MEANING, "whether the given cells are what they may be", "meaning"),
+def _write_words(sheet: Any, style: Style, report: Report, place: Place, name: str) -> None:
+    """Write a column of words, which no formula reads."""
+    texts = [report.inputs.texts[test][name] for test in report.inputs.tests]
+    width = min(_SMALL * max(map(len, (name, *texts))) + 2, _NOTE_WIDTH)
+    _write_head(sheet, style, place.column, width, name)
+    for row, words in enumerate(texts, start=place.row):
+        if words:
+            style.text(sheet, row, place.column, words)
+
+
+def _write_head(sheet: Any, style: Style, at: int, width: float, name: str, says: str = "") -> None:
+    """Write the header of a column that no formula reads."""
+    sheet.set_column(at, at, width)
+    for row, words, look in (
+        (_NAME, name, "head"),
+        (_MEANING, says, "meaning"),
         (_SOURCE, "", "source"),
         (_SYMBOL, "", "symbol"),
     ):
-        style.text(sheet, row, at, words, name)
+        style.text(sheet, row, at, words, look)
 
 
 def _write_groups(sheet: Any, style: Style, report: Report, blocks: Sequence[CellBlock]) -> None:

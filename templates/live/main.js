@@ -67,8 +67,9 @@ function removeTest(label) {
   });
 }
 
+// Its number is none that another had before: what was said of that one is not said of it.
 function newTest(state) {
-  const label = Math.max(0, ...state.tests.map((test) => test.label)) + 1;
+  const label = Math.max(0, ...[...LIVE.tests, ...state.tests].map((test) => test.label)) + 1;
   const test = { label, used: true, reason: "", cells: Object.fromEntries(Object.keys(LIVE.tests[0].cells).map((name) => [name, ""])) };
   state.tests.push(test);
   return test;

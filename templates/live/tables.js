@@ -9,6 +9,8 @@ class Table {
     this.columns = cells.map((cell) => ({ name: cell.dataset.cell, identified: cell.id !== "" }));
     this.axis = PROGRAM.columns.find((column) => column.name === this.columns[0].name).axis;
     this.inputs = this.columns.filter(({ name }) => LIVE.columns[name].given).map(({ name }) => name);
+    this.words = all("thead th[class]", element);
+    this.first = cells[0].dataset.index;
     this.labels = Object.fromEntries(cells.map((cell) => [cell.dataset.cell, cell.getAttribute("aria-label")]));
     this.editable = false;
     for (const row of this.body.rows) row.dataset.label = row.querySelector("[data-cell]").dataset.index;
@@ -43,14 +45,14 @@ class Table {
   newRow(index) {
     const text = index.replaceAll("-", "–");
     const row = make("tr", { "data-label": index }, make("th", { scope: "row" }, text));
+    for (const head of this.words) row.append(make("td", { class: head.className }, LIVE.texts[index]?.[head.textContent] ?? ""));
     for (const { name, identified } of this.columns) {
       const data = { id: identified ? cellId("cell", name, index) : null, "data-cell": name, "data-index": index };
       if (!LIVE.columns[name].given) {
         row.append(make("td", data));
         continue;
       }
-      const issued = this.body.rows[0]?.querySelector("[data-index]")?.dataset.index ?? "";
-      const label = (this.labels[name] ?? name).replace(`, ${issued}`, `, ${index}`);
+      const label = this.labels[name].replace(`, ${this.first}`, `, ${index}`);
       row.append(make("td", {}, make("input", { ...data, ...INPUT_ATTRIBUTES, "aria-label": label })));
     }
     if (this.editable) this.addTools(row);
@@ -83,11 +85,10 @@ class Table {
       row.querySelector("[data-use]").checked = test.used;
       row.querySelector("[data-reason]").value = test.reason;
     }
-    for (let n = 0; n < this.columns.length; n++) {
-      const { name } = this.columns[n], place = look.trace.row(name, index);
+    const boxes = all("[data-cell]", row);
+    for (let n = 0; n < boxes.length; n++) {
+      const { name } = this.columns[n], element = boxes[n], place = look.trace.row(name, index);
       if (!LIVE.columns[name].given && isUnchanged(look, last, name, place, last?.trace.row(name, index) ?? -1)) continue;
-      const box = row.cells[n + 1];
-      const element = LIVE.columns[name].given ? box.querySelector("input") : box;
       if (place >= 0) writeCell(element, look, name, place);
       else if (test) writeLeftOut(element, test.cells[name]);
     }

@@ -1,4 +1,4 @@
-"""The page reads and saves temperatures in degC as a build does, and what is remarked of them."""
+"""The page reads and saves temperatures in degC as a build does, and what is said of them in words."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -34,3 +34,52 @@ def test_a_temperature_that_is_edited_is_saved_as_it_was_typed(
     report = Study(saved).computed
     assert report.values.value["T"].tolist() == [333.05, 294.65, 259.45]
     assert driving.differences(live.cells(), report.values) == []
+
+
+_WORDS = """() => Array.from(document.querySelectorAll("main table:not(.list) tr[data-label]"), (row) => [
+  row.dataset.label, ...Array.from(row.querySelectorAll("td:is(.row, .words)"), (cell) => cell.textContent),
+])"""
+
+
+def test_rows_keep_their_names_and_a_new_one_has_none(open_page: Callable[..., Live], tmp_path: Path) -> None:
+    folder = gas.folder(tmp_path / "gas", table=gas.NAMED, code=gas.IN_TABLES)
+    build.build(Study(folder), tmp_path / "out", ("html",))
+    live = open_page(tmp_path / "out" / "report.html")
+
+    def words() -> list[list[str]]:
+        found: list[list[str]] = live.page.evaluate(_WORDS)
+        return found
+
+    note, code = "the door was open, 5 % of the time", r"#9 {\a}"
+    measured = [["1", "", "=1+1"], ["2", note, "@x <b>y</b>"], ["3", "", code], ["4", "", "17"]]
+    computed = [["1", "=1+1"], ["2", "@x <b>y</b>"], ["3", code]]
+    assert words() == measured + computed
+    live.type("T", 1, "20.5")
+    live.page.locator('[data-remove="2"]').click()
+    live.page.locator('[data-use="4"]').click()
+    measured.pop(1), computed.pop(1)
+    assert words() == [*measured, *computed, ["4", "17"]]
+    assert live.cell("warm", "4").text == "31.50"
+    live.click("live-undo")
+    live.click("live-undo")  # the second row is made again
+    measured.insert(1, ["2", note, "@x <b>y</b>"])
+    computed.insert(1, ["2", "@x <b>y</b>"])
+    assert words() == measured + computed
+    live.type("T", 2, "22.5")
+    assert live.cell("warm", "2").text == "24.00"
+    live.page.locator('[data-remove="4"]').click()
+    live.click("live-add")  # and is no other's, whose words would stand beside it
+    live.page.keyboard.type("25.0")
+    live.press("Enter")
+    assert words() == [*measured[:3], ["5", "", ""], *computed, ["5", ""]]
+    saved = live.save(tmp_path / "saved", "workbook.py", "published.csv")
+    assert (saved / "measurements.csv").read_text(encoding="utf-8").splitlines() == [
+        "reading,note,specimen,T [degC],left out",
+        '1,,"=1+1",20.5,',
+        f'2,"{note}","@x <b>y</b>",22.5,',
+        f'3,,"{code}",-3.2,',
+        "5,,,25.0,",
+        "4,,17,30,fell",
+    ]
+    live.click("live-reset")
+    assert words() == [*measured[:3], ["4", "", "17"], *computed]
