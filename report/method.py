@@ -96,8 +96,8 @@ def given(
 def constant(name: str, *, latex: str = "") -> Any:
     """Declare a constant of nature: its value, unit and uncertainty are CODATA's, as scipy has them.
 
-    Values that were adjusted together are correlated, which is not known here: of a formula in two of them
-    state it under ``[uncertainty.correlation]``, or take the constant that the formula stands for.
+    Values that were adjusted together are correlated, which is not known here: of a result that rests on two
+    of them `check` warns. State it under ``[uncertainty.correlation]``, or take the constant that they make.
 
     Parameters
     ----------
@@ -121,7 +121,8 @@ def constant(name: str, *, latex: str = "") -> Any:
     unit = "*".join(words.split()) or "1"
     default = f"{value!r} {unit}" + (f", u = {u!r} {unit}" if u else "")
     column = {"exact": not u, "latex": latex, "positive": value > 0}
-    return InputLine(f"{name}, CODATA", unit, column, _bounds(None, None, value > 0, False), default)
+    bounds = _bounds(None, None, value > 0, False)
+    return InputLine(f"{name}, CODATA", unit, column, bounds, default, is_adjusted=u > 0)
 
 
 def measured(
@@ -502,6 +503,7 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
         row=body.axis.row,
         squares=tuple(body.squares),
         claims=tuple(body.claims),
+        adjusted=frozenset(body.adjusted),
         aside=frozenset(body.aside),
         tables=(*body.tables, *tables_of(sheet, in_tables)) if body.tables else (),
         figures=tuple(body.figures),

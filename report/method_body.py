@@ -70,6 +70,7 @@ class InputLine(Declaration):
     default: str | None = None
     is_measured: bool = False
     example: str = ""
+    is_adjusted: bool = False
 
 
 @dataclass(frozen=True)
@@ -182,6 +183,7 @@ class MethodBody(dict[str, Any]):
         self.figures: list[FigureSpec] = []
         self.tables: list[TableSpec] = []
         self.announced: dict[str, UnknownLine] = {}
+        self.adjusted: list[str] = []
         self.aside: list[str] = []
         self.of_fits: dict[str, bool] = {}  # and whether it is a parameter
         self.squares: list[SquareSum] = []
@@ -302,6 +304,7 @@ class MethodBody(dict[str, Any]):
         own = name, said.unit, said.meaning, bounds
         self.inputs.append(Measured(*own) if said.is_measured else Parameter(*own, said.default))
         self.examples |= {name: said.example} if said.example else {}
+        self.adjusted += [name] * said.is_adjusted
         positive = said.column["positive"] or bool(size.zero and bounds.low is not None and bounds.low > 0)
         rule = Given("measured" if said.is_measured else "parameter")
         axis = self.axis if said.is_measured else None

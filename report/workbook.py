@@ -232,6 +232,8 @@ class Workbook:
     """The sums of squares to be no larger and no smaller than chance makes them."""
     claims: tuple[Claimed, ...] = ()
     """What is to hold of its cells, whatever is measured."""
+    adjusted: frozenset[str] = frozenset()
+    """Parameters whose defaults were adjusted together, as constants of nature are."""
     aside: frozenset[str] = frozenset()
     """What only leads to other cells: it is in no table, but in those that the workbook declares."""
     fits: tuple[str, ...] = ()

@@ -1,6 +1,7 @@
 """A method as the body of a class: what a name stands for, and what is told of a wrong line."""
 
 import contextvars
+import json
 import math
 import re
 import subprocess
@@ -259,6 +260,30 @@ def test_constants_of_nature_have_their_digits(tmp_path: Path) -> None:
     assert made["G"].value == pytest.approx(6.6743e-11, rel=1e-4)
     assert made["twice"].u == pytest.approx(2 * made["G"].u)
     assert made["G"].u > 0 == made["R"].u
+
+
+@pytest.mark.parametrize(
+    ("formula", "stated", "warns"),
+    [
+        ("e**2 / (4 * pi * eps * m * c**2)", "", True),  # CODATA's classical electron radius: u 1.3e-24 m
+        ("e**2 / (4 * pi * eps * m * c**2)", '[uncertainty.correlation]\n"eps, m" = "-0.99"\n', False),
+        ("m * c**2 / e", "", False),
+    ],
+)
+def test_constants_that_were_adjusted_together_are_correlated(
+    formula: str, stated: str, warns: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code = "from sympy import pi\nfrom loopsheet import Method, constant, let\n\n\nclass Radius(Method):\n"
+    code += "    e, m = constant('elementary charge'), constant('electron mass')\n"
+    code += (
+        "    eps = constant('vacuum electric permittivity')\n    c = constant('speed of light in vacuum')\n"
+    )
+    path = folder(tmp_path, f"{code}    r = let({formula}, 'radius')\n", stated)
+    assert main(["check", str(path), "--no-cache", "--format", "json"]) == 0
+    checks = json.loads(capsys.readouterr().out)["checks"]
+    told = [each["message"] for each in checks if each["kind"] == "constants"]
+    says = "r rests on eps and m, which were adjusted together: their errors are correlated, which its u "
+    assert told == [f"{says}leaves out; state it under [uncertainty.correlation]"] * warns
 
 
 def test_every_constant_may_be_declared_or_is_refused() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["names", "oddities"]
 
 DATA, LIMIT, SQUARES, GROUPS = "data", "limit", "squares", "groups"
+CONSTANTS = "constants"
 EXPECTED, LEFT_OUT = "expected", "left out"
 """The kinds of these checks."""
 CELLS, ROWS, RESULT = "cells", "rows", "result"
@@ -49,6 +51,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
         LIMIT: list(map(_name, margins(sheet))),
         SQUARES: [squares.name for squares in inputs.workbook.squares],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
+        CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
         CLAIM: [claim.label for claim in inputs.workbook.claims],
         EXPECTED: [expectation.address for expectation in inputs.expected],
         LEFT_OUT: [f"test {each.test}" for each in inputs.left_out],
@@ -57,6 +60,15 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
 
 def _name(margin: Margin) -> str:
     return f"{margin.of.name}: {margin.limit.mark}"
+
+
+def _adjusted(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, list[str]]]:
+    """The results that rest on two adjusted constants or more of whose correlation nothing is stated."""
+    for name in (name for name in inputs.workbook.headline if name in sheet):
+        own = {each.name for each in sheet.ancestors(sheet[name])} & inputs.workbook.adjusted
+        pairs = map(frozenset, combinations(sorted(own), 2))
+        if any(pair not in map(frozenset, inputs.uncertainty.correlations) for pair in pairs):
+            yield name, sorted(own)
 
 
 def oddities(report: Report) -> tuple[Check, ...]:
@@ -92,6 +104,7 @@ class _Oddities:
         yield from map(self.of_limit, self.report.marks.margins)
         yield from map(self.of_squares, self.report.workbook.squares)
         yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
+        yield from (self.of_constants(*each) for each in _adjusted(self.sheet, self.inputs))
         yield from self.of_expectations()
         yield from self.of_left_out()
 
@@ -256,6 +269,14 @@ class _Oddities:
         )
         said = f"{shared.name}: {which} in no group of it, and so without it; a group may be of one test"
         return Check(GROUPS, shared.name, True, said, self.inputs.place, note="warning")
+
+    def of_constants(self, cell: str, constants: Sequence[str]) -> Check:
+        """That a result rests on constants whose errors are not independent."""
+        said = (
+            f"{cell} rests on {_some(constants)}, which were adjusted together: their errors are correlated, "
+        )
+        said += "which its u leaves out; state it under [uncertainty.correlation]"
+        return Check(CONSTANTS, cell, True, said, self.inputs.place, note="warning")
 
     def valued(self, cell: Cell) -> str:
         """``alpha[1-2] = 2.73``; a given cell as it was printed."""
