@@ -42,7 +42,7 @@ from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import BooleanFunction
 
 from .equation import Equation
-from .reductions import Median
+from .reductions import OrderStatistic
 from .text import text
 from .unit_text import UnitError, coherent, parse_open
 from .vocabulary import Vocabulary
@@ -196,7 +196,7 @@ class Dimensions:
             case sign():
                 self.of(expression.args[0])
                 return PURE
-            case Sum() | Median():
+            case Sum() | OrderStatistic():
                 return self.of(expression.function)
             case Integral():
                 total = self.of(expression.function)

@@ -39,7 +39,7 @@ from sympy import (
 )
 from sympy.logic.boolalg import BooleanAtom
 
-from .reductions import REDUCTIONS, Median
+from .reductions import REDUCTIONS, Greatest, Least, Median
 
 __all__ = ["UNDEFINED", "NotEvaluable", "Tape", "is_real"]
 
@@ -71,6 +71,12 @@ _FUNCTIONS: dict[Any, Callable[..., Any]] = {
     And: lambda *parts: all(parts),
     Or: lambda *parts: any(parts),
     Not: operator.not_,
+}
+_TAKEN: dict[Any, Callable[[Iterator[Any]], Any]] = {
+    Sum: partial(sum, start=mpmath.mpf(0)),
+    Median: median,
+    Greatest: max,
+    Least: min,
 }
 
 
@@ -243,7 +249,7 @@ class Tape:
         raise NotEvaluable(f"{name} has no value")
 
     def _loop(self, expression: Any) -> int:
-        """A sum, a median or an integral: its body has a list of operations of its own, run at each place."""
+        """A reduction or an integral: its body has a list of operations of its own, run at each place."""
         *inner, limits = expression.limits
         if len(limits) != 3:
             raise NotEvaluable(f"{expression} has no limits")
@@ -260,7 +266,8 @@ class Tape:
         body = self._slot(function)
         tape = self._tapes.pop()
         self._known.pop()
-        at = {Integral: self._integral, Sum: self._sum, Median: self._median}[type(expression)]
+        kind = type(expression)
+        at = self._integral if kind is Integral else partial(self._taken, _TAKEN[kind])
         named = {body, *(each for _, _, used in tape for each in used)}
         named |= {each for inner, _, _ in tape for each in self._beneath.get(inner, ())}
         beneath = sorted(each for each in named if self._levels[each] < level)
@@ -269,7 +276,7 @@ class Tape:
         slot = self._fresh(expression, outer)
         self._beneath[slot] = beneath
         run: Callable[..., Any] = partial(at, tape, running, body)
-        if isinstance(expression, Integral):
+        if kind is Integral:
             run = self._remembering(run, beneath)
         # A body that does not run with the variable is no part of the tape: it must be there before.
         arguments = (*ends, *((body,) if self._levels[body] < level else ()))
@@ -321,11 +328,8 @@ class Tape:
             self._run(tape)
             yield self._slots[body]
 
-    def _sum(self, *loop: Any) -> Any:
-        return sum(self._terms(*loop), start=mpmath.mpf(0))
-
-    def _median(self, *loop: Any) -> Any:
-        return median(self._terms(*loop))
+    def _taken(self, take: Callable[[Iterator[Any]], Any], *loop: Any) -> Any:
+        return take(self._terms(*loop))
 
     def _integral(self, tape: Any, running: int, body: int, low: Any, high: Any) -> tuple[Any, Any]:
         """The integral, and by what part of itself it may be off where it was not resolved to all digits."""

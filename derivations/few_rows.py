@@ -18,7 +18,7 @@ from sympy.logic.boolalg import Boolean
 from .cells import running
 from .equation import Equation
 from .evaluation import NotEvaluable, Tape
-from .reductions import Median
+from .reductions import OrderStatistic
 from .sums import in_terms
 
 __all__ = ["FewRows", "Statement"]
@@ -103,7 +103,7 @@ class FewRows:
 
     def _plain(self, expression: Any) -> Any:
         expression = in_terms(expression)
-        for kind in (Median, Indexed, AppliedUndef):
+        for kind in (OrderStatistic, Indexed, AppliedUndef):
             for part in sorted(expression.atoms(kind), key=str):
                 of = part.base.label if kind is Indexed else part
                 symbol = Symbol(str(part), real=True, positive=True if of.is_positive else None)

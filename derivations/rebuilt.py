@@ -15,7 +15,7 @@ __all__ = ["evaluated", "replaced"]
 def evaluated(expression: Any) -> Any:
     """The expression that is computed: the author's, rebuilt with sympy's own evaluation.
 
-    Integrals, sums and medians stay unevaluated; only the order of terms and trivial factors are normalised.
+    Integrals and reductions stay unevaluated; only the order of terms and trivial factors are normalised.
     """
     if not isinstance(expression, Basic) or not expression.args or isinstance(expression, Symbol):
         return expression

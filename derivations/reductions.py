@@ -1,18 +1,20 @@
-"""What is taken over all values of a running number: sympy's sum, and the median that sympy lacks."""
+"""What is taken over all values of a running number: sympy's sum, and by order what sympy lacks."""
 
 from __future__ import annotations
+
+from typing import ClassVar
 
 from sympy import Sum
 from sympy.concrete.expr_with_limits import ExprWithLimits
 
-__all__ = ["REDUCTIONS", "Median"]
+__all__ = ["REDUCTIONS", "Greatest", "Least", "Median", "OrderStatistic"]
 
 
-class Median(ExprWithLimits):  # type: ignore[misc] # sympy has no types
-    """The middle of the terms in the order of their size; of an even number, the mean of the two there.
+class OrderStatistic(ExprWithLimits):  # type: ignore[misc] # sympy has no types
+    """What stands at one place of the terms in the order of their size, or the mean of what stands at two.
 
     It stays as it is written: sympy's algebra knows nothing of order, and none is asked of it. By a term it
-    changes by one where that term alone is in the middle, by one half where it is one of two, and by nothing
+    changes by one where that term alone is taken, by one half where it is one of two, and by nothing
     elsewhere.
 
     Parameters
@@ -22,6 +24,11 @@ class Median(ExprWithLimits):  # type: ignore[misc] # sympy has no types
     limits : tuple
         The running number and its ends, as for a sum.
 
+    Attributes
+    ----------
+    word : str
+        What it is called wherever it is told, printed or computed.
+
     Examples
     --------
     >>> from sympy import IndexedBase, Symbol
@@ -29,6 +36,8 @@ class Median(ExprWithLimits):  # type: ignore[misc] # sympy has no types
     >>> Median(IndexedBase(Symbol("alpha", positive=True))[p], (p, 1, n)).is_positive
     True
     """
+
+    word: ClassVar[str]
 
     def _eval_is_real(self) -> bool | None:
         return self.function.is_real  # type: ignore[no-any-return]
@@ -40,5 +49,23 @@ class Median(ExprWithLimits):  # type: ignore[misc] # sympy has no types
         return True if self.function.is_nonnegative else None
 
 
-REDUCTIONS = (Sum, Median)
+class Median(OrderStatistic):
+    """The middle of the terms; of an even number, the mean of the two there."""
+
+    word = "median"
+
+
+class Greatest(OrderStatistic):
+    """The greatest of the terms."""
+
+    word = "max"
+
+
+class Least(OrderStatistic):
+    """The least of the terms."""
+
+    word = "min"
+
+
+REDUCTIONS = (Sum, Median, Greatest, Least)
 """What a rule may take over the rows of an index set."""

@@ -13,7 +13,7 @@ from sympy import Abs, Add, Expr, Indexed, Integral, Mul, Pow, Sum, Symbol
 
 from .evaluation import UNDEFINED, Tape, is_real
 from .proved import DIGITS, said
-from .reductions import Median
+from .reductions import Greatest, OrderStatistic
 from .space import SampledRows, Space, short
 from .system import Refused, System
 
@@ -178,8 +178,10 @@ def magnitude(expression: Any) -> Any:
             return expression.func(*map(magnitude, expression.args), evaluate=False)
         case Integral():
             return Abs(Integral(magnitude(expression.function), *expression.limits), evaluate=False)
-        case Sum() | Median():
-            return expression.func(magnitude(expression.function), *expression.limits)
+        case Sum() | OrderStatistic():
+            # What is taken by order is off by no more than the term that is off most.
+            kind = Sum if isinstance(expression, Sum) else Greatest
+            return kind(magnitude(expression.function), *expression.limits)
         case Pow() if expression.exp.is_Integer and expression.exp.is_positive:
             return Pow(magnitude(expression.base), expression.exp, evaluate=False)
         case Symbol() | Indexed() if expression.is_positive:

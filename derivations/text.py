@@ -30,7 +30,7 @@ from sympy import (
 from sympy.core.function import Application
 
 from .equation import Equation
-from .reductions import Median
+from .reductions import OrderStatistic
 from .vocabulary import Vocabulary, subscripted
 
 __all__ = ["Wording", "text", "text_of_equation"]
@@ -104,8 +104,8 @@ class Wording:
                 return "; ".join(
                     f"{self.text(law)} for {self.text(where)}" for law, where in expression.args
                 ), _SUM
-            case Integral() | Sum() | Median():
-                name = {Integral: "int", Sum: "sum", Median: "median"}[type(expression)]
+            case Integral() | Sum() | OrderStatistic():
+                name = {Integral: "int", Sum: "sum"}.get(type(expression)) or expression.word
                 ends = (
                     f"{self.text(variable)} = {self.text(low)}..{self.text(high)}"
                     for variable, low, high in expression.limits

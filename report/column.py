@@ -414,7 +414,7 @@ class Mentioned:
         The names of a column, of the index, of the axis that it is summed over: those of its references, in
         the order of the sheet.
     summed : tuple of str
-        The names of the axes that it sums over, or takes a median over.
+        The names of the axes that it takes something over.
     content : str
         That of the column.
     """
@@ -597,7 +597,7 @@ class Reference:
     cell : Expr
         ``x_p[i]``, ``beta``, ``n_pairs``.
     over : Axis or None
-        The axis of the innermost sum or median it stands in, whose rows it then runs over; None for one of
+        The axis of the innermost reduction it stands in, whose rows it then runs over; None for one of
         the row itself. ``alpha[p]`` may stand for both in one formula.
     """
 

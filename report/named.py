@@ -8,7 +8,7 @@ from functools import cached_property
 from sympy import And, Basic, Eq, Expr, Indexed, Rational, Symbol, floor
 from sympy.logic.boolalg import Boolean
 
-from ..derivations.reductions import REDUCTIONS, Median
+from ..derivations.reductions import REDUCTIONS, OrderStatistic
 from .column import Axis, Column, Iterated, Reference, Root, SheetError
 from .messages.errors import close
 from .quantity import Bounds
@@ -41,7 +41,7 @@ class Named:
         return {axis.index: axis for axis in self.axes}
 
     def summed(self, column: Column) -> tuple[Axis, ...]:
-        """The axes that its rule sums over, or takes a median over."""
+        """The axes that its rule takes something over."""
         over = {
             total.limits[0][0] for expression in column.expressions for total in expression.atoms(*REDUCTIONS)
         }
@@ -96,9 +96,10 @@ class Named:
             raise SheetError(
                 f"{column.name}: a root cannot be sought again and again; iterate its equation", column.name
             )
-        if any(expression.has(Median) for expression in column.expressions):
+        jumping = sorted(each.word for part in column.expressions for each in part.atoms(OrderStatistic))
+        if jumping:
             raise SheetError(
-                f"{column.name}: a median cannot stand in what is iterated; it jumps", column.name
+                f"{column.name}: a {jumping[0]} cannot stand in what is iterated; it jumps", column.name
             )
         if isinstance(rule, Iterated):
             named = sorted({r.name for r in references(rule.start, self.indices)} & names)
@@ -120,16 +121,15 @@ class Named:
                     f"{column.name}: a sum runs over all rows of one index set ({known}), not over {shown}",
                     column.name,
                 )
-            if isinstance(expression, Median) and not isinstance(expression.function, Indexed):
+            taken = f"{column.name}: a {expression.word}" if isinstance(expression, OrderStatistic) else ""
+            if taken and not isinstance(expression.function, Indexed):
                 raise SheetError(
-                    f"{column.name}: a median is of the cells of a column, not of {expression.function}; "
+                    f"{taken} is of the cells of a column, not of {expression.function}; "
                     "give that a column of its own",
                     column.name,
                 )
-            if isinstance(expression, Median) and isinstance(column.rule, Root):
-                raise SheetError(
-                    f"{column.name}: a median in a root has to be a column of its own", column.name
-                )
+            if taken and isinstance(column.rule, Root):
+                raise SheetError(f"{taken} in a root has to be a column of its own", column.name)
             self._check_scope(column, expression.function, over)
         elif isinstance(expression, Indexed):
             self._check_cell(column, expression, axis)

@@ -257,7 +257,7 @@ class Sheet:
         return tuple(c for c in self.order if c.name in seen and c.name != column.name)
 
     def summed_axes(self, column: Column) -> tuple[Axis, ...]:
-        """The axes that its rule sums over, or takes a median over."""
+        """The axes that its rule takes something over."""
         if column.mentioned is not None:
             return tuple(axis for axis in self.axes if axis.name in column.mentioned.summed)
         return self.algebra.summed(column) if column.expressions else ()

@@ -34,7 +34,7 @@ from sympy import (
 )
 
 from loopsheet.derivations.equation import Equation, Kind
-from loopsheet.derivations.reductions import Median
+from loopsheet.derivations.reductions import Greatest, Least, Median
 from loopsheet.report.cells.grid import Grid
 from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.engines import ENGINES, excel_grid
@@ -88,6 +88,7 @@ def root(
 
 
 x = Symbol("x", positive=True)
+half = Rational(1, 2)
 k, i, j, p, q, s = (whole(name) for name in "kijpqs")
 
 # --- which row is meant: three rows, their three pairs, two points of each --------------------------------
@@ -119,6 +120,14 @@ case("powers_in_a_sum", Sum(Symbol("count", positive=True) ** (2 * a[k]), (k, 1,
 case("a_median", Median(gap[p], (p, 1, n_pairs)) * w.symbol, None, [2])
 case("a_median_of_a_sets_parts", Median(gap[p], (q, 1, n_points)), None, [4])
 case("a_median_of_members", a[k] - Median(a[j], (p, 1, n_pairs)), ROWS, [-5, -4, 0])
+most, least = Greatest(gap[p], (q, 1, n_points)), Least(gap[p], (q, 1, n_points))
+case("extremes", Greatest(gap[p], (p, 1, n_pairs)) * w.symbol - Least(a[k], (k, 1, n)), None, [half])
+case("extremes_of_a_sets_parts", most + least, None, [6])
+apart = Greatest(a[i], (p, 1, n_pairs)) - Least(a[j], (p, 1, n_pairs))
+case("extremes_of_members", a[k] / (apart + 1), ROWS, [2, 3, 7])
+below = case("below", 1 - gap[p], PAIRS, [0, -4, -3])
+case("extremes_below_zero", Greatest(below[p], (p, 1, n_pairs)) - Least(below[p], (p, 1, n_pairs)), None, [4])
+case("divided_by_an_extreme", a[k] / Greatest(below[p], (p, 1, n_pairs)), ROWS, [DOMAIN] * 3)
 case("a_size_without_a_sum", gap[p] / n_pairs, PAIRS, [Rational(g, 3) for g in (1, 5, 4)])
 case("a_scalar_on_an_axis", w.symbol + 0 * w.symbol, PAIRS, [Rational(1, 2)] * 3)
 case("a_number_on_an_axis", Integer(4), PAIRS, [4] * 3)
@@ -137,6 +146,10 @@ case(
 divided = case("divided_by_zero", 1 / (a[k] - 3), ROWS, [-1, DOMAIN, Rational(1, 4)])
 case("a_mean_alongside", Sum(a[k], (k, 1, n)) / n, None, [Rational(9, 2)], alongside=(divided,))
 case("a_median_alongside", Median(a[k], (k, 1, n)), None, [Rational(9, 2)], alongside=(divided,))
+lowered = case("lowered", divided[k] - 1, ROWS, [-2, DOMAIN, Rational(-3, 4)])
+case("a_greatest_of_some", Greatest(lowered[k], (k, 1, n)), None, [Rational(-3, 4)])
+without = case("without_the_least", 1 / (a[k] - 2), ROWS, [DOMAIN, 1, Rational(1, 5)])
+case("a_least_alongside", Least(a[k], (k, 1, n)), None, [3], alongside=(without,))
 needs = ((a[j] < a[i] + 5, "not far"), (a[i] > 2, "not small"))
 case("conditions", 2 * gap[p], PAIRS, [DOMAIN, DOMAIN, 8], requires=needs)
 
@@ -275,6 +288,8 @@ def errors(
     slope = add("slope", log(B[j] / B[i]) / (A[j] - A[i]), both, requires=limits)
     mean = add("mean", Sum(slope[p], (p, 1, pairs)) / pairs)
     add("middle", Median(slope[p], (p, 1, pairs)))
+    add("most", Greatest(slope[p], (p, 1, pairs)))
+    add("least", Least(slope[p], (p, 1, pairs)))
     add("scaled", mean.symbol * C.symbol)
     add("offset", A[k] - mean.symbol, rows)
     add("excess", A[k] - Sum(A[k], (k, 1, size)) / size, rows)
@@ -289,7 +304,6 @@ def errors(
         add("root_sum", Sum(found[p], (p, 1, pairs)))
 
 
-half = Rational(1, 2)
 errors(
     "sound",
     [6, 7, 8],
@@ -299,11 +313,12 @@ errors(
 errors(
     "missing", [1, 2, 3], [2, NAN, 5], labels=(10, 30, 20),
     slope=[INPUT, log(5 * half) / 2, INPUT], mean=[log(5 * half) / 2], middle=[log(5 * half) / 2],
-    scaled=[log(5 * half)], gap=[1, INPUT, 4],
+    most=[log(5 * half) / 2], scaled=[log(5 * half)], gap=[1, INPUT, 4],
 )  # fmt: skip
 errors(
     "many_missing", [1, 2, 3], [NAN, NAN, 5],
-    slope=[INPUT] * 3, mean=[INPUT], scaled=[INPUT], offset=[INPUT] * 3, excess=[-1, 0, 1],
+    slope=[INPUT] * 3, mean=[INPUT], middle=[INPUT], most=[INPUT], least=[INPUT], scaled=[INPUT],
+    offset=[INPUT] * 3, excess=[-1, 0, 1],
 )  # fmt: skip
 errors(
     "of_several_kinds", [3, 2, NAN], [2, 3, 5], NAN,

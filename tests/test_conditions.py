@@ -10,7 +10,7 @@ import pytest
 from sympy import Expr, IndexedBase, Integer, Max, Min, Piecewise, Sum, Symbol, floor, log, sqrt
 
 from loopsheet.derivations.equation import Equation, Kind
-from loopsheet.derivations.reductions import Median
+from loopsheet.derivations.reductions import Greatest, Least, Median
 from loopsheet.report.engines import exact
 from loopsheet.report.engines.numpy import evaluate
 from loopsheet.report.inputs.folders import PAPER
@@ -192,6 +192,36 @@ def test_a_median_rests_on_the_rows_in_the_middle() -> None:
     assert tied["c"] == pytest.approx([2 + 2 + tied["y"][2]])
     two = formula("d", Median(x[k], (k, 1, n)) ** 2)
     assert bounded(two, x=[2.0, np.nan, 5.0])["d"] == pytest.approx([3.5**2 + 7 * (3.5 + (2 + 5) / 2)])
+
+
+@pytest.mark.parametrize(("kind", "sign"), [(Greatest, 1), (Least, -1)])
+def test_an_extreme_rests_on_the_outermost_row(kind: Any, sign: int) -> None:
+    """And on those that rounding may exchange with it; taking it rounds nothing."""
+    y = formula("y", sign * Piecewise((x[k] - A, x[k] > 100), (x[k], True)), ROWS)
+    outermost = formula("c", kind(Column("y", ROWS, Given(), positive=False)[k], (k, 1, n)))
+    far = bounded(y, outermost, a=1e9, x=[9.0, 1.0, 1e9 + 5])
+    assert far["c"] == pytest.approx([9])
+    near = bounded(y, outermost, a=1e9 + 2**-22, x=[5.0, 1.0, 1e9 + 5])
+    assert near["value"]["y"][2] != near["value"]["y"][0] == near["value"]["c"]
+    assert near["c"] == pytest.approx([5 + near["y"][2]])
+    assert near["y"][2] > 1e9
+
+
+@pytest.mark.parametrize(
+    ("kind", "shares"),
+    [
+        (Greatest, [[0, 0, 0, 4], [0, 2, 2, 0]]),
+        (Least, [[4, 0, 0, 0], [2, 0, 0, 2]]),
+        (Median, [[0, 2, 2, 0], [1, 1, 1, 1]]),
+    ],
+)
+def test_rows_of_one_value_share_what_they_do(kind: Any, shares: list[list[float]]) -> None:
+    """By hand, in quarters: of all rows, and of three that have a value."""
+    sheet = Sheet((x, formula("c", kind(x[k], (k, 1, n)) * 4)))
+    given = np.array([[2.0, 5.0, 10.0, 17.0], [2.0, 7.0, 7.0, 2.0], [4.0, np.nan, 4.0, 4.0]])
+    values = evaluate(sheet, {"rows": [1, 2, 3, 4]}, {"x": given})
+    found = Numbers(Chain(Made.of(sheet), values.layouts, {"x": np.arange(4)}), values).go().at([("c", 0)])
+    assert found[:, 0] == pytest.approx(np.array([*shares, [4 / 3, 0, 4 / 3, 4 / 3]]))
 
 
 def test_a_batch_of_sensitivities_has_no_number_where_a_cell_has_no_value() -> None:

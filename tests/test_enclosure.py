@@ -11,7 +11,7 @@ import pytest
 from sympy import Expr, Integer, Rational, Sum, Symbol, exp
 
 from loopsheet.derivations.equation import Equation, Kind
-from loopsheet.derivations.reductions import Median
+from loopsheet.derivations.reductions import Greatest, Least, Median
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.intervals import Intervals
 from loopsheet.report.engines.numpy import Program
@@ -203,7 +203,8 @@ def test_what_may_not_be_allowed_may_have_no_value(
     assert sure == (not any(values))
 
 
-def test_a_median_is_enclosed_with_its_derivatives() -> None:
+@pytest.mark.parametrize("kind", [Median, Greatest, Least])
+def test_what_is_taken_by_order_is_enclosed_with_its_derivatives(kind: Any) -> None:
     """Rows that may change places, that tie, that may have no value: every sample lies inside."""
     k, n = Symbol("k", integer=True, positive=True), Symbol("n", integer=True, positive=True)
     rows = Axis("rows", k, n)
@@ -214,7 +215,7 @@ def test_a_median_is_enclosed_with_its_derivatives() -> None:
         return Column(name, axis, Formula(definition), positive=False, **more)
 
     y = formula("y", 3 * x[k], rows, requires=((x[k] < 5, "x is less than 5"),))
-    sheet = Sheet((x, y, formula("m", Median(y[k], (k, 1, n)) + 1)))
+    sheet = Sheet((x, y, formula("m", kind(y[k], (k, 1, n)) + 1)))
     program, made = Program.of(sheet), Made.of(sheet)
     rng, narrow = np.random.default_rng(4), 0
     for case in range(200):

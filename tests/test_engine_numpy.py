@@ -33,7 +33,7 @@ from sympy import (
 from uncertain_data import uncertain
 
 from loopsheet.derivations.equation import Equation
-from loopsheet.derivations.reductions import Median
+from loopsheet.derivations.reductions import Greatest, Least, Median
 from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
@@ -215,15 +215,18 @@ def test_sums_leave_out_what_is_in_error_in_each_element_of_a_batch() -> None:
 
 
 @pytest.mark.parametrize("number", [1, 2, 3, 4, 7])
-def test_a_median_is_of_the_rows_that_have_values(number: int) -> None:
+@pytest.mark.parametrize(
+    ("kind", "known"), [(Median, np.nanmedian), (Greatest, np.nanmax), (Least, np.nanmin)]
+)
+def test_what_is_taken_by_order_is_of_the_rows_that_have_values(kind: Any, known: Any, number: int) -> None:
     """Of any number of them, in each element of a batch; of none there is none."""
     rng = np.random.default_rng(number)
-    middle = formula("m", Median(a[k], (k, 1, n)))
+    taken = formula("m", kind(a[k], (k, 1, n)))
     rows = rng.normal(size=(50, number))
     rows[rng.random(rows.shape) < 0.3] = np.nan
-    values = engine.evaluate(Sheet((a, middle)), {"rows": range(1, number + 1)}, {"a": rows})
+    values = engine.evaluate(Sheet((a, taken)), {"rows": range(1, number + 1)}, {"a": rows})
     some = ~np.isnan(rows).all(axis=1)
-    np.testing.assert_array_equal(values.value["m"][some, 0], np.nanmedian(rows[some], axis=1))
+    np.testing.assert_array_equal(values.value["m"][some, 0], known(rows[some], axis=1))
     assert (values.status["m"][:, 0] == np.where(some, Status.OK, Status.INPUT)).all()
     assert some.any()
 

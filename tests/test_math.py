@@ -26,7 +26,7 @@ from sympy.core.parameters import evaluate
 from sympy.printing.latex import greek_letters_set, other_symbols, tex_greek_dictionary, translate
 
 from loopsheet.derivations import soft_impact
-from loopsheet.derivations.reductions import Median
+from loopsheet.derivations.reductions import Greatest, Median
 from loopsheet.derivations.symbols import VOCABULARY, F_of, k, q
 from loopsheet.report.document.math import MathPrinter
 from loopsheet.report.document.names import latex_names, name_latex, with_index
@@ -89,6 +89,12 @@ with evaluate(False):
         (Sum(E[q], (q, 1, n)) / n, r"\frac{1}{n_{\mathrm{points}}} \sum_{q=1}^{n_{\mathrm{points}}} e_{q}"),
         (Sum(E[q] - a, (q, 1, n)), r"\sum_{q=1}^{n_{\mathrm{points}}} (e_{q} - a)"),
         (Median(E[q], (q, 1, n)), r"\underset{1 \le q \le n_{\mathrm{points}}}{\mathrm{median}} \, e_{q}"),
+        (Greatest(E[q], (q, 1, n)), r"\underset{1 \le q \le n_{\mathrm{points}}}{\mathrm{max}} \, e_{q}"),
+        (
+            Greatest(E[q], (q, 1, n)) * Sum(V[q], (q, 1, n)),
+            r"(\underset{1 \le q \le n_{\mathrm{points}}}{\mathrm{max}} \, e_{q}) "
+            r"\sum_{q=1}^{n_{\mathrm{points}}} v'_{q}",
+        ),
         (
             Sum(E[q], (q, 1, n)) * Sum(V[q], (q, 1, n)),
             r"\left(\sum_{q=1}^{n_{\mathrm{points}}} e_{q}\right) \sum_{q=1}^{n_{\mathrm{points}}} v'_{q}",

@@ -1,5 +1,7 @@
 """The prover: what it proves, what it refutes, and every way found so far to fool it."""
 
+from typing import Any
+
 import mpmath
 import pytest
 from proving import X, a, b, c, claim, decide, given, n, q, w, y
@@ -36,7 +38,7 @@ from loopsheet.derivations import proof, sampling, system
 from loopsheet.derivations.equation import Equation, Step
 from loopsheet.derivations.proof import POINTS, check_step
 from loopsheet.derivations.proved import ProofStatus
-from loopsheet.derivations.reductions import Median
+from loopsheet.derivations.reductions import Greatest, Least, Median
 from loopsheet.derivations.vocabulary import NO_WORDS
 
 # --- what must come out ---------------------------------------------------------------------------------
@@ -91,13 +93,36 @@ def test_integrals_and_sums_are_claims_like_others() -> None:
     assert decide(claim(Sum(X[q] * b, (q, 1, n)), n * b)).status is ProofStatus.REFUTED
 
 
-def test_a_median_is_evaluated_and_nothing_is_made_up_about_it() -> None:
-    middle = Median(X[q], (q, 1, n))
-    assert decide(claim(middle + b, b + middle)).status is ProofStatus.PROVED
-    assert decide(claim(middle, Sum(X[q], (q, 1, n)) / n)).status is ProofStatus.REFUTED
-    assert decide(claim(Median(X[q] + b, (q, 1, n)), middle)).status is ProofStatus.REFUTED
+@pytest.mark.parametrize("kind", [Median, Greatest, Least])
+def test_what_is_taken_by_order_is_evaluated_and_nothing_is_made_up_about_it(kind: Any) -> None:
+    taken = kind(X[q], (q, 1, n))
+    assert decide(claim(taken + b, b + taken)).status is ProofStatus.PROVED
+    assert decide(claim(taken, Sum(X[q], (q, 1, n)) / n)).status is ProofStatus.REFUTED
+    assert decide(claim(kind(X[q] + b, (q, 1, n)), taken)).status is ProofStatus.REFUTED
     # True, and seen at every point; but no algebra of ours knows of order.
-    assert decide(claim(Median(X[q] + b, (q, 1, n)), middle + b)).status is ProofStatus.UNDECIDED
+    assert decide(claim(kind(X[q] + b, (q, 1, n)), taken + b)).status is ProofStatus.UNDECIDED
+
+
+@pytest.mark.parametrize(
+    ("left", "right"),
+    [
+        (Greatest(X[q], (q, 1, n)), Least(X[q], (q, 1, n))),
+        (Greatest(-X[q], (q, 1, n)), Least(X[q], (q, 1, n))),
+        (Greatest(X[q], (q, 1, n)), Median(X[q], (q, 1, n))),
+        (Greatest(X[q] ** 2, (q, 1, n)) * Least(X[q], (q, 1, n)), Greatest(X[q], (q, 1, n)) ** 3),
+    ],
+)
+def test_one_place_in_the_order_is_not_another(left: Expr, right: Expr) -> None:
+    assert decide(claim(left, right)).status is ProofStatus.REFUTED
+
+
+def test_extremes_of_opposites() -> None:
+    """True, and nothing that is false of it: the greatest is minus the least of what is opposite."""
+    greatest = Greatest(X[q], (q, 1, n))
+    assert decide(claim(greatest, -Least(-X[q], (q, 1, n)))).status is ProofStatus.UNDECIDED
+    assert (
+        decide(claim(Greatest(X[q] - b, (q, 1, n)) / c, (greatest - b) / c)).status is ProofStatus.UNDECIDED
+    )
 
 
 @pytest.mark.parametrize(

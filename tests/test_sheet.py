@@ -9,7 +9,7 @@ import pytest
 from sympy import Expr, IndexedBase, Rel, Sum, Symbol
 
 from loopsheet.derivations.equation import Equation, Ledger
-from loopsheet.derivations.reductions import Median
+from loopsheet.derivations.reductions import Greatest, Least, Median
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import (
     Axis,
@@ -221,6 +221,14 @@ REFUSED: dict[str, tuple[tuple[Column, ...], str]] = {
     "median of an expression": (
         (a, formula("f", Median(2 * a[k], (k, 1, n)))),
         "f: a median is of the cells of a column, not of 2*a[k]; give that a column of its own",
+    ),
+    "greatest of an expression": (
+        (a, formula("f", Greatest(2 * a[k], (k, 1, n)))),
+        "f: a max is of the cells of a column, not of 2*a[k]; give that a column of its own",
+    ),
+    "least in a root": (
+        (a, root("f", b.symbol - Least(a[k], (k, 1, n)), b.symbol)),
+        "f: a min in a root has to be a column of its own",
     ),
     "median in a root": (
         (a, root("f", b.symbol - Median(a[k], (k, 1, n)), b.symbol)),

@@ -26,7 +26,7 @@ from sympy.core.parameters import evaluate
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.dimensions import DimensionError, Dimensions, dimension_of_unit, mixed, text_of
 from loopsheet.derivations.equation import Derivation
-from loopsheet.derivations.reductions import Median
+from loopsheet.derivations.reductions import Least, Median
 from loopsheet.derivations.soft_impact import LEDGER
 from loopsheet.derivations.symbols import VOCABULARY, k
 from loopsheet.derivations.text import text, text_of_equation
@@ -183,6 +183,7 @@ with evaluate(False):
         (And(Le(0, w), Le(w, 1)), "0 <= w <= 1"),
         (Sum(IndexedBase("w")[k], (k, 1, 5)), "sum(w_k, k = 1..5)"),
         (Median(IndexedBase("w")[k], (k, 1, 5)), "median(w_k, k = 1..5)"),
+        (Least(IndexedBase("w")[k], (k, 1, 5)), "min(w_k, k = 1..5)"),
         (Integral(w**2, (w, 0, 1)), "int(w^2, w = 0..1)"),
     ]
 

@@ -7,7 +7,7 @@ from sympy import Abs, And, Expr, Max, Min, Piecewise, Rational, Sum, Symbol, ex
 
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.equation import Equation
-from loopsheet.derivations.reductions import Median
+from loopsheet.derivations.reductions import Greatest, Least, Median
 from loopsheet.report.cells import units
 from loopsheet.report.cells.units import DimensionMismatch, dimension_of_unit
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
@@ -106,6 +106,7 @@ RIGHT: dict[str, tuple[Expr, str, Axis | None]] = {
     "size and sign": (Abs(L - 2 * L) * sign(T - 2 * T), "m", None),
     "sum over rows": (Sum(reach[k] ** 2, (k, 1, n)) / n, "m^2", None),
     "median over rows": (Median(reach[k], (k, 1, n)) ** 2, "m^2", None),
+    "range": (Greatest(reach[k], (k, 1, n)) - Least(reach[k], (k, 1, n)), "m", None),
     "cases": (Piecewise((L, And(T > 0, L < 2 * L)), (2 * L, True)), "m", None),
     "zero has any unit": (L - L, "kg", None),
 }

@@ -17,7 +17,7 @@ from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 from sympy.printing.latex import LatexPrinter
 
-from ...derivations.reductions import Median
+from ...derivations.reductions import OrderStatistic
 from ..named import name_of
 from .names import Terms, join, name_latex
 
@@ -166,7 +166,8 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
             printed = self._print(factor)
             ends = last and place == len(factors) - 1
             if not bare and (
-                isinstance(factor, (Add, Piecewise)) or (isinstance(factor, (Sum, Integral)) and not ends)
+                isinstance(factor, (Add, Piecewise))
+                or (isinstance(factor, (Sum, OrderStatistic, Integral)) and not ends)
             ):
                 printed = self._bracket(printed)
             digits = re.search(r"\d$", text) and re.match(r"\d|\\frac", printed)
@@ -244,11 +245,11 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
             text += rf"\sum_{{{self._print(index)}={self._print(low)}}}^{{{self._print(high)}}} "
         return text + self._body(expr.function)
 
-    def _print_Median(self, expr: Median) -> str:
+    def _print_OrderStatistic(self, expr: OrderStatistic) -> str:
         runs = ", ".join(
             " \\le ".join(map(self._print, (low, index, high))) for index, low, high in expr.limits
         )
-        return rf"\underset{{{runs}}}{{\mathrm{{median}}}} \, {self._body(expr.function)}"
+        return rf"\underset{{{runs}}}{{\mathrm{{{expr.word}}}}} \, {self._body(expr.function)}"
 
     def _print_Integral(self, expr: Integral) -> str:
         text, ends = "", ""

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from ..cells.layout import Layout, lay_out, precedents
 from ..cells.values import Status, Values, how_many, inherited, rows_kept
 from ..plan.kept import of_sheet
+from ..plan.order import Word
 from ..quantity import LARGEST, SMALLEST, Bounds
 from ..sheet import Column, Given, Loop, Sheet
 from .exact_roots import Enclose, brackets, of_arrays, of_mpmath
@@ -41,6 +42,7 @@ _NEAR = mpmath.mpf("1e-30")
 _PASSES = 400
 """How many passes a loop gets; nearer than that, one that moves no less than the one before the last moves by
 rounding only."""
+_TAKEN: Mapping[Word, Callable[..., Any]] = {"sum": mpmath.fsum, "median": median, "max": max, "min": min}
 _ROUGHLY = 1e-12
 """As parts of a root: how close it is sought, and how close doubles should come."""
 
@@ -470,7 +472,7 @@ class _Scope:
 
     def _totals(self, texts: Mapping[str, Any]) -> Callable[..., list[Any]]:
         """All sums, those over one axis in one pass; one that the unknown does not move is taken once."""
-        take = texts["medians"]
+        take = texts["words"]
         passes = []
         for told in texts["passes"]:
             rows = self.kept.get(told["axis"], range(self._size(told["axis"])))
@@ -492,12 +494,11 @@ class _Scope:
         return run
 
     def _taken(
-        self, medians: Sequence[bool], terms: Callable[..., Any], rows: Sequence[int], at: Sequence[Any]
+        self, words: Sequence[Word], terms: Callable[..., Any], rows: Sequence[int], at: Sequence[Any]
     ) -> list[Any]:
-        """The medians or sums of several terms over rows; nothing of no rows."""
+        """What is taken of several terms over rows; nothing of no rows."""
         columns = zip(*(terms(row, *at) for row in rows), strict=True)
-        taken = zip(medians, columns, strict=False)
-        return [median(column) if middle else mpmath.fsum(column) for middle, column in taken]
+        return [_TAKEN[word](column) for word, column in zip(words, columns, strict=False)]
 
     def _numbers(self, numbers: list[Any]) -> Any:
         """What is read, row by row."""
@@ -553,12 +554,11 @@ class _Roughly(_Scope):
         return np.array([np.nan if number is None else float(number) for number in numbers])
 
     def _taken(
-        self, medians: Sequence[bool], terms: Callable[..., Any], rows: Sequence[int], at: Sequence[Any]
+        self, words: Sequence[Word], terms: Callable[..., Any], rows: Sequence[int], at: Sequence[Any]
     ) -> list[Any]:
         which = np.array(rows, dtype=np.intp)
         columns = [np.broadcast_to(column, which.shape) for column in terms(which, *at)]
-        taken = zip(medians, columns, strict=True)
-        return [np.median(column) if middle else column.sum() for middle, column in taken]
+        return [getattr(np, word)(column) for word, column in zip(words, columns, strict=True)]
 
 
 @lru_cache(maxsize=1024)

@@ -8,7 +8,7 @@ from typing import Any
 
 from sympy import Basic, Expr, Indexed, Symbol
 
-from ...derivations.reductions import REDUCTIONS, Median
+from ...derivations.reductions import REDUCTIONS, OrderStatistic
 from ..named import name_of
 from ..plan.domain import typed
 from ..plan.lowering import lowered_column
@@ -25,8 +25,8 @@ __all__ = ["exact_texts"]
 def exact_texts(sheet: Sheet) -> dict[str, Any]:
     """All that is computed of the columns that are not given.
 
-    An expression is the text of a function (``source``) of cells, of sums and medians (``medians`` says which
-    they are), and of the unknown of a root. A cell is its kind, its name and its index; the terms of all sums
+    An expression is the text of a function (``source``) of cells, of what is taken over rows (``words`` says
+    what), and of the unknown of a root. A cell is its kind, its name and its index; the terms of all sums
     over an axis that the unknown moves, or does not, are one expression (``passes``). Where a root of sums is
     about is told by the same in doubles (``rough``).
     """
@@ -80,7 +80,7 @@ class _Rule:
                     passes.append({"axis": over.name, "moving": moving, "which": mine, "terms": terms})
         return {
             "cells": [self.cell(cell, axis) for cell in cells],
-            "medians": [isinstance(total, Median) for total in totals],
+            "words": [total.word if isinstance(total, OrderStatistic) else "sum" for total in totals],
             "passes": passes,
             "source": source,
         }
@@ -149,7 +149,7 @@ def _printed(
 
 
 def _sums(expressions: Sequence[Basic]) -> list[Expr]:
-    """The sums and medians in expressions that stand in no other."""
+    """What expressions take over rows that stands in no other such."""
     found: dict[Expr, None] = {}
     for expression in expressions:
         if isinstance(expression, REDUCTIONS):

@@ -17,7 +17,8 @@ from sympy import Add, Basic, Expr, Function, Integer, Mul, Pow, Rational, Symbo
 from sympy.logic.boolalg import BooleanFunction
 from sympy.printing.printer import Printer
 
-from ..plan.nodes import Leaf, Node, Plan, RowMedian, RowSum
+from ..plan.nodes import Leaf, Node, Plan, RowOrder, RowSum
+from ..plan.order import Word
 from .excel_values import NotPrintable
 
 __all__ = ["FUNCTIONS", "ExcelPrinter", "IfError", "IsNumber", "ordered"]
@@ -70,7 +71,7 @@ class _Cells(Symbol):
 
 
 class _Taken(_Cells):
-    """A sum or a median, which stands behind these."""
+    """What is taken over rows, which stands behind these."""
 
 
 def ordered(plan: Plan) -> Plan:
@@ -101,7 +102,7 @@ class ExcelPrinter(Printer):
     leaf : callable
         The text for a symbol.
     total : callable or None
-        The text for the sum of terms over the axis of a name, or for their median.
+        The text for what a word takes of terms over the axis of a name.
     rows : bool
         Whether the text stands for all rows of an axis at once, inside of a sum.
     """
@@ -111,7 +112,7 @@ class ExcelPrinter(Printer):
     def __init__(
         self,
         leaf: Callable[[Symbol], str],
-        total: Callable[[Expr, str, bool], str] | None = None,
+        total: Callable[[Expr, str, Word], str] | None = None,
         rows: bool = False,
     ) -> None:
         super().__init__()
@@ -230,12 +231,12 @@ class ExcelPrinter(Printer):
     def _print_IsNumber(self, expr: Basic) -> str:
         return f"ISNUMBER({self._print(expr.args[0])})"
 
-    def _print_RowSum(self, expr: RowSum | RowMedian) -> str:
+    def _print_RowSum(self, expr: RowSum | RowOrder) -> str:
         if self.total is None:
             return self.emptyPrinter(expr)
-        return self.total(expr.args[0], expr.args[1].name, isinstance(expr, RowMedian))
+        return self.total(expr.args[0], expr.args[1].name, expr.word)
 
-    _print_RowMedian = _print_RowSum
+    _print_RowOrder = _print_RowSum
 
     # --- choices
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from typing import Any, get_args
 
 from ...derivations.unit_text import ParsedUnit, UnitError, parse_open, parse_unit
 from ..cells.grid import CHECKED, FIRST_ROW, SCALARS, STEPS, CellBlock, Place, as_issued, checked
@@ -18,6 +18,7 @@ from ..cells.layout import Layout
 from ..plan.kept import as_data
 from ..plan.lowering import lowered
 from ..plan.nodes import RootNode
+from ..plan.order import Word
 from ..quantity import Bounds
 from ..sheet import Column, Given, Sheet
 from .certified import certified
@@ -350,9 +351,8 @@ class Assembly:
 
 def _computed(block: CellBlock, formulas: tuple[str, ...]) -> CellBlock:
     """The block with its formulas; those that work on ranges are array formulas."""
-    return replace(
-        block, formulas=formulas, array=any(taken in formulas[0] for taken in ("SUM(IF(", "MEDIAN(IF("))
-    )
+    taken = (f"{word.upper()}(IF(" for word in get_args(Word))
+    return replace(block, formulas=formulas, array=any(each in formulas[0] for each in taken))
 
 
 def _counting(unrolled: Unrolled) -> tuple[str, ...]:

@@ -18,6 +18,7 @@ from ..cells.layout import Layout
 from ..cells.values import CODES, Status
 from ..named import within
 from ..plan.nodes import Leaf, Map, Plan, RootNode
+from ..plan.order import Word
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, Iterated, Reference, Sheet
 from .excel import ExcelPrinter, IfError
@@ -216,7 +217,7 @@ class _Writing:
         leaf = self.plan.named[symbol.name]
         if leaf.kind == "total":
             total = self.plan.totals[symbol.name]
-            return self.total(total.terms, total.over.name, total.median)
+            return self.total(total.terms, total.over.name, total.word)
         if leaf.kind in ("kept", "size") and leaf.axis:
             axis = leaf.axis.name
             return self.number_kept(axis) if leaf.kind == "kept" else f"ROWS({self.numbers(axis)})"
@@ -237,13 +238,12 @@ class _Writing:
         summed = [self.address(leaf, rows=True) for leaf, over in self.named if over and over.name == axis]
         return "*".join(f"ISNUMBER({each})" for each in summed or [self.numbers(axis)])
 
-    def total(self, terms: Expr, axis: str, median: bool) -> str:
-        """A sum or a median over the rows that have values."""
+    def total(self, terms: Expr, axis: str, word: Word) -> str:
+        """What is taken over the rows that have values."""
         text = ExcelPrinter(partial(self.symbol, rows=True), self.total, rows=True).doprint(terms)
         # Of a text, no reader takes account.
-        return (
-            f'MEDIAN(IF({self.mask(axis)},{text},""))' if median else f"SUM(IF({self.mask(axis)},{text},0))"
-        )
+        otherwise = "0" if word == "sum" else '""'
+        return f"{word.upper()}(IF({self.mask(axis)},{text},{otherwise}))"
 
     def same(self, pairs: Sequence[tuple[Place, Place]]) -> str:
         """1 where the cells of two places are the same, row by row, for each pair of them."""

@@ -9,7 +9,7 @@ NumPy's functions accept these arrays, so that a generated program runs on them 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache, reduce
 from typing import Any
 
@@ -116,11 +116,10 @@ class Intervals(NDArrayOperatorsMixin):
         low, high, *sizes = map(summed, (self.low, self.high, np.abs(self.low), np.abs(self.high)))
         return _outwards(low - slack * sizes[0], high + slack * sizes[1])
 
-    def middle(self) -> tuple[Intervals, Intervals]:
-        """The one in the middle along the last dimension, or the two there: the lower and the higher."""
-        size = self.low.shape[-1]
+    def in_order(self, places: Sequence[int]) -> list[Intervals]:
+        """What stands at some places along the last dimension in the order of size, each (..., 1)."""
         ordered = Intervals(np.sort(self.low, axis=-1), np.sort(self.high, axis=-1))
-        return ordered[..., (size - 1) // 2, None], ordered[..., size // 2, None]
+        return [ordered[..., place, None] for place in places]
 
     @property
     def sign(self) -> Array:

@@ -14,10 +14,11 @@ from pathlib import Path
 from typing import Any
 
 from sympy import Expr, Symbol, cse, numbered_symbols
+from sympy.core.symbol import Str
 from sympy.printing.jscode import JavascriptCodePrinter
 
 from ..plan.lowering import lowered
-from ..plan.nodes import GivenNode, Leaf, LoopNode, Map, Plan, RootNode, RowSum, Total
+from ..plan.nodes import GivenNode, Leaf, LoopNode, Map, Plan, RootNode, RowOrder, RowSum, Total
 from ..plan.nodes import Node as PlanNode
 from ..sheet import Axis, Column, PairAxis, RepeatAxis, Sheet
 from .certified import certified, slope, typed_form
@@ -35,6 +36,9 @@ _ASKS = re.compile(r"\bu\b")
 """A function that asks for the unknown."""
 _NULL = Symbol("null", real=True)
 """JavaScript's null."""
+_FURTHER = "{0}.reduce((m, kept, q) => kept && !(m %s {1}) ? {1} : m, NaN)"
+_BY_ORDER = {"median": "median({0}, (q) => {1})", "max": _FURTHER % ">=", "min": _FURTHER % "<="}
+"""What is taken by order of terms over the rows that are kept; NaN where there is none."""
 
 
 class JavaScriptPrinter(JavascriptCodePrinter):
@@ -80,7 +84,7 @@ class _Scope:
         self.names: dict[str, str] = {}
         self.head: list[str] = []
         self.totals: dict[Expr, Symbol] = {}
-        """What sums and medians came to, by themselves and by the symbols of the plan."""
+        """What is taken over rows, by itself and by the symbols of the plan."""
         self.numbers = count()
 
     # --- what symbols stand for
@@ -123,9 +127,9 @@ class _Scope:
 
         Those that are not known are new ones, in `moving`.
         """
-        if isinstance(expression, RowSum):
+        if isinstance(expression, (RowSum, RowOrder)):
             own = expression.xreplace({s: self.own(s) for s in expression.free_symbols})
-            if own in self.totals:
+            if own in self.totals or isinstance(expression, RowOrder):
                 return self.totals[own]
             assert moving is not None
             if expression not in moving:
@@ -153,16 +157,17 @@ class _Scope:
         over = ""
         for total in totals:
             axis = Symbol(total.over.name)
-            if total.median or axis.name != over or total.terms.free_symbols & set(self.totals):
+            if total.word != "sum" or axis.name != over or total.terms.free_symbols & set(self.totals):
                 self.head += self.passes(waiting)
                 waiting, over = {}, axis.name
-            name = self.new("M" if total.median else "S")
+            name = self.new("S" if total.word == "sum" else "M")
             self.totals[total.symbol] = name
-            if total.median:
-                term = self.printer.doprint(self.plain(total.terms, "q"))
-                self.head.append(f"      const {name} = median(k.{axis}, (q) => {term});")
-            else:
+            if total.word == "sum":
                 self.totals[RowSum(total.terms, axis)] = waiting[RowSum(total.terms, axis)] = name
+            else:
+                self.totals[RowOrder(total.terms, axis, Str(total.word))] = name
+                term = self.printer.doprint(self.plain(total.terms, "q"))
+                self.head.append(f"      const {name} = {_BY_ORDER[total.word].format(f'k.{axis}', term)};")
         self.head += self.passes(waiting)
 
     def passes(self, sums: dict[Expr, Symbol]) -> list[str]:

@@ -58,7 +58,7 @@ class Kernel:
     arguments : tuple of str
         What it is called with, in order.
     totals : tuple of str
-        The axes it sums over, or takes a median over: after its arguments, it is called with what does
+        The axes it takes something over: after its arguments, it is called with what does
         that for each, a :class:`~loopsheet.report.engines.numpy_rows.Kept`.
     source : str
         Its text.

@@ -9,7 +9,7 @@ from sympy import And, Basic, Gt, Lt, Ne, Symbol, cos, exp, log, sin, true
 from sympy.core.function import Application
 
 from ...derivations.reductions import REDUCTIONS
-from ..plan.nodes import RowMedian, RowSum
+from ..plan.nodes import RowOrder, RowSum
 from .interval_functions import Run, running
 from .mpmath_code import source_of
 
@@ -18,7 +18,7 @@ __all__ = ["differences", "printed", "text_of"]
 
 def text_of(symbols: Sequence[Symbol], bodies: Sequence[Basic]) -> str | None:
     """A function of intervals that encloses expressions; None if mpmath knows no intervals of a part."""
-    if any(body.has(*REDUCTIONS, RowSum, RowMedian) for body in bodies) or not all(
+    if any(body.has(*REDUCTIONS, RowSum, RowOrder) for body in bodies) or not all(
         isinstance(each, (exp, log, sin, cos)) for body in bodies for each in body.atoms(Application)
     ):
         return None

@@ -11,7 +11,7 @@ from sympy import Basic, Expr, Piecewise, S, Symbol, cse, log, numbered_symbols
 from sympy.printing.codeprinter import PrintMethodNotImplementedError
 from sympy.printing.numpy import NumPyPrinter
 
-from ..plan.nodes import RowMedian, RowSum, taken_over
+from ..plan.nodes import RowOrder, RowSum, taken_over
 from ..sheet import SheetError
 from .kernels import SAME, Kernel
 
@@ -70,9 +70,9 @@ class ArrayPrinter(NumPyPrinter):
         terms, axis = expr.args
         return f"{axis}_kept.total({self._print(terms)})"
 
-    def _print_RowMedian(self, expr: RowMedian) -> str:
-        terms, axis = expr.args
-        return f"{axis}_kept.median({self._print(terms)})"
+    def _print_RowOrder(self, expr: RowOrder) -> str:
+        terms, axis, _ = expr.args
+        return f'{axis}_kept.ordered({self._print(terms)}, "{expr.word}")'
 
 
 def printed(printer: ArrayPrinter, expression: Any) -> str:

@@ -1,4 +1,4 @@
-"""What a printed function takes over the rows of an axis that have values: their sum, their median."""
+"""What a printed function takes over the rows of an axis that have values: their sum, or some by order."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..plan.order import Word, places
 from .intervals import Intervals
 
 __all__ = ["Kept", "KeptBetween", "KeptIntervals", "chosen"]
@@ -38,17 +39,18 @@ class Kept:
         every = np.ascontiguousarray(every) if self._all else np.where(self.mask, every, 0.0)
         return every.sum(axis=-1, keepdims=True)
 
-    def median(self, terms: Any) -> Any:
-        """The median of the kept rows (..., 1); NaN where there is none."""
+    def ordered(self, terms: Any, word: Word) -> Any:
+        """What is taken of the kept rows by their order (..., 1); NaN where there is none."""
         # Those that are left out come last.
         ordered = np.sort(np.where(self.mask, self._every(terms), np.inf), axis=-1)
         number = np.broadcast_to(self.number.astype(np.intp), (*ordered.shape[:-1], 1))
         if not ordered.size:
             return np.full(number.shape, np.nan)
-        # Of an odd number of rows both are the same; a batch without rows is cut off below.
-        middle = (np.maximum(number - 1, 0) // 2, np.minimum(number // 2, ordered.shape[-1] - 1))
-        low, high = (np.take_along_axis(ordered, place, axis=-1) for place in middle)
-        return np.where(number > 0, (low + high) / 2, np.nan)
+        taken = [
+            np.take_along_axis(ordered, np.clip(place, 0, ordered.shape[-1] - 1), axis=-1)
+            for place in places(word, number)  # of a batch without rows, cut off below
+        ]
+        return np.where(number > 0, sum(taken) / len(taken), np.nan)
 
     @cached_property
     def number(self) -> NDArray[np.float64]:
@@ -88,10 +90,11 @@ class KeptIntervals:
             every = Intervals(*(np.where(self.mask, end, 0.0) for end in (every.low, every.high)))
         return every.total()
 
-    def median(self, terms: Any) -> Intervals:
-        """The median, of all rows: one that is missing moves it less than one that may lie at either end."""
-        low, high = self.every(terms).middle()
-        return (low + high) / 2  # type: ignore[no-any-return]
+    def ordered(self, terms: Any, word: Word) -> Intervals:
+        """What is taken of all rows: one that is missing moves it less than one that may lie at any end."""
+        every = self.every(terms)
+        taken = every.in_order(places(word, every.shape[-1]))
+        return sum(taken[1:], taken[0]) / len(taken)  # type: ignore[no-any-return]
 
     @cached_property
     def number(self) -> Intervals:

@@ -129,8 +129,9 @@ class _Writing:
         if isinstance(node, Total):
             (terms,) = values
             kept = self.kept_rows(name, node.over.name)
-            taken = "median" if node.median else "total"
-            self.define(node.symbol, f"{kept}.{taken}({self.text(terms)})")
+            text = self.text(terms)
+            taken = f"total({text})" if node.word == "sum" else f'ordered({text}, "{node.word}")'
+            self.define(node.symbol, f"{kept}.{taken}")
             return
         if isinstance(node, Part):
             axis = "None" if node.axis is None else f'"{node.axis.name}"'

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ..cells.layout import Layout
 from ..cells.values import Status, Values
+from ..plan.order import places
 from ..plan.slopes import Local, Slope
 from ..result.agreement import LIMIT
 from ..sheet import Sheet
@@ -179,14 +180,14 @@ class _Spread(Numbers):
         return np.nan_to_num(found)
 
     def share(self, node: Local, name: str, rows: NDArray[np.intp]) -> Array:
-        """A row that rounding may exchange with one in the middle counts as that one does."""
+        """A row that rounding may exchange with one that is taken counts as that one does."""
         value, summed = self.values.value[name][rows], self.summed(node)
         room = LIMIT * EPS * self.total(name, self.weighed(self.whole))[rows]
         ordered = np.sort(value[summed])
-        middle = ordered[[(ordered.size - 1) // 2, ordered.size // 2]] if ordered.size else ordered
-        found: Array = sum((np.abs(value - one) <= room) / 2 for one in middle.tolist()) + np.zeros(
-            value.size
-        )
+        taken = ordered[list(places(node.word, ordered.size))] if ordered.size else ordered
+        found: Array = np.zeros(value.size)
+        for one in taken.tolist():
+            found += (np.abs(value - one) <= room) / taken.size
         return np.where(summed, found, 0.0)
 
 

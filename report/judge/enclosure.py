@@ -24,6 +24,7 @@ from ..engines.numpy import Program
 from ..engines.numpy_enclosed import EnclosedRows
 from ..engines.numpy_root import RootProgram
 from ..engines.numpy_rows import KeptIntervals
+from ..plan.order import places
 from ..plan.slopes import Local, Slope
 from ..sheet import Column, Reference, Sheet
 from .chain import Chain, Made
@@ -298,10 +299,10 @@ class _Along(Along):
 
     def slope(self, node: Local, slope: Slope) -> Intervals:
         found, by = self.cells.parts[slope.value], slope.by
-        if not node.median:
+        if not node.by_order:
             return found
         rows = self.chain.named(node, slope)
-        shares = _shares(self.cells.value[by].where(self.cells.sure[by]).take(rows))
+        shares = _shares(self.cells.value[by].where(self.cells.sure[by]).take(rows), node.word)
         return shares * found  # type: ignore[no-any-return]
 
     def ended(self, node: Local) -> None:
@@ -314,18 +315,20 @@ class _Along(Along):
         self.entries[cells.entries] = own.where(self.cells.sure[node.of][cells.rows] | nothing)
 
 
-def _shares(terms: Intervals) -> Intervals:
-    """How much of the change of each row a median makes: any part of one that may be in the middle.
+def _shares(terms: Intervals, word: str) -> Intervals:
+    """How much of the change of each row counts by its place: any part of one that may be there.
 
     Parameters
     ----------
     terms : Intervals (rows,)
+    word : str
     """
     total = Intervals(np.zeros(terms.shape), np.zeros(terms.shape))
-    for middle in terms.middle():
-        may_be = (terms.low <= middle.high) & (terms.high >= middle.low)
+    taken = terms.in_order(places(word, terms.shape[-1]))
+    for one in taken:
+        may_be = (terms.low <= one.high) & (terms.high >= one.low)
         certain = may_be & (np.count_nonzero(may_be) == 1)
-        total = total + Intervals(np.where(certain, 0.5, 0.0), np.where(may_be, 0.5, 0.0))
+        total = total + Intervals(certain / len(taken), may_be / len(taken))
     return total
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..cells.values import Status, Values, rows_kept
 from ..engines.numpy import parts
+from ..plan.order import places
 from ..plan.slopes import Local, Slope
 from .chain import Chain, Numbered, Pattern
 
@@ -140,11 +141,11 @@ class Numbers(Along):
         return found
 
     def slope(self, node: Local, slope: Slope) -> Array:
-        """Those of a median count for the rows in its middle."""
+        """Those of what is taken by order count for the rows that it takes."""
         found = self.parts[slope.value]
         if node.over is None:
             return found
-        if node.median:
+        if node.by_order:
             share = self.share(node, slope.by, self.chain.named(node, slope))
             return np.where(share > 0, share * found, 0.0)
         return np.where(self.summed(node), found, 0.0) if node.of in self.kept else found
@@ -157,11 +158,15 @@ class Numbers(Along):
             self.entries[..., cells.entries] = np.where(dead, 0.0, self.entries[..., cells.entries])
 
     def share(self, node: Local, name: str, rows: Numbered) -> Array:
-        """How much of the change of each row a median makes: half of either of the two in the middle."""
+        """How much of the change of each row counts by its place: rows with one value share it."""
         value = np.where(self.summed(node), self.values.value[name][..., rows], np.inf)
-        number = np.isfinite(value).sum(axis=-1, keepdims=True)
-        place = np.argsort(np.argsort(value, axis=-1, kind="stable"), axis=-1)
-        found: Array = ((place == (number - 1) // 2) / 2 + (place == number // 2) / 2) * (place < number)
+        ordered, number = np.sort(value, axis=-1), np.isfinite(value).sum(axis=-1, keepdims=True)
+        found: Array = np.zeros(value.shape)
+        taken = places(node.word, number) if value.size else ()
+        for place in taken:
+            one = np.take_along_axis(ordered, np.clip(place, 0, value.shape[-1] - 1), axis=-1)
+            same = (value == one) & np.isfinite(value)
+            found += same / np.maximum(same.sum(axis=-1, keepdims=True), 1) / len(taken)
         return found
 
     def summed(self, node: Local) -> NDArray[np.bool_]:

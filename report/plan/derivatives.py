@@ -143,15 +143,17 @@ class _Making:
                 yield replace(local, name=named(local.name), slopes=tuple(slopes))
 
     def total(self, node: Total) -> Local:
-        """A sum or a median; it is a node of the derivatives too."""
+        """What is taken over rows; it is a node of the derivatives too."""
         terms = _chosen(node.terms)
-        # A median's terms are cells; the mean of the two in the middle is rounded.
+        # What is taken by order is cells; the mean of the two in the middle is rounded.
         return self.local(
             node.column,
             lambda: (
-                _size(node.symbol)
-                if node.median
-                else self.summed(node.column, _size(terms) + rounding(terms), node.over)
+                self.summed(node.column, _size(terms) + rounding(terms), node.over)
+                if node.word == "sum"
+                else _size(node.symbol)
+                if node.word == "median"
+                else Integer(0)
             ),
             self.slopes(terms),
             node,
@@ -173,9 +175,8 @@ class _Making:
             for n, (by, slope) in enumerate(slopes.items())
             if slope != 0
         )
-        median = total is not None and total.median
         rows, summed = (None if each is None else each.name for each in (axis, over))
-        return Local(name, rows, summed, column.name, held, found, median)
+        return Local(name, rows, summed, column.name, held, found, "" if total is None else total.word)
 
     def slope(self, by: Symbol, value: str) -> Slope:
         """The part that holds the derivative by what a symbol stands for."""

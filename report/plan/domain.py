@@ -49,7 +49,7 @@ from sympy.logic.boolalg import Boolean
 from ...derivations.reductions import REDUCTIONS
 from ..quantity import Bounds
 from ..sheet import Sheet
-from .nodes import Leaf, RowMedian, RowSum
+from .nodes import Leaf, RowOrder, RowSum
 
 __all__ = ["assumed", "defined", "is_positive", "positive", "typed", "typed_symbols"]
 
@@ -127,7 +127,7 @@ def defined(expression: Any) -> Boolean:
     if isinstance(expression, REDUCTIONS):
         outside = Piecewise((Integer(0), defined(expression.function)), (Integer(1), True))
         return S.true if outside == 0 else Eq(Sum(outside, *expression.limits), 0)
-    if isinstance(expression, (RowSum, RowMedian)):
+    if isinstance(expression, (RowSum, RowOrder)):
         outside = Piecewise((Integer(0), defined(expression.args[0])), (Integer(1), True))
         return S.true if outside == 0 else Eq(RowSum(outside, expression.args[1]), 0)
     if isinstance(expression, Piecewise):

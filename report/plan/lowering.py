@@ -6,13 +6,14 @@ from collections.abc import Collection
 from itertools import chain, count
 from typing import Any
 
-from sympy import Expr, Indexed, Integer, Max, Min, Symbol, false
+from sympy import Expr, Indexed, Max, Min, Symbol, false
+from sympy.core.symbol import Str
 
-from ...derivations.reductions import REDUCTIONS, Median
+from ...derivations.reductions import REDUCTIONS, OrderStatistic
 from ..named import name_of
 from ..sheet import Axis, Column, Formula, Given, Iterated, Root, Sheet
 from .domain import defined, is_positive, positive, typed_symbols
-from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Plan, RootNode, RowMedian, RowSum, Total
+from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Plan, RootNode, RowOrder, RowSum, Total
 
 __all__ = ["lowered", "lowered_column"]
 
@@ -67,7 +68,7 @@ class Lowering:
         self._totals: dict[str, int] = {}
         """How many there are of each column."""
         self._written: dict[Expr, Expr] = {}
-        """Sums and medians by what they became."""
+        """What is taken over rows, by what it became."""
         self._axes = {axis.name: axis for axis in sheet.axes}
         self._taken = {*RESERVED, *(f"{axis.name}_kept" for axis in sheet.axes)}
         for column in sheet.columns:
@@ -111,7 +112,7 @@ class Lowering:
     # --- expressions
 
     def plain(self, expression: Any, column: Column, axis: Axis | None, unknown: Symbol | None = None) -> Any:
-        """An expression in plain symbols; sums and medians stand in it.
+        """An expression in plain symbols; what is taken over rows stands in it.
 
         Parameters
         ----------
@@ -127,12 +128,15 @@ class Lowering:
             return expression
         if isinstance(expression, REDUCTIONS):
             over = self.sheet.algebra.indices[expression.limits[0][0]]
+            name = Symbol(over.name)
+            if isinstance(expression, OrderStatistic):
+                found = RowOrder(
+                    self.plain(expression.function, column, over, unknown), name, Str(expression.word)
+                )
+                self._written[found] = expression
+                return found
             number, terms = expression.function.as_coeff_Mul()
-            if isinstance(expression, Median):
-                taken, number, terms = RowMedian, Integer(1), expression.function
-            else:
-                taken = RowSum
-            found = taken(self.plain(terms, column, over, unknown), Symbol(over.name))
+            found = RowSum(self.plain(terms, column, over, unknown), name)
             more, alone = found.as_coeff_Mul()
             self._written[alone] = expression.func(terms / more, *expression.limits)
             return number * found
@@ -221,25 +225,24 @@ class Lowering:
         return plain.xreplace(typed_symbols(self.sheet, named))
 
     def _lifted(self, expression: Any, column: Column, unknown: Symbol | None, nodes: list[Node]) -> Any:
-        """The expression with symbols for its sums and medians, which become nodes; not for what moves."""
-        if not expression.has(RowSum, RowMedian):
+        """The expression with symbols for what it takes over rows, which become nodes; not for what moves."""
+        if not expression.has(RowSum, RowOrder):
             return expression
         parts = [self._lifted(argument, column, unknown, nodes) for argument in expression.args]
-        if not isinstance(expression, (RowSum, RowMedian)):
+        if not isinstance(expression, (RowSum, RowOrder)):
             still = {"evaluate": False} if isinstance(expression, (Max, Min)) else {}
             return expression.func(*parts, **still)
-        terms, axis = parts
+        terms, axis, *_ = parts
         if unknown is not None and terms.has(unknown):
-            return expression.func(terms, axis)
-        median, over = isinstance(expression, RowMedian), self._axes[axis.name]
-        known = {(each.over, each.terms, each.median): each for each in nodes if isinstance(each, Total)}
-        total = known.get((over, terms, median))
+            return expression.func(*parts)
+        over, word = self._axes[axis.name], expression.word
+        known = {(each.over, each.terms, each.word): each for each in nodes if isinstance(each, Total)}
+        total = known.get((over, terms, word))
         if total is None:
-            word = "median" if median else "sum"
             number = self._totals[column.name] = self._totals.get(column.name, 0) + 1
             symbol = self.symbol(
                 Leaf("total", f"{column.name}.{number}"), _REAL, f"{column.name}_{word}_{number}"
             )
-            total = Total(column, symbol, over, terms, self._written[expression], median)
+            total = Total(column, symbol, over, terms, self._written[expression], word)
             nodes.append(total)
         return total.symbol

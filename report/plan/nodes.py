@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from sympy import Basic, Expr, Integer, Symbol, diff, false, true
 from sympy.logic.boolalg import Boolean
 
 from ..column import Axis, Column
+from .order import Word
 
 __all__ = [
     "GivenNode",
@@ -21,7 +22,7 @@ __all__ = [
     "Part",
     "Plan",
     "RootNode",
-    "RowMedian",
+    "RowOrder",
     "RowSum",
     "Total",
     "expressions",
@@ -85,6 +86,7 @@ class RowSum(Expr):
 
     is_commutative = True
     is_real = True
+    word: ClassVar[Word] = "sum"
 
     def _eval_is_positive(self) -> bool | None:
         return True if self.args[0].is_positive else None  # there are rows, or it has no value
@@ -98,24 +100,31 @@ class RowSum(Expr):
         return RowSum(diff(terms, symbol), axis)
 
 
-class RowMedian(Expr):
-    """A median over an axis' rows as a function of the array of its terms.
+class RowOrder(Expr):
+    """What is taken by order of an axis' rows, as a function of the array of its terms.
 
     Parameters
     ----------
     terms, axis
         As for :class:`RowSum`.
+    word : Str
+        ``median``, ``max`` or ``min``.
     """
 
     is_commutative = True
     is_real = True
 
+    @property
+    def word(self) -> Word:
+        """What is taken."""
+        return self.args[2].name  # type: ignore[no-any-return]
+
     def _eval_is_positive(self) -> bool | None:
         return True if self.args[0].is_positive else None
 
     def _sympystr(self, printer: Any) -> str:
-        terms, axis = map(printer._print, self.args)
-        return f"median({terms}, {axis})"
+        terms, axis = map(printer._print, self.args[:2])
+        return f"{self.word}({terms}, {axis})"
 
 
 def free_name(wanted: str, taken: set[str]) -> str:
@@ -127,8 +136,8 @@ def free_name(wanted: str, taken: set[str]) -> str:
 
 
 def taken_over(expressions: Iterable[Basic]) -> tuple[str, ...]:
-    """The axes that expressions sum over, or take a median over, by name."""
-    found = (taken for expression in expressions for taken in expression.atoms(RowSum, RowMedian))
+    """The axes over which expressions take something, by name."""
+    found = (taken for expression in expressions for taken in expression.atoms(RowSum, RowOrder))
     return tuple(sorted({taken.args[1].name for taken in found}))
 
 
@@ -155,7 +164,7 @@ class GivenNode:
 
 @dataclass(frozen=True)
 class Total:
-    """A sum or a median over those rows of an axis of which all cells that its column sums have values.
+    """What is taken over those rows of an axis of which all cells that its column sums have values.
 
     Parameters
     ----------
@@ -167,7 +176,8 @@ class Total:
     terms : Expr
     written : Expr
         As the rule has it, in cells of rows.
-    median : bool
+    word : str
+        What is taken.
     """
 
     column: Column
@@ -175,7 +185,7 @@ class Total:
     over: Axis
     terms: Expr
     written: Expr
-    median: bool = False
+    word: Word = "sum"
 
 
 @dataclass(frozen=True)
@@ -356,7 +366,7 @@ class Plan:
 
     @cached_property
     def totals(self) -> dict[str, Total]:
-        """Its sums and medians, by the names of what stands for them."""
+        """What it takes over rows, by the names of what stands for that."""
         return {node.symbol.name: node for node in self.every if isinstance(node, Total)}
 
     def alone(self, name: str) -> Plan:

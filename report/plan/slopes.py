@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Literal
 
 from ..column import Column, Root
 from ..sheet import Sheet
+from .order import Word
 
 __all__ = ["Local", "Slope", "unknown_of", "with_unknowns"]
 
@@ -49,8 +51,9 @@ class Local:
     rounding : str
         The part that holds its rounding in SI, in units of eps; empty if it was not asked for.
     slopes : tuple of Slope
-    median : bool
-        Whether it is a median: of its slopes only those of the rows in the middle count.
+    word : str
+        What a total takes, empty for columns: where it is no sum, only the slopes of the rows that it takes
+        count.
     """
 
     name: str
@@ -59,7 +62,12 @@ class Local:
     of: str
     rounding: str
     slopes: tuple[Slope, ...]
-    median: bool
+    word: Word | Literal[""]
+
+    @property
+    def by_order(self) -> bool:
+        """Whether it takes its rows by their order."""
+        return self.word not in ("", "sum")
 
 
 def with_unknowns(sheet: Sheet, again: Mapping[str, str]) -> Sheet:

@@ -38,7 +38,7 @@ def _on(node: GivenNode | Map | RootNode) -> str:
 def _node(plan: Plan, node: Node) -> Iterator[str]:
     """The lines of a node: what it is, then what is asked of it."""
     if isinstance(node, Total):
-        yield f"{node.symbol}: {'median' if node.median else 'sum'} over {node.over.name} of {node.terms}"
+        yield f"{node.symbol}: {node.word} over {node.over.name} of {node.terms}"
         return
     if isinstance(node, Part):
         on = "" if node.axis is None else f" on {node.axis.name}"

@@ -92,11 +92,13 @@ class SecondOrder:
         alone = np.count_nonzero(root, axis=0) == 1  # what is mixed of several is taken as normal
         self.fourth, self.third = np.where(alone, own, 3.0), np.where(alone, leans, 0.0)
         self.width = 2 * len(sources) * max(1, chain.number)
-        self.jumping: set[str] = set()
-        """What rests on a median: its derivatives jump where two rows change places, and hardly bend."""
+        self.jumping: dict[str, str] = {}
+        """What rests on rows by their order, and how these are taken: where two change places, derivatives
+        jump, and they hardly bend."""
         for node in chain.made.nodes:
-            if node.median or any(slope.by in self.jumping for slope in node.slopes):
-                self.jumping.add(node.name)
+            words = (self.jumping[slope.by] for slope in node.slopes if slope.by in self.jumping)
+            if word := node.word if node.by_order else next(words, ""):
+                self.jumping[node.name] = word
         sheet = values.sheet
         sharp = {column.name for column in sheet.columns if _has_corner(column)}
         self.cornered = {
@@ -123,7 +125,7 @@ class SecondOrder:
     def why(self, name: str) -> str:
         """Why nothing is known of a column's cell."""
         if name in self.jumping:
-            return "it rests on a median, which other rows take over when inputs move"
+            return f"it rests on a {self.jumping[name]}, which other rows take over when inputs move"
         if name in self.cornered:
             return "it has a corner here (Abs, Max, Min or cases), where derivatives jump"
         if name in self.torn:
@@ -143,8 +145,8 @@ class SecondOrder:
         -------
         float array (cells,)
             In the squares of the cells' SI units; 0 where it does not count. NaN where a cell has no value so
-            near to its own, has it of sums over other rows, or rests on a median; and where terms that count
-            come from a function with corners.
+            near to its own, has it of sums over other rows, or rests on what is taken by order; and where
+            terms that count come from a function with corners.
         """
         beside, first = self.by_source(self._along.at(cells)) @ self.root, first @ self.root
         up, down = beside[: len(self.sources)], beside[len(self.sources) :]
@@ -161,7 +163,7 @@ class SecondOrder:
             # A sum that would be negative is no variance: then the terms of the fourth order count too.
             more = np.where(own + bent + turned > 0, bent + turned, bent)
             little = np.maximum(bent, np.abs(more)) <= COUNTS * own
-            unknown = np.array([name in self.jumping | self.torn for name, _ in cells], dtype=bool)
+            unknown = np.array([name in self.jumping or name in self.torn for name, _ in cells], dtype=bool)
             sharp = np.array([name in self.cornered for name, _ in cells], dtype=bool) & ~little
             found: Array = np.where(unknown | sharp, np.nan, np.where(little, 0.0, more))
         return found
