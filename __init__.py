@@ -13,6 +13,7 @@ __all__ = [
     "load",
     "mean",
     "measured",
+    "median",
     "pairs",
     "plot",
     "root",

@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping
+from typing import Any
 
-from sympy import Expr, Indexed, Rational, Symbol
+import mpmath
+from sympy import Expr, Float, Indexed, Rational, Symbol
 
+from ..derivations.evaluation import UNDEFINED, NotEvaluable, Tape
 from ..derivations.unit_text import ParsedUnit, UnitError, parse_open
 from .column import Axis, Column, Formula
 from .named import name_of
@@ -22,7 +25,7 @@ _FAR = 10**4
 """By how much, up and down: farther than cells lie apart, so that none is the largest in both."""
 _ROWS = (5, 6, 7)
 """How many rows are written out in turn: what divides by the degrees of freedom may have none."""
-_DIGITS, _SAME = 50, Rational(1, 10**30)
+_DIGITS, _SAME = 50, 1e-30
 """Of the values that are compared, and by how much of them they may differ."""
 
 
@@ -69,10 +72,24 @@ def _moved(formula: Expr, columns: Mapping[str, Column]) -> tuple[Expr, bool]:
 
 def _moves(moved: Expr, axis: Axis, rows: int) -> bool:
     """Whether the value is seen to move, at drawn values of all cells."""
+    moved = moved.xreplace({number: Rational(str(number)) for number in moved.atoms(Float)})
+    cells = moved.atoms(Indexed)
+    columns = sorted({cell.base.label for cell in cells}, key=str)
+    scalars = sorted(moved.free_symbols - {*cells, *columns, axis.size, axis.index, _MOVE}, key=str)
     draw = random.Random(rows)
-    few = moved.subs(axis.size, rows).doit().subs(axis.index, 1)
-    cells = sorted(few.atoms(Indexed), key=str)
-    cells += sorted(few.free_symbols - {_MOVE} - {s for cell in cells for s in cell.free_symbols}, key=str)
-    where = {cell: Rational(draw.randint(1000, 9999), 1000) for cell in cells}
-    down, up = (few.xreplace({**where, _MOVE: Rational(by)}).evalf(_DIGITS) for by in (-_FAR, _FAR))
-    return bool(down.is_finite and up.is_finite and abs(up - down) > _SAME * (1 + abs(down)))
+    with mpmath.workdps(_DIGITS):
+
+        def drawn() -> Any:
+            return mpmath.mpf(draw.randint(1000, 9999)) / 1000
+
+        given = [[drawn() for _ in range(rows + 1)] for _ in columns] + [drawn() for _ in scalars]
+        tape, found = Tape([axis.size, axis.index, *columns, *scalars, _MOVE]), []
+        try:
+            value = tape.add([moved])
+            for by in (-_FAR, _FAR):
+                tape.start([mpmath.mpf(rows), mpmath.mpf(1), *given, mpmath.mpf(by)])
+                found += tape.values(value)
+        except (NotEvaluable, *UNDEFINED):
+            return False
+        known = all(map(mpmath.isfinite, found))
+        return bool(known and abs(found[1] - found[0]) > _SAME * (1 + abs(found[0])))

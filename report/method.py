@@ -23,6 +23,7 @@ from typing import Any
 from sympy import Expr, Symbol, false, sympify, true
 
 from ..derivations.equation import Ledger
+from ..derivations.reductions import Median
 from ..derivations.vocabulary import Quantity, Vocabulary, spelt
 from .charts import BLUE, VERMILION, Chart, Series
 from .column import Column, SheetError
@@ -43,6 +44,7 @@ __all__ = [
     "let",
     "mean",
     "measured",
+    "median",
     "pairs",
     "plot",
     "root",
@@ -271,6 +273,15 @@ def total(formula: Any) -> Expr:
 def mean(formula: Any) -> Expr:
     """The mean over all rows, or over all pairs."""
     return total(formula) / count(formula)
+
+
+def median(formula: Any) -> Expr:
+    """The median over all rows, or all pairs; of an even number, the mean of the two in the middle.
+
+    The greatest and the least are written as in Python: in the body of a method `max(x)` and `min(x)` are
+    taken over the rows of a column, `max(a, b)` and `min(a, b)` of several formulas.
+    """
+    return _body().ordered(Median, formula)
 
 
 def count(formula: Any = 0) -> Symbol:

@@ -13,6 +13,7 @@ from sympy import Add, Expr, Float, Function, Indexed, Max, Min, Rational, Sum, 
 from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
 
 from ..derivations.equation import Derivation, Equation, Kind, Ledger
+from ..derivations.reductions import REDUCTIONS, Greatest, Least, OrderStatistic
 from ..derivations.unit_text import (
     ParsedUnit,
     UnitError,
@@ -46,6 +47,8 @@ FUNCTIONS = (
     *("Abs", "Max", "Min"),
 )
 """Besides powers; as sympy calls them."""
+_EXTREMES = {"max": (Max, Greatest), "min": (Min, Least)}
+"""By their names in a body: of several formulas, and over the rows of one."""
 
 
 @dataclass(frozen=True)
@@ -157,12 +160,6 @@ def _numbers(*names: str) -> Iterator[Symbol]:
     return (Symbol(name, integer=True, positive=True) for name in names)
 
 
-def _extreme(name: str, *formulas: Any) -> Expr:
-    if len(formulas) < 2:
-        raise SheetError(f"{name}() is of several formulas, {name}(a, b); it is not taken over rows")
-    return {"max": Max, "min": Min}[name](*map(exact, formulas))
-
-
 def _typed(formula: Expr) -> Expr:
     """A formula with its decimal fractions as fractions: a proof takes no rounded number."""
     typed: Expr = formula.xreplace({number: Rational(repr(float(number))) for number in formula.atoms(Float)})
@@ -194,9 +191,26 @@ class MethodBody(dict[str, Any]):
         """In a body the sum, the greatest and the least are those of formulas, not of Python's numbers."""
         if name == "sum":
             return self.total
-        if name in ("max", "min"):
-            return partial(_extreme, name)
+        if name in _EXTREMES:
+            return partial(self._extreme, *_EXTREMES[name])
         raise KeyError(name)
+
+    def _extreme(self, of_several: type[Expr], over_rows: type[OrderStatistic], *formulas: Any) -> Expr:
+        """Of several formulas or of a list, of what is in it; of one formula, over all rows or pairs."""
+        if len(formulas) != 1:
+            return of_several(*map(exact, formulas))
+        (one,) = formulas
+        return of_several(*map(exact, one)) if isinstance(one, Iterable) else self.ordered(over_rows, one)
+
+    def ordered(self, taken: type[OrderStatistic], formula: Any) -> Expr:
+        """What is taken over all rows, or all pairs, by their order."""
+        cell = exact(formula)
+        over = self.axis_of(cell)
+        if over is None:
+            raise SheetError(f"{taken.word}() is taken over rows, and {cell} is the same for all of them")
+        if not isinstance(cell, Indexed):
+            raise SheetError(f"{taken.word}() is of a column, not of {cell}: let(...) that be one first")
+        return taken(cell, (over.index, 1, over.size))
 
     def total(self, formula: Any, *more: Any) -> Expr:
         """The sum over all rows; of a list, of what is in it."""
@@ -350,8 +364,8 @@ class MethodBody(dict[str, Any]):
         return found
 
     def _begun(self, sought: UnknownLine, name: str) -> UnknownLine:
-        """The same with a start that sums nothing: a sum is a column of its own, which only leads there."""
-        if sought.start is None or not sought.start.has(Sum):
+        """The same with a start that takes nothing over rows: one that does is a column aside."""
+        if sought.start is None or not sought.start.has(*REDUCTIONS):
             return sought
         own = f"{name}_start"
         said = ComputedLine(

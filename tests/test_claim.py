@@ -27,7 +27,7 @@ BODY = """\
 """
 WORDS = """\
 from sympy import cos, sin, sqrt
-from loopsheet import Method, claim, count, fit, given, let, mean, measured, root, total, unknown
+from loopsheet import Method, claim, count, fit, given, let, mean, measured, median, root, total, unknown
 """
 CLAIMS = {
     "(S, total(x**2) - total(x) ** 2 / count(), 'by raw sums')": "(S, total(x**2) - total(x) ** 2, 'w')",
@@ -43,6 +43,11 @@ CLAIMS = {
     "(line.S, total(y * line.residual), 'squares')": "(line.S, total(line.fitted * line.residual), 'w')",
     "(sqrt(S) * sqrt(1 - R), sqrt(S - S * R), 'but for rounding')": "(sqrt(1 - R), 1 - R, 'w')",
     "(S, total(dx * x), 'by one', from_=[S, dx])": "(total(dx), 0, 'w', from_=[S])",
+    "(total(x / max(x)) * max(x), total(x), 'parts')": "(total(x / max(x)) * min(x), total(x), 'w')",
+    "(total((x - min(x))**2), total(x**2) - 2 * min(x) * total(x) + count() * min(x)**2, 'a sum with one')": (
+        "(total((x - min(x))**2), total(x**2) - 2 * max(x) * total(x) + count() * max(x)**2, 'w')"
+    ),
+    "(dx + median(x), x - mean(x) + median(x), 'of a row')": "(dx + median(x), x, 'w')",
 }
 """What holds, and what does not."""
 

@@ -439,11 +439,12 @@ def test_no_row_is_weighed_by_a_negative_uncertainty(tmp_path: Path) -> None:
     assert "a standard uncertainty that rows are weighed by is above zero" in first.why
 
 
-def test_a_start_may_be_a_sum(tmp_path: Path) -> None:
+@pytest.mark.parametrize("start", ["0.9 * mean(y) / mean(x)", "max(y) / max(x)"])
+def test_a_start_may_be_taken_over_rows(tmp_path: Path, start: str) -> None:
     """In the workbook, too, whose passes begin there."""
     from loopsheet.report import stages
 
-    body = "    b = unknown('b', start=0.9 * mean(y) / mean(x))\n    f = fit(y, x**b)\n"
+    body = f"    b = unknown('b', start={start})\n    f = fit(y, x**b)\n"
     report = in_folder(tmp_path, body, "1,1,1.0\n2,2,2.8\n3,3,5.2\n4,4,8.1\n")
     assert cells(report.values, "b")[0] == pytest.approx(1.506, abs=2e-3)
     assert "b_start" in report.workbook.aside

@@ -13,6 +13,7 @@ from typing import Any
 import gas
 import numpy as np
 import pytest
+import test_order
 from test_digits import CAMPAIGNS
 
 from loopsheet.report import stages
@@ -187,3 +188,35 @@ def test_an_edit_is_a_rebuild(told: Told, tmp_path: Path, edits: Edits) -> None:
         reports.append(Study(folder).computed)
     issued, rebuilt = reports
     agrees(told(issued, edits), rebuilt, issued)
+
+
+@pytest.mark.parametrize(
+    "edits",
+    [
+        [],
+        [("d", 2, "11.900")],  # what was the greatest is the least
+        [("d", 3, "12.050")],  # two are the greatest, and one more has a value
+        [("d", 4, "0.500"), ("T", 4, "-30.0"), ("T", 1, "-40.0")],
+        [("d_0", 0, "12.010"), ("d", 3, "12.060")],
+    ],
+)
+def test_what_is_taken_by_order_follows_an_edit(told: Told, tmp_path: Path, edits: Edits) -> None:
+    """Other rows are taken then, and may have a value that had none."""
+    issued = Study(test_order.folder(tmp_path / "issued")).computed
+    table, toml = test_order.TABLE, test_order.TOML
+    for name, place, text in edits:
+        lines = table.splitlines()
+        if place:
+            cells = lines[place].split(",")
+            cells["_dT".index(name)] = text
+            lines[place] = ",".join(cells)
+        else:
+            toml = re.sub(r'd_0 = "[\d.]+', f'd_0 = "{text}', toml)
+        table = "\n".join(lines) + "\n"
+    folder = test_order.folder(tmp_path / "edited", table)
+    (folder / "report.toml").write_text(toml, encoding="utf-8")
+    rebuilt, found = Study(folder).computed, told(issued, edits)
+    agrees(found, rebuilt, issued)
+    for name in rebuilt.workbook.headline:
+        assert found["cells"][name]["values"] == pytest.approx(rebuilt.values.value[name], rel=1e-9)
+        assert found["cells"][name]["u"] == pytest.approx(rebuilt.uncertain().u[name], rel=1e-6)

@@ -13,11 +13,12 @@ import mpmath
 import numpy as np
 import pytest
 from scipy.constants import physical_constants
-from sympy import Abs, Max, Sum, Symbol, pi, sin, sqrt
+from sympy import Abs, Max, Min, Sum, Symbol, pi, sin, sqrt
 
 import loopsheet
 import loopsheet.report.method
-from loopsheet import Method, count, given, let, mean, measured, plot, root, total, unknown
+from loopsheet import Method, count, given, let, mean, measured, median, plot, root, total, unknown
+from loopsheet.derivations.reductions import Greatest, Least, Median
 from loopsheet.report.cli import main
 from loopsheet.report.column import Formula, Root, SheetError
 from loopsheet.report.engines.numpy import evaluate
@@ -231,18 +232,58 @@ def test_sums_and_extremes_may_be_called_as_in_python() -> None:
         S = let(sum(x), "sum")
         twice = let(sum([S, S]), "of a list")
         most = let(max(S, twice, x), "largest, of each row")
+        least = let(min([S, twice]), "of a list")
+        span = let(max(x) - min(x) - median(x), "over the rows")
 
     rules = {c.name: c.rule.expression for c in sheet_of(Named).columns if isinstance(c.rule, Formula)}
     assert isinstance(rules["S"], Sum)
     assert str(rules["twice"]) == "2*S"
     assert isinstance(rules["most"], Max)
-    with pytest.raises(SheetError, match=re.escape("max() is of several formulas, max(a, b)")):
-
-        class Refused(Method):
-            x = measured("m", "length")
-            most = let(max(x), "largest of all rows")  # type: ignore[call-overload]
-
+    assert isinstance(rules["least"], Min)
+    cell, rows = sheet_of(Named)["x"].cell, (Named.workbook.sheet(frozenset()).axes[0])
+    over = (cell, (rows.index, 1, rows.size))
+    assert rules["span"] == Greatest(*over) - Least(*over) - Median(*over)
     assert sum([1, 2]) == max(3, 2)
+
+
+@pytest.mark.parametrize(
+    ("formula", "said"),
+    [
+        ("max(2 * x)", "max() is of a column, not of 2*x[k]: let(...) that be one first"),
+        ("median(x - min(x))", "let(...) that be one first"),
+        ("min(m)", "min() is taken over rows, and m is the same for all of them"),
+        ("median(max(x))", "median() is taken over rows, and Greatest(x[k], (k, 1, n)) is the same"),
+        ("max(3)", "max() is taken over rows, and 3 is the same"),
+        ("max()", "is no formula of real numbers"),
+        ("median([x, m])", "is no formula of real numbers"),
+    ],
+)
+def test_what_has_no_order_over_rows(formula: str, said: str) -> None:
+    body = f"    x = measured('m', 'length')\n    m = let(mean(x), 'mean')\n    y = let({formula}, 'y')\n"
+    with pytest.raises(SheetError, match=re.escape(said)):
+        exec(f"class Wrong(Method):\n{body}", {**vars(loopsheet.report.method)})
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (
+            "y = unknown()\n    y = root(y, max(x), 'root', 'm', low=0, high=1)",
+            "y: a max in a root has to be a column of its own",
+        ),
+        (
+            "p = unknown('p', 'm', start=1)\n    f = fit(x, sqrt(p * max(x) + p**2))",
+            "a max cannot stand in what is iterated; it jumps",
+        ),
+    ],
+)
+def test_where_order_may_not_stand(lines: str, said: str) -> None:
+    body = f"    x = measured('m', 'length')\n    {lines}\n"
+    with pytest.raises(SheetError, match=re.escape(said)):
+        exec(
+            f"class Wrong(Method):\n{body}\nWrong.workbook.sheet(frozenset())",
+            {**vars(loopsheet.report.method), "sqrt": sqrt},
+        )
 
 
 def test_constants_of_nature_have_their_digits(tmp_path: Path) -> None:

@@ -17,9 +17,9 @@ from loopsheet.report.study import Study
 
 SEN = """
 from sympy import sqrt
-from loopsheet import Method, claim, count, let, mean, measured, pairs, plot, table, total
+from loopsheet import Method, claim, count, let, mean, measured, median, pairs, plot, table, total
 
-class Sen(Method, source="P K Sen, J. Am. Stat. Assoc. 63 (1968) 1379", headline="b"):
+class Sen(Method, source="P K Sen, J. Am. Stat. Assoc. 63 (1968) 1379", headline="b middle"):
     "Slopes of all pairs."
     x = measured("s", "time")
     y = measured("degC", "temperature")
@@ -27,6 +27,8 @@ class Sen(Method, source="P K Sen, J. Am. Stat. Assoc. 63 (1968) 1379", headline
     rise = let(second(y) - first(y), "rise")
     slope = let(rise / (second(x) - first(x)), "slope of a pair")
     b = let(mean(slope), "mean slope")
+    middle = let(median(slope), "Sen's slope")
+    steepest = let(max(slope), "greatest slope")
     spread = let(sqrt(total((slope - b)**2) / (count(slope) - 1)), "scatter of the slopes")
     level = let(mean(y - b * x), "intercept", like=y)
     of_both = let(total(first(x) * second(x)), "sum of products")
@@ -57,10 +59,12 @@ def test_every_pair_has_a_value(tmp_path: Path) -> None:
     assert report.values.value["slope"] == pytest.approx(slopes, rel=1e-14)
     assert report.sheet["slope"].unit == "K/s"
     assert report.values.labels(report.sheet["slope"])[1] == (1, 3)
-    found = {name: report.values.scalar(name) for name in ("b", "spread", "level", "of_both")}
+    names = ("b", "middle", "steepest", "spread", "level", "of_both")
+    found = {name: report.values.scalar(name) for name in names}
     level = np.mean(np.array(Y) - slopes.mean() * np.array(X)) + 273.15
     products = sum(X[i] * X[j] for i, j in both)
-    known = {"b": slopes.mean(), "spread": slopes.std(ddof=1), "level": level, "of_both": products}
+    known = {"b": slopes.mean(), "middle": 4, "steepest": slopes.max()}  # Sen's example: 4
+    known |= {"spread": slopes.std(ddof=1), "level": level, "of_both": products}
     assert found == pytest.approx(known, rel=1e-14)
 
 
@@ -80,17 +84,17 @@ def test_every_engine_and_proof(
     require("soffice")
     assert main(["check", str(folder(tmp_path)), "--no-cache"]) == 1
     told = capsys.readouterr().out
-    assert re.findall(r"engine +(\w+) .* at most 0\.\d+ eps", told) == ["numpy", "JavaScript", "xlsx"]
-    # Of any number of rows that sum of products is one of powers: true, and no algebra of sums shows it.
-    assert re.findall(r"(?m)^finding: (.*) is", told) == ["(7)"]
+    assert re.findall(r"engine +(\w+) .* at most [\d.]+ eps", told) == ["numpy", "JavaScript", "xlsx"]
+    # That sum of products is one of powers for any number of rows: true, and no algebra of sums shows it.
+    assert re.findall(r"(?m)^finding: (.*) is", told) == ["(9)"]
 
 
 def test_a_false_claim_of_pairs_is_refuted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     wrong = SEN.replace("total(second(y) - first(y))", "total(first(y) - second(y))")
     assert main(["check", str(folder(tmp_path, wrong)), "--no-cache"]) == 1
     told = capsys.readouterr().out
-    assert "(8) is refuted" in told
-    assert "(8), rises, does not hold of these data: its sides differ by" in told
+    assert "(10) is refuted" in told
+    assert "(10), rises, does not hold of these data: its sides differ by" in told
 
 
 def test_a_table_comes_first_and_the_rest_follows(tmp_path: Path) -> None:
@@ -98,7 +102,7 @@ def test_a_table_comes_first_and_the_rest_follows(tmp_path: Path) -> None:
     shown = {spec.name: spec.columns for spec in Material(report).specs}
     assert list(shown) == ["table_1", "readings", "scalars"]
     assert shown["table_1"] == ("slope", "rise")
-    assert shown["scalars"] == ("b", "spread", "level", "of_both")
+    assert shown["scalars"] == ("b", "middle", "steepest", "spread", "level", "of_both")
 
 
 @pytest.mark.parametrize(

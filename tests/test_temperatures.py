@@ -147,7 +147,7 @@ def test_it_stands_by_itself(text: str) -> None:
 
 
 TURNS = """\
-from loopsheet import Method, count, fit, given, let, mean, measured, root, total, unknown
+from loopsheet import Method, count, fit, given, let, mean, measured, median, root, total, unknown
 
 
 class Turns(Method, rows="readings"):
@@ -179,11 +179,17 @@ DIFFERENCES = {
     'x = let(p / (R * rho) - mean(p / (R * rho)), "x", {})': 8.733333,
     'x = let((total((T - mean(T))**2) / (count() - 1))**0.5, "x", {})': 13.847864,
     'x = let(variance**0.5 / count()**0.5, "x", {})': 7.995068,
+    'x = let(max(T) - min(T), "x", {})': 24.7,
+    'x = let(T - median(T), "x", {})': 1.5,
+    'y = let(T - m, "apart")\nx = let(max(y) - min(T - m, m - T), "x", {})': 17.466667,
     'y = let(T * ratio, "hot", "degC")\nx = let((y - T) / 2, "x", {})': 147.325,
 }
 TEMPERATURES = [
     'x = let(T + (T - T_ref) / 10, "x", {})',
     'x = let(m, "x", {})',
+    'x = let(max(T), "x", {})',
+    'x = let(2 * median(T) - min(T), "x", {})',
+    'y = let(T + start, "hotter", "K")\nx = let(max(y) - start, "x", {})',
     'x = let(p / (R * rho), "x", {})',
     'x = let(T * ratio, "x", {})',
     'x = let(ratio * start, "x", {})',
