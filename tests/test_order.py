@@ -139,3 +139,23 @@ def test_draws_take_the_outermost_of_each(tmp_path: Path) -> None:
     assert budget.value == 0
     assert drawn.mean == pytest.approx(2.0588 * 2e-6, rel=0.01)
     assert drawn.u == pytest.approx(0.8798 * 2e-6, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("R", "said"),
+    [
+        ("0.0712", "a mismatch of 4.0 half units of the last digit; by interval arithmetic none leaves less"),
+        ("0.0709", "come out of one input that prints as given, with a worst mismatch of 0.7 half units"),
+    ],
+)
+def test_the_referee_knows_which_rows_may_be_the_outermost(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], R: str, said: str
+) -> None:
+    """Half a unit of the last digit of two diameters makes .0710 mm of .0700 mm, and no more."""
+    toml = TOML.partition("[uncertainty]")[0] + '[published]\nfile = "published.csv"\n'
+    table = f"source,cell,index,value,unit\nTable 1,R,,{R},mm\nTable 1,greatest,,12.050,mm\n"
+    folder(tmp_path)
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    (tmp_path / "published.csv").write_text(table, encoding="utf-8")
+    assert main(["check", str(tmp_path), "--no-cache"]) == 1
+    assert said in capsys.readouterr().out
