@@ -1,7 +1,6 @@
 """A method as the body of a class: what a name stands for, and what is told of a wrong line."""
 
 import contextvars
-import json
 import math
 import re
 import subprocess
@@ -12,7 +11,6 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
-from scipy.constants import physical_constants
 from sympy import Abs, Max, Min, Sum, Symbol, pi, sin, sqrt
 
 import loopsheet
@@ -284,63 +282,6 @@ def test_where_order_may_not_stand(lines: str, said: str) -> None:
             f"class Wrong(Method):\n{body}\nWrong.workbook.sheet(frozenset())",
             {**vars(loopsheet.report.method), "sqrt": sqrt},
         )
-
-
-def test_constants_of_nature_have_their_digits(tmp_path: Path) -> None:
-    code = (
-        "from loopsheet import Method, constant, given, let\nclass Gas(Method):\n"
-        "    p = given('kPa', 'pressure')\n    V = given('L', 'volume')\n"
-        "    T = given('degC', 'temperature')\n"
-        "    R = constant('molar gas constant')\n    G = constant('Newtonian constant of gravitation')\n"
-        "    n = let(p * V / (R * T), 'amount')\n    twice = let(2 * G, 'twice')\n"
-    )
-    path = folder(tmp_path, code, 'p = "101.325 kPa"\nV = "22.41396954 L"\nT = "0 degC"\n')
-    made = loopsheet.load(path)
-    assert made["n"].value == pytest.approx(1, rel=1e-9)  # of an ideal gas
-    assert made["n"].unit == "mol"
-    assert made["G"].value == pytest.approx(6.6743e-11, rel=1e-4)
-    assert made["twice"].u == pytest.approx(2 * made["G"].u)
-    assert made["G"].u > 0 == made["R"].u
-
-
-@pytest.mark.parametrize(
-    ("formula", "stated", "warns"),
-    [
-        ("e**2 / (4 * pi * eps * m * c**2)", "", True),  # CODATA's classical electron radius: u 1.3e-24 m
-        ("e**2 / (4 * pi * eps * m * c**2)", '[uncertainty.correlation]\n"eps, m" = "-0.99"\n', False),
-        ("m * c**2 / e", "", False),
-    ],
-)
-def test_constants_that_were_adjusted_together_are_correlated(
-    formula: str, stated: str, warns: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    code = "from sympy import pi\nfrom loopsheet import Method, constant, let\n\n\nclass Radius(Method):\n"
-    code += "    e, m = constant('elementary charge'), constant('electron mass')\n"
-    code += (
-        "    eps = constant('vacuum electric permittivity')\n    c = constant('speed of light in vacuum')\n"
-    )
-    path = folder(tmp_path, f"{code}    r = let({formula}, 'radius')\n", stated)
-    assert main(["check", str(path), "--no-cache", "--format", "json"]) == 0
-    checks = json.loads(capsys.readouterr().out)["checks"]
-    told = [each["message"] for each in checks if each["kind"] == "constants"]
-    says = "r rests on eps and m, which were adjusted together: their errors are correlated, which its u "
-    assert told == [f"{says}leaves out; state it under [uncertainty.correlation]"] * warns
-
-
-def test_every_constant_may_be_declared_or_is_refused() -> None:
-    refused = {}
-    for name in physical_constants:
-        try:
-            exec(
-                f"class One(Method):\n    c = constant({name!r})\n    d = let(2 * c, 'twice')\n",
-                {**vars(loopsheet.report.method)},
-            )
-        except SheetError as error:
-            refused[name] = str(error)
-    assert all("unit" in said for said in refused.values()), refused
-    assert len(refused) < 0.1 * len(physical_constants)
-    with pytest.raises(SheetError, match="do you mean molar gas constant"):
-        exec("class One(Method):\n    c = constant('gas constant')\n", {**vars(loopsheet.report.method)})
 
 
 @pytest.mark.parametrize(
