@@ -240,13 +240,14 @@ def parse_open(text: str) -> ParsedUnit:
 def coherent(unit: ParsedUnit) -> str:
     """The unit of SI without prefix that it is a multiple of; as it is written, if it is that itself.
 
-    >>> [coherent(parse_unit(text)) for text in ("GPa", "mm^2/h", "deg", "degC")]
-    ['Pa', 'm^2*s^-1', '1', 'K']
+    >>> [coherent(parse_unit(text)) for text in ("GPa", "mm^2/h", "deg", "degC", "kHz", "rpm")]
+    ['Pa', 'm^2*s^-1', '1', 'K', 'Hz', 's^-1']
     """
     if unit.is_si and (unit.dimension or unit.open or is_pure(unit.text)):
         return unit.text.strip()
     for name, (scale, dimension) in COMMON.items():
-        if scale == 1 and dimension == unit.dimension and dimension:
+        # Turns and decays by time are no hertz, which counts cycles, unless they are written so.
+        if scale == 1 and dimension == unit.dimension and dimension and (name != "Hz" or name in unit.text):
             return name
     return "*".join(f"{base}{_behind(power)}" for base, power in unit.dimension) or "1"
 

@@ -137,7 +137,7 @@ def _with_unit(name: str, sought: UnknownLine) -> UnknownLine:
 
 
 def exact(formula: Any) -> Expr:
-    """A formula with its decimal fractions as they were typed: 0.27027027... was 1/3.7."""
+    """A formula with decimal fractions as they were typed: 0.27027... was 1/3.7, 0.30000000000000004 0.3."""
     formula = sympify(formula)
     if not isinstance(formula, Expr) or formula.has(
         ImaginaryUnit, NaN, Infinity, NegativeInfinity, ComplexInfinity
@@ -149,9 +149,11 @@ def exact(formula: Any) -> Expr:
             raise SheetError(f"{part.func} is none of the functions that every engine has: {known}")
     typed = {}
     for number in formula.atoms(Float) - {Float(0)}:
-        own, turned = repr(float(number)), f"{1 / float(number):.12g}"
-        if len(turned) + 4 < len(own) and math.isclose(1 / float(turned), float(number), rel_tol=1e-15):
-            typed[number] = 1 / Rational(turned)
+        own, value = repr(float(number)), float(number)
+        for of, text in ((value, f"{value:.12g}"), (1 / value, f"{1 / value:.12g}")):
+            if len(text) + 4 < len(own) and math.isclose(float(text), of, rel_tol=1e-15):
+                typed[number] = Rational(text) if of == value else 1 / Rational(text)
+                break
     found: Expr = formula.xreplace(typed)
     return found
 

@@ -20,6 +20,7 @@ from loopsheet.derivations.reductions import Greatest, Least, Median
 from loopsheet.report.cli import main
 from loopsheet.report.column import Formula, Root, SheetError
 from loopsheet.report.engines.numpy import evaluate
+from loopsheet.report.method_body import exact
 from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.monte_carlo import draw
@@ -178,6 +179,13 @@ def test_a_wrong_line_is_told(
     told = capsys.readouterr().err
     assert said in told
     assert re.search(r"workbook\.py:\d+", told)
+
+
+def test_what_python_makes_of_typed_numbers_is_what_was_typed() -> None:
+    p = Symbol("p")
+    made = [0.1 * p + 0.2 * p, p / 3.7, 1.1 * (1.1 * p), p * 0.7 / 49, 0.3 * p, 3.14159265358979 * p]
+    assert [str(exact(each)) for each in made[:4]] == ["3*p/10", "10*p/37", "121*p/100", "p/70"]
+    assert [exact(each) for each in made[4:]] == made[4:]
 
 
 def test_points_and_lines_are_declared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
