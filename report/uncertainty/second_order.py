@@ -87,6 +87,7 @@ class SecondOrder:
         by_source: Callable[[Array], Array],
     ) -> None:
         self.sources, self.root, self.by_source = sources, root, by_source
+        self._mixed = not np.array_equal(root, np.eye(len(sources)))
         own = np.array([s.law.kurtosis if s.law else _FOURTH.get(s.shape, 3.0) for s in sources])
         leans = np.array([s.law.skewness if s.law else 0.0 for s in sources])
         alone = np.count_nonzero(root, axis=0) == 1  # what is mixed of several is taken as normal
@@ -148,16 +149,19 @@ class SecondOrder:
             near to its own, has it of sums over other rows, or rests on what is taken by order; and where
             terms that count come from a function with corners.
         """
-        beside, first = self.by_source(self._along.at(cells)) @ self.root, first @ self.root
-        up, down = beside[: len(self.sources)], beside[len(self.sources) :]
+        beside, first = map(self._independent, (self.by_source(self._along.at(cells)), first))
+        # The cells of a row rest on few of all sources, of which there may be some hundreds.
+        used = np.flatnonzero((beside != 0).any(axis=(0, 1)) | (first != 0).any(axis=0))
+        up, down = (half[np.ix_(used, np.arange(len(cells)), used)] for half in np.split(beside, 2))
+        first, fourth, third_moment = first[:, used], self.fourth[used], self.third[used]
         with np.errstate(all="ignore"):
             # [cell, i, j]: by source i and source j, and by i and twice by j
             second = np.moveaxis(up - down, 0, -1) / (2 * STEP)
             third = np.moveaxis(up - 2 * first + down, 0, -1) / STEP**2
-            itself = np.eye(len(self.sources), dtype=bool)
-            bends = second**2 * np.where(itself, (self.fourth - 1) / 4, 1 / 2)
-            turns = first[:, :, None] * third * np.where(itself, self.fourth / 3, 1.0)
-            turns += first[:, :, None] * second * np.where(itself, self.third, 0.0)
+            itself = np.eye(used.size, dtype=bool)
+            bends = second**2 * np.where(itself, (fourth - 1) / 4, 1 / 2)
+            turns = first[:, :, None] * third * np.where(itself, fourth / 3, 1.0)
+            turns += first[:, :, None] * second * np.where(itself, third_moment, 0.0)
             bent, turned = bends.sum(axis=(1, 2)), turns.sum(axis=(1, 2))
             own = np.sum(first**2, axis=1)
             # A sum that would be negative is no variance: then the terms of the fourth order count too.
@@ -167,6 +171,10 @@ class SecondOrder:
             sharp = np.array([name in self.cornered for name, _ in cells], dtype=bool) & ~little
             found: Array = np.where(unknown | sharp, np.nan, np.where(little, 0.0, more))
         return found
+
+    def _independent(self, derivatives: Array) -> Array:
+        """Derivatives by the independent errors that the sources are made of."""
+        return derivatives @ self.root if self._mixed else derivatives
 
 
 def _has_corner(column: Column) -> bool:
