@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,6 @@ from .cells.values import CODES
 from .inputs.folders import report_folder
 from .quantity import behind
 from .result.findings import checks
-from .result.result import Report
 from .study import Study
 from .views.escape import Markup, html
 
@@ -81,14 +81,20 @@ class Loaded(Mapping[str, Estimates]):
     title : str
     headline : tuple of str
         The names of the results.
-    findings : tuple of str
-        What there is to tell of it, as `loopsheet check` tells it: findings and warnings.
     """
 
-    def __init__(self, report: Report) -> None:
-        self._report, self.title = report, report.title
+    def __init__(self, study: Study) -> None:
+        self._study, self._report = study, (report := study.computed)
+        self.title = report.title
         self.headline = tuple(name for name in report.workbook.headline if name in report.sheet)
-        self.findings = tuple(f"{check.word}: {check.sentence}" for check in checks(report) if check.word)
+
+    @cached_property
+    def findings(self) -> tuple[str, ...]:
+        """What there is to tell of it, findings and warnings, as `loopsheet check` tells it but of engines.
+
+        Its equations are proved for that, the first time that it is asked for.
+        """
+        return tuple(f"{each.word}: {each.sentence}" for each in checks(self._study.proved) if each.word)
 
     def __getitem__(self, name: str) -> Estimates:
         """A column.
@@ -155,7 +161,7 @@ def load(folder: str | Path) -> Loaded:
     >>> paper["alpha_mean"].texts, paper["alpha"].index[0], round(float(paper["alpha_mean"].u), 4)
     (('1.3026',), '1-2', 0.0035)
     """
-    return Loaded(Study(report_folder(str(folder))).computed)
+    return Loaded(Study(report_folder(str(folder))))
 
 
 def _table(quantities: list[Estimates]) -> str:

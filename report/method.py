@@ -28,7 +28,7 @@ from ..derivations.vocabulary import Quantity, Vocabulary, spelt
 from .charts import BLUE, VERMILION, Chart, Series
 from .column import Column, SheetError
 from .messages.errors import listing
-from .method_body import ComputedLine, FitLine, InputLine, MethodBody, UnknownLine, exact
+from .method_body import ComputedLine, Declaration, FitLine, InputLine, MethodBody, UnknownLine, exact
 from .named import name_of
 from .quantity import Bounds, behind
 from .sheet import Sheet
@@ -92,7 +92,9 @@ def given(
         What `loopsheet new` writes for it, as in report.toml; of a column, its numbers with spaces between.
     """
     column = {"exact": exact, "latex": latex, "positive": positive}
-    return InputLine(meaning, unit, column, _bounds(low, high, positive, whole), default, example=example)
+    return _said(
+        InputLine(meaning, unit, column, _bounds(low, high, positive, whole), default, example=example)
+    )
 
 
 def constant(name: str, *, latex: str = "") -> Any:
@@ -124,7 +126,7 @@ def constant(name: str, *, latex: str = "") -> Any:
     default = f"{value!r} {unit}" + (f", u = {u!r} {unit}" if u else "")
     column = {"exact": not u, "latex": latex, "positive": value > 0}
     bounds = _bounds(None, None, value > 0, False)
-    return InputLine(f"{name}, CODATA", unit, column, bounds, default, is_adjusted=u > 0)
+    return _said(InputLine(f"{name}, CODATA", unit, column, bounds, default, is_adjusted=u > 0))
 
 
 def measured(
@@ -139,7 +141,8 @@ def measured(
 ) -> Any:
     """Declare a column of the table of measurements; parameters as for :func:`given`."""
     column = {"latex": latex, "positive": positive}
-    return InputLine(meaning, unit, column, _bounds(low, high, positive), is_measured=True, example=example)
+    said = InputLine(meaning, unit, column, _bounds(low, high, positive), is_measured=True, example=example)
+    return _said(said)
 
 
 def let(
@@ -176,7 +179,7 @@ def let(
     """
     shown = f"like {name_of(like)}" if like is not None else display
     column = {"latex": latex, "positive": False} | ({"display": shown} if shown else {})
-    return ComputedLine(meaning, unit, column, (exact(formula),), label, because)
+    return _said(ComputedLine(meaning, unit, column, (exact(formula),), label, because))
 
 
 def unknown(meaning: str = "", unit: str = "", *, start: Any = None, latex: str = "") -> Any:
@@ -237,7 +240,8 @@ def root(
     column = {"latex": latex, "positive": False, "requires": requires}
     column |= {"display": display} if display else {}
     sides = exact(left), exact(right)
-    return ComputedLine(meaning, unit, column, sides, label, because, {**ends, "steps": steps, "none": none})
+    ends |= {"steps": steps, "none": none}
+    return _said(ComputedLine(meaning, unit, column, sides, label, because, ends))
 
 
 def fit(observed: Any, model: Any, *, u: Any = None, label: str = "", figures: bool = True) -> Any:
@@ -262,7 +266,7 @@ def fit(observed: Any, model: Any, *, u: Any = None, label: str = "", figures: b
     figures : bool
         Whether points and curve, and the residuals, are figures of the report.
     """
-    return FitLine(observed, exact(model), u, label, figures)
+    return _said(FitLine(observed, exact(model), u, label, figures))
 
 
 def total(formula: Any) -> Expr:
@@ -286,8 +290,7 @@ def median(formula: Any) -> Expr:
 
 def count(formula: Any = 0) -> Symbol:
     """How many rows there are; of a formula for pairs, how many pairs."""
-    body = _body()
-    return (body.axis_of(formula) or body.axis).size
+    return _body().number(formula)
 
 
 def pairs(
@@ -411,6 +414,14 @@ def _body() -> MethodBody:
     return body
 
 
+def _said(line: Declaration | FitLine) -> Any:
+    """What a line declares; the name comes with the assignment, and must come."""
+    body = _CURRENT.get()
+    if body is not None:
+        body.unnamed.append(line)
+    return line
+
+
 class _Declaring(type):
     """Makes a workbook of the body of a class."""
 
@@ -481,6 +492,9 @@ def _drawn(said: Measured | Parameter, column: Column) -> Quantity:
 
 def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Sequence[str]) -> Workbook:
     entries = tuple(body.entries)
+    for line in body.unnamed:
+        what = f"'{line.meaning}'" if isinstance(line, Declaration) else "a fit"
+        raise SheetError(f"{what} has no name: a line is a name, =, and what is declared")
     for each in headline:
         if each not in body.columns:
             raise SheetError(f"the headline names {each}, which is not declared", each)

@@ -13,6 +13,7 @@ from sympy import Add, Expr, Float, Function, Indexed, Max, Min, Rational, Sum, 
 from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
 
 from ..derivations.equation import Derivation, Equation, Kind, Ledger
+from ..derivations.grounds import says
 from ..derivations.reductions import REDUCTIONS, Greatest, Least, OrderStatistic
 from ..derivations.unit_text import (
     ParsedUnit,
@@ -138,6 +139,8 @@ def _with_unit(name: str, sought: UnknownLine) -> UnknownLine:
 
 def exact(formula: Any) -> Expr:
     """A formula with decimal fractions as they were typed: 0.27027... was 1/3.7, 0.30000000000000004 0.3."""
+    if isinstance(formula, str):
+        raise SheetError(f"{formula!r} is a text: a formula stands there without quotes")
     formula = sympify(formula)
     if not isinstance(formula, Expr) or formula.has(
         ImaginaryUnit, NaN, Infinity, NegativeInfinity, ComplexInfinity
@@ -164,8 +167,13 @@ def _numbers(*names: str) -> Iterator[Symbol]:
 
 def _typed(formula: Expr) -> Expr:
     """A formula with its decimal fractions as fractions: a proof takes no rounded number."""
-    typed: Expr = formula.xreplace({number: Rational(repr(float(number))) for number in formula.atoms(Float)})
+    typed: Expr = formula.xreplace(_fractions(formula))
     return typed
+
+
+def _fractions(*formulas: Expr) -> dict[Expr, Expr]:
+    """The decimal fractions in formulas, as fractions."""
+    return {each: Rational(repr(float(each))) for formula in formulas for each in formula.atoms(Float)}
 
 
 class MethodBody(dict[str, Any]):
@@ -183,6 +191,7 @@ class MethodBody(dict[str, Any]):
         self.tables: list[TableSpec] = []
         self.announced: dict[str, UnknownLine] = {}
         self.adjusted: list[str] = []
+        self.unnamed: list[Declaration | FitLine] = []
         self.aside: list[str] = []
         self.of_fits: dict[str, bool] = {}  # and whether it is a parameter
         self.squares: list[SquareSum] = []
@@ -221,7 +230,26 @@ class MethodBody(dict[str, Any]):
         if isinstance(formula, Iterable):
             return Add(*map(exact, formula))
         over = self.axis_of(formula) or self.axis
+        if over is not self.axis and not isinstance(formula, Indexed):
+            formula = self._of_pairs(formula)
         return Sum(formula, (over.index, 1, over.size))
+
+    def number(self, formula: Any) -> Symbol:
+        """How many rows a formula has, or pairs of rows."""
+        over = self.axis_of(formula) or self.axis
+        if over is not self.axis and all(column.axis != over for column in self.columns.values()):
+            raise SheetError(
+                "no quantity of pairs is declared yet that could be counted: let(...) one be first"
+            )
+        return over.size
+
+    def _of_pairs(self, formula: Any) -> Expr:
+        """A formula for pairs as a column of its own: rows of pairs are those of their columns."""
+        own = f"of_pairs_{sum(column.axis in self.axes[1:] for column in self.columns.values()) + 1}"
+        said = ComputedLine("of a pair", "", {"positive": False}, (exact(formula),), next(self.own))
+        self.columns[own] = column = self._computed(own, said)
+        self.aside.append(own)
+        return column.cell
 
     def axis_of(self, *formulas: Any) -> Axis | None:
         """The rows that formulas have a value for each of; None for a single number."""
@@ -278,6 +306,7 @@ class MethodBody(dict[str, Any]):
     def __setitem__(self, name: str, value: Any) -> None:
         if name in self.columns:
             raise SheetError(f"{name} is declared twice", name)
+        self.unnamed = [said for said in self.unnamed if said is not value]
         begins = isinstance(value, InputLine) and value.is_measured
         has_rows = begins or any(isinstance(each, Measured) for each in self.inputs)
         if has_rows and isinstance(value, Declaration):
@@ -305,9 +334,9 @@ class MethodBody(dict[str, Any]):
             words |= dict.fromkeys(pairs.named, ("the number of one of two", "members='...' in pairs()"))
             words[pairs.index_name] = "the pair's number", "index='...' in pairs()"
             words[pairs.size_name] = "the number of pairs", "size='...' in pairs()"
-        for own, (says, there) in words.items():
+        for own, (said, there) in words.items():
             if own == name or own in self.columns:
-                raise SheetError(f"{own} is {says}: call that otherwise, {there}", own)
+                raise SheetError(f"{own} is {said}: call that otherwise, {there}", own)
 
     def _input(self, name: str, said: Declaration) -> Column:
         assert isinstance(said, InputLine)
@@ -396,6 +425,11 @@ class MethodBody(dict[str, Any]):
             title=meaning,
             conditions=conditions,
         )
+        for premise, _ in found:
+            if says(equation, premise):
+                raise SheetError(
+                    f"'{meaning}' is what {premise.label} says of itself: there is nothing to prove"
+                )
         zero = Equation(equation.label, (left, left - right), "", title=meaning)
         unit_of(
             self.columns, Column(meaning, self.axis_of(left, right), Formula(zero))
@@ -422,6 +456,8 @@ class MethodBody(dict[str, Any]):
                         column.name,
                     )
                 equation, cell = column.rule.equation, column.cell
+                if typed := _fractions(*equation.sides):
+                    equation = equation.at(typed)
                 found[column.name] = equation, cell.base if isinstance(cell, Indexed) else cell
                 left += [equation.value] if everything else []
         return list(found.values())

@@ -12,9 +12,10 @@ from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from .at_once import NO_IF, OF_SYMPY, at_once
 from .column import SheetError
 from .inputs.declared import mistyped
-from .messages.errors import InputError, Location, LoopsheetError, diagnose
+from .messages.errors import Diagnostic, InputError, Location, LoopsheetError, diagnose
 
 if TYPE_CHECKING:
     from ..derivations.equation import Ledger
@@ -110,7 +111,10 @@ class _Own:
         module = types.ModuleType(f"loopsheet_workbook_{self.path.resolve().as_posix()}")
         module.__file__ = str(self.path)
         sys.modules[module.__name__] = module
-        exec(compile(self.code, str(self.path), "exec", dont_inherit=True), vars(module))
+        program = compile(self.code, str(self.path), "exec", dont_inherit=True)
+        if wrong := {line: (said, instead) for line, said, instead in at_once(self.code)}:
+            raise InputError(*(self.finding(line, *told) for line, told in sorted(wrong.items())))
+        exec(program, vars(module))
         if hasattr(module, "WORKBOOK"):
             return module.WORKBOOK
         every = [each for each in vars(module).values() if getattr(each, "__module__", "") == module.__name__]
@@ -148,11 +152,12 @@ class _Own:
             if traceback.tb_frame.f_code.co_filename == str(self.path):
                 line = traceback.tb_lineno
             traceback = traceback.tb_next
+        raise InputError(self.finding(line, reason, _HINT if error is None else _hint(error))) from error
+
+    def finding(self, line: int | None, reason: str, hint: str) -> Diagnostic:
+        """A finding at a line of the file."""
         at = _place(self.path, self.code, line)
-        hint = _HINT if error is None else _hint(error)
-        raise InputError(
-            diagnose("LS213", at, text=self.path.name, reason=reason, suggestion=hint)
-        ) from error
+        return diagnose("LS213", at, text=self.path.name, reason=reason, suggestion=hint)
 
 
 def _hint(error: BaseException) -> str:
@@ -169,9 +174,9 @@ def _hint(error: BaseException) -> str:
         case ImportError():
             return "a copy of a shipped workbook imports by full names, as loopsheet.report.sheet"
         case TypeError() if re.search("float|ufunc", str(error)):
-            return "functions are those of sympy, not of math or NumPy: from sympy import sqrt, exp, log, sin"
+            return OF_SYMPY
         case TypeError() if "truth value" in str(error):
-            return "a formula has no if: write max(a, b) or min(a, b)"
+            return NO_IF
         case TypeError() if word := re.match(r"(\w+)\(\) (takes|missing|got)", str(error)):
             return _called(word[1])
         case TypeError() if re.search("symbol|Indexed|Symbol", str(error)):

@@ -21,6 +21,7 @@ BODY = """\
     s = let(sqrt(S / (count() - 1)), "scatter")
     R = let(total(x * y) ** 2 / (total(x**2) * total(y**2)), "square of a cosine")
     part = let(x / L, "part")
+    tenth = let(0.1 * x + 2.104 * L, "with decimal fractions")
     a = unknown("offset")
     b = unknown("slope")
     line = fit(y, a + b * x)
@@ -35,6 +36,7 @@ CLAIMS = {
     "(dx + mean(x), x, 'of each row')": "(dx + mean(x), x + L / 10**30, 'w')",
     "(s**2 * (count() - 1), total(x * dx), 'squares')": "(s**2 * count(), total(x * dx), 'w')",
     "(part**2 * L, x**2 / L, 'of a row')": "(part**2 * L, 2 * x**2 / L, 'w')",
+    "(tenth**2, (x + 21.04 * L) ** 2 / 100, 'decimals')": "(tenth**2, (x + 21.05 * L) ** 2 / 100, 'w')",
     "(sin(part) ** 2 + 0.5 * cos(part) ** 2 * 2, 1, 'a')": "(sin(part) ** 2 + cos(part), 1.0, 'w')",
     "(total(line.residual), 0, 'residuals')": "(total(line.residual**2), 0, 'w')",
     "(total(line.residual * x), 0, 'moments')": "(total(line.residual * x**2), 0, 'w')",
@@ -92,7 +94,7 @@ def test_a_wrong_claim_is_red(
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("claim(x, y, 'of two kinds')", "of two kinds (7): cannot add A^-1 kg m^2 s^-3 and m"),
+        ("claim(x, y, 'of two kinds')", "of two kinds (8): cannot add A^-1 kg m^2 s^-3 and m"),
         ("claim(x > y, 1, 'no formula')", "is no formula of real numbers"),
         (
             "r = unknown(); r = root(r**3 + r, x, 'r', low=0, high=9); claim(r, x, 'root')",

@@ -151,6 +151,10 @@ def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         ("c = let(a, 5)", "a meaning is a text in quotes, not 5"),
         ('c = given(a, "x")', "a unit is a text in quotes, not a"),
         ('c = given("m", "x", low="3")', "low and high are numbers, in the unit that is declared, not '3'"),
+        ('c = let("2 * a", "x")', "'2 * a' is a text: a formula stands there without quotes"),
+        ('let(2 * a, "no name")', "'no name' has no name: a line is a name, =, and what is declared"),
+        ('c = [let(2 * a, "in a list")]', "'in a list' has no name"),
+        ('c = let(a / 2, "half"); claim(2 * c, a, "twice")', "'twice' is what (1) says of itself"),
         ('a = given("m", "again")', "a is declared twice"),
         ('c = let(a + b, "of two kinds")', "cannot add m and s"),
         ('c = let(a + a, "length", "s")', "the unit s is s, but the formula gives m"),
@@ -172,7 +176,7 @@ def test_a_wrong_line_is_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, said: str
 ) -> None:
     head = "import sympy\nfrom sympy import Symbol\n" + PIPE.partition("    Re")[0]
-    head = head.replace("import Method", "import measured, Method")
+    head = head.replace("import Method", "import claim, measured, Method")
     code = f'{head}    a = given("m", "length")\n    b = given("s", "time")\n    {line}\n'
     where = folder(tmp_path, code, 'a = "1.0 m"\nb = "2.0 s"\n')
     assert main(["check", str(where), "--no-cache"]) == 2

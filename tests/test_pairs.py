@@ -77,6 +77,20 @@ def test_what_pairs_share_is_one_error(tmp_path: Path) -> None:
     assert u == pytest.approx(0.5 * np.sqrt((by_y**2).sum()), rel=1e-12)
 
 
+def test_what_is_summed_over_pairs_needs_no_line_of_its_own(tmp_path: Path) -> None:
+    code = SEN.partition("    rise")[0].replace('headline="b middle"', 'headline="m many"')
+    code += (
+        "    m = let(mean(second(x) - first(x)), 'mean distance')\n    many = let(count(first(x)), 'pairs')\n"
+    )
+    report = Study(folder(tmp_path, code)).report
+    apart = [b - a for a, b in combinations(X, 2)]
+    assert report.values.scalar("m") == pytest.approx(np.mean(apart), rel=1e-14)
+    assert report.values.scalar("many") == 21
+    assert [spec.name for spec in Material(report).specs] == ["readings", "scalars"]
+    with pytest.raises(SheetError, match="no quantity of pairs is declared yet"):
+        exec(code.replace("    m = let(mean(second(x) - first(x)), 'mean distance')\n", ""), {})
+
+
 def test_every_engine_and_proof(
     tmp_path: Path, require: Callable[..., str], capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -94,6 +108,7 @@ def test_a_false_claim_of_pairs_is_refuted(tmp_path: Path, capsys: pytest.Captur
     assert main(["check", str(folder(tmp_path, wrong)), "--no-cache"]) == 1
     told = capsys.readouterr().out
     assert "(10) is refuted" in told
+    assert any("(10) is refuted" in said for said in loopsheet.load(tmp_path).findings)
     assert "(10), rises, does not hold of these data: its sides differ by" in told
 
 

@@ -1,0 +1,82 @@
+"""What Python would work out in the body of a method before there are numbers: found where it stands.
+
+A name of the body is a symbol: Python's ``==`` of two symbols is False, and NumPy's mean of one is that one.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Set
+
+__all__ = ["NO_IF", "OF_SYMPY", "at_once"]
+
+_WORDS = {"constant", "fit", "given", "let", "measured", "pairs", "root", "unknown"}
+"""What declares a name."""
+_OF_NUMBERS = {"cmath", "math", "numpy", "scipy", "statistics"}
+_COMPARED = (ast.Eq, ast.NotEq, ast.In, ast.NotIn, ast.Is, ast.IsNot)
+NO_IF = "a formula has no if: write max(a, b) or min(a, b)"
+OF_SYMPY = (
+    "functions are those of sympy, not of math or NumPy: from sympy import sqrt, exp, log, sin; over rows "
+    "there are sum(x), mean(x), median(x), max(x) and min(x) of loopsheet"
+)
+
+
+def at_once(code: bytes) -> Iterator[tuple[int, str, str]]:
+    """Lines in the bodies of methods at which Python, NumPy or math would work on names.
+
+    Parameters
+    ----------
+    code : bytes
+        Of a workbook that can be compiled.
+
+    Yields
+    ------
+    line, what happens there, and what to write instead
+    """
+    tree = ast.parse(code)
+    foreign = set(_foreign(tree))
+    for method in ast.walk(tree):
+        if isinstance(method, ast.ClassDef) and any("Method" in ast.unparse(base) for base in method.bases):
+            yield from _of_body(method, foreign)
+
+
+def _foreign(tree: ast.AST) -> Iterator[str]:
+    """What modules of numbers, and functions of theirs, are called."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (each.asname or each.name for each in node.names if _root(each.name) in _OF_NUMBERS)
+        elif isinstance(node, ast.ImportFrom) and _root(node.module or "") in _OF_NUMBERS:
+            yield from (each.asname or each.name for each in node.names)
+
+
+def _root(module: str) -> str:
+    return module.partition(".")[0]
+
+
+def _of_body(method: ast.ClassDef, foreign: Set[str]) -> Iterator[tuple[int, str, str]]:
+    declared: set[str] = set()
+    for statement in method.body:
+        for node in ast.walk(statement):
+            match node:
+                case ast.If(test=test) | ast.IfExp(test=test) | ast.While(test=test):
+                    wrong = _names(test) & declared
+                case ast.BoolOp():
+                    wrong = _names(node) & declared
+                case ast.Compare(ops=ops) if any(isinstance(each, _COMPARED) for each in ops):
+                    wrong = _names(node) & declared
+                case ast.Call() if _root(ast.unparse(node.func)) in foreign:
+                    given = (*node.args, *(each.value for each in node.keywords))
+                    if set[str]().union(*map(_names, given)) & declared:
+                        said = f"{ast.unparse(node.func)}(...) would work on the name, not on its numbers"
+                        yield node.lineno, said, OF_SYMPY
+                    continue
+                case _:
+                    continue
+            if wrong:
+                yield node.lineno, "Python decides here, before there are numbers", NO_IF
+        if isinstance(statement, ast.Assign) and _names(statement.value) & (declared | _WORDS):
+            declared |= {name for target in statement.targets for name in _names(target)}
+
+
+def _names(node: ast.AST) -> set[str]:
+    return {each.id for each in ast.walk(node) if isinstance(each, ast.Name)}
