@@ -461,6 +461,9 @@ class _Parser:
     def named(self, name: str, position: int) -> tuple[Fraction, Dimension]:
         if name in COMMON:
             return COMMON[name]
+        if name.endswith("s") and (unit := name[:-1]) in COMMON and unit != unit.lower():
+            # To pint Pas are several pascals; whoever writes so of a viscosity has lost a sign.
+            self.refuse(position, name, "LS421", f"is it '{unit}*s' or '{unit}'?")
         try:
             return _from_pint(name)
         except LookupError:

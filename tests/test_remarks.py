@@ -13,6 +13,7 @@ from loopsheet.report.document.material import Material
 from loopsheet.report.document.parts import Item
 from loopsheet.report.document.tables import Tables
 from loopsheet.report.document.tree import Table
+from loopsheet.report.messages.errors import InputError
 from loopsheet.report.study import Study
 
 TABLE = """\
@@ -45,6 +46,17 @@ def test_they_come_along(tmp_path: Path) -> None:
     assert "4, left out & B Jones &  & " in tex
     (values,) = (one for one in Tables(Material(report)).data.values() if "reading" in one.columns[0].head)
     assert not any(isinstance(cell, Item) for row in values.rows for cell in row.cells[:3])
+
+
+def test_rows_may_be_called_as_the_column_of_their_names(tmp_path: Path) -> None:
+    """A column `reading` holds the numbers of readings, or their names; not some of each."""
+    table = TABLE.replace("reading,operator", "reading,by").replace("1,A", "R-1,A").replace("2,B", "R-2,B")
+    named = table.replace("3,A", "R-3,A").replace("4,B", "R-4,B")
+    inputs = Study(gas.folder(tmp_path / "named", table=named)).inputs
+    assert (inputs.tests, inputs.naming) == ((1, 2, 3), ("reading",))
+    assert inputs.called(3) == "3 (R-3)"
+    with pytest.raises(InputError, match="'R-1'"):
+        _ = Study(gas.folder(tmp_path / "mixed", table=table)).inputs
 
 
 NOTE = "the door was open, 5 % of the time"

@@ -156,7 +156,11 @@ def read_measurements(
         return None
     heads = [read_head(table, field, columns, findings) for field in table.header]
     names = [head.name if head else "" for head in heads]
-    if "test" not in names and called not in columns:
+    # Where rows are called specimens, a column 'specimen' has their numbers, or else their names.
+    has_names = called in names and not any(
+        is_number(row.fields[names.index(called)].text) for row in table.rows
+    )
+    if "test" not in names and called not in columns and not has_names:
         names = ["test" if name == called else name for name in names]
     names = [_not_here(table, n, name, elsewhere, findings) for n, name in enumerate(names)]
     remarks: tuple[str, ...] = ()
@@ -168,8 +172,9 @@ def read_measurements(
         optional = [*(f"u({name})" for name in columns), LEFT_OUT]
         if "test" not in names:  # rows are numbered as they stand
             del required["test"]
-            optional += {"test": None, called: None}
-        remarks = tuple(_remarks(table, heads, names, [called, *required, *optional, *elsewhere]))
+            optional += {"test": None} if has_names else {"test": None, called: None}
+        known = [*([] if has_names else [called]), *required, *optional, *elsewhere]
+        remarks = tuple(_remarks(table, heads, names, known))
         places = match_columns(table, names, required, [*optional, *remarks], findings)
     tests = tuple(range(1, len(table.rows) + 1))
     if "test" in places:
