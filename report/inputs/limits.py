@@ -230,5 +230,10 @@ def check_limits(
             if number and is_pure(number.unit) and not is_pure(unit):
                 others = examples(parse_open(unit))  # 5 of what is shown in deg would be read as radians
             if number and others is not None:
-                findings.add("LS422", at, name=name, text=number.unit, unit=unit, known=others)
+                said = f"the limit of {name}"
+                if number.unit == "1":
+                    example = f"{number.text} {unit}"
+                    findings.add("LS211", at, name=said, text=number.text, unit=unit, example=example)
+                else:
+                    findings.add("LS422", at, name=said, text=number.unit, unit=unit, known=others)
                 break
