@@ -12,12 +12,14 @@ if TYPE_CHECKING:
     from sympy import Expr
 
 __all__ = [
-    "BLUE", "INK", "STYLES", "VERMILION", "Chart", "Drawn", "Series", "copied", "drawn", "shade",
+    "BARS", "BLUE", "INK", "STYLES", "VERMILION", "Chart", "Drawn", "Series", "copied", "drawn", "shade",
     "with_copies",
 ]  # fmt: skip
 
 INK, VERMILION, BLUE = "#1a1a1a", "#d55e00", "#0072b2"
 """Of Okabe and Ito: told apart by every eye."""
+BARS = "bars: standard uncertainty"
+"""What the legend says of them."""
 STYLES = ("points", "line", "level")
 _SHADES = ((68, 1, 84), (70, 50, 127), (54, 92, 141), (39, 127, 142), (31, 161, 135))
 
@@ -44,6 +46,8 @@ class Series:
         Whether the points have the names of their rows.
     value : str
         A single number that the label is told to be, behind it.
+    bars : bool
+        Whether points have bars of a standard uncertainty to both sides, where one is known.
     """
 
     x: str
@@ -54,6 +58,7 @@ class Series:
     each: bool = False
     named: bool = False
     value: str = ""
+    bars: bool = False
 
 
 @dataclass(frozen=True)

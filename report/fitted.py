@@ -156,7 +156,7 @@ class DeclaredFit:
         over = self._known[named[0]] if len(named) == 1 else fitted
 
         def points(up: Column) -> Series:
-            return Series(over.name, up.name, up.meaning, "points")
+            return Series(over.name, up.name, up.meaning, "points", bars=True)
 
         curve = Series(over.name, fitted.name, fitted.meaning, "line", VERMILION)
         for n, up, more, with_it in (

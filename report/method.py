@@ -347,7 +347,7 @@ def claim(
 
 
 def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None:
-    """Show points of two columns, and what is computed beside them.
+    """Show points of two columns, with bars of standard uncertainties, and what is computed beside them.
 
     Parameters
     ----------
@@ -365,7 +365,7 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
     for each in (across, up):
         if each.axis is None:
             raise SheetError(f"{each.name} is a single number, which is no column to plot", each.name)
-    series = [Series(across.name, up.name, up.meaning, "points")]
+    series = [Series(across.name, up.name, up.meaning, "points", bars=True)]
     for column, colour in zip(beside, itertools.cycle((VERMILION, BLUE)), strict=False):
         style = "level" if column.axis is None else "line"
         series.append(Series(across.name, column.name, column.meaning, style, colour))

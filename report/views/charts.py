@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cells.values import Status
-from ..charts import VERMILION, Chart, Series, shade
+from ..charts import BARS, VERMILION, Chart, Series, shade
 from ..document.charted import PREFIXES, Letters, Words
 from ..result.result import Report
 from . import drawing
@@ -61,10 +61,14 @@ MARGINS = (0.06, 0.1)
 
 @dataclass(frozen=True)
 class Trace:
-    """The points of a series, or of one row of the axis that is repeated; `at` has the shape (2, points)."""
+    """The points of a series, or of one row of the axis that is repeated.
+
+    `at` has the shape (2, points), and so has `u`: what bars show, 0 where there is none.
+    """
 
     labels: list[tuple[int, ...]]
     at: Array
+    u: Array
 
     @property
     def names(self) -> list[str]:
@@ -84,6 +88,11 @@ def traces(
     at = np.array(
         [(values.value[name] - zero) / size for name, (size, zero) in zip(columns, sizes, strict=True)]
     )
+    known = words.report.uncertain().u if series.bars else {}
+    us = [
+        known.get(name, np.zeros(at.shape[1])) / size for name, (size, _) in zip(columns, sizes, strict=True)
+    ]
+    u = np.where(np.isfinite(us), us, 0.0)
     ok = np.all([values.status[name] == Status.OK for name in columns], axis=0)
     for letter in chart.log:
         ok &= at["xy".index(letter)] > 0
@@ -92,7 +101,7 @@ def traces(
     for row in np.unique(which[ok]):
         here = np.flatnonzero(ok & (which == row))
         named = labels[here] if of is axis else labels[[row]]
-        yield Trace([tuple(label) for label in named.tolist()], at[:, here])
+        yield Trace([tuple(label) for label in named.tolist()], at[:, here], u[:, here])
 
 
 def _units(words: Words, chart: Chart) -> list[tuple[str, float, float]]:
@@ -109,13 +118,22 @@ def _units(words: Words, chart: Chart) -> list[tuple[str, float, float]]:
     return found
 
 
-class Frame:
-    """The ends of both axes, and which points they leave out."""
+def _bars(at: Array, u: Array) -> Array:
+    """Both ends of the bars through points, in x and then in y, with the shape (2, bars, 2)."""
+    beside = [(at[:, u[n] > 0], u[:, u[n] > 0] * np.eye(2)[n][:, None]) for n in (0, 1)]
+    return np.concatenate([np.stack([to - far, to + far], axis=-1) for to, far in beside], axis=1)
 
-    def __init__(self, chart: Chart, lines: Array, dots: Array) -> None:
+
+class Frame:
+    """The ends of both axes, which have room for the ends of bars, and which points they leave out."""
+
+    def __init__(self, chart: Chart, lines: Array, dots: Array, bars: Array) -> None:
         self.log, self.whole = [axis in chart.log for axis in "xy"], chart.whole
         self.allowed = [self._allowed(lines, dots, n) for n in (0, 1)]
-        self.ends = [self._ends(chart, np.hstack([lines, dots[:, self.holds(dots)]]), n) for n in (0, 1)]
+        for n in (0, 1):
+            bars = bars[:, bars[n] > 0] if self.log[n] else bars
+        seen = np.hstack([lines, dots[:, self.holds(dots)], bars[:, self.holds(bars)]])
+        self.ends = [self._ends(chart, seen, n) for n in (0, 1)]
 
     def flat(self, at: Array, n: int) -> Array:
         """One of both coordinates as the axis has it."""
@@ -205,7 +223,8 @@ class _Picture:
             np.hstack([np.empty((2, 0)), *(t.at for s, own in self.found if s.style == style for t in own)])
             for style in ("line", "points")
         )
-        self.frame = Frame(chart, lines, dots)
+        ends = [_bars(t.at, t.u).reshape(2, -1) for s, own in self.found if s.bars for t in own]
+        self.frame = Frame(chart, lines, dots, np.hstack([np.empty((2, 0)), *ends]))
         axes.set(xlim=self.frame.ends[0], ylim=self.frame.ends[1])
         if axes.get_xscale() == "linear":
             written = axes.xaxis.get_major_formatter().format_ticks(list(axes.get_xticks()))
@@ -247,6 +266,8 @@ class _Picture:
 
     def points(self, series: Series, own: list[Trace]) -> None:
         """Dots, thinned if they are many; what is outside of the frame is counted, and marked if named."""
+        from matplotlib.lines import Line2D
+
         at = np.hstack([trace.at for trace in own])
         total = at.shape[1]
         outermost = np.argsort(-np.abs(at[1] - np.median(at[1])), kind="stable")
@@ -260,11 +281,20 @@ class _Picture:
             shown = np.union1d(shown, named[inside[named]])
         elif len(within) < total:
             more += f"; {total - len(within)} of {total} lie outside"
+        ends = _bars(at[:, shown], np.hstack([trace.u for trace in own])[:, shown])
+        if ends.size:
+            low, high = np.transpose(self.frame.ends)[:, :, None, None]
+            ends = np.clip(ends, low, high)
+            drawing.bars(self.axes, ends, series.colour)
+            along = np.linspace(ends[..., 0], ends[..., 1], 20, axis=-1)
+            self.taken.append((along.reshape(2, -1), 1.0))
         if len(shown):  # all may lie outside
             drawing.dots(self.axes, at[0, shown], at[1, shown], size, series.colour)
         self.taken.append((at[:, shown], size / 2 + 0.75 if series.named else 1.0))
         count = total if series.named else len(own)
         self.key(series, count, more, ls="", marker="o", ms=min(size, 2.4), color=series.colour)
+        if ends.size and BARS not in (key.get_label() for key in self.keys):
+            self.keys.append(Line2D([], [], ls="", marker="|", ms=7, color=series.colour, label=BARS))
         if series.named:
             self.edge(at, beyond, f"outside the frame: {total - len(within)} of {total}")
             self.name(series, own, at, named, beyond)

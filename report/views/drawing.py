@@ -130,6 +130,17 @@ def dots(axes: Axes, x: Array, y: Array, size: float, colour: str) -> None:
     axes.update_datalim(corners[::2])  # the places alone: a single one would else be as wide as its stroke
 
 
+def bars(axes: Axes, ends: Array, colour: str) -> None:
+    """Lines between two ends each as one path, with the shape (2, bars, 2): of x and y those of every bar."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    corners = np.moveaxis(ends, 0, -1).reshape(-1, 2)
+    path = Path(corners, np.tile(np.array([Path.MOVETO, Path.LINETO], dtype=np.uint8), ends.shape[1]))
+    path.should_simplify = False
+    axes.add_artist(PathPatch(path, fill=False, snap=False, zorder=1.9, edgecolor=colour, linewidth=0.8))
+
+
 def arrowhead(axes: Axes, x: Array, y: Array, part: float, colour: str, *, back: bool = False) -> None:
     """An arrowhead on a curve at a part of its length, in the order of its points or against it."""
     n = int(part * (len(x) - 1))

@@ -169,7 +169,9 @@ def _chart(words: Words, chart: Chart) -> dict[str, Any]:
         found["whole"] = 1
     plain = {field.name: field.default for field in fields(Series)}
     for series in chart.series:
-        one = {name: value for name, value in vars(series).items() if value != plain[name]}
+        # Drawn again, points have no bars: uncertainties may have changed.
+        said = {name: value for name, value in vars(series).items() if name != "bars"}
+        one = {name: value for name, value in said.items() if value != plain[name]}
         one["label"] = words.label(series)
         if "%s" in series.label and not series.each:
             one["rows"] = (words.axis(series).name, words.axis(series).row)

@@ -5,20 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+
 from ..cells.address import index_text
-from ..cells.grid import CellBlock, Grid
-from ..charts import Series, copied, shade
+from ..cells.grid import CellBlock, Grid, Place
+from ..charts import BARS, Series, copied, shade
 from ..document.charted import Words, plain
 from ..quantity import behind
 from ..result.result import Report
 from ..workbook import FigureSpec
-from .xlsx_style import Style, number_format
+from .xlsx_style import Style, number_format, said
 
 __all__ = ["charted", "write_charts"]
 
 _SIZE = {"width": 900, "height": 540}
 _ROWS = 29
 """Rows of the worksheet that a chart covers."""
+_BESIDE = 20
+"""The first column, from 0, of how long bars are."""
 _INK, _GRID = "#1F2A36", "#E3E8ED"
 
 
@@ -33,7 +37,7 @@ def charted(report: Report, grid: Grid) -> list[FigureSpec]:
 
 def write_charts(book: Any, sheet: Any, style: Style, report: Report, grid: Grid) -> None:
     """Draw every chart, one below the other."""
-    figures = charted(report, grid)
+    figures, beside = charted(report, grid), _BESIDE
     words = Words(report)
     sheet.hide_gridlines(2)
     sheet.set_landscape()
@@ -47,7 +51,13 @@ def write_charts(book: Any, sheet: Any, style: Style, report: Report, grid: Grid
         drawn = book.add_chart({"type": "scatter"})
         labels: list[str] = []
         for place, series in enumerate(chart.series):
+            bars = list(_barred(words, grid, series))
             for each in _series(words, grid, series):
+                each["name"] += f"; {BARS} as issued" if bars else ""
+                for axis, name, u in bars:
+                    head = f"u({name}) as issued{said(grid[name].unit)}"
+                    each[f"{axis}_error_bars"] = _bars(sheet, style, beside, head, u, series.colour)
+                    beside += 1
                 labels.append(each["name"])
                 if value := series.value or (series.y if series.style == "level" else ""):
                     # Behind the chart, a formula: what is told of a number follows it.
@@ -60,10 +70,13 @@ def write_charts(book: Any, sheet: Any, style: Style, report: Report, grid: Grid
         ):
             set_axis(_axis(plain(scale.titled(scale.unit)), chart.from_zero, axis in chart.log))
         again = [place for place, label in enumerate(labels) if label in labels[:place]]
-        drawn.set_legend({"position": "right", "delete_series": again} if len(labels) > 1 else {"none": True})
+        told = len(labels) > 1 or BARS in labels[0]
+        drawn.set_legend({"position": "right", "delete_series": again} if told else {"none": True})
         drawn.set_size(_SIZE)
         drawn.show_na_as_empty_cell()
         sheet.insert_chart(top, 0, drawn, {"description": title})
+    if beside > _BESIDE:
+        sheet.print_area(0, 0, 1 + len(figures) * _ROWS, _BESIDE - 6)
 
 
 def _axis(name: str, from_zero: bool, log: bool) -> dict[str, Any]:
@@ -106,6 +119,31 @@ def _series(words: Words, grid: Grid, series: Series) -> Iterator[dict[str, Any]
         if series.each:
             own, colour = f"{of.row} {index_text(label)}", shade(number / max(1, len(parents) - 1))
         yield _one(plain(words.label(series, own)), series, colour, x, y, number * each, each)
+
+
+def _barred(words: Words, grid: Grid, series: Series) -> Iterator[tuple[str, str, list[float]]]:
+    """The axes along which points have bars, the column of each, and standard uncertainties in its unit."""
+    known = words.report.uncertain().u if series.bars else {}
+    for axis, name in (("x", series.x), ("y", series.y)):
+        scale = float(grid[name].place.scale)
+        u = [each / scale if each > 0 else 0.0 for each in known.get(name, np.empty(0)).tolist()]
+        if any(u):
+            yield axis, name, u
+
+
+def _bars(sheet: Any, style: Style, column: int, head: str, u: list[float], colour: str) -> dict[str, Any]:
+    """Write how long bars are into a column: as issued, for no other cell tells it."""
+    style.text(sheet, 1, column, head, "head")
+    sheet.set_column(column, column, 18)
+    for row, each in enumerate(u, start=2):
+        sheet.write_number(row, column, each, style("number"))
+    cells = f"={sheet.get_name()}!{Place(sheet.get_name(), 2, column, len(u)).range(sheet.get_name())}"
+    sides = {
+        f"{side}_{what}": said
+        for side in ("plus", "minus")
+        for what, said in (("values", cells), ("data", u))
+    }
+    return {"type": "custom", **sides, "end_style": 0, "line": {"color": colour, "width": 0.75}}
 
 
 def _one(

@@ -83,3 +83,17 @@ def test_rows_keep_their_names_and_a_new_one_has_none(open_page: Callable[..., L
     ]
     live.click("live-reset")
     assert words() == [*measured[:3], ["4", "", "17"], *computed]
+
+
+@pytest.mark.usefixtures("unrefereed")
+def test_bars_are_no_longer_there_where_points_may_have_moved(
+    open_page: Callable[..., Live], tmp_path: Path
+) -> None:
+    build.build(Study(gas.folder(tmp_path / "gas")), tmp_path / "out", ("html",))
+    live = open_page(tmp_path / "out" / "report.html")
+    figure = live.page.locator("#figure-plot_1 svg")
+    assert "bars: standard uncertainty" in (figure.text_content() or "")
+    live.type("T", 3, "-13.7")
+    assert "bars" not in (figure.text_content() or "")
+    live.click("live-reset")
+    assert "bars: standard uncertainty" in (figure.text_content() or "")
