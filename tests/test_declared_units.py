@@ -123,7 +123,7 @@ def test_limits_of_an_angle_name_their_unit(tmp_path: Path, capsys: pytest.Captu
     """Without it, degrees would be read as radians."""
     limits = '[limits]\nturned = "{}"\n'
     assert main(["build", str(folder(tmp_path, TOML + limits.format("300 .. 400"))), "--to", "json"]) == 2
-    assert "error[LS422]: turned is in '1', which does not convert to arcmin" in capsys.readouterr().err
+    assert "error[LS211]: the limit of turned has no unit: '300'" in capsys.readouterr().err
     assert main(["build", str(folder(tmp_path, TOML + limits.format("5 .. 6 deg"))), "--to", "json"]) == 0
 
 
