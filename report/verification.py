@@ -198,15 +198,15 @@ def _moves(found: Differences | None) -> Iterator[Check]:
         was, now, by = moved(move)
         said = f"{move.address} was {was} and is {now}" + behind(move.unit)
         yield Check("number", move.address, False, f"{said} ({by})" if by else said)
-    for change in found.method:
-        said = f"{change.name} was '{change.before or 'not there'}' and is '{change.after or 'not there'}'"
-        yield Check("method", change.name, False, said)
     for word, names in (("new", found.added), ("not there any more", found.removed)):
         for name in names:
             yield Check("number", name, False, f"{name} is {word}")
-    for change in found.published:
-        said = f"{change.name} was '{change.before or 'not there'}' and is '{change.after or 'not there'}'"
-        yield Check("published", change.name, False, said)
+    for kind, changes in (("method", found.method), ("published", found.published), ("data", found.checks)):
+        for change in changes:
+            said = (
+                f"{change.name} was '{change.before or 'not there'}' and is '{change.after or 'not there'}'"
+            )
+            yield Check(kind, change.name, False, said)
 
 
 def _verdict(checks: tuple[Check, ...], then: Manifest, found: Differences | None, rounded: str) -> str:

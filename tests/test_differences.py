@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
 import sys
 from pathlib import Path
 
@@ -13,7 +14,8 @@ from msgspec.structs import replace
 from loopsheet.report.archive.differences import Differences, Move, compare
 from loopsheet.report.cli import main
 from loopsheet.report.files.form import Index
-from loopsheet.report.files.values import Column, Published, Result
+from loopsheet.report.files.values import Column, Oddity, Published, Result
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.views.differences import as_markdown, as_text, moved
 
 EPS = sys.float_info.epsilon
@@ -156,12 +158,40 @@ def test_rows_and_columns_come_and_go() -> None:
     assert "added      v[3], new" in as_text(found, 20)
 
 
+def test_another_warning_about_the_same_numbers_is_a_difference() -> None:
+    warned = replace(RESULT, oddities=[Oddity(kind="limit", name="m", word="warning", sentence="too large")])
+    assert not compare(warned, warned).any
+    found = compare(RESULT, warned)
+    assert found.any
+    assert [(c.name, c.before, c.after) for c in found.checks] == [("limit m", "", "too large")]
+    assert "check      limit m: (none)\n" in as_text(found, 20)
+    assert "too large" in as_markdown(found, 20)
+
+
+def test_a_limit_that_was_moved_is_a_difference(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, limit, found in (("wide", "50.0010", 0), ("narrow", "50.0008", 1)):
+        shutil.copytree(PAPER.parent / "gum_h1", tmp_path / name)
+        with (tmp_path / name / "report.toml").open("a") as file:
+            file.write(f'\n[limits]\nl = "50.0007 .. {limit} mm"\n')
+        assert main(["build", str(tmp_path / name), "--to", "json"]) == found
+    capsys.readouterr()
+    assert main(["diff", str(tmp_path / "wide"), str(tmp_path / "narrow")]) == 1
+    told = capsys.readouterr().out
+    assert "0 moved" in told
+    assert (
+        "check      limits l: 50.0007 to 50.0010 mm: conforms, accepted from 0.0500007 to 0.050001 in SI"
+        in told
+    )
+    assert "-> 50.0007 to 50.0008 mm: does not conform" in told
+    assert main(["diff", str(tmp_path / "wide"), str(tmp_path / "wide")]) == 0
+
+
 def test_markdown_has_a_table_for_each_kind_and_no_live_text() -> None:
     evil = "|`<b>@you"
     found = Differences(
         evil, evil, 1, 0,
         (Move(evil, "1", False, 1.0, 2.0, ("ok", "ok")),) * 3,
-        (), (evil,), (), (),
+        (), (evil,), (), (), (),
     )  # fmt: skip
     text = as_markdown(found, 2)
     rows = [line for line in text.splitlines() if line.startswith("|")]

@@ -7,9 +7,11 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from msgspec import UNSET
+
 from ..cells.address import address
 from ..files.form import Index
-from ..files.values import Column, Result
+from ..files.values import Column, Conformity, Result
 from ..result.agreement import LIMIT
 
 __all__ = ["Differences", "Move", "OtherChange", "compare"]
@@ -83,6 +85,8 @@ class Differences:
         Columns and rows that only one of them has.
     published : tuple of OtherChange
         Published values with another verdict.
+    checks : tuple of OtherChange
+        What is told of the data: decisions on conformity, marks, warnings, what is expected or left out.
     """
 
     before: str
@@ -94,11 +98,12 @@ class Differences:
     added: tuple[str, ...]
     removed: tuple[str, ...]
     published: tuple[OtherChange, ...]
+    checks: tuple[OtherChange, ...]
 
     @property
     def any(self) -> bool:
         """Whether they differ by more than rounding."""
-        return bool(self.moved or self.method or self.added or self.removed or self.published)
+        return any((self.moved, self.method, self.added, self.removed, self.published, self.checks))
 
 
 def compare(
@@ -158,6 +163,7 @@ def compare(
         tuple(_only_in(after, before)),
         tuple(_only_in(before, after)),
         tuple(_changes(_verdicts(before), _verdicts(after))),
+        tuple(_changes(_checks(before), _checks(after))),
     )
 
 
@@ -194,6 +200,18 @@ def _verdicts(result: Result) -> dict[str, str]:
         f"{each.source} {address(each.cell, each.index)}": f"{each.printed}: {each.verdict}"
         for each in result.published
     }
+
+
+def _checks(result: Result) -> dict[str, str]:
+    """Of each check that found something, as ``limit alpha``, what it told; of each limit, the decision."""
+    told = {f"{each.kind} {each.name}": each.sentence for each in result.oddities}
+    decided = () if result.conformity is UNSET else result.conformity
+    return told | {f"limits {each.cell}": f"{each.limits}: {_decision(each)}" for each in decided}
+
+
+def _decision(found: Conformity) -> str:
+    ends = " to ".join("..." if end is None else f"{end:.12g}" for end in found.acceptance)
+    return f"{found.decision}, accepted from {ends} in SI"
 
 
 def _changes(before: Mapping[str, str], after: Mapping[str, str]) -> list[OtherChange]:

@@ -13,6 +13,7 @@ __all__ = [
     "NAME",
     "Change",
     "Column",
+    "Conformity",
     "Erratum",
     "Explanation",
     "Fit",
@@ -132,6 +133,29 @@ class Oddity(Form, frozen=True, kw_only=True):
     name: Text
     word: Text
     sentence: Text
+
+
+class Conformity(Form, frozen=True, kw_only=True):
+    """Whether a cell lies where it has to.
+
+    Parameters
+    ----------
+    cell : str
+        Its address.
+    limits : str
+        The tolerance limits as they are stated.
+    acceptance : two numbers or null
+        Between which it is accepted, in SI; null for an end that there is none of, or that is not known.
+    probability : number or null
+        That the quantity lies within the tolerance limits; null where no distribution is known.
+    decision : str
+    """
+
+    cell: Text
+    limits: Text
+    acceptance: tuple[Number, Number]
+    probability: Number = None
+    decision: Text
 
 
 class Erratum(Form, frozen=True, kw_only=True):
@@ -345,6 +369,8 @@ class Result(Form, frozen=True, kw_only=True):
     cells : table of Column
         In the order of the sheet.
     oddities : list of Oddity
+    conformity : list of Conformity
+        Missing where no cell has limits.
     proofs : table of str
         The status of each equation.
     rests_on : table of lists
@@ -362,6 +388,7 @@ class Result(Form, frozen=True, kw_only=True):
     title: Text
     cells: dict[Text, Column]
     oddities: list[Oddity] = field(default_factory=list)
+    conformity: list[Conformity] | UnsetType = UNSET
     proofs: dict[Text, Text]
     rests_on: dict[Text, list[Text]] = field(default_factory=dict)
     errata: list[Erratum] = field(default_factory=list)

@@ -6,7 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 
-from ..archive.differences import Differences, Move
+from ..archive.differences import Differences, Move, OtherChange
 from ..messages.diagnostics import visible
 from ..quantity import behind
 from . import markdown as md
@@ -29,7 +29,7 @@ def as_text(found: Differences, most: int) -> str:
         was, now, by = moved(move)
         lines.append(f"  {kind}    {move.address:16} {was} -> {now}{_unit(move)}   {by}".rstrip())
     lines += _rest([move.address for move in found.moved], most)
-    for word, changes in (("method", found.method), ("published", found.published)):
+    for word, changes in _others(found):
         for change in changes[:most]:
             lines.append(f"{word:10} {change.name}: {_said(change.before)}")
             lines.append(f"{'':10} {'':{len(change.name)}}  -> {_said(change.after)}")
@@ -39,6 +39,10 @@ def as_text(found: Differences, most: int) -> str:
         lines += _rest(names, most)
     lines.append(_verdict(found))
     return "".join(f"{visible(line)}\n" for line in lines)
+
+
+def _others(found: Differences) -> tuple[tuple[str, Sequence[OtherChange]], ...]:
+    return ("method", found.method), ("published", found.published), ("check", found.checks)
 
 
 def _count(found: Differences) -> str:
@@ -107,7 +111,7 @@ def as_markdown(found: Differences, most: int) -> str:
         kind = "input" if move.given else "result"
         rows.append([md.code(move.address), kind, md.cell(was), md.cell(now + _unit(move)), md.cell(by)])
     text += _section(["number", "", "before", "after", "by"], rows, [m.address for m in found.moved], most)
-    for word, changes in (("method", found.method), ("published", found.published)):
+    for word, changes in _others(found):
         rows = [[md.code(c.name), md.code(_said(c.before)), md.code(_said(c.after))] for c in changes[:most]]
         text += _section([word, "before", "after"], rows, [change.name for change in changes], most)
     for word, names in (("added", found.added), ("removed", found.removed)):

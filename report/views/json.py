@@ -20,7 +20,7 @@ from ..files.manifest import Manifest
 from ..machine.staging import put
 from ..result import verdict_data
 from ..result.result import Comparison, Report
-from ..result.uncertain import ErrorSource
+from ..result.uncertain import Conformity, ErrorSource
 from ..result.verdict import Verdict
 from ..sheet import Column, Formula, RepeatAxis
 from .issued import Issued
@@ -50,6 +50,7 @@ def values(report: Report) -> str:
                 for check in report.oddities
                 if check.word
             ],
+            conformity=[_decided(each) for each in report.uncertain().conformities] or UNSET,
             proofs=proof_statuses(report),
             rests_on=proof_grounds(report),
             errata=[alike(erratum, form.Erratum) for erratum in report.errata],
@@ -57,6 +58,17 @@ def values(report: Report) -> str:
             influences=_influences(report),
             referee=UNSET if report.referee.joint is None else verdict_data.data(report.referee),
         )
+    )
+
+
+def _decided(found: Conformity) -> form.Conformity:
+    low, high = (float(end) if math.isfinite(end) else None for end in found.acceptance)
+    return form.Conformity(
+        cell=found.budget.cell,
+        limits=str(found.limits),
+        acceptance=(low, high),
+        probability=None if math.isnan(found.probability) else float(found.probability),
+        decision=found.decision.value,
     )
 
 
