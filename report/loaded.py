@@ -110,7 +110,7 @@ class Loaded(Mapping[str, Estimates]):
         column, how = report.sheet[name], report.shown[name]
         cells = list(report.values.cells(name))
         shape = () if column.axis is None else (len(cells),)
-        printed = [float(number.number) for number in report.inputs.printed(name)]
+        printed = [float(each.number) if each else np.nan for each in report.inputs.printed(name)]
         known = report.uncertain().u.get(name)
         u = np.full(len(cells), np.nan) if known is None else known
         return Estimates(

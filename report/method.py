@@ -276,7 +276,7 @@ def total(formula: Any) -> Expr:
 
 def mean(formula: Any) -> Expr:
     """The mean over all rows, or over all pairs."""
-    return total(formula) / count(formula)
+    return _body().mean(formula)
 
 
 def median(formula: Any) -> Expr:
@@ -289,7 +289,7 @@ def median(formula: Any) -> Expr:
 
 
 def count(formula: Any = 0) -> Symbol:
-    """How many rows there are; of a formula for pairs, how many pairs."""
+    """How many rows the sums beside it run over; of a formula, in how many rows, or pairs, it has a value."""
     return _body().number(formula)
 
 

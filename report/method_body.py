@@ -231,25 +231,38 @@ class MethodBody(dict[str, Any]):
             return Add(*map(exact, formula))
         over = self.axis_of(formula) or self.axis
         if over is not self.axis and not isinstance(formula, Indexed):
-            formula = self._of_pairs(formula)
+            formula = self._of_rows(formula, over)
         return Sum(formula, (over.index, 1, over.size))
 
-    def number(self, formula: Any) -> Symbol:
-        """How many rows a formula has, or pairs of rows."""
-        over = self.axis_of(formula) or self.axis
-        if over is not self.axis and all(column.axis != over for column in self.columns.values()):
-            raise SheetError(
-                "no quantity of pairs is declared yet that could be counted: let(...) one be first"
-            )
-        return over.size
+    def mean(self, formula: Any) -> Expr:
+        """The sum by the number of the rows that it runs over."""
+        return self.total(formula) / (self.axis_of(formula) or self.axis).size
 
-    def _of_pairs(self, formula: Any) -> Expr:
-        """A formula for pairs as a column of its own: rows of pairs are those of their columns."""
-        own = f"of_pairs_{sum(column.axis in self.axes[1:] for column in self.columns.values()) + 1}"
-        said = ComputedLine("of a pair", "", {"positive": False}, (exact(formula),), next(self.own))
-        self.columns[own] = column = self._computed(own, said)
-        self.aside.append(own)
-        return column.cell
+    def number(self, formula: Any) -> Symbol:
+        """How many rows there are, where it stands; of a formula, in how many rows it has a value."""
+        over = self.axis_of(formula)
+        if over is None:
+            return self.axis.size
+        is_cell = isinstance(formula, Indexed) and formula.indices == (over.index,)
+        cell = formula if is_cell else self._of_rows(formula, over)
+        name = f"count_of_{cell.base.name}"
+        if name not in self.columns:
+            column = self._aside(name, f"{over.name} with a value", over.size)
+            self.columns[name] = replace(column, alongside=(self.columns[cell.base.name],))
+        return self.columns[name].symbol
+
+    def _of_rows(self, formula: Any, over: Axis) -> Indexed:
+        """A formula for rows, or pairs of them, as a column of its own."""
+        own = f"of_{over.name}_{sum(column.axis == over for column in self.columns.values()) + 1}"
+        found: Indexed = self._aside(own, f"of a {over.row}", formula).cell
+        return found
+
+    def _aside(self, name: str, meaning: str, formula: Any) -> Column:
+        """A column that no line declares."""
+        said = ComputedLine(meaning, "", {"positive": False}, (exact(formula),), next(self.own))
+        self.columns[name] = column = self._computed(name, said)
+        self.aside.append(name)
+        return column
 
     def axis_of(self, *formulas: Any) -> Axis | None:
         """The rows that formulas have a value for each of; None for a single number."""
@@ -280,20 +293,20 @@ class MethodBody(dict[str, Any]):
 
     @property
     def whole(self) -> tuple[Column, ...]:
-        """All columns: the sums that one result rests on leave out the same rows.
+        """All columns: the sums and counts that one result rests on leave out the same rows.
 
-        Those are rows in which something was not measured, or has no value that one of these sums, or what is
-        computed from them, asks for; what rests on a sum itself cannot be asked.
+        Those are rows in which what one of them, or what is computed from them, asks for has no value; what
+        rests on a sum itself cannot be asked.
         """
         sheet = Sheet(tuple(self.columns.values()))
         below = {c.name: {c.name, *(each.name for each in sheet.ancestors(c))} for c in sheet.columns}
-        sums = {c.name for c in sheet.columns if sheet.summed_axes(c)}
+        over = {c.name: {*sheet.summed_axes(c), *sheet.algebra.counted(c)} for c in sheet.columns}
+        sums = {name for name, axes in over.items() if axes}
         rows = [c for c in sheet.columns if c.axis and not sums & below[c.name]]
 
         def asked(total: Column) -> Iterator[Column]:
             together = set[str]().union(*(names for names in below.values() if total.name in names))
-            there = [c for c in rows if c.axis in sheet.summed_axes(total)]
-            return (c for c in there if isinstance(c.rule, Given) or c.name in together)
+            return (c for c in rows if c.axis in over[total.name] and c.name in together)
 
         return tuple(replace(c, alongside=tuple(asked(c))) if c.name in sums else c for c in sheet.columns)
 

@@ -41,11 +41,17 @@ class Named:
         return {axis.index: axis for axis in self.axes}
 
     def summed(self, column: Column) -> tuple[Axis, ...]:
-        """The axes that its rule takes something over."""
+        """The axes that its rule takes something over, or counts rows of that it looks at."""
         over = {
             total.limits[0][0] for expression in column.expressions for total in expression.atoms(*REDUCTIONS)
         }
+        over |= {other.axis.index for other in column.alongside if other.axis in self.counted(column)}
         return tuple(axis for axis in self.axes if axis.index in over)
+
+    def counted(self, column: Column) -> tuple[Axis, ...]:
+        """The axes whose number of rows its rule names."""
+        named = set[Basic]().union(*(expression.free_symbols for expression in column.expressions))
+        return tuple(axis for axis in self.axes if axis.size in named)
 
     def of(self, column: Column) -> Iterator[Reference]:
         """The cells that a column names."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -20,14 +21,19 @@ __all__ = ["Prepared", "sheet_data"]
 
 
 def sheet_data(sheet: Sheet, inputs: Inputs) -> dict[str, Any]:
-    """What a sheet is given, in SI as exact fractions: a list for a measured column, one for a parameter."""
-    given: dict[str, Any] = {name: [p.value for p in column] for name, column in inputs.measured.items()}
+    """What a sheet is given, in SI as exact fractions: a list for a measured column, one for a parameter.
+
+    What is missing is None.
+    """
+    given: dict[str, Any] = {
+        name: [p and p.value for p in column] for name, column in inputs.measured.items()
+    }
     given |= {name: printed.value for name, printed in inputs.parameters.items()}
     needed = {c.name for c in sheet.columns}
     data = {name: value for name, value in given.items() if name in needed}
     for column in sheet.columns:
         if isinstance(column.rule, Given) and (own := column.rule.u_of):
-            data[column.name] = [Fraction(u) for u in inputs.own_u(own)]
+            data[column.name] = [None if math.isnan(u) else Fraction(u) for u in inputs.own_u(own)]
     return data
 
 
@@ -76,9 +82,10 @@ class Prepared:
 
     @property
     def data(self) -> dict[str, Any]:
-        """What the other engines start from: the nearest doubles."""
+        """What the other engines start from: the nearest doubles, NaN for what is missing."""
         return {
-            n: [float(x) for x in v] if isinstance(v, list) else float(v) for n, v in self.exact_data.items()
+            n: [math.nan if x is None else float(x) for x in v] if isinstance(v, list) else float(v)
+            for n, v in self.exact_data.items()
         }
 
     def computed(self, whole: Sheet, most: int) -> tuple[ExactValues | None, tuple[Values, Values]]:

@@ -10,12 +10,15 @@ import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..derivations.unit_text import parse_open
 from .distribution import Error, Shape
 
-__all__ = ["LARGEST", "SMALLEST", "Bounds", "Printed", "behind", "span"]
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = ["LARGEST", "SMALLEST", "Bounds", "Printed", "behind", "span", "there"]
 
 
 LARGEST = 2**1024 - 2**970
@@ -216,3 +219,8 @@ class Printed:
     def u(self) -> float:
         """Standard uncertainty in SI, of all its errors."""
         return math.hypot(*(error.u for error in self.errors))
+
+
+def there(numbers: Iterable[Printed | None]) -> tuple[Printed, ...]:
+    """Those of a column that are there: a cell may be empty."""
+    return tuple(number for number in numbers if number is not None)

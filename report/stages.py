@@ -307,7 +307,7 @@ def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
     like = (column.rule.u_of or column.name) if isinstance(column.rule, Given) else ""
     if unit.startswith("like "):
         like = like or unit.removeprefix("like ")
-    if printed := inputs.printed(like):
+    if printed := inputs.numbers(like):
         unit = printed[0].unit
         if like != column.name and isinstance(column.rule, Given):
             unit = of_differences(parse_unit(unit))  # an uncertainty
@@ -318,7 +318,7 @@ def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
     digits = []
     for given in (*sheet.ancestors(column), column):
         if isinstance(given.rule, Given) and not given.exact:
-            digits += [each.digits for each in inputs.printed(given.name) if each.value and each.u]
+            digits += [each.digits for each in inputs.numbers(given.name) if each.value and each.u]
     return Shown(unit, float(size.scale), min(digits, default=5) + 1, float(size.zero))
 
 

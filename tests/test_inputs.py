@@ -329,7 +329,6 @@ def test_all_findings_of_all_files_at_once(findings: Findings) -> None:
         "LS422 measurements.csv:1:25+2",
         "LS401 measurements.csv:2:3+3",
         "LS311 measurements.csv:3:1+1",
-        "LS403 measurements.csv:3:3+1",
         "LS501 published.csv:2:9+4",
         "LS502 published.csv:2:18+7",
         "LS203 report.toml:4:1+8",

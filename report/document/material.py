@@ -67,7 +67,9 @@ class Material:
         head, cells = self.head(column), list(self.report.values.cells(name))
         # A given number is shown as it was printed, in the unit it was printed in; what another report has
         # computed was not, but is edited with all its digits.
-        printed = tuple(number.text for number in self.report.inputs.printed(name) if head.given)
+        printed = tuple(
+            each.text if each else None for each in self.report.inputs.printed(name) if head.given
+        )
         texts, figures = printed or (None,) * len(cells), self.report.figures(name)
         places = max((len(figure.fraction) for figure in figures if figure is not None), default=0)
         head = replace(head, format=table_format(figures), places=places)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -21,6 +22,7 @@ from ..messages.errors import (
     listing,
     suggest,
 )
+from ..quantity import there
 from .draws import read_draws
 from .expected import EXAMPLE, Expectation, check_expected
 from .limits import Limits, check_limits, read_limits
@@ -77,8 +79,8 @@ class Inputs:
         The names of those that were really given.
     tests : tuple of int
         The test numbers, in the order of the file.
-    measured : dict of str to tuple of Printed
-        One number a test for each measured column.
+    measured : dict of str to tuple of Printed or None
+        One number a test for each measured column; None where the cell is empty.
     header_units : dict of str to str
         The unit of each measured column, as written in the header, and of the column of its uncertainties,
         which is called ``u(x_p)``.
@@ -121,7 +123,7 @@ class Inputs:
     parameters: dict[str, Printed]
     given: frozenset[str]
     tests: tuple[int, ...]
-    measured: dict[str, tuple[Printed, ...]]
+    measured: dict[str, tuple[Printed | None, ...]]
     header_units: dict[str, str]
     published: tuple[PublishedValue, ...]
     files: dict[str, bytes]
@@ -186,22 +188,29 @@ class Inputs:
         """The file that says what is to be reported."""
         return Location((self.folder / "report.toml").as_posix())
 
-    def printed(self, name: str) -> tuple[Printed, ...]:
-        """The numbers of a given column as they were printed, one a row; none if the folder has none."""
+    def printed(self, name: str) -> tuple[Printed | None, ...]:
+        """The numbers of a given column as they were printed, one a row, None in those without one.
+
+        There are no rows of a column that the folder has nothing of.
+        """
         if name in self.measured:
             return self.measured[name]
         return (self.parameters[name],) if name in self.parameters else ()
+
+    def numbers(self, name: str) -> tuple[Printed, ...]:
+        """The numbers of a given column that are there."""
+        return there(self.printed(name))
 
     def own_u(self, name: str) -> tuple[float, ...]:
         """The standard uncertainty of each number of a measured column by itself, in SI.
 
         What is stated of the column and shared by tests has no part in it, nor has what moves several numbers
-        that were taken from another report.
+        that were taken from another report. An empty cell has NaN.
         """
         if (taken := self.taken.get(name)) is not None:
             own = alone(self.taken, self.measured)
             return tuple(taken.u(errors, own) for errors in taken.errors)
-        return tuple(printed.u for printed in self.printed(name))
+        return tuple(math.nan if each is None else each.u for each in self.printed(name))
 
 
 def load(
@@ -548,6 +557,10 @@ class _Reader:
             if text is None or place is None:
                 continue
             printed = measurements.measured[place[0]][place[1]]
+            if printed is None:
+                at = self.toml.key(*path, address)
+                self.findings.add("LS506", at, name=place[0], text=place[1], known="rows with a number")
+                continue
             try:
                 found[place] = replace(
                     read_printed(text, parse_unit(printed.unit), mode=printed.mode), stated=printed.stated

@@ -38,6 +38,8 @@ MODES = ("rounded", "truncated")
 
 LEFT_OUT = "left out"
 _GAP = f"say why it is missing in a column '{LEFT_OUT}': the row takes no part then"
+_ONLY_U = "what has an uncertainty has a value: leave out both, or neither"
+_NOWHERE = "no row of this column has one: leave out what the method does not need"
 _EXCLUDING = re.compile(r"(?i)(exclu|omit|reject|discard|skip|ignor|outlier|left[_-]?out|leave[ _-]?out).*")
 """The column that says why a test takes no part; empty where it does."""
 
@@ -83,7 +85,7 @@ class Measurements:
     """
 
     tests: tuple[int, ...]
-    measured: dict[str, tuple[Printed, ...]]
+    measured: dict[str, tuple[Printed | None, ...]]
     header_units: dict[str, str]
     left_out: tuple[LeftOut, ...] = ()
     heads: dict[str, str] = field(default_factory=dict)
@@ -187,7 +189,7 @@ def read_measurements(
         at = table.end_of_header() if table.total == 0 else _last(table)
         findings.add("LS310", at, count=count)
     used = [row for place, row in enumerate(table.rows) if place not in gone]
-    values: dict[str, tuple[Printed, ...]] = {}
+    values: dict[str, tuple[Printed | None, ...]] = {}
     units: dict[str, str] = {}
     of_u: dict[str, ParsedUnit | None] = {}
     for name, column in columns.items():
@@ -198,20 +200,26 @@ def read_measurements(
                 units[each.name] = each.unit.strip() or "1"  # empty brackets: a pure number
         if name in places:
             mode = modes.get(name, "rounded")
-            read = []
+            read: list[Printed | None] = []
             for row in used:
                 if findings.full:
                     break
                 cell = row.fields[places[name]]
-                where = source.trace(cell.offset)
-                printed = read_value(
-                    cell.text, unit, column, table.at(cell), findings, mode=mode, where=where, if_empty=_GAP
-                )
-                if f"u({name})" in places:
-                    given = _uncertainty(table, row.fields[places[f"u({name})"]], name, of_u[name], findings)
-                    printed = printed and _with(table, cell, printed, name, given, findings)
+                beside = row.fields[places[f"u({name})"]] if f"u({name})" in places else None
+                printed = None
+                if cell.text or (beside is not None and beside.text):
+                    at, where = table.at(cell), source.trace(cell.offset)
+                    printed = read_value(
+                        cell.text, unit, column, at, findings, mode=mode, where=where, if_empty=_ONLY_U
+                    )
+                    if beside is not None:
+                        given = _uncertainty(table, beside, name, of_u[name], findings)
+                        printed = printed and _with(table, cell, printed, name, given, findings)
                 read.append(printed)
-            values[name] = tuple(printed for printed in read if printed is not None)
+            values[name] = tuple(read)
+    if len(findings.found) > before:
+        return None
+    _refuse_nothing(table, used, {name: places[name] for name in values}, columns, findings)
     if len(findings.found) > before:
         return None
     taken = tuple(test for place, test in enumerate(tests) if place not in gone)
@@ -240,6 +248,24 @@ def read_measurements(
     lines = dict(zip(taken, map(texts, used), strict=True))
     first = {name: table.header[place].text for name, place in places.items()}
     return Measurements(taken, values, units, left_out, first, lines, remarks)
+
+
+def _refuse_nothing(
+    table: CsvTable,
+    rows: Sequence[CsvRow],
+    places: Mapping[str, int],
+    columns: Mapping[str, Measured],
+    findings: Findings,
+) -> None:
+    """Refuse columns and rows without any number: a cell may be empty, as long as others are not."""
+    for name, place in places.items():
+        if not any(row.fields[place].text for row in rows):
+            allowed, at = f"a number ({columns[name].meaning})", table.at(rows[0].fields[place])
+            findings.add("LS403", at, name=name, allowed=allowed, suggestion=_NOWHERE)
+    for row in rows if places else ():
+        if not any(row.fields[place].text for place in places.values()):
+            allowed, at = "a number in one column at least", table.at(row.fields[min(places.values())])
+            findings.add("LS403", at, name="the row", allowed=allowed, suggestion=_GAP)
 
 
 def _remarks(

@@ -111,9 +111,9 @@ def read_u(text: str, option: str, inputs: Inputs) -> Said:
                 findings.add("LS604", at, kind="column or parameter", text=name, **words)
             continue
         before = _SAYS if _BARE.fullmatch(said) and "digit" not in said else ""
-        of = Of(inputs.printed(name), inputs.workbook.declared[name].bounds)
+        of = Of(inputs.numbers(name), inputs.workbook.declared[name].bounds)
         try:
-            found[name] = read_statement(before + said, parse_unit(inputs.printed(name)[0].unit), None, of)
+            found[name] = read_statement(before + said, parse_unit(inputs.numbers(name)[0].unit), None, of)
         except StatementError as error:
             at = _place(option, text, start + max(error.start - len(before), 0), max(len(error.text), 1))
             findings.add(error.code, at, text=error.text, suggestion=error.suggestion)
@@ -132,7 +132,7 @@ def planned(inputs: Inputs, values: Mapping[str, Sequence[float]], like: Sequenc
     Parameters
     ----------
     inputs : Inputs
-        Of what was measured.
+        Of what was measured; no cell is empty.
     values : mapping of str to sequence of float
         All measured columns, in SI.
     like : sequence of int
@@ -157,8 +157,8 @@ def planned(inputs: Inputs, values: Mapping[str, Sequence[float]], like: Sequenc
         new for old, new in zip(own.shared, shared, strict=True) if bool(old.groups) == bool(new.groups)
     )
     stated = replace(own, columns={**own.columns, **said}, shared=shared)
-    measured = {
-        name: tuple(_like(inputs.measured[name][row], value) for row, value in zip(like, column, strict=True))
+    measured: dict[str, tuple[Printed | None, ...]] = {
+        name: tuple(_like(inputs.numbers(name)[row], value) for row, value in zip(like, column, strict=True))
         for name, column in values.items()
     }
     parameters = {name: (printed,) for name, printed in inputs.parameters.items()}

@@ -8,6 +8,7 @@ from math import copysign, sqrt
 from typing import TYPE_CHECKING, Any
 
 from ..messages.errors import listing, suggest
+from .measurements import LEFT_OUT
 from .parameters import wrong_type
 from .stated import covariance
 
@@ -17,10 +18,8 @@ if TYPE_CHECKING:
 
 __all__ = ["correlations_of", "read_paired"]
 
-Numbers = Mapping[str, Sequence["Printed"]]
 
-
-def correlations_of(columns: Numbers) -> dict[tuple[str, str], float]:
+def correlations_of(columns: Mapping[str, Sequence[Printed]]) -> dict[tuple[str, str], float]:
     """The correlation coefficients of paired readings; of none that are all the same."""
     own = {name: covariance(column, column) for name, column in columns.items()}
     found = {}
@@ -31,7 +30,9 @@ def correlations_of(columns: Numbers) -> dict[tuple[str, str], float]:
     return found
 
 
-def read_paired(tables: TomlTables, section: str, numbers: Numbers) -> tuple[str, ...]:
+def read_paired(
+    tables: TomlTables, section: str, numbers: Mapping[str, Sequence[Printed | None]]
+) -> tuple[str, ...]:
     """The columns of repeated readings that were taken together; none, with a finding, if that is wrong."""
     path = (section, "paired")
     written: Any = tables.toml.data[section]["paired"]
@@ -44,5 +45,10 @@ def read_paired(tables: TomlTables, section: str, numbers: Numbers) -> tuple[str
         known = f"two or more of {listing(columns)}, each once, with two rows or more"
         text, at = wrong[0] if wrong else ", ".join(written), tables.toml.value(*path)
         tables.findings.add("LS505", at, text=text, known=known, suggestion=suggest(text, columns))
+        return ()
+    if gaps := [name for name in written if None in numbers[name]]:
+        reason = f"paired readings were taken together, and {gaps[0]} has not one in each row"
+        hint = f"say in a column '{LEFT_OUT}' why such a row takes no part"
+        tables.findings.add("LS434", tables.toml.value(*path), reason=reason, suggestion=hint)
         return ()
     return tuple(written)

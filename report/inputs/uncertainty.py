@@ -22,10 +22,11 @@ import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ...derivations.unit_text import parse_unit
 from ..messages.errors import listing, suggest
+from ..quantity import there
 from .keys import ANY, fixed
 from .number_text import NumberError, read_number
 from .parameters import wrong_type
@@ -44,7 +45,8 @@ __all__ = ["SharedError", "Stated", "read_bare", "read_uncertainty"]
 SECTION = "uncertainty"
 DIGITS = (1, 2)
 """How many digits an uncertainty may have: more would say nothing (JCGM 100, 7.2.6)."""
-Numbers = Mapping[str, tuple["Printed", ...]]
+Numbers = Mapping[str, tuple["Printed | None", ...]]
+One = TypeVar("One", "Printed", "Printed | None")
 
 
 @dataclass(frozen=True)
@@ -98,12 +100,12 @@ class Stated:
     paired: tuple[str, ...] = ()
     digits: int = DIGITS[-1]
 
-    def of(self, numbers: Numbers) -> dict[str, tuple[Printed, ...]]:
+    def of(self, numbers: Mapping[str, tuple[One, ...]]) -> dict[str, tuple[One, ...]]:
         """Numbers with what is stated of them."""
         together = dict.fromkeys(self.paired, ", ".join(self.paired))
 
-        def said(name: str, each: Printed) -> Printed:
-            return replace(each, stated=self.columns[name].of(each, together.get(name, name)))
+        def said(name: str, each: One) -> One:
+            return each and replace(each, stated=self.columns[name].of(each, together.get(name, name)))
 
         return {
             name: tuple(said(name, each) for each in column) if name in self.columns else column
@@ -151,8 +153,8 @@ def read_uncertainty(
     ----------
     tables : TomlTables
         Of report.toml.
-    numbers : mapping of str to tuple of Printed
-        What was given, by column and parameter.
+    numbers : mapping of str to tuple of Printed or None
+        What was given, by column and parameter; None where a cell is empty.
     declared : mapping of str to Declared
         What the workbook says of them.
     tests : collection of int
@@ -167,10 +169,12 @@ def read_uncertainty(
     shared = [reader.shared(name) for name in reader.names("shared")]
     own = {name: found for name, found in columns.items() if found is not None}
     several = {name for name, found in own.items() if len(found.parts) != 1 or found.parts[0].table}
-    several |= set(said.taken) | {name for name, column in numbers.items() if not all(map(_is_one, column))}
+    several |= set(said.taken) | {
+        name for name, column in numbers.items() if not all(map(_is_one, there(column)))
+    }
     correlations = reader.possible(dict(reader.correlations(several, paired)))
     if paired and not tables.findings.found:
-        correlations |= correlations_of({name: numbers[name] for name in paired})
+        correlations |= correlations_of({name: there(numbers[name]) for name in paired})
     known = tuple(found for found in shared if found is not None)
     return Stated(own, known, correlations, paired, reader.digits())
 
@@ -191,7 +195,9 @@ class _Reader:
         tests: Collection[int],
         said: Conventions,
     ) -> None:
-        self.tables, self.numbers, self.declared, self.tests = tables, numbers, declared, tests
+        self.tables, self.declared, self.tests = tables, declared, tests
+        self.numbers = {name: there(column) for name, column in numbers.items()}
+        self.rows = {name: len(column) for name, column in numbers.items()}
         self.said = said
         self.findings, self.toml = tables.findings, tables.toml
 
@@ -234,7 +240,7 @@ class _Reader:
     def of(self, name: str, at: Location) -> Of:
         """A column or a parameter, as what something is stated of."""
         numbers, declared, read = self.numbers[name], self.declared[name], self.said.draws
-        if read is None or len(numbers) != 1:
+        if read is None or self.rows[name] != 1:
             return Of(numbers, declared.bounds)
         return Of(numbers, declared.bounds, lambda table: read(table, declared, at))
 
@@ -268,7 +274,7 @@ class _Reader:
             return None
         statement = self.statement((*path, "stated"), of)
         groups: tuple[tuple[int, ...], ...] | None = ()
-        if "groups" in written and len(self.numbers[of]) == 1:
+        if "groups" in written and self.rows[of] == 1:
             known = f"no groups: {of} is one number"
             self.findings.add("LS506", self.toml.key(*path, "groups"), name=of, text="groups", known=known)
             groups = None
@@ -336,7 +342,7 @@ class _Reader:
                 raise NumberError("LS434")
         except NumberError:
             return f"'{text}' is no correlation coefficient"
-        if len({len(self.numbers[name]) for name in pair}) != 1:
+        if len({self.rows[name] for name in pair}) != 1:
             return f"{' and '.join(pair)} have not the same rows"
         if odd := [name for name in pair if name in several]:
             return f"the numbers of {odd[0]} have not one error each"

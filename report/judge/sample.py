@@ -76,7 +76,8 @@ def _size(values: Values, tests: tuple[int, ...]) -> int:
 def _drawn(inputs: Inputs, number: int) -> list[int]:
     """So many rows, in the order of the table; drawn by the digits that were measured."""
     digits = "\n".join(
-        f"{name} {' '.join(printed.text for printed in column)}" for name, column in inputs.measured.items()
+        f"{name} {' '.join(each.text if each else '' for each in column)}"
+        for name, column in inputs.measured.items()
     )
     lots = [hashlib.sha256(f"{test}\n{digits}".encode()).digest() for test in inputs.tests]
     return sorted(sorted(range(len(lots)), key=lots.__getitem__)[:number])

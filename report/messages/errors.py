@@ -234,7 +234,7 @@ CATALOGUE: dict[str, Entry] = {
         "not finite",
         "{name} is not a finite number: '{text}'",
         "a finite number",
-        "leave out a test that was not measured",
+        "leave the cell of what was not measured empty",
     ),
     "LS405": Entry(
         "number out of reach",

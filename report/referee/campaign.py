@@ -14,7 +14,7 @@ from ..cells.values import Values
 from ..engines.numpy import Program
 from ..inputs.inputs import Inputs
 from ..judge.chain import Made
-from ..quantity import Bounds, Printed
+from ..quantity import Bounds, Printed, there
 from ..result.verdict import Witness
 from ..sheet import Given, Sheet
 from ..uncertainty.propagation import Spread
@@ -133,7 +133,9 @@ class Campaign:
     def states(self) -> bool:
         """Whether any uncertainty is stated."""
         given = (*self.inputs.measured.values(), self.inputs.parameters.values())
-        return bool(self.inputs.uncertainty.shared) or any(p.stated for column in given for p in column)
+        return bool(self.inputs.uncertainty.shared) or any(
+            p.stated for column in given for p in there(column)
+        )
 
     @cached_property
     def labels(self) -> dict[str, tuple[int, ...]]:

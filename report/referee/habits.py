@@ -88,7 +88,7 @@ def _habits(search: Search) -> Iterator[_Habit]:
             given = {name: values for name, values in elsewhere.items() if name in nearest}
             yield _habit(problem, source, resting, given)
             measured = {
-                name: np.array([float(p.value) for p in column])
+                name: np.array([float(p.value) if p else np.nan for p in column])
                 for name, column in campaign.inputs.measured.items()
             }
             yield _habit(problem, source, resting, {**given, **measured})

@@ -116,7 +116,7 @@ def referee(
         step("refereeing names of rows and fits")
         named = labels(whole, numbers() if numbers is not None else _numbers(sheet, inputs), first)
         fit = fits(whole, workbook.fits, first)
-    amended, misprints = _amended(campaign, step) if inputs.errata else (None, ())
+    amended, misprints = _amended(campaign, checkable, step) if inputs.errata else (None, ())
     return Referee(
         alone, tuple(tables), joint, tuple(each.explanation for each in explained), tried, named, fit,
         inputs.free, _known(inputs), amended, misprints,
@@ -153,16 +153,19 @@ def _numbers(sheet: Sheet, inputs: Inputs) -> Numbers:
 def _known(inputs: Inputs) -> tuple[Change, ...]:
     """The misprints of the input that the report states."""
     return tuple(
-        Change("misprint", name, (inputs.tests[row],), INPUT, inputs.measured[name][row].text, printed.text)
-        for (name, row), printed in inputs.errata.items()
+        Change("misprint", name, (inputs.tests[row],), INPUT, printed.text, again.text)
+        for (name, row), again in inputs.errata.items()
+        if (printed := inputs.measured[name][row]) is not None
     )
 
 
-def _amended(campaign: Campaign, step: Callable[[str], None]) -> tuple[TableVerdict, tuple[Explanation, ...]]:
+def _amended(
+    campaign: Campaign, published: Sequence[PublishedValue], step: Callable[[str], None]
+) -> tuple[TableVerdict, tuple[Explanation, ...]]:
     """Whether everything comes out once the known misprints are put right, and if not, what else is wrong."""
     step("refereeing with the known misprints put right")
     inputs = campaign.inputs.amended
-    problem = Problem.of(replace(campaign, inputs=inputs), inputs.published)
+    problem = Problem.of(replace(campaign, inputs=inputs), published)
     which = list(range(len(problem.published)))
     verdict, found = _together(ALL, problem, which, Certificate(problem), (), ())
     misprints = explanations(problem)[0] if found.mismatch > 1 else ()

@@ -225,11 +225,15 @@ class Report:
 
     @cached_property
     def faults(self) -> tuple[Cell, ...]:
-        """The cells where an error begins: of a loop that does not settle those of one column."""
+        """The cells where an error begins: of a loop that does not settle those of one column.
+
+        What is missing is the number, not its uncertainty.
+        """
         return tuple(
             cell
             for cell in self.values.errors()
             if not self.marks.is_faultless(cell)
+            and not getattr(self.sheet[cell.name].rule, "u_of", "")
             and (cell.status is not Status.NOROOT or self.told_of(self.sheet[cell.name]) == cell.name)
         )
 
@@ -268,7 +272,7 @@ class Report:
         u = (known[name] / how.scale).tolist() if name in known else [math.nan] * len(values)
         return [last_place(value or 0.0, own, how.digits, most) for value, own in zip(values, u, strict=True)]
 
-    def printed(self, name: str) -> tuple[Printed, ...]:
+    def printed(self, name: str) -> tuple[Printed | None, ...]:
         """What was printed of a given column; nothing of others, nor of what another report has computed."""
         given = isinstance(self.sheet[name].rule, Given) and name not in self.inputs.taken
         return self.inputs.printed(name) if given else ()
@@ -276,7 +280,7 @@ class Report:
     def figures(self, name: str) -> tuple[Numeral | None, ...]:
         """The cells of a column as they are shown: in one notation, or as they were printed."""
         if name not in self._figures:
-            printed = tuple(read(each.text) for each in self.printed(name))
+            printed = tuple(read(each.text) if each else None for each in self.printed(name))
             self._figures[name] = printed or shown(self.in_unit(name), self.places(name))
         return self._figures[name]
 
@@ -285,9 +289,12 @@ class Report:
         if cell.value is None:
             return cell.status.code
         row = self.values.row(self.sheet[cell.name], cell.label)
-        printed, figure = self.printed(cell.name), self.figures(cell.name)[row]
-        number = printed[row].text if printed else figure.text if figure else ""
-        return number + behind(self.shown[cell.name].unit)
+        figure, number = (
+            self.figures(cell.name)[row],
+            next(iter(self.printed(cell.name)[row : row + 1]), None),
+        )
+        text = number.text if number else figure.text if figure else ""
+        return text + behind(self.shown[cell.name].unit)
 
     def stated(self, name: str, value: float, u: float) -> tuple[Numeral, Numeral]:
         """A value of a column and its uncertainty, both in SI, as they are shown together in its unit."""

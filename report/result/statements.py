@@ -41,7 +41,7 @@ def of_column(report: Report, name: str) -> str:
 
 
 def _own(report: Report, name: str) -> Iterator[str]:
-    inputs, printed = report.inputs, report.inputs.printed(name)
+    inputs, printed = report.inputs, report.inputs.numbers(name)
     if name in inputs.taken:
         value = "its value" if name in inputs.parameters else "its values"
         yield f"{_sizes(report, name, printed)}, taken with {value} from {inputs.taken[name].file}"

@@ -235,13 +235,13 @@ class Planner:
         def u(own: float) -> float:
             size = f"{own!r}".replace("e+", "e")  # a plus adds what follows it
             said = {of: read_statement(f"u = {size}", parse_unit(self.values.sheet[of].unit))}
-            same = {name: [float(each.value) for each in column] for name, column in inputs.measured.items()}
+            same = {name: [float(each.value) for each in inputs.numbers(name)] for name in inputs.measured}
             return self.u(planned(inputs, same, range(len(inputs.tests)), said))
 
         others = u(0.0)
         if not others <= wanted:
             return Needed(of, wanted, math.nan, others)
-        numbers = inputs.printed(of)
+        numbers = inputs.numbers(of)
         low, high = 0.0, max((each.u for each in numbers), default=0.0) or float(abs(numbers[0].value)) * 1e-3
         for _ in range(DOUBLINGS):
             if u(high) > wanted:

@@ -142,7 +142,8 @@ class _Draws:
         }
         for own in given(values):
             if own.name in self.base:
-                self.base[own.name] = self.base[own.name] + [float(p.shift) for p in inputs.printed(own.name)]
+                shifts = [float(each.shift) if each else 0.0 for each in inputs.printed(own.name)]
+                self.base[own.name] = self.base[own.name] + shifts
         self.sources = [
             source for source in sources(inputs, values) if any(move[0] in self.base for move in source.moves)
         ]

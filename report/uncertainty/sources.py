@@ -37,6 +37,8 @@ def _own(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
             continue
         printed = inputs.printed(column.name)
         for row, (label, number) in enumerate(zip(values.labels(column), printed, strict=True)):
+            if number is None:
+                continue
             errors = () if column.exact and number.stated is None else number.errors
             name = address(column.name, label)
             for error in errors:
@@ -56,8 +58,8 @@ def _shared(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
         printed = inputs.printed(each.of)
         rows = {label: row for row, label in enumerate(values.labels(column))}
         for group in each.groups or (tuple(label[0] if label else 0 for label in rows),):
-            there = [rows[label] for label in ((test,) if test else () for test in group) if label in rows]
-            errors = {row: each.error(printed[row]) for row in there}
+            own = [rows[label] for label in ((test,) if test else () for test in group) if label in rows]
+            errors = {row: each.error(number) for row in own if (number := printed[row]) is not None}
             moves = tuple((column.name, row, error.u) for row, error in errors.items())
             named = f" (test{'s' * (len(group) > 1)} {', '.join(map(str, group))})" if each.groups else ""
             if any(u for _, _, u in moves):

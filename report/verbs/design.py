@@ -144,6 +144,9 @@ def _planner(
     inputs = report.inputs
     if inputs.workbook.design is None:
         raise UsageError(diagnose("LS618", text=inputs.workbook.name))
+    if gaps := [name for name, column in inputs.measured.items() if None in column]:
+        test = inputs.tests[inputs.measured[gaps[0]].index(None)]
+        raise _wrong(f"test {test} has no {gaps[0]}", "say in a column 'left out' why it takes no part")
     design = inputs.workbook.design(report.sheet)
     address = options.cell or inputs.workbook.headline[0]
     found = parts(address)

@@ -66,7 +66,7 @@ def _lines(report: Report, column: Column, labels: Collection[tuple[int, ...]]) 
     wanted_labels, marks = set(labels), report.marks.of(name)
     # What is given has the digits it was given with, no others.
     every = report.values.labels(column)
-    texts = [printed.text for printed in report.inputs.printed(name)]
+    texts = [printed.text if printed else "" for printed in report.inputs.printed(name)]
     if name in report.inputs.taken:  # what was computed has those that its uncertainty tells
         texts = [figure.plain if figure else "" for figure in report.figures(name)]
     given = dict(zip(every, texts, strict=True)) if len(texts) == len(every) else {}

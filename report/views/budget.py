@@ -142,6 +142,8 @@ def _row(report: Report, budget: Budget, each: Contribution) -> tuple[str, ...]:
     name, row, _ = source.moves[0]
     (unit, _), (own, own_scale) = _unit(report, name), _unit(report, budget.name)
     printed = report.inputs.printed(name)[row]
+    if printed is None:
+        raise AssertionError(f"{source.name} is an error of an empty cell")
     estimate = f"{printed.text}{unit}"
     if source.origin and each.estimate is not None:  # its own value stands in the other report
         cell = address(name, report.values.labels(report.sheet[name])[row])

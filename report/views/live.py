@@ -278,7 +278,7 @@ def limits(bounds: Bounds) -> dict[str, Any]:
 
 def _printed(report: Report, name: str) -> Printed | None:
     """A number of an input, for its unit."""
-    return next(iter(report.inputs.printed(name)), None)
+    return next(iter(report.inputs.numbers(name)), None)
 
 
 # --- equations with places for numbers --------------------------------------------------------------------

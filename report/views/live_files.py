@@ -29,7 +29,7 @@ def given(report: Report) -> dict[str, Any]:
     }
 
 
-def _tests(report: Report, measured: Mapping[str, tuple[Printed, ...]]) -> list[dict[str, Any]]:
+def _tests(report: Report, measured: Mapping[str, tuple[Printed | None, ...]]) -> list[dict[str, Any]]:
     """The rows of the table of the tests, in its order, with those that are left out."""
     inputs = report.inputs
     rows = [
@@ -37,7 +37,7 @@ def _tests(report: Report, measured: Mapping[str, tuple[Printed, ...]]) -> list[
             "label": test,
             "used": True,
             "reason": "",
-            "cells": {name: numbers[row].text for name, numbers in measured.items()},
+            "cells": {name: _text(numbers[row]) for name, numbers in measured.items()},
         }
         for row, test in enumerate(inputs.tests)
     ]
@@ -45,6 +45,10 @@ def _tests(report: Report, measured: Mapping[str, tuple[Printed, ...]]) -> list[
         cells = {name: each.texts[name] for name in measured}
         rows.insert(each.place, {"label": each.test, "used": False, "reason": each.reason, "cells": cells})
     return rows
+
+
+def _text(number: Printed | None) -> str:
+    return number.text if number else ""
 
 
 def _files(report: Report) -> dict[str, Any]:
@@ -74,11 +78,11 @@ def _saved(name: str) -> str:
     return name.replace("/", "-")
 
 
-def _texts(report: Report, measured: Mapping[str, tuple[Printed, ...]]) -> dict[int, dict[str, str]]:
+def _texts(report: Report, measured: Mapping[str, tuple[Printed | None, ...]]) -> dict[int, dict[str, str]]:
     """What stands in the rows of the tests, by test and column, where the cells of the page do not say it."""
     inputs = report.inputs
     cells = {
-        test: {name: measured[name][row].text for name in measured} for row, test in enumerate(inputs.tests)
+        test: {name: _text(measured[name][row]) for name in measured} for row, test in enumerate(inputs.tests)
     }
     found = {
         test: {name: text for name, text in texts.items() if cells[test].get(name) != text}

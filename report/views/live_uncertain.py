@@ -9,7 +9,7 @@ from typing import Any
 from ..cells.address import index_text
 from ..cells.layout import how_large
 from ..distribution import DIVISORS, Error, Shape
-from ..quantity import Printed
+from ..quantity import Printed, there
 from ..result.numbers import order
 from ..result.result import Report
 from ..sheet import Column, RepeatAxis
@@ -30,7 +30,7 @@ def follows(report: Report) -> bool:
     """
     stated, sheet = report.inputs.uncertainty, report.sheet
     told = [part.shape for each in stated.columns.values() for part in each.parts]
-    numbers = [number for c in sheet.columns for number in report.printed(c.name)]
+    numbers = [number for c in sheet.columns for number in there(report.printed(c.name))]
     told += [error.shape for number in numbers for error in number.stated or ()]
     told += [part.shape for each in stated.shared for part in each.statement.parts]
     known = not (stated.of_readings or report.inputs.taken) and FOLLOWED.issuperset(told)
@@ -74,7 +74,7 @@ def errors(report: Report, column: Column) -> list[Any] | dict[str, Any] | None:
             _error(report, each, error) | ({"u": own[row]} if own else {}) for error in each.stated
         ]
         for row, (label, each) in enumerate(zip(report.values.labels(column), printed, strict=True))
-        if each.stated is not None
+        if each is not None and each.stated is not None
     }
     found |= dict(_of_left_out(report, column.name))
     return found or ([] if column.exact else None)
@@ -82,7 +82,7 @@ def errors(report: Report, column: Column) -> list[Any] | dict[str, Any] | None:
 
 def _of_left_out(report: Report, name: str) -> Iterator[tuple[str, Any]]:
     """What is stated of the numbers of a column in the tests that are left out."""
-    printed = report.inputs.printed(name)
+    printed = report.inputs.numbers(name)
     for each in report.inputs.left_out:
         if name in each.stated:
             stated = each.stated[name]

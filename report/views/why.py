@@ -104,6 +104,8 @@ def _where(report: Report, name: str, row: int) -> str:
     if not printed:
         return "by the workbook"
     number = printed[row]
+    if number is None:
+        return "nothing: its cell is empty"
     if number.stated and name in report.inputs.taken:
         return f"{number.stated[0].said}, as {number.where} says"
     return f"as {number.text}{_unit(report, name)}, {number.where or 'by default'} ({number.mode})"

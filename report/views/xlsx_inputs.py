@@ -55,15 +55,19 @@ class GivenCells:
         printed, place = self.report.inputs.printed(block.name), block.place
         fixed = block.name in self.counts
         if not printed:
-            for row, number in enumerate(block.values):
-                sheet.write_number(place.row + row, place.column, number, style("fixed", "0"))
+            for row, number in enumerate(block.values):  # of an empty cell there is no uncertainty: a code
+                shown = None if isinstance(number, str) else number
+                sheet.write(place.row + row, place.column, shown, style("fixed", "0"))
             return
         taken, places = block.name in self.report.inputs.taken, self.report.places(block.name)
         for row, each in enumerate(printed):
             at = (place.row + row, place.column)
-            decimals = -places[row] if taken else _decimals(each, place.scale)
-            form = style("fixed" if fixed else "input", open_format(decimals))
-            sheet.write_number(*at, float((each.value - place.zero) / place.scale), form)
+            if each is None:
+                sheet.write_blank(*at, None, style("input"))
+            else:
+                decimals = -places[row] if taken else _decimals(each, place.scale)
+                form = style("fixed" if fixed else "input", open_format(decimals))
+                sheet.write_number(*at, float((each.value - place.zero) / place.scale), form)
             if row < _MOST_NOTES:
                 sheet.write_comment(*at, self.note(block, each), {"x_scale": 2.2, "y_scale": 1.1})
         every = (place.row, place.column, place.row + place.rows - 1, place.column)
@@ -71,8 +75,10 @@ class GivenCells:
         refused = {"type": "formula", "criteria": f"={self._refused(block)}".replace("$", "")}
         sheet.conditional_format(*every, refused | {"format": style("finding")})
 
-    def note(self, block: CellBlock, printed: Printed) -> str:
-        """What a cell is, what it may be, and where its number comes from."""
+    def note(self, block: CellBlock, printed: Printed | None) -> str:
+        """What a cell is, what it may be, and where its number comes from, if it has one."""
+        if printed is None:
+            return f"{block.name}: {block.meaning}.\n{self.allowed(block)}.\nNone is given."
         given = (
             f"Given as {printed.text} {printed.unit} in {printed.where}." if printed.where else "The default."
         )
