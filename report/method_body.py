@@ -308,7 +308,11 @@ class MethodBody(dict[str, Any]):
             together = set[str]().union(*(names for names in below.values() if total.name in names))
             return (c for c in rows if c.axis in over[total.name] and c.name in together)
 
-        return tuple(replace(c, alongside=tuple(asked(c))) if c.name in sums else c for c in sheet.columns)
+        # What a fit may lack (its scatter, with as many rows as unknowns) is asked for where a line names it.
+        lines = (name for name in below if name not in self.of_fits)
+        named = set[str]().union(*(below[name] for name in lines))
+        columns = (replace(c, spare=False) if c.spare and c.name in named else c for c in sheet.columns)
+        return tuple(replace(c, alongside=tuple(asked(c))) if c.name in sums else c for c in columns)
 
     def column(self, name: str) -> Column:
         """What was declared under a name."""

@@ -198,3 +198,15 @@ def test_every_engine_counts_alike(tmp_path: Path, capsys: pytest.CaptureFixture
     said = capsys.readouterr().out
     assert len(re.findall(r"^engine .* cells, ", said, re.M)) == 3, said
     assert not re.search(r"^finding: (numpy|JavaScript|xlsx|.*50 digits)", said, re.M), said
+
+
+@pytest.mark.parametrize("named", [False, True])
+def test_the_scatter_that_a_fit_lacks_is_missed_where_a_line_names_it(tmp_path: Path, named: bool) -> None:
+    code = 'from loopsheet import Method, fit, let, measured, unknown\n\nclass Line(Method, headline="b"):\n'
+    code += '    "A line."\n    x = measured("m", "place")\n    y = measured("m", "height")\n'
+    code += '    a = unknown("intercept")\n    b = unknown("slope")\n    line = fit(y, a + b * x)\n'
+    code += '    relative = let(line.s_b / b, "relative scatter")\n' * named
+    report = Study(readings(tmp_path / "r", "x [m],y [m]\n1,2.1\n2,3.9\n", code=code)).computed
+    assert report.values.cell("line_s").value is None
+    told = [check.message for check in report.oddities if not check.passed]
+    assert [said.partition(":")[0] for said in told] == ["line_s has no value"] * named
