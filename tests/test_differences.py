@@ -228,3 +228,20 @@ def test_the_verb(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "LS607" in capsys.readouterr().err
     assert main(["diff", a, b, "--most", "-1"]) == 2
     assert "not a whole number: '-1'" in capsys.readouterr().err
+
+
+def test_a_result_that_was_changed_by_hand_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["build", PAPER.as_posix(), "--to", "json", "--out", str(tmp_path / "out")]) == 0
+    result = tmp_path / "out" / "values.json"
+    shutil.copy(result, tmp_path / "values.json")
+    result.write_text(result.read_text(encoding="utf-8").replace("1.30", "1.31"), encoding="utf-8")
+    capsys.readouterr()
+    assert main(["diff", str(tmp_path / "values.json"), str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err
+    assert "LS607" in told
+    assert "changed after it was built" in told
+    # Without a manifest beside it, nobody can tell.
+    shutil.copy(result, tmp_path / "other.json")
+    assert main(["diff", str(tmp_path / "values.json"), str(tmp_path / "other.json")]) == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +11,7 @@ from msgspec import Meta, field
 
 from .form import Form, Malformed, Schema, Text, load, read
 
-__all__ = ["NAME", "Manifest", "manifest_of", "read_manifest"]
+__all__ = ["NAME", "Manifest", "is_as_built", "manifest_of", "read_manifest"]
 
 NAME = "manifest.json"
 
@@ -76,3 +77,10 @@ def manifest_of(folder: Path) -> Manifest | None:
         return load(folder / NAME, Manifest)
     except Malformed:
         return None
+
+
+def is_as_built(file: Path, data: bytes) -> bool:
+    """Whether what a file holds is what its build wrote; without a manifest beside it nobody can tell."""
+    manifest = manifest_of(file.parent)
+    built = manifest.outputs.get(file.name) if manifest else None
+    return built in (None, hashlib.sha256(data).hexdigest())

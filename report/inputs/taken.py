@@ -11,7 +11,6 @@ it had where it was stated, and the sha256 of what that report was made from.
 
 from __future__ import annotations
 
-import hashlib
 import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -183,7 +182,7 @@ def read_taken(
 def open_result(data: bytes, file: Path, name: str, at: Location, findings: Findings) -> Result | None:
     """What a values.json holds; None, with a finding, if it is none, or not as it was built."""
     from ..files.form import Malformed, decoded
-    from ..files.manifest import manifest_of
+    from ..files.manifest import is_as_built
     from ..files.values import Result
 
     try:
@@ -192,10 +191,7 @@ def open_result(data: bytes, file: Path, name: str, at: Location, findings: Find
         reason = f"is no values.json: {error}"
         findings.add("LS437", at, file=name, reason=reason, known="what 'build' writes")
         return None
-    # Without its manifest, nobody can tell: it came from elsewhere.
-    manifest = manifest_of(file.parent)
-    built = manifest.outputs.get(file.name) if manifest else None
-    if built not in (None, hashlib.sha256(data).hexdigest()):
+    if not is_as_built(file, data):
         reason = "was changed after it was built: the manifest beside it has another fingerprint"
         findings.add("LS437", at, file=name, reason=reason, known="what 'build' writes")
         return None

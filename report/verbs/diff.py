@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
 from .common import FINDINGS, OK, count, format_argument, named
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ..files.values import Result
 
 HELP = "compare two results number by number"
 
@@ -24,7 +30,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print what is different; exit code 1 if anything is, beyond rounding."""
     from ..archive.differences import compare
-    from ..files.values import NAME, read_result
+    from ..files.values import NAME
     from ..inputs.folders import result
     from ..views.differences import FORMATS
 
@@ -32,6 +38,19 @@ def run(options: argparse.Namespace) -> int:
         path / NAME if path.is_dir() else path for path in map(result, (options.before, options.after))
     )
     names = before.as_posix(), after.as_posix()
-    found = compare(read_result(before), read_result(after), names=names)
+    found = compare(_as_built(before), _as_built(after), names=names)
     print(FORMATS[options.format](found, options.most), end="")
     return FINDINGS if found.any else OK
+
+
+def _as_built(file: Path) -> Result:
+    """A result, refused if it was changed after it was built."""
+    from ..files.manifest import is_as_built
+    from ..files.values import read_result
+    from ..messages.errors import InputError, Location, diagnose
+
+    found = read_result(file)
+    if not is_as_built(file, file.read_bytes()):
+        reason = "it was changed after it was built: the manifest beside it has another fingerprint"
+        raise InputError(diagnose("LS607", Location(file.as_posix()), text=file.name, reason=reason))
+    return found

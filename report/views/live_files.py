@@ -9,7 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ..quantity import Printed
+from ..quantity import Printed, behind
 from ..result.result import Report
 
 __all__ = ["given"]
@@ -104,6 +104,27 @@ def _decimal(value: Fraction) -> str:
     return f"{digits[:-places]}.{digits[-places:]}" if places else digits
 
 
+def _stated(number: Printed) -> str:
+    """What is stated of a number, as it stands behind it and its unit."""
+    if number.stated is None:
+        return ""
+    sizes = (
+        f"u = {_decimal(error.width / number.scale)}"
+        if error.said.startswith(f"{number.text}(")
+        else error.said
+        for error in number.stated
+    )
+    return f", {'; '.join(sizes) or 'exact'}"
+
+
+def _line(text: str, name: str) -> tuple[int, str]:
+    """Where the line of a parameter goes that has none in report.toml, and what it begins with."""
+    if head := re.search(r"^[ \t]*\[[ \t]*parameters[ \t]*\][^\n]*\n?", text, re.MULTILINE):
+        return head.end(), name
+    table = re.search(r"^[ \t]*\[", text, re.MULTILINE)
+    return table.start() if table else len(text), f"parameters.{name}"
+
+
 def _toml(report: Report) -> Iterator[str | dict[str, str]]:
     """report.toml in pieces: text as it stands, and between it the numbers that may be edited.
 
@@ -114,12 +135,13 @@ def _toml(report: Report) -> Iterator[str | dict[str, str]]:
     starts = [0, *(found.end() for found in re.finditer("\n", text))]
     pieces: list[tuple[int, int, str | dict[str, str]]] = []
     for name, number in report.inputs.parameters.items():
-        unit = number.unit if number.unit != "1" else ""
         found = re.fullmatch(r"report\.toml:(\d+):(\d+)", number.where)
         if found is None or name in report.inputs.taken:
-            head = re.search(r"^[ \t]*\[[ \t]*parameters[ \t]*\][^\n]*\n?", text, re.MULTILINE)
-            if head is not None:
-                pieces.append((head.end(), head.end(), {"parameter": name, "unit": unit, "line": "new"}))
+            stated = (
+                "" if name in (*report.inputs.taken, *report.inputs.uncertainty.columns) else _stated(number)
+            )
+            at, key = _line(text, name)
+            pieces.append((at, at, {"parameter": name, "line": key, "behind": behind(number.unit) + stated}))
             continue
         place = text.find(number.text, starts[int(found[1]) - 1] + int(found[2]) - 1)
         if place >= 0:
@@ -127,8 +149,7 @@ def _toml(report: Report) -> Iterator[str | dict[str, str]]:
             pieces.append((place, end, {"parameter": name}))
             # In parentheses it counts units of the last digit, which an edit may move.
             if concise := re.match(r"\([0-9]+\)(?P<behind>[^\"'\n]*)", text[end:]):
-                said = f", u = {_decimal(number.stated[0].width / number.scale)}" if number.stated else ""
-                pieces.append((end, end + concise.end(), concise["behind"] + said))
+                pieces.append((end, end + concise.end(), concise["behind"] + _stated(number)))
     for name in ("measurements", "published"):
         table = _table(text, name)
         named = re.search(r"""^[ \t]*file[ \t]*=[ \t]*(["'])(?P<name>[^"'\n]*)\1""", table, re.MULTILINE)

@@ -21,6 +21,7 @@ function savedField(test, name) {
   const { label, cells } = test, was = LIVE.texts[label]?.[name], of = /^u\((.*)\)$/.exec(name)?.[1];
   if (name === "test") return String(label);
   if (name === "left out") return leftOut(test);
+  if (cells[of] === "" && issuedCell(label, of)) return "";
   if (!(name in cells)) return was ?? (of in cells ? uncertaintyOf(LIVE.columns[of], label, cells[of]) : "");
   const issued = issuedCell(label, name);
   return was && was !== issued ? (cells[name] === issued ? was : withStated(cells[name], CONCISE.exec(was))) : cells[name];
@@ -43,8 +44,9 @@ function savedTests(state) {
 
 // The inputs that a build of the files would refuse.
 function refusedInputs(state) {
-  const refused = (cells, index) => Object.keys(cells).filter((name) => readInput(LIVE.columns[name], index, cells[name]).why);
-  const measured = savedTests(state).filter(({ used }) => used).flatMap(({ label, cells }) => refused(cells, label).map((name) => `${name}[${label}]`));
+  const tests = savedTests(state).filter(({ used }) => used), empty = (name) => tests.every(({ cells }) => !cells[name]);
+  const refused = (cells, index) => Object.keys(cells).filter((name) => (cells[name] || !index || empty(name)) && readInput(LIVE.columns[name], index, cells[name]).why);
+  const measured = tests.flatMap(({ label, cells }) => refused(cells, label).map((name) => `${name}[${label}]`));
   return [...measured, ...refused(state.parameters, "")];
 }
 
@@ -73,7 +75,7 @@ function reportToml(state) {
     const text = JSON.stringify(state.parameters[piece.parameter]).slice(1, -1);
     if (!piece.line) return text;
     const same = state.parameters[piece.parameter] === page.history.issued.parameters[piece.parameter];
-    return same ? "" : `${piece.parameter} = "${text}${piece.unit ? ` ${piece.unit}` : ""}"\n`;
+    return same ? "" : `${piece.line} = "${text}${piece.behind}"\n`;
   }).join("");
 }
 

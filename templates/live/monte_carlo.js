@@ -92,7 +92,7 @@ function fillDraws(look) {
     fillLine("bar-draws", says, "…");
     return;
   }
-  const { lost, u, ends } = found, words = u >= 0 ? ["u = ", figureText(stated(0, u / scale, LIVE.most)[1]), ...behind()] : ["the tails have no standard deviation"];
+  const { lost, u, ends } = found, words = u >= 0 ? ["u = ", figureText(stated(0, u / scale, LIVE.most)[1]), ...behind()] : ["tails too long for u"];
   words.push(...(ends ? [`, 95\u00a0% in ${rangeOf(name, found)}`, ...behind()] : [", too many without a value for an interval"]));
   fillLine("bar-draws", says, make("span", {}, ...words, lost ? `; ${lost} without a value over these rows` : ""));
   furnished(byId("bar-draws"), { "data-lost": lost, "data-u": u, "data-ends": ends ?? "" }, []);

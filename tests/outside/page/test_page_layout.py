@@ -11,6 +11,8 @@ Open = Callable[..., Live]
 WIDTHS = [360, 400, 500, 600, 700, 840, 1000, 1200, 1600]
 
 _ON_SCREEN = """(selector) => {
+  const panel = document.getElementById("live-panel");
+  panel.style.pointerEvents = "auto"; // what it lets through it covers all the same
   const seen = (element) => {
     const box = element.getBoundingClientRect();
     const dock = document.getElementById("live-dock").getBoundingClientRect();
@@ -19,7 +21,10 @@ _ON_SCREEN = """(selector) => {
     const there = document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2);
     return element.contains(there) || (there?.contains(element) ?? false);
   };
-  return Array.from(document.querySelectorAll(selector)).filter((one) => one.checkVisibility()).map(seen);
+  const all = Array.from(document.querySelectorAll(selector));
+  const found = all.filter((one) => one.checkVisibility()).map(seen);
+  panel.style.pointerEvents = "";
+  return found;
 }"""
 
 
@@ -56,6 +61,18 @@ def test_most_of_a_phone_is_left_to_the_table(open_page: Open, height: int) -> N
     assert min(taken) > 0
     assert sum(taken) <= 0.4 * height
     assert seen(live, "#cell-x_p-3") == [True]
+
+
+def test_what_lies_below_the_panel_can_be_pressed(open_page: Open) -> None:
+    live = open_page(viewport={"width": 390, "height": 664})
+    live.input("v", 2).click()
+    cell = live.page.locator("#cell-x_p-3")
+    cell.evaluate("cell => scrollTo(0, scrollY + cell.getBoundingClientRect().top - 20)")
+    boxes = [live.page.locator(f"#{one}").bounding_box() for one in ("live-panel", "cell-x_p-3")]
+    panel, below = [box for box in boxes if box]
+    assert below["y"] + below["height"] < panel["y"] + panel["height"]
+    live.page.mouse.click(below["x"] + below["width"] / 2, below["y"] + below["height"] / 2)
+    assert live.focused() == "x_p[3]"
 
 
 def test_nothing_shows_through_the_head_of_a_long_table(open_page: Open) -> None:

@@ -187,3 +187,51 @@ def test_what_was_taken_is_saved_as_it_was_or_as_it_was_typed_over(open_page: Op
     )
     # what a reading has alone: gain and datum are stated no more
     assert [each.u for each in report.inputs.measured["x_p"]] == pytest.approx([1.003 * 0.2e-6] * 3, rel=1e-5)
+
+
+@pytest.mark.usefixtures("unrefereed")
+def test_a_number_that_is_deleted_is_saved_as_missing(live: Live, tmp_path: Path) -> None:
+    live.input("x_p", 3).click()
+    live.press("Delete")
+    folder = live.save(tmp_path / "saved")
+    assert (folder / "measurements.csv").read_text(encoding="utf-8").splitlines()[3] == "3,4.089,0.479,"
+    assert "No build takes" not in live.text("live-note")
+    assert driving.differences(live.cells(), Study(folder).computed.values) == []
+
+
+DEFAULTS = """
+from loopsheet import Method, given, let, mean, measured
+
+class Heats(Method, headline="heat"):
+    "Heat of a body."
+    T = measured("K", "temperature")
+    x = measured("m", "place")
+    T_0 = given("K", "temperature before", default="290.10(5) K")
+    c = given("J/(kg*K)", "specific heat", default="450 J/(kg*K), U = 9, k = 2")
+    m = given("kg", "mass", default="2.0 kg, exact")
+    middle = let(mean(x), "mean place", "m")
+    heat = let(c * m * (mean(T) - T_0), "heat", "J")
+"""
+
+
+@pytest.mark.parametrize("more", ["", "[parameters]\n"])
+def test_an_edited_default_keeps_what_is_stated_of_it(open_page: Open, tmp_path: Path, more: str) -> None:
+    folder = tmp_path / "own"
+    folder.mkdir()
+    (folder / "workbook.py").write_text(DEFAULTS, encoding="utf-8")
+    (folder / "measurements.csv").write_text(
+        "T [K],u(T) [K],x [m]\n300.1,0.2,1.0\n300.4,0.2,2.0\n", encoding="utf-8"
+    )
+    toml = f'workbook = "workbook.py"\n{more}[measurements]\nfile = "measurements.csv"\n'
+    (folder / "report.toml").write_text(toml, encoding="utf-8")
+    live = open_page(page_of(folder, tmp_path / "out"))
+    for name, text in {"T_0": "290.2", "c": "460", "m": "2.5"}.items():
+        live.type(name, "", text)
+    live.input("T", 1).click()
+    live.press("Delete")
+    report = Study(live.save(tmp_path / "saved", "workbook.py")).computed
+    given = report.inputs.parameters
+    assert [given[name].text for name in ("T_0", "c", "m")] == ["290.2", "460", "2.5"]
+    assert [given[name].u for name in ("T_0", "c", "m")] == pytest.approx([0.05, 4.5, 0])
+    assert report.inputs.printed("T")[0] is None
+    assert driving.differences(live.cells(), report.values) == []
