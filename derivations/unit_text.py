@@ -477,8 +477,15 @@ def _suggestion(name: str) -> str:
     """The unit that is perhaps meant: a common one, else one of pint's."""
     import difflib  # only errors need it
 
-    more = ("inch", "meter", "metre", "gram", "second", "newton", "pascal", "joule", "micron")
-    for known in ([*COMMON, *_SHIFTED, *more], _registry()):
+    if name == "per":
+        return "write / for per"
+    more = ["meter", "metre", "gram", "second", "newton", "pascal", "joule"]
+    more += [
+        f"{size}{each}"
+        for each in more
+        for size in ("nano", "micro", "milli", "centi", "kilo", "mega", "giga")
+    ]
+    for known in ([*COMMON, *_SHIFTED, "inch", "micron", *more], _registry()):
         by_lower = {each.lower(): each for each in reversed([*known])}
         if near := difflib.get_close_matches(name.lower(), by_lower, n=1, cutoff=0.6):
             return f"did you mean '{by_lower[near[0]]}'?"

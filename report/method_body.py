@@ -344,8 +344,8 @@ class MethodBody(dict[str, Any]):
     def _refuse_name_of_rows(self, name: str = "") -> None:
         """What counts rows, or pairs of them, has its name for itself."""
         words = {
-            self.axis.index_name: (f"the {self.axis.row}'s number", "index='...' behind the title"),
-            self.axis.size_name: (f"the number of {self.axis.name}", "size='...' behind the title"),
+            self.axis.index_name: (f"the {self.axis.row}'s number", "index='...' behind (Method"),
+            self.axis.size_name: (f"the number of {self.axis.name}", "size='...' behind (Method"),
         }
         for pairs in self.axes[1:]:
             words |= dict.fromkeys(pairs.named, ("the number of one of two", "members='...' in pairs()"))

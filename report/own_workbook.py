@@ -152,7 +152,11 @@ class _Own:
             if traceback.tb_frame.f_code.co_filename == str(self.path):
                 line = traceback.tb_lineno
             traceback = traceback.tb_next
-        raise InputError(self.finding(line, reason, _HINT if error is None else _hint(error))) from error
+        found = self.finding(line, reason, _HINT if error is None else _hint(error))
+        if isinstance(error, SheetError) and str(found.at.source).lstrip().startswith("class "):
+            at = place_of_column(self.path, self.code, error.about)  # told at the end of its body
+            found = replace(found, at=at) if at.line else found
+        raise InputError(found) from error
 
     def finding(self, line: int | None, reason: str, hint: str) -> Diagnostic:
         """A finding at a line of the file."""
@@ -173,6 +177,8 @@ def _hint(error: BaseException) -> str:
             return "a name stands for its cell from the line on where it is declared"
         case ImportError():
             return "a copy of a shipped workbook imports by full names, as loopsheet.report.sheet"
+        case TypeError() if " for ^" in str(error):
+            return "a power is written x**2"
         case TypeError() if re.search("float|ufunc", str(error)):
             return OF_SYMPY
         case TypeError() if "truth value" in str(error):

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from ..cells.address import index_text, named
+from ..cells.address import address, index_text, named
 from ..messages.errors import Findings, Location, listing, suggest
 
 __all__ = ["EXAMPLE", "Expectation", "check_expected"]
@@ -15,7 +15,7 @@ __all__ = ["EXAMPLE", "Expectation", "check_expected"]
 EXAMPLE = '"alpha[1-2]" = "both drops from one height"'
 """A line of the section."""
 
-_TEST = re.compile("test +([0-9]{1,9})")
+_ROW = re.compile(r"(?P<word>[^\W\d]\w*) +(?P<number>[0-9]{1,9})")
 
 
 class OfCell(Protocol):
@@ -60,8 +60,8 @@ class Expectation:
         >>> Expectation("test 3", "heard twice", Location()).cell
         ('', (3,))
         """
-        if test := _TEST.fullmatch(self.address):
-            return "", (int(test[1]),)
+        if row := _ROW.fullmatch(self.address):
+            return "", (int(row["number"]),)
         return named(self.address)
 
     def covers(self, cell: str, index: tuple[int, ...], tests: Collection[int]) -> bool:
@@ -75,6 +75,7 @@ def check_expected(
     tests: Sequence[int],
     cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
     findings: Findings,
+    row: str = "test",
 ) -> None:
     """Find what is expected of cells and tests that there are not.
 
@@ -87,15 +88,22 @@ def check_expected(
         For each cell its unit and the indices that it has: ``{()}`` for a scalar.
     findings : Findings
         Where unknown cells, indices and tests go.
+    row : str
+        What else a test is called.
     """
-    called = [f"test {test}" for test in tests]
+    called = [f"{row} {test}" for test in tests]
     for each in expected:
         name, index = each.cell
-        if (name or not index) and name not in cells:
-            known, suggestion = listing([*called[:1], *cells], most=24), suggest(name, [*called, *cells])
+        is_other = not name and each.address.partition(" ")[0] not in ("test", row)
+        if is_other or ((name or not index) and name not in cells):
+            near = suggest(name or each.address, [*called, *cells])
+            known, suggestion = listing([*called[:1], *cells], most=24), near
             findings.add("LS505", each.at, text=each.address, known=known, suggestion=suggestion)
             continue
         indices = cells[name][1] if name else {(test,) for test in tests}
-        if index not in indices:
+        if name and not index and index not in indices:
+            known = listing(address(name, one) for one in sorted(indices))
+            findings.add("LS505", each.at, text=each.address, known=known, suggestion="")
+        elif index not in indices:
             known = listing(index_text(one) or "no index" for one in sorted(indices))
-            findings.add("LS506", each.at, name=name or "test", text=index_text(index), known=known)
+            findings.add("LS506", each.at, name=name or row, text=index_text(index), known=known)

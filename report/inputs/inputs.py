@@ -280,7 +280,7 @@ def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[
         aside=aside,
     )
     findings = Findings()
-    check_expected(kept.expected, kept.tests, cells, findings)
+    check_expected(kept.expected, kept.tests, cells, findings, inputs.workbook.row)
     check_limits(kept.limits, cells, findings)
     check_published((*kept.published, *kept.published_u), kept.free_at, cells, findings)
     findings.check()

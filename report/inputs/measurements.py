@@ -377,17 +377,18 @@ def read_unit(
 
 def _tests(table: CsvTable, place: int, findings: Findings) -> tuple[int, ...]:
     lines: dict[int, int | None] = {}
+    called = table.header[place].text
     for row in table.rows:
         field = row.fields[place]
         if not field.text:
             findings.add(
-                "LS403", table.at(field), name="test", allowed="a positive whole number", suggestion=""
+                "LS403", table.at(field), name=called, allowed="a positive whole number", suggestion=""
             )
         elif not _TEST.fullmatch(field.text):
             findings.add("LS312", table.at(field), text=field.text)
         elif int(field.text) in lines:
             first = lines[int(field.text)]
-            findings.add("LS311", table.at(field), text=field.text, first=first)
+            findings.add("LS311", table.at(field), name=called, text=field.text, first=first)
         else:
             lines[int(field.text)] = table.at(field).line
     return tuple(lines)

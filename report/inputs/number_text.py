@@ -108,6 +108,8 @@ def _why_not(text: str) -> NumberError:
         suggestion = "its uncertainty stands in parentheses behind all digits, 41.6(2), or in [uncertainty]"
     elif _NUMBER.fullmatch(text.replace("\u2212", "-").replace("\u2013", "-")):
         suggestion = "write the minus sign as an ordinary hyphen"
+    elif not re.search(r"[0-9]", text):
+        suggestion = "in a table the cell of what was not measured is empty"
     elif _NUMBER.fullmatch(re.sub(r"[\s_']", "", text, flags=re.ASCII)):
         suggestion = "write the digits without spaces or marks between them"
     return NumberError("LS401", text=text, suggestion=suggestion)

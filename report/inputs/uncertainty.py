@@ -300,7 +300,11 @@ class _Reader:
             return None
         seen: set[int] = set()
         for test in (test for group in written for test in group):
-            if test not in self.tests or test in seen:
+            if test in seen:
+                hint = "a row has one error of this name: it stands in one group"
+                self.findings.add("LS433", self.toml.value(*path), name=f"{test} in groups", suggestion=hint)
+                return None
+            if test not in self.tests:
                 known = listing(map(str, self.tests)) + ", each once"
                 self.findings.add("LS506", self.toml.value(*path), name="groups", text=test, known=known)
                 return None

@@ -54,7 +54,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
         CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
         CLAIM: [claim.label for claim in inputs.workbook.claims],
         EXPECTED: [expectation.address for expectation in inputs.expected],
-        LEFT_OUT: [f"test {each.test}" for each in inputs.left_out],
+        LEFT_OUT: [f"{inputs.workbook.row} {each.test}" for each in inputs.left_out],
     }
 
 
@@ -155,7 +155,7 @@ class _Oddities:
         of = _some(list(weighed.values()))
         for row, test in enumerate(self.inputs.tests):
             if weighed and not any(self.values.value[name][row] for name in weighed):
-                said = f"test {self.inputs.called(test)} has {of} without uncertainty"
+                said = f"{self.inputs.workbook.row} {self.inputs.called(test)} has {of} without uncertainty"
                 yield f"{said}, so that no other test would count beside it"
 
     def without_value(self, column: Column, cells: Sequence[Cell]) -> str:
@@ -294,17 +294,20 @@ class _Oddities:
     def of_left_out(self) -> Iterator[Check]:
         """The tests that somebody left out, and what is not compared for that."""
         for each in self.inputs.left_out:
-            said = f"test {self.inputs.called(each.test)}, {each.reason}"
+            said = f"{self.inputs.workbook.row} {self.inputs.called(each.test)}, {each.reason}"
             if rests := sum(each.test in value.index for value in self.inputs.aside):
                 said += f"; {rests} published {'value rests' if rests == 1 else 'values rest'} on it"
-            yield Check(LEFT_OUT, f"test {each.test}", True, said, each.at, note="left out")
+            yield Check(
+                LEFT_OUT, f"{self.inputs.workbook.row} {each.test}", True, said, each.at, note="left out"
+            )
 
     def check(self, kind: str, name: str, said: str, odd: _Odd) -> Check:
         """A check that found something: with the test to look at, or with why it is expected."""
         if not odd.open:
             return Check(kind, name, True, f"{said}, as is expected", self.inputs.place)
         if any(self.suspect in self.tests(cell) for cell in odd.open):
-            said += f"; look at test {self.inputs.called(self.suspect)} first: {self.because}"
+            first = f"{self.inputs.workbook.row} {self.inputs.called(self.suspect)}"
+            said += f"; look at {first} first: {self.because}"
         warns = kind in (LIMIT, SQUARES)
         return Check(kind, name, warns, said, self.place(odd.open), note="warning" * warns)
 

@@ -190,9 +190,9 @@ CATALOGUE: dict[str, Entry] = {
     "LS310": Entry("fewer than two tests", "the table has {count}", "at least two tests, one a row"),
     "LS311": Entry(
         "doubled test number",
-        "test {text} is there twice, first in line {first}",
-        "each test number once",
-        "give each test a number of its own",
+        "{name} {text} is there twice, first in line {first}",
+        "each number once",
+        "give each {name} a number of its own",
     ),
     "LS312": Entry(
         "not a test number", "not a test number: '{text}'", "a positive whole number such as 1, 2, 3"

@@ -1,0 +1,62 @@
+"""What a beginner writes wrong is told with its place and what to write instead."""
+
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report.messages.errors import InputError
+from loopsheet.report.study import Study
+
+CODE = """\
+from loopsheet import Method, given, let, mean, measured, unknown
+
+
+class Lab(Method, rows="readings", headline="m"):
+    "Lab."
+
+    x = measured("mm", "length")
+    y = measured("N", "force")
+    K = given("N/mm", "stiffness")
+    z = let(K * x - y, "rest", "N")
+    m = let(mean(z), "mean rest", "N")
+"""
+TABLE = "reading,x [mm],y [N]\n1,1.00,2.0\n2,1.10,2.2\n3,1.30,2.7\n"
+TOML = 'workbook = "workbook.py"\n[parameters]\nK = "2.00 N/mm"\n[measurements]\nfile = "measurements.csv"\n'
+SHARED = '[uncertainty.shared.gauge]\nof = "x"\nstated = "u = 0.01 mm"\ngroups = [[1, 2], [2, 3]]\n'
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "place", "told"),
+    [
+        ("report.toml", "", SHARED, "9:10", "the uncertainty of 2 in groups is stated twice"),
+        ("report.toml", "", '[limits]\nx = ">= 1 mm"\n', "7:1", "allowed: x[1], x[2] or x[3]"),
+        ("report.toml", "", '[expected]\n"raeding 3" = "odd"\n', "7:1", "did you mean 'reading 3'?"),
+        ("report.toml", "", '[expected]\n"reading 9" = "odd"\n', "7:1", "reading has no index '9'"),
+        ("report.toml", "N/mm", "N per mm", "3:13", "write / for per"),
+        ("workbook.py", "K * x", "K * x^2", "10:5", "a power is written x**2"),
+        ("workbook.py", '"mm"', '"milimeter"', "7:5", "did you mean 'millimeter'?"),
+        ("workbook.py", "", '    q = unknown("nothing")\n', "12:5", "neither a root nor a fit finds it"),
+        ("measurements.csv", "1.10", "-", "3:3", "the cell of what was not measured is empty"),
+        ("measurements.csv", "3,1.30", "2,1.30", "4:1", "reading 2 is there twice, first in line 3"),
+    ],
+)  # fmt: skip
+def test_hints(tmp_path: Path, file: str, old: str, new: str, place: str, told: str) -> None:
+    files = {"workbook.py": CODE, "measurements.csv": TABLE, "report.toml": TOML}
+    files[file] = files[file].replace(old, new, 1) if old else files[file] + new
+    for name, text in files.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        assert Study(tmp_path).computed
+    (found,) = caught.value.diagnostics
+    assert f"{found.at.line}:{found.at.column}" == place
+    assert told in str(caught.value)
+
+
+@pytest.mark.parametrize("row", ["reading 3", "test 3"])
+def test_a_row_is_expected_to_be_odd_by_its_own_word(tmp_path: Path, row: str) -> None:
+    table = TABLE.replace("3,1.30", "3,")
+    more = f'[expected]\n"{row}" = "slipped"\n'
+    for name, text in {"workbook.py": CODE, "measurements.csv": table, "report.toml": TOML + more}.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    oddities = Study(tmp_path).computed.oddities
+    assert f"{row}, slipped: x[3] has no value (#INPUT!)" in [check.message for check in oddities]
