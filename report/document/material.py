@@ -89,13 +89,6 @@ class Material:
         """Over how many rows of an axis a column sums; rows without a value do not count."""
         return self.report.values.rows_summed(name, axis)
 
-    def left_out(self, name: str) -> tuple[tuple[str, int, int], ...]:
-        """For a column that sums over an axis with errors: the axis, how many rows counted, of how many."""
-        counted = self.report.values.counted.get(name, {})
-        return tuple(
-            (axis, rows, self.count(axis)) for axis, rows in counted.items() if rows != self.count(axis)
-        )
-
     # --- marks
 
     def marked(self, name: str) -> tuple[MarkCount, ...]:
