@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from .views.issued import Issued
     from .workbook import FigureSpec
 
-__all__ = ["Built", "build", "built", "parse_formats"]
+__all__ = ["Built", "build", "built", "formats_again", "parse_formats"]
 
 DEFAULT_FORMATS = tuple(each for each in FORMATS if each not in ON_REQUEST)
 
@@ -52,6 +52,20 @@ def parse_formats(words: str) -> tuple[str, ...]:
                 diagnose("LS604", kind="format", text=word, known=listing(FORMATS), suggestion=hint)
             )
     return tuple(f for f in FORMATS if f in wanted)
+
+
+def formats_again(out: Path) -> tuple[str, ...] | None:
+    """What to build where nothing is asked for: None, the default, and what was asked for before besides.
+
+    A report.pdf that was issued is not to go because it is built again without a word.
+    """
+    before = manifest_of(out)
+    there = [each for each in FORMATS if before and FORMATS[each][1] in before.outputs]
+    if set(there).isdisjoint(ON_REQUEST):
+        return None
+    # A workbook that is not there beside a page was too large.
+    left = {"xlsx"} if "html" in there and "xlsx" not in there else set()
+    return tuple(each for each in FORMATS if each in there or (each in DEFAULT_FORMATS and each not in left))
 
 
 @dataclass(frozen=True)

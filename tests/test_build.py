@@ -323,3 +323,23 @@ def test_a_place_that_may_not_be_entered_is_a_message(require: Callable[..., str
     assert done.returncode == 2, done.stderr
     assert done.stderr.startswith("error[LS601]: ")
     assert "' cannot be written: Permission denied\n" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("files", "formats"),
+    [
+        ((), None),
+        (("report.html", "report.xlsx"), None),
+        (("report.html", "report.xlsx", "report.pdf"), ("html", "latex", "xlsx", "json", "pdf")),
+        (("report.html", "report.pdf"), ("html", "latex", "json", "pdf")),
+        (("report.pdf",), ("html", "latex", "xlsx", "json", "pdf")),
+    ],
+)
+def test_a_pdf_that_was_built_before_is_built_again(
+    tmp_path: Path, files: tuple[str, ...], formats: tuple[str, ...] | None
+) -> None:
+    manifest = {"schema": 1, "title": "t", "inputs": {}, "outputs": dict.fromkeys(files, "0"), "versions": {}}
+    manifest |= {"values": ""}
+    if files:
+        (tmp_path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    assert build.formats_again(tmp_path) == formats

@@ -28,7 +28,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--to",
         metavar="FORMATS",
-        help="html, latex, xlsx, json, pdf (default: the first four, but no workbook that is too large)",
+        help="html, latex, xlsx, json, pdf (default: the first four, but no workbook that is too large; "
+        "pdf where one was built before)",
     )
     parser.add_argument(
         "--engines",
@@ -48,6 +49,8 @@ def run(options: argparse.Namespace) -> int:
     formats = None if options.to is None else build.parse_formats(options.to)
     folder = report_folder(options.folder)
     out = Path(options.out) if options.out else output(folder)
+    if formats is None:
+        formats = build.formats_again(out)
 
     def say(sentence: str) -> None:
         print(visible(sentence), flush=True)
