@@ -92,7 +92,7 @@ def test_a_name_stands_beside_its_row_in_every_table(
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert page.count("<td class=row>@x &lt;b&gt;y&lt;/b&gt;<td") == 2
     assert f"<td class=words>{NOTE}<td" in page
-    assert "test 4 (17), fell" in page
+    assert "reading 4 (17), fell" in page
     tex = (tmp_path / "out" / "report.tex").read_text(encoding="utf-8")
     assert r"3 & \#9 \{\textbackslash{}a\} & " in tex
     assert r"2 & the door was open,{} 5 \% of the time & @x " in tex
@@ -105,8 +105,8 @@ def test_what_not_every_row_has_is_no_name(tmp_path: Path) -> None:
     report = Study(gas.folder(tmp_path, table=table, code=gas.IN_TABLES)).computed
     assert report.inputs.naming == ()
     assert words(Tables(Material(report)).data["computed"])[:2] == [["reading"], ["1"]]
-    (told,) = (check.message for check in report.oddities if check.name == "test 4")
-    assert told == "test 4, fell"
+    (told,) = (check.message for check in report.oddities if check.name == "reading 4")
+    assert told == "reading 4, fell"
 
 
 def test_a_worksheet_has_them_as_texts_that_no_formula_reads(tmp_path: Path) -> None:

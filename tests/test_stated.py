@@ -253,7 +253,7 @@ def test_what_is_shared(read: Read) -> None:
         ('[uncertainty.shared.a]\nof = "w"\nstated = "u = 1"', "LS505", '"w"'),
         ('[uncertainty.shared.a]\nof = "v"', "LS204", "uncertainty.shared.a"),
         ('[uncertainty.shared.a]\nof = "v"\nstated = "exact"', "LS431", '"exact"'),
-        ('[uncertainty.shared.a]\nof = "v"\nstated = "u = 1"\ngroups = [[1], [1]]', "LS506", "[[1], [1]]"),
+        ('[uncertainty.shared.a]\nof = "v"\nstated = "u = 1"\ngroups = [[1], [1]]', "LS433", "[[1], [1]]"),
         ('[uncertainty.shared.a]\nof = "v"\nstated = "u = 1"\ngroups = [1]', "LS205", "[1]"),
         ('[uncertainty.shared.a]\nof = "v"\nstated = "u = 1"\ngroups = [[]]', "LS205", "[[]]"),
         ('[uncertainty.shared.a]\nof = "v"\nstated = "u = 1"\ngroups = []', "LS205", "[]"),
