@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sympy import Add, Basic, Integral, Mul, Pow, Symbol
+from sympy import Add, Basic, Function, Integral, Max, Min, Mul, Piecewise, Pow, Symbol
+from sympy.core.relational import Relational
 
 from .reductions import REDUCTIONS
 
-__all__ = ["evaluated", "replaced"]
+__all__ = ["evaluated", "rebuilt", "renamed", "replaced"]
+
+_DECIDED = (Function, Max, Min, Piecewise, Pow)
+"""What sympy decided when it was first made, by what is assumed of its parts."""
 
 
 def evaluated(expression: Any) -> Any:
@@ -22,6 +26,8 @@ def evaluated(expression: Any) -> Any:
     arguments = [evaluated(argument) for argument in expression.args]
     if isinstance(expression, (Integral, *REDUCTIONS)):
         return expression.func(arguments[0], *expression.limits)
+    if isinstance(expression, Relational) and tuple(arguments) == expression.args:
+        return expression  # what can be compared was, when it was made
     return expression.func(*arguments)
 
 
@@ -37,3 +43,41 @@ def replaced(expression: Any, where: Mapping[Any, Any]) -> Any:
     if isinstance(expression, (Add, Mul, Pow)):
         return expression.func(*arguments, evaluate=False)
     return expression.func(*arguments)
+
+
+def rebuilt(expression: Basic, parts: Sequence[Any]) -> Any:
+    """The expression of other parts, of which is assumed what was assumed of its own.
+
+    Where these are only called otherwise, nothing but the order of terms and factors, which hangs on names,
+    is found anew: to ask again what has a sign or can be compared takes sympy most of its time.
+    """
+    decided = isinstance(expression, Relational) or (
+        isinstance(expression, _DECIDED) and all(map(_alike, parts, expression.args))
+    )
+    return expression.func(*parts, evaluate=False) if decided else expression.func(*parts)
+
+
+def _alike(new: Basic, old: Basic) -> bool:
+    return new.func is old.func or (new.is_symbol and old.is_symbol)
+
+
+def renamed(expression: Any, names: Mapping[Any, Any]) -> Any:
+    """The expression with other symbols or cells, of each of which is assumed what is assumed of its own.
+
+    Parameters
+    ----------
+    expression : Basic
+        As sympy evaluates it.
+    names : mapping
+        No two have the same new name.
+    """
+    known: dict[Any, Any] = {old: new for old, new in names.items() if old != new}
+
+    def put(part: Any) -> Any:
+        if part not in known:
+            parts = [put(argument) for argument in part.args]
+            same = all(new is old for new, old in zip(parts, part.args, strict=True))
+            known[part] = part if same else rebuilt(part, parts)
+        return known[part]
+
+    return put(expression) if known else expression

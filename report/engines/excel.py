@@ -17,6 +17,7 @@ from sympy import Add, Basic, Expr, Function, Integer, Mul, Pow, Rational, Symbo
 from sympy.logic.boolalg import BooleanFunction
 from sympy.printing.printer import Printer
 
+from ...derivations.rebuilt import renamed
 from ..plan.nodes import Leaf, Node, Plan, RowOrder, RowSum
 from ..plan.order import Word
 from .excel_values import NotPrintable
@@ -89,7 +90,7 @@ def ordered(plan: Plan) -> Plan:
             return replace(value, **{f.name: moved(getattr(value, f.name)) for f in fields(value)})
         if not isinstance(value, Basic):
             return value
-        return value.xreplace({symbol: behind(symbol) for symbol in value.atoms(Symbol)})
+        return renamed(value, {symbol: behind(symbol) for symbol in value.atoms(Symbol)})
 
     return Plan(moved(plan.nodes), {behind(symbol): leaf for symbol, leaf in plan.leaves.items()})
 

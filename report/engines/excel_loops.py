@@ -103,6 +103,8 @@ def _renamed(expression: Basic, now: Mapping[str, str]) -> Any:
     """The expression in cells of passes."""
     from sympy import Indexed, IndexedBase, Symbol
 
+    from ...derivations.rebuilt import renamed
+
     def new(symbol: Any) -> Any:
         return Symbol(now[symbol.name], **symbol.assumptions0)
 
@@ -112,4 +114,4 @@ def _renamed(expression: Basic, now: Mapping[str, str]) -> Any:
         if cell.base.label.name in now
     }
     plain = {symbol: new(symbol) for symbol in expression.atoms(Symbol) if symbol.name in now}
-    return expression.xreplace(cells | plain)
+    return renamed(expression, cells | plain)

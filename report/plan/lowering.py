@@ -6,9 +6,10 @@ from collections.abc import Collection
 from itertools import chain, count
 from typing import Any
 
-from sympy import Expr, Indexed, Max, Min, Symbol, false
+from sympy import Expr, Indexed, Symbol, false
 from sympy.core.symbol import Str
 
+from ...derivations.rebuilt import rebuilt
 from ...derivations.reductions import REDUCTIONS, OrderStatistic
 from ..named import name_of
 from ..sheet import Axis, Column, Formula, Given, Iterated, Root, Sheet
@@ -145,10 +146,7 @@ class Lowering:
         if not expression.args:
             return expression
         parts = [self.plain(argument, column, axis, unknown) for argument in expression.args]
-        if isinstance(expression, (Max, Min)):
-            # What can be compared was, before the names changed.
-            return expression.func(*parts, evaluate=False)
-        return expression.func(*parts)
+        return rebuilt(expression, parts)
 
     def nodes(self, column: Column) -> list[Node]:
         """The nodes of a column, or those of its loop, which come with the last column of that."""
@@ -230,8 +228,7 @@ class Lowering:
             return expression
         parts = [self._lifted(argument, column, unknown, nodes) for argument in expression.args]
         if not isinstance(expression, (RowSum, RowOrder)):
-            still = {"evaluate": False} if isinstance(expression, (Max, Min)) else {}
-            return expression.func(*parts, **still)
+            return rebuilt(expression, parts)
         terms, axis, *_ = parts
         if unknown is not None and terms.has(unknown):
             return expression.func(*parts)
