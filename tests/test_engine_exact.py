@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 from mpmath import mpf
-from sympy import Expr, Integer, Rational, Sum, Symbol, cos, log
+from sympy import Expr, Integer, Piecewise, Rational, Sum, Symbol, cos, log, sqrt
 from uncertain_data import uncertain
 
 from loopsheet.derivations.equation import Equation
@@ -65,6 +65,20 @@ def test_sums_have_fifty_digits_although_they_cancel() -> None:
     values = evaluate(a, formula("f", Sum(a[k], (k, 1, n))), a=rows)
     with mpmath.workdps(60):
         assert close(values.value["f"][0], mpf(1) / 3)
+
+
+def test_what_rounding_leaves_of_a_difference_is_nothing_and_what_is_small_stays() -> None:
+    g = formula("g", sqrt(b.symbol))
+    left = formula("f", g.symbol**2 - b.symbol)
+    sign_of_it = formula("h", Piecewise((Integer(1), left.symbol > 0), (Integer(2), True)))
+    small = formula("s", b.symbol * Rational(1, 10**60))
+    values = evaluate(b, g, left, sign_of_it, small, b=5)
+    with mpmath.workdps(65):
+        assert mpmath.sqrt(5) ** 2 != 5
+    assert values.value["f"] == [0]
+    assert values.value["h"] == [2], "what rests on it is computed from nothing"
+    with mpmath.workdps(60):
+        assert close(values.value["s"][0], mpf(5) / mpf(10) ** 60)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ stand. It is slow and not meant for large data.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -37,6 +37,8 @@ __all__ = ["DIGITS", "ExactValues", "evaluate", "laid_out"]
 DIGITS = 50
 _GUARD = 15
 """Digits carried beyond those that are promised: sums and differences eat some."""
+_TINY = mpmath.mpf("1e-30")
+"""What is smaller may be what rounding left of a difference; it is looked at with more digits."""
 _CLOSE = mpmath.mpf(f"1e-{DIGITS + 5}")
 _NEAR = mpmath.mpf("1e-30")
 _PASSES = 400
@@ -144,9 +146,32 @@ def evaluate(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[st
         Fractions are taken exactly; None or NaN is a missing datum.
     """
     layouts = laid_out(sheet, labels, data)
-    with mpmath.workdps(DIGITS + _GUARD):
-        given = {name: [_datum(x, sheet.bounds[name]) for x in _rows(data[name])] for name in sheet.bounds}
-        return _Exact(sheet, layouts, given).run()
+
+    def run(digits: int, zeros: Set[tuple[str, int]] = frozenset()) -> ExactValues:
+        with mpmath.workdps(digits):
+            given = {
+                name: [_datum(x, sheet.bounds[name]) for x in _rows(data[name])] for name in sheet.bounds
+            }
+            return _Exact(sheet, layouts, given, zeros).run()
+
+    found = run(DIGITS + _GUARD)
+    tiny = {
+        (column.name, row): value
+        for column in sheet.order
+        if not isinstance(column.rule, Given) and column.name not in sheet.loop_of  # a loop tells itself
+        for row, value in enumerate(found.value[column.name])
+        if value is not None and 0 < abs(value) < _TINY
+    }
+    if not tiny:
+        return found
+    # What is nothing becomes smaller by the digits that are added; what is something stays.
+    better = run(DIGITS + 2 * _GUARD).value
+    zeros = {
+        (name, row)
+        for (name, row), value in tiny.items()
+        if (there := better[name][row]) is not None and abs(there) < _ROUGHLY * abs(value)
+    }
+    return run(DIGITS + _GUARD, zeros) if zeros else found
 
 
 def laid_out(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[str, Any]) -> dict[str, Layout]:
@@ -178,8 +203,14 @@ def _texts(sheet: Sheet) -> Mapping[str, Any]:
 class _Exact:
     """One evaluation at 50 digits."""
 
-    def __init__(self, sheet: Sheet, layouts: Mapping[str, Layout], given: Mapping[str, list[Any]]) -> None:
-        self.sheet, self.layouts, self.given = sheet, layouts, given
+    def __init__(
+        self,
+        sheet: Sheet,
+        layouts: Mapping[str, Layout],
+        given: Mapping[str, list[Any]],
+        zeros: Set[tuple[str, int]],
+    ) -> None:
+        self.sheet, self.layouts, self.given, self.zeros = sheet, layouts, given, zeros
         self.texts = _texts(sheet)
         self.value: dict[str, list[Any]] = {}
         self.status: dict[str, NDArray[np.uint8]] = {}
@@ -285,7 +316,8 @@ class _Exact:
                 if not condition(row):
                     broken[row] = number
                     raise _Failed(Status.DOMAIN)
-            return _held(body(row), column.positive)
+            exactly = body(row)
+            return _held(mpmath.mpf(0) if (column.name, row) in self.zeros else exactly, column.positive)
 
         return status, compute
 
