@@ -104,11 +104,12 @@ class FewRows:
     def _plain(self, expression: Any) -> Any:
         expression = in_terms(expression)
         for kind in (OrderStatistic, Indexed, AppliedUndef):
+            plain = {}
             for part in sorted(expression.atoms(kind), key=str):
                 of = part.base.label if kind is Indexed else part
-                symbol = Symbol(str(part), real=True, positive=True if of.is_positive else None)
-                self.names[symbol] = part
-                expression = expression.xreplace({part: symbol})
+                plain[part] = Symbol(str(part), real=True, positive=True if of.is_positive else None)
+                self.names[plain[part]] = part
+            expression = expression.xreplace(plain)
         return expression
 
 

@@ -58,11 +58,11 @@ KEEPS = (
 (tests/mutants.py)."""
 
 os.environ[SETTING] = ""
-"""What a test looks at is made for it, but for what `keeping` gives."""
+"""Until the tests begin: what is imported keeps nothing."""
 
 
 def shipped(config: pytest.Config) -> Path:
-    """What is kept of these sources' builds of the two larger shipped folders, which lie elsewhere then."""
+    """What is kept of these sources, by all workers and runs; the larger shipped folders, to begin with."""
     place = config.cache.mkdir("loopsheet")
     of_these = hashlib.sha256(json.dumps(sources(), sort_keys=True).encode()).hexdigest()[:16]
     with (place / "lock").open("w") as lock:
@@ -72,8 +72,9 @@ def shipped(config: pytest.Config) -> Path:
                 shutil.rmtree(older)
             with TemporaryDirectory(dir=place) as made:
                 Path(made, "kept").mkdir(mode=0o700)
-                for example in (PAPER, PAPER.parent / "worked_example"):
-                    copied = shutil.copytree(example, Path(made, example.name))
+                # Where one file is run, after an edit, its tests ask for less.
+                for example in ("soft_steel", "worked_example") if hasattr(config, "workerinput") else ():
+                    copied = shutil.copytree(PAPER.parent / example, Path(made, example))
                     command = [sys.executable, "-m", "loopsheet", "build", str(copied)]
                     environment = {**os.environ, SETTING: str(Path(made, "kept"))}
                     subprocess.run(command, env=environment, capture_output=True, check=False)
@@ -81,21 +82,40 @@ def shipped(config: pytest.Config) -> Path:
     return place / of_these
 
 
-@pytest.fixture(scope="module")
-def keeping(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """What is made of the same bytes is kept from test to test of a file, as it is for users.
-
-    In a run of many it begins with what is kept of the shipped reports. It is not for tests that change how
-    something is made.
-    """
-    if not KEEPS:
-        yield
-        return
-    own = tmp_path_factory.mktemp("kept")
-    if hasattr(request.config, "workerinput"):  # where one file is run, after an edit, its tests ask for less
-        shutil.copytree(shipped(request.config), own, dirs_exist_ok=True, copy_function=os.link)
+@pytest.fixture(scope="session", autouse=True)
+def _kept(pytestconfig: pytest.Config) -> Iterator[None]:
+    """What is made of the same bytes is kept from test to test, as it is for users."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(SETTING, str(own))
+        if KEEPS:
+            patch.setenv(SETTING, str(shipped(pytestconfig)))
+        yield
+
+
+@pytest.fixture(scope="module")
+def anew(_kept: None) -> Iterator[None]:
+    """What a test looks at is made for it: for tests of how, or how often, something is made."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(SETTING, "")
+        yield
+
+
+@pytest.fixture(scope="module")
+def keeping(_kept: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """What the tests of a file make is kept for that file alone, though they patch what makes it."""
+    with pytest.MonkeyPatch.context() as patch:
+        if KEEPS:
+            own = tmp_path_factory.mktemp("kept")
+            shutil.copytree(os.environ[SETTING], own, dirs_exist_ok=True, copy_function=os.link)
+            patch.setenv(SETTING, str(own))
+        yield
+
+
+@pytest.fixture(autouse=True)
+def _made_by_what_is_patched(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Where a test patches what makes something, others are not given that, nor it what others made."""
+    with pytest.MonkeyPatch.context() as patch:
+        if "monkeypatch" in request.fixturenames and "keeping" not in request.fixturenames:
+            patch.setenv(SETTING, "")
         yield
 
 
@@ -195,12 +215,14 @@ def beside() -> None:
 
 
 @pytest.fixture(autouse=True)
-def _in_this_process(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+def _in_this_process(request: pytest.FixtureRequest) -> Iterator[None]:
     """Else it builds as where the system lets none begin: most reports here take less than a process does."""
     from loopsheet.report import build
 
-    if "beside" not in request.fixturenames:
-        monkeypatch.setattr(build, "Background", Here)
+    with pytest.MonkeyPatch.context() as patch:
+        if "beside" not in request.fixturenames:
+            patch.setattr(build, "Background", Here)
+        yield
 
 
 class Here(Background[Any]):

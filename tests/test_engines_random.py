@@ -40,7 +40,7 @@ from loopsheet.report.engines.kernels import compiled
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.judge.engines import LIMIT
 
-pytestmark = pytest.mark.campaigns
+pytestmark = [pytest.mark.campaigns, pytest.mark.usefixtures("anew")]
 
 Say = Callable[[str], None]
 

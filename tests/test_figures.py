@@ -178,6 +178,7 @@ print("pyplot", "matplotlib.pyplot" in sys.modules)
 """
 
 
+@pytest.mark.usefixtures("anew")
 def test_same_bytes_in_another_process_time_zone_and_with_other_settings(
     report_of: Callable[..., Report], tmp_path: Path
 ) -> None:

@@ -117,6 +117,7 @@ print(excel_grid.grid(r.sheet, r.values, units, r.workbook.headline).blocks)
 """
 
 
+@pytest.mark.usefixtures("anew")
 def test_the_order_is_the_same_under_every_hash_seed() -> None:
     outputs = {
         subprocess.run(

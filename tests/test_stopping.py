@@ -34,6 +34,8 @@ from loopsheet.report.machine.stopping import Stopped, stoppable, unstoppable
 from loopsheet.report.messages.errors import OutputError
 from loopsheet.report.verification import _outputs
 
+pytestmark = pytest.mark.usefixtures("anew")
+
 Hashes = dict[str, str]
 
 

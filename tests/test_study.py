@@ -39,6 +39,7 @@ def test_nothing_is_made_that_was_not_asked_for(tmp_path: Path) -> None:
     assert study.report.referee == study.refereed.referee
 
 
+@pytest.mark.usefixtures("anew")
 def test_a_folder_is_read_once(tmp_path: Path) -> None:
     """What is kept of it and what is computed are of the same bytes, however soon it is edited."""
     study = Study(end_gauge(tmp_path))

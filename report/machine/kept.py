@@ -35,8 +35,14 @@ UNTOLD = ("markupsafe", "msgspec", "pint", "scipy")
 LARGEST = 300_000_000
 """Bytes. Above that, what was not used for the longest time goes."""
 
+_LOOKS = 100
+"""How often a process looks whether there is too much while it writes so much."""
+
 _DAY = 86_400.0
 _HASH = 64
+
+_written: dict[Path, int] = {}
+"""Bytes that this process put into a folder since it last looked."""
 
 
 def kept(what: str, parts: Iterable[str | bytes], make: Callable[[], Any] | None) -> Any:
@@ -170,7 +176,11 @@ def _write(folder: Path, name: str, content: bytes) -> None:
         except OSError:
             os.unlink(draft)
             raise
-        _make_room(folder)
+        # A folder of thousands of files is not looked through for each that is put into it.
+        _written[folder] = _written.get(folder, LARGEST) + len(content)
+        if _written[folder] > LARGEST // _LOOKS:
+            _make_room(folder)
+            _written[folder] = 0
 
 
 def _make_room(folder: Path) -> None:

@@ -15,6 +15,8 @@ import pytest
 
 from loopsheet.report.archive.wheel import wheel
 
+pytestmark = pytest.mark.usefixtures("anew")
+
 ROOT = Path(__file__).parents[2]
 
 Build = Callable[[Path], Path]

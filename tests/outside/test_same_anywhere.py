@@ -16,6 +16,8 @@ import pytest
 from campaign_sizes import Sizes
 from processors import beyond, lesser
 
+pytestmark = pytest.mark.usefixtures("anew")
+
 OTHER = 65534
 """The user that Unix calls nobody."""
 LOCALES = ("de_DE", "tr_TR", "fr_FR")
