@@ -144,7 +144,7 @@ class FolderChecks:
         inputs = prepared.check_cells()
         return {
             "engine": list(ENGINES),
-            "proof": [equation.label for equation in inputs.workbook.ledger().equations()],
+            "proof": [equation.label for equation in self.study.ledger.equations()],
             "published": names_of((*inputs.published, *inputs.published_u)),
             "table": table_names(inputs),
             **oddities.names(prepared.sheet, inputs),
