@@ -208,7 +208,7 @@ class _Exact:
         sheet: Sheet,
         layouts: Mapping[str, Layout],
         given: Mapping[str, list[Any]],
-        zeros: Set[tuple[str, int]],
+        zeros: Set[tuple[str, int]] = frozenset(),
     ) -> None:
         self.sheet, self.layouts, self.given, self.zeros = sheet, layouts, given, zeros
         self.texts = _texts(sheet)

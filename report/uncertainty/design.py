@@ -36,8 +36,10 @@ GRID = 12
 """Intervals of the range at first; then they are halved."""
 HALVINGS = 7
 """A choice is then known to a fifteen-hundredth of the range."""
-DOUBLINGS = 60
-"""From the uncertainty that is there, before any is enough."""
+STRIDE = 8
+"""From the uncertainty that is there to one with which the cell is not sure enough."""
+CLOSE = 1e-12
+"""As a part of it: how close a needed uncertainty is told."""
 LARGEST = 1e60
 """Of an uncertainty that can be stated."""
 ENDLESS = 1e9
@@ -243,16 +245,17 @@ class Planner:
             return Needed(of, wanted, math.nan, others)
         numbers = inputs.numbers(of)
         low, high = 0.0, max((each.u for each in numbers), default=0.0) or float(abs(numbers[0].value)) * 1e-3
-        for _ in range(DOUBLINGS):
-            if u(high) > wanted:
-                break
-            if numbers and high > ENDLESS * max(abs(float(each.value)) for each in numbers):
+        while (there := u(high)) <= wanted:
+            if high >= min(LARGEST, ENDLESS * max((abs(float(each.value)) for each in numbers), default=1.0)):
                 return Needed(of, wanted, math.inf, others)
-            low, high = high, min(2 * high, LARGEST)
-        else:
-            return Needed(of, wanted, math.inf, others)
-        while low < (middle := (low + high) / 2) < high and high - low > 1e-12 * high:
-            low, high = (low, middle) if u(middle) > wanted else (middle, high)
+            low, high = high, min(STRIDE * high, LARGEST)
+        while math.isinf(there) and high - low > CLOSE * high:
+            middle = (low + high) / 2
+            low, high, there = (low, middle, far) if (far := u(middle)) > wanted else (middle, high, there)
+        if math.isfinite(there) and high - low > CLOSE * high:
+            from scipy.optimize import brentq  # half a second, for those who ask backwards
+
+            low = brentq(lambda own: u(own) - wanted, low, high, xtol=CLOSE * high, rtol=CLOSE)
         return Needed(of, wanted, low, others)
 
 

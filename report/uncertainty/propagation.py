@@ -8,7 +8,7 @@ on the same tests has the variance it has, no other.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,14 +80,25 @@ class Spread:
         self._known = _known(values)
         self._made: Made = like._made if like else Made.of(values.sheet)
         self._program: Program | None = like._program if like else None
-        chain = Chain(self._made.only(self._known), values.layouts, numbers)
-        self._along = Numbers(chain, values).go()
+        self._chain: Chain = like._chain if like and self._lies_as(like) else self._new_chain(numbers)
+        self._along = Numbers(self._chain, values).go()
         self.second: SecondOrder | None = None
         """What is of second order; None for a sheet that is too large."""
         if self.sources and SecondOrder.is_small(values, self.sources):
             self._program = self._program or Program.of(values.sheet)
             root = root_of(len(self.sources), self._pairs)
-            self.second = SecondOrder(chain, values, self._program, self.sources, root, self._by_source)
+            self.second = SecondOrder(self._chain, values, self._program, self.sources, root, self._by_source)
+
+    def _lies_as(self, other: Spread) -> bool:
+        """Whether all rows stand where those of another do, so that the same ways lead between cells."""
+        own, theirs = self.values.layouts, other.values.layouts
+        alike = own.keys() == theirs.keys() and all(
+            np.array_equal(layout.labels, theirs[name].labels) for name, layout in own.items()
+        )
+        return alike and self._known == other._known
+
+    def _new_chain(self, numbers: Mapping[str, NDArray[np.intp]]) -> Chain:
+        return Chain(self._made.only(self._known), self.values.layouts, numbers)
 
     def contributions(self, cells: Sequence[tuple[str, int]]) -> Array:
         """What each source contributes to some cells, with its sign.
