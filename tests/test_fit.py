@@ -30,6 +30,8 @@ from loopsheet.report.engines.numpy import evaluate
 from loopsheet.report.fitting.model import Model
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.study import Study
+from loopsheet.report.uncertainty.monte_carlo import draw
+from loopsheet.report.uncertainty.propagation import Spread
 
 LINEAR, NONLINEAR = nist_strd.linear(), nist_strd.nonlinear()
 Array = nist_strd.Array
@@ -312,6 +314,37 @@ def test_two_fits_of_one_column_by_its_stated_uncertainties(tmp_path: Path) -> N
     found = loopsheet.load(tmp_path).findings
     assert any("growth_S = " in line and "does not describe" in line for line in found)
     assert not any("line_S" in line for line in found)
+
+
+DECAY = """from sympy import exp
+from loopsheet import Method, fit, measured, unknown
+
+
+class Decay(Method):
+    '''Counts that decay.'''
+
+    t = measured("s", "time")
+    A = measured("1", "counts")
+    A_0 = unknown("counts at first", start=10)
+    c = unknown("rate", unit="1/s", start=0.4)
+    f = fit(A, A_0 * exp(-c * t))
+"""
+
+
+def test_how_far_a_fit_steps_is_no_corner_of_what_it_finds(tmp_path: Path) -> None:
+    """Terms of second order make u of the rate a twelfth larger, as draws do."""
+    (tmp_path / "workbook.py").write_text(DECAY, encoding="utf-8")
+    rows = "1,0.0,10.2\n2,2.0,4.1\n3,4.0,2.4\n4,6.0,0.7\n5,8.0,0.6\n"
+    (tmp_path / "m.csv").write_text(f"test,t [s],A [1]\n{rows}", encoding="utf-8")
+    said = '[uncertainty]\nA = "u = 1.0"\nt = "exact"\n'
+    toml = f'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n{said}'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    report = Study(tmp_path).computed
+    budget = Spread(report.inputs, report.values).budget("c", 0)
+    assert budget.unlooked == ""
+    assert budget.second > 0.1 * (budget.u**2 - budget.second)
+    drawn = draw(report.inputs, report.values, budget, 20_000)
+    assert budget.u == pytest.approx(drawn.u, rel=0.04)
 
 
 # --- why it holds ----------------------------------------------------------------------------------------

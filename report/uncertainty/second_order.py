@@ -19,7 +19,7 @@ from ..engines.numpy import Program, evaluate
 from ..judge.chain import Chain
 from ..judge.sensitivity import Numbers
 from ..result.uncertain import ErrorSource
-from ..sheet import Column, Formula
+from ..sheet import Column, Formula, Iterated, Sheet
 
 __all__ = ["SecondOrder", "root_of"]
 
@@ -101,7 +101,7 @@ class SecondOrder:
             if word := node.word if node.by_order else next(words, ""):
                 self.jumping[node.name] = word
         sheet = values.sheet
-        sharp = {column.name for column in sheet.columns if _has_corner(column)}
+        sharp = {c.name for c in sheet.columns if _has_corner(c) and not _only_steers(sheet, c)}
         self.cornered = {
             c.name
             for c in sheet.columns
@@ -182,6 +182,15 @@ def _has_corner(column: Column) -> bool:
     if not isinstance(column.rule, Formula) or column.mentioned is not None:
         return False
     return bool(column.rule.expression.find(lambda part: type(part).__name__ in CORNERS))
+
+
+def _only_steers(sheet: Sheet, column: Column) -> bool:
+    """Whether it says how far a loop steps, and no more: where that rests, what it multiplies is nothing."""
+    loop, users = sheet.loop_of.get(column.name), sheet.dependents(column)
+    return loop is not None and all(
+        isinstance(user.rule, Iterated) and not ((user.rule.step - user.cell) / column.cell).has(column.cell)
+        for user in users
+    )
 
 
 def _beside(values: Values, program: Program, sources: Sequence[ErrorSource], root: Array) -> Values:
