@@ -407,6 +407,12 @@ class MethodBody(dict[str, Any]):
         self.aside += found.aside
         self.of_fits |= {column.name: Symbol(column.name, real=True) in sought for column in found.columns}
         self.squares += found.squares
+        self.inputs = [
+            replace(each, scatter=found.scatter)
+            if isinstance(each, Measured) and each.name == name_of(said.observed)
+            else each
+            for each in self.inputs
+        ]
         if said.figures:
             self.figures += found.figures(len(self.figures) + 1)
         return found

@@ -33,12 +33,15 @@ class Measured:
         What it is, for messages and captions.
     bounds : Bounds
         What values are allowed, in SI.
+    scatter : str
+        Of what a model is fitted to, the cell that tells how it scatters about the curve.
     """
 
     name: str
     unit: str
     meaning: str
     bounds: Bounds = field(default_factory=Bounds)
+    scatter: str = ""
 
 
 @dataclass(frozen=True)

@@ -347,6 +347,19 @@ def test_how_far_a_fit_steps_is_no_corner_of_what_it_finds(tmp_path: Path) -> No
     assert budget.u == pytest.approx(drawn.u, rel=0.04)
 
 
+def test_what_is_fitted_does_not_scatter_about_its_mean(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "workbook.py").write_text(DECAY, encoding="utf-8")
+    (tmp_path / "m.csv").write_text("test,t [s],A [1]\n1,0,10.2\n2,2,4.1\n3,4,2.4\n", encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\nA = "u = 1; scatter"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    assert main(["check", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert "a model is fitted to A, which scatters about a curve and not about its mean: f_s tells" in said
+    assert ":5:5" in said
+
+
 # --- why it holds ----------------------------------------------------------------------------------------
 
 k, n = (Symbol(name, integer=True, positive=True) for name in "kn")

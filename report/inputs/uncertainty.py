@@ -229,6 +229,14 @@ class _Reader:
             hint = f"{of} is a whole number that the method counts with: it has none"
             self.findings.add("LS431", self.toml.value(*path), text=text, suggestion=hint)
             return None
+        about = getattr(self.declared[of], "scatter", "")
+        if about and SCATTER in map(str.strip, text.split(";")):
+            hint = (
+                f"a model is fitted to {of}, which scatters about a curve and not about its mean: {about} "
+                "tells how much; state that as u = ..., dof = rows less parameters"
+            )
+            self.findings.add("LS431", self.toml.value(*path), text=text, suggestion=hint)
+            return None
         try:
             own = self.of(of, self.toml.value(*path)) if len(path) == 2 else Of()
             return read_statement(text, parse_unit(self.numbers[of][0].unit), self.said.bare, own)
