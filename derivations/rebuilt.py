@@ -12,8 +12,10 @@ from .reductions import REDUCTIONS
 
 __all__ = ["evaluated", "rebuilt", "renamed", "replaced"]
 
-_DECIDED = (Function, Max, Min, Piecewise, Pow)
-"""What sympy decided when it was first made, by what is assumed of its parts."""
+_COMPARED = (Max, Min, Relational)
+"""What sympy decided by comparing its parts when it was first made."""
+_DECIDED = (Function, Piecewise, Pow)
+"""What it decided by what is assumed of its parts, or by what these are."""
 
 
 def evaluated(expression: Any) -> Any:
@@ -51,7 +53,7 @@ def rebuilt(expression: Basic, parts: Sequence[Any]) -> Any:
     Where these are only called otherwise, nothing but the order of terms and factors, which hangs on names,
     is found anew: to ask again what has a sign or can be compared takes sympy most of its time.
     """
-    decided = isinstance(expression, Relational) or (
+    decided = isinstance(expression, _COMPARED) or (
         isinstance(expression, _DECIDED) and all(map(_alike, parts, expression.args))
     )
     return expression.func(*parts, evaluate=False) if decided else expression.func(*parts)

@@ -58,7 +58,7 @@ def test_numbers_are_pythons(line: str) -> None:
 
 def test_all_lines_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code = f"{HEAD}    R = let(np.mean(i), 'mean')\n    if U == 5: S = let(U, 'five')\n"
-    assert main(["check", str(folder(tmp_path, code, 'U = "5.0 V"\n')), "--no-cache"]) == 2
+    assert main(["check", str(folder(tmp_path, code, 'U = "5.0 V"\n'))]) == 2
     told = capsys.readouterr().err
     assert re.findall(r"workbook\.py:(\d+)", told) == ["11", "12"]
     assert "np.mean(...) would work on the name, not on its numbers" in told

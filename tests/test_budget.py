@@ -53,7 +53,7 @@ def campaign(tmp_path: Path) -> str:
 
 
 def told(capsys: pytest.CaptureFixture[str], *words: str) -> str:
-    assert main(["budget", *words, "--no-cache"]) == 0
+    assert main(["budget", *words]) == 0
     return capsys.readouterr().out
 
 

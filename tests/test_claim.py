@@ -83,12 +83,12 @@ def test_a_wrong_claim_is_red(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], right: str, code: int
 ) -> None:
     where = folder(tmp_path, f"claim(total(dx), {right}, 'nothing is left', label='(C)')")
-    assert main(["prove", "(C)", str(where), "--no-cache"]) == code
+    assert main(["prove", "(C)", str(where)]) == code
     told = capsys.readouterr().out
     assert ("refuted" in told) == bool(code)
     assert ("proved: residual 0" in told) != bool(code)
     assert all(proof.status.passes for proof in Study(where).proved.proofs) != bool(code)
-    assert main(["check", str(where), "--no-cache"]) == code
+    assert main(["check", str(where)]) == code
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ def test_what_cannot_be_claimed_is_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, said: str
 ) -> None:
     where = folder(tmp_path, line.replace("x, 'r'", "x / L, 'r'"))
-    assert main(["check", str(where), "--no-cache"]) == 2
+    assert main(["check", str(where)]) == 2
     told = capsys.readouterr().err
     assert said in told
     assert "workbook.py:" in told

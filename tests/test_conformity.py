@@ -166,7 +166,7 @@ def folder(tmp_path: Path, more: str) -> str:
 
 
 def told(capsys: pytest.CaptureFixture[str], *words: str) -> str:
-    assert main(["budget", *words, "--no-cache"]) == 0
+    assert main(["budget", *words]) == 0
     return capsys.readouterr().out
 
 
@@ -227,7 +227,7 @@ def test_a_program_gets_all_digits(tmp_path: Path, capsys: pytest.CaptureFixture
 
 
 def test_a_check_counts_what_does_not_conform(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["check", folder(tmp_path, LIMITS), "--format", "json", "--no-cache"]) == 1
+    assert main(["check", folder(tmp_path, LIMITS), "--format", "json"]) == 1
     found = json.loads(capsys.readouterr().out)["checks"]
     own = {each["name"]: each for each in found if each["kind"] == "conformity"}
     assert {name: each["passed"] for name, each in own.items()} == {
@@ -284,7 +284,7 @@ def test_a_unit_behind_the_second_number_is_that_of_both(tmp_path: Path) -> None
 def test_what_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, code: str, culprit: str
 ) -> None:
-    assert main(["budget", "alpha_mean", folder(tmp_path, f"[limits]\n{line}\n"), "--no-cache"]) == 2
+    assert main(["budget", "alpha_mean", folder(tmp_path, f"[limits]\n{line}\n")]) == 2
     told = capsys.readouterr().err
     assert told.count("error[") == 1
     assert f"error[{code}]" in told
@@ -295,7 +295,7 @@ def test_what_is_refused(
 
 def test_the_report_tells_it_in_every_form(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
-    main(["build", folder(tmp_path, LIMITS), "--no-cache", "--out", str(out)])
+    main(["build", folder(tmp_path, LIMITS), "--out", str(out)])
     capsys.readouterr()
     page, tex = ((out / f"report.{form}").read_text(encoding="utf-8") for form in ("html", "tex"))
     assert "Conformity with limits." in page

@@ -47,7 +47,7 @@ def test_constants_that_were_adjusted_together_are_correlated(
         "    eps = constant('vacuum electric permittivity')\n    c = constant('speed of light in vacuum')\n"
     )
     path = folder(tmp_path, f"{code}    r = let({formula}, 'radius')\n", stated)
-    assert main(["check", str(path), "--no-cache", "--format", "json"]) == 0
+    assert main(["check", str(path), "--format", "json"]) == 0
     checks = json.loads(capsys.readouterr().out)["checks"]
     told = [each["message"] for each in checks if each["kind"] == "constants"]
     says = "r rests on eps and m, which were adjusted together: their errors are correlated, which its u "

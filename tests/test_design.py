@@ -51,7 +51,7 @@ def planner_of(report: Report, cell: str, label: tuple[int, ...] = ()) -> Planne
 
 def told(capsys: pytest.CaptureFixture[str], *words: str, code: int = 0) -> str:
     capsys.readouterr()
-    assert main(["design", *words, "--no-cache"]) == code
+    assert main(["design", *words]) == code
     return capsys.readouterr().out
 
 
@@ -77,7 +77,7 @@ def test_a_folder_with_the_planned_numbers_has_the_same_budget(
     stated = '[uncertainty]\nv = "+-0.5 % rect"\ne = "u = 0.002"\nx_p = "u = 0.1 um, dof = 7"\n'
     (tmp_path / "report.toml").write_text(f'{toml}[measurements]\nfile = "m.csv"\n{stated}', encoding="utf-8")
     (tmp_path / "m.csv").write_text(table, encoding="utf-8")
-    assert main(["budget", cell, str(tmp_path), "--format", "json", "--no-cache"]) == 0
+    assert main(["budget", cell, str(tmp_path), "--format", "json"]) == 0
     budget = json.loads(capsys.readouterr().out)
     for name in ("value", "u", "k", "U"):
         assert plan[name] == pytest.approx(budget[name], rel=1e-9), name
@@ -270,11 +270,11 @@ def test_what_is_said_of_measured_tests_is_not_said_of_planned_ones(tmp_path: Pa
     rows = "1,2.2,0.535,22.58\n2,3.1,0.505,31.92\n3,4.3,0.47,44.61\n"
     (tmp_path / "report.toml").write_text(toml + more, encoding="utf-8")
     (tmp_path / "m.csv").write_text(f"test,v [m/s],e [1],x_p [um]\n{rows}", encoding="utf-8")
-    assert main(["design", str(tmp_path), "--speeds", "2.5, 4", "--no-cache"]) == 0
+    assert main(["design", str(tmp_path), "--speeds", "2.5, 4"]) == 0
 
 
 def test_only_a_workbook_with_a_design_plans(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["design", str(PAPER.parent / "gum_h1"), "--no-cache"]) == 2
+    assert main(["design", str(PAPER.parent / "gum_h1")]) == 2
     assert "error[LS618]" in capsys.readouterr().err
 
 
@@ -284,5 +284,5 @@ def test_a_campaign_without_a_curve_plans_nothing(tmp_path: Path, capsys: pytest
     (tmp_path / "m.csv").write_text(
         "test,v [m/s],e [1],x_p [um]\n1,2.2,0.53,22.5\n2,3.1,0.5,20.1\n", encoding="utf-8"
     )
-    assert main(["design", str(tmp_path), "--speeds", "2, 3", "--no-cache"]) == 2
+    assert main(["design", str(tmp_path), "--speeds", "2, 3"]) == 2
     assert "error[LS619]: this cannot be planned: there is no curve" in capsys.readouterr().err

@@ -248,7 +248,7 @@ def test_a_wrong_fit_is_told(
     (tmp_path / "m.csv").write_text("reading,x [m],y [V]\n1,1.0,2.0\n", encoding="utf-8")
     toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
     (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    assert main(["check", str(tmp_path), "--no-cache"]) == 2
+    assert main(["check", str(tmp_path)]) == 2
     told = capsys.readouterr().err
     assert said in told
     assert re.search(r"workbook\.py:\d+", told)
@@ -303,7 +303,7 @@ def test_two_fits_of_one_column_by_its_stated_uncertainties(tmp_path: Path) -> N
     (tmp_path / "m.csv").write_text(f"reading,x [s],y [mV]\n{rows}", encoding="utf-8")
     toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\nx = "exact"\n'
     (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    assert main(["build", str(tmp_path), "--to", "html", "--no-cache"]) == 0
+    assert main(["build", str(tmp_path), "--to", "html"]) == 0
     report = Study(tmp_path).report
     assert not report.faults
     time, size = np.array([1, 2, 3.5, 4, 5]), np.array([0.02, 0.03, 0.02, 0.04, 0.04])

@@ -125,7 +125,7 @@ def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         known = float(mpmath.findroot(residual, (0.01, 0.05), solver="anderson"))
     assert report.values.scalar("f") == pytest.approx(known, rel=1e-14)
     assert not report.faults
-    assert main(["why", "f", str(where), "--no-cache"]) == 0
+    assert main(["why", "f", str(where)]) == 0
     assert "log(10/37*rough + 2.51/Re/sqrt(f))" in capsys.readouterr().out
 
 
@@ -179,7 +179,7 @@ def test_a_wrong_line_is_told(
     head = head.replace("import Method", "import claim, measured, Method")
     code = f'{head}    a = given("m", "length")\n    b = given("s", "time")\n    {line}\n'
     where = folder(tmp_path, code, 'a = "1.0 m"\nb = "2.0 s"\n')
-    assert main(["check", str(where), "--no-cache"]) == 2
+    assert main(["check", str(where)]) == 2
     told = capsys.readouterr().err
     assert said in told
     assert re.search(r"workbook\.py:\d+", told)
@@ -356,7 +356,7 @@ def test_a_root_over_a_number_that_may_be_zero(tmp_path: Path, require: Callable
         file.write('[measurements]\nfile = "m.csv"\n')
     (where / "m.csv").write_text("reading,V [V]\n1,3.0\n2,5.0\n", encoding="utf-8")
     require("node")
-    assert main(["check", str(where), "--no-cache"]) == 0
+    assert main(["check", str(where)]) == 0
 
 
 def test_at_a_corner_nothing_is_told_of_second_order(tmp_path: Path) -> None:
@@ -399,7 +399,7 @@ def test_what_else_is_refused() -> None:
 
 def test_a_file_of_two_methods_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     where = folder(tmp_path, PIPE + PIPE.replace("Colebrook(", "Other("), 'Re = "1.00e5"\nrough = "0.0010"\n')
-    assert main(["check", str(where), "--no-cache"]) == 2
+    assert main(["check", str(where)]) == 2
     assert "it declares two methods" in capsys.readouterr().err
 
 

@@ -88,7 +88,7 @@ def test_every_engine_agrees_and_every_claim_stands(
     """NumPy, JavaScript and LibreOffice against 50 digits; the place without a value is what is found."""
     require("node")
     require("soffice", "libreoffice")
-    assert main(["check", str(folder(tmp_path)), "--format", "json", "--no-cache"]) == 1
+    assert main(["check", str(folder(tmp_path)), "--format", "json"]) == 1
     checks = json.loads(capsys.readouterr().out)["checks"]
     assert {each["name"] for each in checks if each["kind"] == "engine"} == {"numpy", "JavaScript", "xlsx"}
     assert {each["kind"] for each in checks if not each["passed"]} == {"data"}
@@ -126,7 +126,7 @@ def test_only_the_outermost_rows_make_an_uncertainty(
     assert parts("middle") == pytest.approx({"d[1]": 1e-6, "d[3]": 1e-6})
     assert parts("T_span") == pytest.approx({"T[4]": 0.1, "T[2]": -0.1})
     assert parts("nearest") == pytest.approx({"d[4]": -4e-6, "d_0": 1e-6})
-    assert main(["budget", "R", str(tmp_path), "--no-cache"]) == 0
+    assert main(["budget", "R", str(tmp_path)]) == 0
     assert "it rests on a max, which other rows take over when inputs move" in capsys.readouterr().out
 
 
@@ -157,5 +157,5 @@ def test_the_referee_knows_which_rows_may_be_the_outermost(
     folder(tmp_path)
     (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
     (tmp_path / "published.csv").write_text(table, encoding="utf-8")
-    assert main(["check", str(tmp_path), "--no-cache"]) == 1
+    assert main(["check", str(tmp_path)]) == 1
     assert said in capsys.readouterr().out

@@ -94,7 +94,7 @@ def test_every_engine_and_proof(
 ) -> None:
     require("node")
     require("soffice")
-    assert main(["check", str(folder(tmp_path)), "--no-cache"]) == 1
+    assert main(["check", str(folder(tmp_path))]) == 1
     told = capsys.readouterr().out
     assert re.findall(r"engine +(\w+) .* at most [\d.]+ eps", told) == ["numpy", "JavaScript", "xlsx"]
     # That sum of products is one of powers for any number of rows: true, and no algebra of sums shows it.
@@ -103,7 +103,7 @@ def test_every_engine_and_proof(
 
 def test_a_false_claim_of_pairs_is_refuted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     wrong = SEN.replace("total(second(y) - first(y))", "total(first(y) - second(y))")
-    assert main(["check", str(folder(tmp_path, wrong)), "--no-cache"]) == 1
+    assert main(["check", str(folder(tmp_path, wrong))]) == 1
     told = capsys.readouterr().out
     assert "(10) is refuted" in told
     assert any("(10) is refuted" in said for said in loopsheet.load(tmp_path).findings)

@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from ...derivations.unit_text import parse_unit
 from ..messages.errors import listing, suggest
 from ..quantity import there
+from ..workbook import Measured
 from .keys import ANY, fixed
 from .number_text import NumberError, read_number
 from .parameters import wrong_type
@@ -225,16 +226,7 @@ class _Reader:
         text = self.tables.text(path[:-1], path[-1], "U = 0.03, k = 2", required=True)
         if text is None:
             return None
-        if self.declared[of].bounds.integer:
-            hint = f"{of} is a whole number that the method counts with: it has none"
-            self.findings.add("LS431", self.toml.value(*path), text=text, suggestion=hint)
-            return None
-        about = getattr(self.declared[of], "scatter", "")
-        if about and SCATTER in map(str.strip, text.split(";")):
-            hint = (
-                f"a model is fitted to {of}, which scatters about a curve and not about its mean: {about} "
-                "tells how much; state that as u = ..., dof = rows less parameters"
-            )
+        if hint := self._why_not(of, text):
             self.findings.add("LS431", self.toml.value(*path), text=text, suggestion=hint)
             return None
         try:
@@ -244,6 +236,18 @@ class _Reader:
             at = self.toml.value(*path, start=error.start, length=max(len(error.text), 1))
             self.findings.add(error.code, at, text=error.text, suggestion=error.suggestion)
             return None
+
+    def _why_not(self, of: str, text: str) -> str:
+        """Why a text cannot be said of a column, whatever its numbers are; empty if it can."""
+        declared = self.declared[of]
+        if declared.bounds.integer:
+            return f"{of} is a whole number that the method counts with: it has none"
+        if isinstance(declared, Measured) and declared.scatter and SCATTER in map(str.strip, text.split(";")):
+            return (
+                f"a model is fitted to {of}, which scatters about a curve and not about its mean: "
+                f"{declared.scatter} tells how much; state that as u = ..., dof = rows less parameters"
+            )
+        return ""
 
     def of(self, name: str, at: Location) -> Of:
         """A column or a parameter, as what something is stated of."""

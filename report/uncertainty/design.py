@@ -245,8 +245,9 @@ class Planner:
             return Needed(of, wanted, math.nan, others)
         numbers = inputs.numbers(of)
         low, high = 0.0, max((each.u for each in numbers), default=0.0) or float(abs(numbers[0].value)) * 1e-3
+        endless = min(LARGEST, ENDLESS * max(high, *(abs(float(each.value)) for each in numbers)))
         while (there := u(high)) <= wanted:
-            if high >= min(LARGEST, ENDLESS * max((abs(float(each.value)) for each in numbers), default=1.0)):
+            if high >= endless:
                 return Needed(of, wanted, math.inf, others)
             low, high = high, min(STRIDE * high, LARGEST)
         while math.isinf(there) and high - low > CLOSE * high:
