@@ -57,7 +57,7 @@ class DeclaredFit:
         The columns that only lead there, and stated uncertainties, which no table shows.
     squares : tuple of SquareSum
         The sum that tells whether the model describes the rows, if their uncertainties are known.
-    scatter : str
+    scatter_told : str
         The column that tells how far the rows lie from the curve.
     """
 
@@ -120,7 +120,7 @@ class DeclaredFit:
         new = [column for column in stated if known.get(column.name) != column]
         self.columns = (*new, *(made[part.name] for part in parts))
         self._rows = made[fit.names["fitted"]], made[fit.names["residual"]]
-        self.scatter = fit.names["s"]
+        self.scatter_told = fit.names["s"]
 
     def __getattr__(self, name: str) -> Expr:
         """The cell of one of its quantities."""

@@ -408,7 +408,7 @@ class MethodBody(dict[str, Any]):
         self.of_fits |= {column.name: Symbol(column.name, real=True) in sought for column in found.columns}
         self.squares += found.squares
         self.inputs = [
-            replace(each, scatter=found.scatter)
+            replace(each, scatter=found.scatter_told)
             if isinstance(each, Measured) and each.name == name_of(said.observed)
             else each
             for each in self.inputs
