@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import platform
 import sys
+from functools import lru_cache
 from pathlib import Path
 
 from ... import __version__
@@ -34,29 +36,54 @@ def sources(root: Path = ROOT) -> dict[str, str]:
         The folder of the package.
     """
     counted: set[Path] = set()
-    found = {}
+    parts = []
     for part, places in PARTS.items():
         own = {file for place in places for file in files(root / place)} - counted
         counted |= own
+        named = sorted((file.relative_to(root).as_posix(), file) for file in own)
+        parts.append((part, tuple((*each, _stamp(each[1])) for each in named)))
+    return dict(_digests(tuple(parts)))
+
+
+Stamp = tuple[int, int, int, int]
+"""What changes with a file: which it is, when it and what is said of it were changed, its size."""
+
+
+def _stamp(file: Path) -> Stamp:
+    found = file.stat()
+    return found.st_ino, found.st_mtime_ns, found.st_ctime_ns, found.st_size
+
+
+@lru_cache(maxsize=8)
+def _digests(
+    parts: tuple[tuple[str, tuple[tuple[str, Path, Stamp], ...]], ...],
+) -> tuple[tuple[str, str], ...]:
+    """The sha256 of each part; of files that nobody touched, those of before: they are asked for often."""
+    found = []
+    for part, named in parts:
         total = hashlib.sha256()
-        for name, file in sorted((file.relative_to(root).as_posix(), file) for file in own):
+        for name, file, _ in named:
             content = hashlib.sha256(file.read_bytes()).hexdigest()
             total.update(f"{content}  {name}\n".encode())
-        found[part] = total.hexdigest()
-    return found
+        found.append((part, total.hexdigest()))
+    return tuple(found)
 
 
 def files(place: Path) -> set[Path]:
     """The files of a part that a wheel holds, in a folder or the one that is named."""
     if place.is_file():
         return {place}
-    found = place.rglob("*" if place.name == "templates" else "*.py")
-    return {file for file in found if file.is_file() and not _is_made(file.relative_to(place))}
+    found = set()
+    for folder, below, names in os.walk(place):
+        below[:] = filter(_is_shipped, below)
+        own = (name for name in names if place.name == "templates" or name.endswith(".py"))
+        found |= {Path(folder, name) for name in filter(_is_shipped, own)}
+    return found
 
 
-def _is_made(name: Path) -> bool:
-    """Whether it is hidden or a cache: nothing that a wheel holds."""
-    return any(part.startswith(".") or part == "__pycache__" for part in name.parts)
+def _is_shipped(name: str) -> bool:
+    """Whether it is neither hidden nor a cache: a wheel may hold it."""
+    return not name.startswith(".") and name != "__pycache__"
 
 
 def versions() -> dict[str, str]:
