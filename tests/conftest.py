@@ -86,7 +86,7 @@ def shipped(config: pytest.Config) -> Path:
 def _kept(pytestconfig: pytest.Config) -> Iterator[None]:
     """What is made of the same bytes is kept from test to test, as it is for users."""
     with pytest.MonkeyPatch.context() as patch:
-        if KEEPS:
+        if KEEPS and hasattr(pytestconfig, "cache"):  # without pytest's own there is no place for it
             patch.setenv(SETTING, str(shipped(pytestconfig)))
         yield
 
@@ -105,7 +105,8 @@ def keeping(_kept: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[N
     with pytest.MonkeyPatch.context() as patch:
         if KEEPS:
             own = tmp_path_factory.mktemp("kept")
-            shutil.copytree(os.environ[SETTING], own, dirs_exist_ok=True, copy_function=os.link)
+            if os.environ[SETTING]:
+                shutil.copytree(os.environ[SETTING], own, dirs_exist_ok=True, copy_function=os.link)
             patch.setenv(SETTING, str(own))
         yield
 
