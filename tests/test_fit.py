@@ -212,6 +212,13 @@ def test_a_fit_has_cells_equations_and_figures() -> None:
 HEAD = "    x = measured('m', 'place')\n    y = measured('V', 'voltage')\n    a = unknown('offset')\n"
 
 
+def write(folder: Path, code: str, table: str, more: str = "") -> None:
+    """A report folder of a method, a table and what else its report.toml says."""
+    toml = f'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n{more}'
+    for name, text in (("workbook.py", code), ("m.csv", table), ("report.toml", toml)):
+        (folder / name).write_text(text, encoding="utf-8")
+
+
 @pytest.mark.parametrize(
     ("line", "said"),
     [
@@ -244,10 +251,7 @@ def test_a_wrong_fit_is_told(
 ) -> None:
     words = "from sympy import sin\nfrom loopsheet import Method, fit, let, measured, root, unknown\n"
     code = f"{words}\n\nclass Wrong(Method):\n    'W.'\n\n{HEAD}    {line}\n"
-    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
-    (tmp_path / "m.csv").write_text("reading,x [m],y [V]\n1,1.0,2.0\n", encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    write(tmp_path, code, "reading,x [m],y [V]\n1,1.0,2.0\n")
     assert main(["check", str(tmp_path)]) == 2
     told = capsys.readouterr().err
     assert said in told
@@ -298,11 +302,8 @@ class Weighed(Method):
 
 def test_two_fits_of_one_column_by_its_stated_uncertainties(tmp_path: Path) -> None:
     """A start has the unit that is sought; the sums of squares tell whether the model describes the rows."""
-    (tmp_path / "workbook.py").write_text(WEIGHED, encoding="utf-8")
     rows = "1,1.0,2105(20)\n2,2.0,3120(30)\n3,3.5,4650(20)\n4,4.0,5090(40)\n5,5.0,6120(40)\n"
-    (tmp_path / "m.csv").write_text(f"reading,x [s],y [mV]\n{rows}", encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\nx = "exact"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    write(tmp_path, WEIGHED, f"reading,x [s],y [mV]\n{rows}", '[uncertainty]\nx = "exact"\n')
     assert main(["build", str(tmp_path), "--to", "html"]) == 0
     report = Study(tmp_path).report
     assert not report.faults
@@ -333,12 +334,9 @@ class Decay(Method):
 
 def test_how_far_a_fit_steps_is_no_corner_of_what_it_finds(tmp_path: Path) -> None:
     """Terms of second order make u of the rate a twelfth larger, as draws do."""
-    (tmp_path / "workbook.py").write_text(DECAY, encoding="utf-8")
     rows = "1,0.0,10.2\n2,2.0,4.1\n3,4.0,2.4\n4,6.0,0.7\n5,8.0,0.6\n"
-    (tmp_path / "m.csv").write_text(f"test,t [s],A [1]\n{rows}", encoding="utf-8")
     said = '[uncertainty]\nA = "u = 1.0"\nt = "exact"\n'
-    toml = f'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n{said}'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    write(tmp_path, DECAY, f"test,t [s],A [1]\n{rows}", said)
     report = Study(tmp_path).computed
     budget = Spread(report.inputs, report.values).budget("c", 0)
     assert budget.unlooked == ""
@@ -350,10 +348,8 @@ def test_how_far_a_fit_steps_is_no_corner_of_what_it_finds(tmp_path: Path) -> No
 def test_what_is_fitted_does_not_scatter_about_its_mean(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (tmp_path / "workbook.py").write_text(DECAY, encoding="utf-8")
-    (tmp_path / "m.csv").write_text("test,t [s],A [1]\n1,0,10.2\n2,2,4.1\n3,4,2.4\n", encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\nA = "u = 1; scatter"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    table = "test,t [s],A [1]\n1,0,10.2\n2,2,4.1\n3,4,2.4\n"
+    write(tmp_path, DECAY, table, '[uncertainty]\nA = "u = 1; scatter"\n')
     assert main(["check", str(tmp_path)]) == 2
     said = capsys.readouterr().err
     assert "a model is fitted to A, which scatters about a curve and not about its mean: f_s tells" in said

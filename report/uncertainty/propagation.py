@@ -8,7 +8,7 @@ on the same tests has the variance it has, no other.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,7 +80,8 @@ class Spread:
         self._known = _known(values)
         self._made: Made = like._made if like else Made.of(values.sheet)
         self._program: Program | None = like._program if like else None
-        self._chain: Chain = like._chain if like and self._lies_as(like) else self._new_chain(numbers)
+        shared = like._chain if like and self._lies_as(like) else None
+        self._chain: Chain = shared or Chain(self._made.only(self._known), values.layouts, numbers)
         self._along = Numbers(self._chain, values).go()
         self.second: SecondOrder | None = None
         """What is of second order; None for a sheet that is too large."""
@@ -96,9 +97,6 @@ class Spread:
             np.array_equal(layout.labels, theirs[name].labels) for name, layout in own.items()
         )
         return alike and self._known == other._known
-
-    def _new_chain(self, numbers: Mapping[str, NDArray[np.intp]]) -> Chain:
-        return Chain(self._made.only(self._known), self.values.layouts, numbers)
 
     def contributions(self, cells: Sequence[tuple[str, int]]) -> Array:
         """What each source contributes to some cells, with its sign.
