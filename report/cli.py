@@ -13,7 +13,7 @@ from contextlib import AbstractContextManager, nullcontext, redirect_stdout, sup
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO, cast
 
-from .machine.garbage import seldom_collected
+from .machine.memory import ample
 from .machine.stopping import heeded, stoppable
 from .machine.timing import RUN
 from .messages.diagnostics import VisibleStream
@@ -147,7 +147,7 @@ def command() -> NoReturn:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; return its exit code."""
-    seldom_collected()
+    ample()
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # a terminal of another encoding still gets all
     try:

@@ -27,11 +27,13 @@ import loopsheet
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.machine.background import Background
 from loopsheet.report.machine.kept import SETTING
+from loopsheet.report.machine.memory import ample
 from loopsheet.report.machine.provenance import sources
 
 if TYPE_CHECKING:
     from loopsheet.report.result.result import Report
 
+ample()  # what is imported until here asks for no sympy
 CI = os.environ.get("CI", "").lower() not in ("", "0", "false")
 
 # No deadline: the first example of a property pays for imports and code generation. Under CI the

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, Generic, TypeVar
 
-from .garbage import seldom_collected
+from .memory import ample
 from .stopping import unstoppable, worker
 
 __all__ = ["Background", "Later", "serve"]
@@ -122,7 +122,7 @@ def serve(parent: int) -> None:
     parent : int
         The process that asks, by its number.
     """
-    seldom_collected()
+    ample()
     answer = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # nothing that is printed goes into the answer
 
