@@ -112,6 +112,8 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
         DECLARED | rooms("engines", "inputs", "judge", "referee", "result", "uncertainty"),
         NUMERIC,
     ),
+    # one impact under a force law, and what simulation codes have to be told for it
+    "report.impacts": (rooms("impacts") | {"derivations"}, NUMERIC),
     "report.archive": (DECLARED | rooms("archive", "files", "inputs", "machine", "result"), {"msgspec"}),
     "report.document": (
         DECLARED | rooms("document", "inputs.measurements", "inputs.published", "result"),

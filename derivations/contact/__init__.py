@@ -1,0 +1,1 @@
+"""Contact models of the literature, a module each."""

@@ -1,0 +1,195 @@
+"""The damping family: proved, wrong variants refuted, and its closed forms beside simulated impacts."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+from sympy import Expr, Piecewise, Rational, log
+
+from loopsheet.derivations.contact import damping as model
+from loopsheet.derivations.contact.damping import (
+    LEDGER,
+    MEMBERS,
+    K,
+    c,
+    e,
+    e_o,
+    g,
+    m_red,
+    n,
+    u_F,
+    v_0,
+    x_m,
+)
+from loopsheet.derivations.equation import Derivation, Equation
+from loopsheet.derivations.proof import check_step, prove
+from loopsheet.derivations.proved import ProofStatus
+from loopsheet.report.impacts.damping import closed_form, number_by, returned, wanted
+from loopsheet.report.impacts.law import ForceLaw, rate, x
+from loopsheet.report.impacts.simulation import simulate
+
+FAMILY = ForceLaw("the family", model.family.value)
+
+
+def test_all_of_it_is_proved() -> None:
+    found = prove(LEDGER)
+    passed = (ProofStatus.PROVED, ProofStatus.ASSUMPTION, ProofStatus.DEFINITION)
+    assert [proof.equation.label for proof in found if proof.status not in passed] == []
+    claims = [entry.claim for entry in LEDGER.entries if isinstance(entry, Derivation)]
+    assert [proof.equation for proof in found if proof.status is ProofStatus.PROVED] == claims
+
+
+def wrong() -> Iterator[tuple[Equation, Expr]]:
+    """A claim and what a slip of the pen makes of its last side."""
+    energy = m_red * v_0**2 / c**2
+    yield from ((model.work_compression, energy * value) for value in (c + log(1 + c), -c, 1 - log(1 + c)))
+    yield from ((model.work_rebound, energy * value) for value in (g + 1 - log(g), g - 1 + log(g), 1 - g))
+    power = K * x_m ** (n + 1)
+    yield from ((model.power, value) for value in (power, power / n, power / (n + 2)))
+    yield from ((model.approach, model.approach.value * factor) for factor in (2, 1 + c, n))
+    yield from (
+        (model.returned, value)
+        for value in (
+            log((1 + c) / (1 + c * e_o)),
+            log((1 - c * e_o) * (1 + c)),
+            log((1 + c) / (1 - e_o * c) ** 2),
+        )
+    )
+    yield from ((model.peak_approach, model.peak_approach.value * factor) for factor in (2, u_F, c))
+    yield from ((model.peak_speed, model.peak_speed.value * factor) for factor in (2, c, 1 + u_F))
+    yield from (
+        (MEMBERS["lankarani_nikravesh"], value)
+        for value in (3 * (1 - e) / 4, (1 - e**2) / 2, 3 * (1 + e**2) / 4)
+    )
+    yield from (
+        (MEMBERS["hu_guo"], value) for value in (3 * (1 - e) / 2, 3 * (1 - e**2) / (2 * e), (1 - e) / e)
+    )
+    flores = MEMBERS["flores"].value
+    yield from ((MEMBERS["flores"], flores * factor) for factor in (e, n + 1, Rational(8, 5)))
+
+
+@pytest.mark.parametrize(("claim", "value"), [*wrong()], ids=lambda each: getattr(each, "label", ""))
+def test_a_wrong_variant_is_refuted(claim: Equation, value: Expr) -> None:
+    derivation = LEDGER.derivation(claim)
+    assert derivation is not None
+    step = derivation.steps[-1]
+    other = replace(claim, members=(claim.members[0], value))
+    found = check_step(replace(step, claim=other), LEDGER.vocabulary)
+    assert found.status is ProofStatus.REFUTED
+    assert found.counterexample
+
+
+# --- numbers: published, and as they come from both ways --------------------------------------------------
+PUBLISHED = {  # what is returned where .53 is prescribed
+    "lankarani_nikravesh": 0.7337,
+    "hunt_crossley": 0.6770,
+    "lee_wang": 0.8090,
+    "hu_guo": 0.5198,
+}
+
+
+@pytest.mark.parametrize("author", PUBLISHED)
+def test_what_is_returned_for_a_prescribed_restitution(author: str) -> None:
+    assert round(returned(number_by(author, 0.53, 1.5)), 4) == PUBLISHED[author]
+
+
+def test_flores_is_printed_with_a_rounded_number() -> None:
+    assert round(returned(8 * (1 - 0.53) / (5 * 0.53)), 4) == 0.5026
+    assert round(returned(number_by("flores", 0.53, 1.5)), 4) == 0.5023
+    assert round(number_by("flores", 0.5, 1.5), 4) == 1.6018
+    assert round(number_by("flores", 0.5, 1.3), 3) == 1.562
+
+
+MATERIALS = [(1e9, 1.3, 0.0084, 4.0), (3e4, 1.0, 12.0, 0.2), (2e10, 1.5, 1e-6, 30.0)]
+"""Stiffness, exponent, mass and speed: a steel ball, a buffer, a grain."""
+
+
+@pytest.mark.parametrize(("stiffness", "exponent", "mass", "speed"), MATERIALS)
+@pytest.mark.parametrize("author", ["exact", *MEMBERS])
+def test_a_simulated_impact_is_as_the_closed_forms_say(
+    author: str, stiffness: float, exponent: float, mass: float, speed: float
+) -> None:
+    damping = wanted(0.45) if author == "exact" else number_by(author, 0.45, exponent)
+    closed = closed_form(stiffness, exponent, damping, mass, speed)
+    found = simulate(FAMILY, {K: stiffness, n: exponent, c: damping}, mass, speed)
+    assert not found.failure
+    assert found.e == pytest.approx(closed.e, rel=1e-9, abs=0)
+    assert found.x_m == pytest.approx(closed.x_m, rel=1e-9, abs=0)
+    assert found.F_m == pytest.approx(closed.F_m, rel=1e-9, abs=0)
+    assert found.loss == pytest.approx((1 - closed.e**2) * mass * speed**2 / 2, rel=1e-9, abs=0)
+    assert found.balance < 1e-10
+    if author == "exact":
+        assert found.e == pytest.approx(0.45, rel=1e-9, abs=0)
+
+
+def test_another_member_is_not_taken_for_it() -> None:
+    """The bound above is one that a wrong damping fails."""
+    damping = number_by("hu_guo", 0.45, 1.5)
+    found = simulate(FAMILY, {K: 1e9, n: 1.5, c: damping * (1 + 1e-7)}, 0.01, 3.0)
+    assert found.e != pytest.approx(returned(damping), rel=1e-9, abs=0)
+
+
+@pytest.mark.parametrize("value", [0.03, 0.3, 0.9, 0.999])
+def test_the_damping_number_returns_what_was_wanted(value: float) -> None:
+    assert returned(wanted(value)) == pytest.approx(value, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize(("typed", "clipped"), [(0.5, 0.550283), (0.453, 0.513046)])
+def test_discrete_elements_return_what_is_typed_if_they_may_pull(typed: float, clipped: float) -> None:
+    ratio = float(model.damping_ratio.value.subs(e, typed))
+    for pulls, expected, digits in ((True, typed, 9), (False, clipped, 6)):
+        law = ForceLaw("Tsuji", model.tsuji.value, pulls=pulls)
+        for speed in (0.5, 5.0):
+            found = simulate(law, {model.K_T: 1e9, model.zeta: ratio}, 0.01, speed)
+            assert round(found.e, digits) == round(expected, digits)
+
+
+@pytest.mark.parametrize("value", [0.0, 0.029, 1.0])
+def test_a_damping_number_that_no_double_holds_is_refused(value: float) -> None:
+    with pytest.raises(ValueError, match=r"from 0\.03 to below 1"):
+        wanted(value)
+
+
+# --- what cannot be simulated is told ---------------------------------------------------------------------
+def test_bodies_that_do_not_part() -> None:
+    law = ForceLaw("a dashpot", K * x + 100.0 * rate, pulls=True)
+    assert simulate(law, {K: 1.0}, 1.0, 1.0).failure == (
+        "the bodies do not part: the damping is as strong as the spring"
+    )
+
+
+@pytest.mark.parametrize(
+    ("law", "mass", "speed", "said"),
+    [
+        (ForceLaw("nothing", K * x), -1.0, 1.0, "no depth from a femtometre to 1000 km stops the bodies"),
+        (ForceLaw("a root", (K - x) ** Rational(1, 2)), 1.0, 1.0, "a root has no force for these numbers"),
+        (
+            ForceLaw("a plate", K * x, K * x, 2 * x),
+            1.0,
+            1.0,
+            "the bodies would part at a depth that is not below",
+        ),
+    ],
+)
+def test_what_has_no_impact_says_so(law: ForceLaw, mass: float, speed: float, said: str) -> None:
+    found = simulate(law, {K: 1e3}, mass, speed)
+    assert found.failure.startswith(said)
+    assert found.time is None
+
+
+def test_a_clipped_force_may_act_again() -> None:
+    """A dashpot that a depth turns on lets go; below that the spring pushes on."""
+    depth = Rational(1, 10)
+    step = Piecewise(((x / depth) ** 2 * (3 - 2 * x / depth), x < depth), (1, True))
+    found = simulate(ForceLaw("two regimes", K * x + 12 * step * rate), {K: 100.0}, 1.0, 3.0)
+    assert not found.failure
+    assert found.loss == pytest.approx((1 - found.e**2) * 9 / 2, rel=1e-9)
+    assert found.approach is not None
+    assert found.speed is not None
+    flights = [
+        (a, b)
+        for (a, u), (b, w) in pairwise(zip(found.approach, found.speed, strict=True))
+        if u == w and a > b > 0
+    ]
+    assert len(flights) == 1
