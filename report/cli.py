@@ -55,6 +55,7 @@ and in such a folder, or with its name or 'paper' at the end:
   loopsheet why "alpha[1-2]"           one number: its equation, its proof, what it rests on
   loopsheet budget alpha_mean          how uncertain it is, and where that comes from
   loopsheet design --speeds "2, 4 m/s" how uncertain a number of a planned campaign will be
+  loopsheet card --for mujoco          parameters with which a simulation returns what was measured
   loopsheet verify                     the same report again? if not, which number and why
   loopsheet diff out other/out         two results, number by number
   loopsheet validate --out record.txt  all shipped examples on this machine, as a record for the files

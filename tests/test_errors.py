@@ -350,6 +350,13 @@ CASES: dict[str, Callable[[], None]] = {
     "LS621": raises(OutputError, "LS621", text="out", seconds="60"),
     "LS622": raises(UsageError, "LS622", reason="Too many open files"),
     "LS623": record_over_notes,
+    "LS624": raises(UsageError, "LS624", text="the report 'Springs'", reason="it has no v and no e"),
+    "LS625": raises(
+        UsageError,
+        "LS625",
+        text="IMPACT",
+        reason="the formula returns from 0.2000 to 0.9000 at 3 m/s, not 0.1000",
+    ),
 }
 
 

@@ -77,7 +77,7 @@ _within = c * e_o < 1
 
 with evaluate(False):
     family = Equation(
-        "(L40)",
+        "(L101)",
         (F, K * x**n * (1 + c * rate / v_0)),
         "the damping family: Hertz's or Meyer's force, and damping in its proportion",
         Kind.ASSUMPTION,
@@ -95,7 +95,7 @@ with evaluate(False):
     left = Equation(
         "",
         (g, 1 - c * e_o),
-        "(L40) at the speed of rebound; the force does not pull, so it is positive",
+        "(L101) at the speed of rebound; the force does not pull, so it is positive",
         Kind.DEFINITION,
         "factor of the damping at separation",
         defines=g,
@@ -116,29 +116,32 @@ with evaluate(False):
         defines=W,
     )
     work_compression = Equation(
-        "(L41)",
+        "(L102)",
         (W, m_red * v_0**2 * (c - log(1 + c)) / c**2),
-        "(L40) integrated in compression",
+        "(L101) integrated in compression",
         title="work of the elastic part in compression",
     )
     work_rebound = Equation(
-        "(L42)",
+        "(L103)",
         (W, m_red * v_0**2 * (g - 1 - log(g)) / c**2),
-        "(L40) integrated in restitution, g = 1 - c e_o",
+        "(L101) integrated in restitution, g = 1 - c e_o",
         title="work of the elastic part in restitution",
     )
     power = Equation(
-        "(L43)", (W, K * x_m ** (n + 1) / (n + 1)), "integrated", title="work of the elastic part by approach"
+        "(L104)",
+        (W, K * x_m ** (n + 1) / (n + 1)),
+        "integrated",
+        title="work of the elastic part by approach",
     )
     approach = Equation(
-        "(L44)",
+        "(L105)",
         (x_m, ((n + 1) * m_red * v_0**2 * (c - log(1 + c)) / (K * c**2)) ** (1 / (n + 1))),
-        "(L41) and (L43)",
+        "(L102) and (L104)",
         title="maximum approach with damping",
         conditions=(c - log(1 + c) > 0,),
     )
     returned = Equation(
-        "(L45)",
+        "(L106)",
         (c * (1 + e_o), log((1 + c) / (1 - c * e_o))),
         "both branches do the same elastic work, whatever the exponent (Gonthier; Carvalho, Martins)",
         title="restitution that is returned",
@@ -156,22 +159,22 @@ with evaluate(False):
     stationary = Equation(
         "",
         (n * v_0 * u_F / x_F * (1 + c * u_F), c * K * x_F**n * (1 + c * u_F) / (m_red * v_0)),
-        "the rate of (L40) over K x^n is zero, with x'' = -F/m",
+        "the rate of (L101) over K x^n is zero, with x'' = -F/m",
         Kind.ASSUMPTION,
         "greatest force",
     )
     peak_approach = Equation(
-        "(L46)",
+        "(L107)",
         (
             x_F ** (n + 1),
             (n + 1) * m_red * v_0**2 * ((1 - u_F) / c - log((1 + c) / (1 + c * u_F)) / c**2) / K,
         ),
-        "(L40) integrated up to the greatest force",
+        "(L101) integrated up to the greatest force",
         title="approach at the greatest force",
         conditions=(u_F < 1,),
     )
     peak_speed = Equation(
-        "(L47)",
+        "(L108)",
         (n * u_F / (n + 1), c * ((1 - u_F) / c - log((1 + c) / (1 + c * u_F)) / c**2)),
         "the force is greatest where its rate is zero",
         title="rate at the greatest force",
@@ -226,7 +229,7 @@ with evaluate(False):
         "balance of compression by Flores",
     )
     mean_flores = Equation(
-        "(L48)",
+        "(L109)",
         (J, Integral(y**n * sqrt(1 - y**2), (y, 0, 1))),
         "mean rate of a linear spring's path, weighted with the force",
         Kind.DEFINITION,
@@ -235,7 +238,7 @@ with evaluate(False):
     )
 
     tsuji = Equation(
-        "(L56)",
+        "(L117)",
         (F_T, K_T * x ** Rational(3, 2) + sqrt(5) * zeta * sqrt(m_red * K_T) * x ** Rational(1, 4) * rate),
         "Hertz's force, and damping with which e is the same at every speed (Tsuji and others 1992); it "
         "pulls at the end",
@@ -243,9 +246,9 @@ with evaluate(False):
         "damping of discrete elements",
     )
     damping_ratio = Equation(
-        "(L57)",
+        "(L118)",
         (zeta, -log(e) / sqrt(pi**2 + log(e) ** 2)),
-        "of a linear spring with a dashpot that may pull, and of (L56)",
+        "of a linear spring with a dashpot that may pull, and of (L117)",
         Kind.DEFINITION,
         "damping ratio for an e",
         defines=zeta,
@@ -257,48 +260,50 @@ with evaluate(False):
         return Equation(number, (of, value), because, kind, title, defines=of)
 
     lankarani_nikravesh = _member(
-        "(L49)",
+        "(L110)",
         c_LN,
         3 * (1 - e**2) / 4,
         "undamped path, both branches alike, any n",
         "Lankarani and Nikravesh 1990",
     )
     hu_guo = _member(
-        "(L50)",
+        "(L111)",
         c_HG,
         3 * (1 - e) / (2 * e),
         "undamped path, in restitution e times as fast",
         "Hu and Guo 2015",
     )
     flores = _member(
-        "(L51)",
+        "(L112)",
         c_F,
         (1 - e) / (e * (n + 1) * J),
         "path of a linear spring, in restitution e times as fast; 8/5 (1 - e)/e is printed, for n = 3/2",
         "Flores and others 2011",
     )
     hunt_crossley = _member(
-        "(L52)",
+        "(L113)",
         c_HC,
         3 * (1 - e) / 2,
-        "(L49) for e near 1, where 1 - e^2 is 2 (1 - e)",
+        "(L110) for e near 1, where 1 - e^2 is 2 (1 - e)",
         "Hunt and Crossley 1975",
         Kind.DEFINITION,
     )
-    lee_wang = _member("(L53)", c_LW, 3 * (1 - e) / 4, "half of (L52)", "Lee and Wang 1983", Kind.DEFINITION)
+    lee_wang = _member(
+        "(L114)", c_LW, 3 * (1 - e) / 4, "half of (L113)", "Lee and Wang 1983", Kind.DEFINITION
+    )
     gonthier = _member(
-        "(L54)",
+        "(L115)",
         c_G,
         (1 - e**2) / e,
-        "explicit approximation of (L45)",
+        "explicit approximation of (L106)",
         "Gonthier and others 2004",
         Kind.DEFINITION,
     )
     carvalho_martins = _member(
-        "(L55)",
+        "(L116)",
         c_CM,
         3 * (1 - e) * (11 - e) / (2 * (1 + 9 * e)),
-        "rational approximation of (L45)",
+        "rational approximation of (L106)",
         "Carvalho and Martins 2019",
         Kind.DEFINITION,
     )
@@ -312,7 +317,7 @@ MEMBERS: dict[str, Equation] = {
     "hu_guo": hu_guo,
     "carvalho_martins": carvalho_martins,
 }
-"""The formulas of c by name; the exact one is (L45), which gives c for e_o = e."""
+"""The formulas of c by name; the exact one is (L106), which gives c for e_o = e."""
 
 LEDGER = Ledger(
     entries=(
@@ -334,7 +339,7 @@ LEDGER = Ledger(
             approach,
             (work_compression, power),
             (m_red, W),
-            "Put (L43) into (L41) and solve for the approach.",
+            "Put (L104) into (L102) and solve for the approach.",
         ),
         Derivation(
             (
@@ -354,7 +359,7 @@ LEDGER = Ledger(
                     peak_speed,
                     (stationary, peak_approach),
                     (K,),
-                    "Put the stiffness that dF/dt = 0 gives into (L46).",
+                    "Put the stiffness that dF/dt = 0 gives into (L107).",
                     multiplier=n * u_F / ((n + 1) * x_F ** (n + 1)),
                 ),
             )

@@ -46,7 +46,7 @@ def _zero(of: Callable[[float], Any], low: float, high: float) -> float:
 
 
 def returned(c: float) -> float:
-    """The restitution that the family F = K x^n (1 + c x'/v_0) returns, for any n, by (L45).
+    """The restitution that the family F = K x^n (1 + c x'/v_0) returns, for any n, by (L106).
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def returned(c: float) -> float:
 
 
 def wanted(e: float) -> float:
-    """The damping number with which the family returns a restitution, by (L45).
+    """The damping number with which the family returns a restitution, by (L106).
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def wanted(e: float) -> float:
     if not 0.03 <= e < 1:
         raise ValueError(f"no damping number can be told for a restitution of {e}: from 0.03 to below 1")
     (residual,) = model.returned.residuals
-    # Weak damping: c is about 1 - e^2; (L45) also holds for c = 0, which returns any e.
+    # Weak damping: c is about 1 - e^2; (L106) also holds for c = 0, which returns any e.
     return _zero(lambda c: _value(residual, c=c, e_o=e), 0.2 * (1 - e**2), (1 - 1e-15) / e)
 
 
@@ -109,7 +109,7 @@ def number_by(author: str, e: float, n: float) -> float:
 
 
 def closed_form(K: float, n: float, c: float, mass: float, speed: float) -> Closed:
-    """Restitution, greatest approach and greatest force of the family, by (L44) to (L47).
+    """Restitution, greatest approach and greatest force of the family, by (L105) to (L108).
 
     Parameters
     ----------

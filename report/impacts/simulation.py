@@ -27,7 +27,7 @@ __all__ = ["Impact", "depth_of", "simulate"]
 
 RELATIVE, ABSOLUTE = 1e-12, 1e-14
 """Tolerances of a step, in units of the estimated depth and the impact speed."""
-LONGEST = 1e4
+LONGEST = 300.0
 """In units of the estimated depth over the impact speed; the contacts of the literature last from 2 to 6."""
 SLOWEST = 1e-9
 """A rebound below this share of the impact speed is none: the steps cannot tell it from creeping."""

@@ -462,6 +462,17 @@ CATALOGUE: dict[str, Entry] = {
         "a file that does not exist yet, or one that this command has written",
         "nothing was written; choose another name",
     ),
+    "LS624": Entry(
+        "no impacts",
+        "{text} has no impacts that a simulation could be held to: {reason}",
+        "a campaign of drop tests: impact speeds v, restitutions e between 0 and 1, and a reduced mass m_red",
+        "'loopsheet card --for list' tells what a card can be made for",
+    ),
+    "LS625": Entry(
+        "a contact that cannot do it",
+        "{text} cannot return what was measured: {reason}",
+        "another code, another speed, or the law itself: --for table, c or python",
+    ),
 }
 
 

@@ -6,6 +6,7 @@ A verb is listed here and imports what it needs when it runs, so that ``--help``
 from . import (
     budget,
     build,
+    card,
     check,
     crate,
     design,
@@ -29,6 +30,7 @@ VERBS = {
     "why": why,
     "budget": budget,
     "design": design,
+    "card": card,
     "new": new,
     "verify": verify,
     "validate": validate,

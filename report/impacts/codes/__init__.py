@@ -1,0 +1,19 @@
+"""The simulation codes that a card is made for: each is one module with a CODE, and its line here."""
+
+from . import adams, chrono, drake, exudyn, exudyn_damped, lammps, liggghts, mujoco, simbody, yade
+
+CODES = {
+    code.name: code
+    for code in (
+        adams.CODE,
+        chrono.CODE,
+        drake.CODE,
+        exudyn.CODE,
+        exudyn_damped.CODE,
+        lammps.CODE,
+        liggghts.CODE,
+        mujoco.CODE,
+        simbody.CODE,
+        yade.CODE,
+    )
+}

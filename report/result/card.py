@@ -1,0 +1,83 @@
+"""A card for a simulation code: what to type into it, and what it then returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+__all__ = ["Card", "CardRow", "TypedValue"]
+
+
+class TypedValue(NamedTuple):
+    """A number to be typed in: its word in the code, its unit, and whether it was solved for."""
+
+    word: str
+    value: float
+    unit: str
+    meaning: str
+    solved: bool
+
+
+class CardRow(NamedTuple):
+    """One measured speed, in m/s: restitution as measured, by the card, and if it is typed in as measured."""
+
+    speed: float
+    measured: float
+    by_card: float
+    typed: float | None
+
+
+@dataclass(frozen=True)
+class Card:
+    """Parameters for the contact formula of a code, in SI where nothing else is said.
+
+    Parameters
+    ----------
+    of : str
+        The title of the report that it was made from.
+    name, title, version : str
+        The word for the code, program and model, and what version of it was read.
+    sources : tuple of str
+        Where its formula stands.
+    formula : str
+        The force while the approach grows, in the code's own words, and after that if it is another one.
+    typed : tuple of TypedValue
+    snippet : str
+        How it is written in an input of the code.
+    mass, speed : float
+        The reduced mass and the impact speed that the card is for.
+    e, x_p, x_m : float
+        What was measured at that speed (of other speeds: between neighbours), and the approach on the curve;
+        NaN where it is not known.
+    e_found, x_p_found, x_m_found, F_found, duration : float
+        What the formula returns with what is typed: restitution, imprint, greatest approach, greatest force
+        and contact time.
+    rows : tuple of CardRow
+    notes : tuple of str
+    """
+
+    of: str
+    name: str
+    title: str
+    version: str
+    sources: tuple[str, ...]
+    formula: str
+    typed: tuple[TypedValue, ...]
+    snippet: str
+    mass: float
+    speed: float
+    e: float
+    x_p: float
+    x_m: float
+    e_found: float
+    x_p_found: float
+    x_m_found: float
+    F_found: float
+    duration: float
+    rows: tuple[CardRow, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def takes_e(self) -> bool:
+        """Whether the code wants a restitution."""
+        return any(row.typed is not None for row in self.rows)

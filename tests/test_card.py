@@ -1,0 +1,272 @@
+"""Cards for simulation codes: what is typed in returns what was measured, by the code's own formula."""
+
+import json
+import math
+import os
+import shutil
+import subprocess
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report.cli import main
+from loopsheet.report.impacts.card import Unreachable, card
+from loopsheet.report.impacts.code import SimulationCode
+from loopsheet.report.impacts.codes import CODES
+from loopsheet.report.impacts.drops import Drops
+from loopsheet.report.impacts.law import ForceLaw, x
+from loopsheet.report.impacts.simulation import simulate
+from loopsheet.report.impacts.source import SOURCES
+from loopsheet.report.result.card import Card
+
+STEEL = Drops(
+    mass=8.365740479899688e-3,
+    v=(2.334, 2.940, 4.089, 4.504, 4.993),
+    e=(0.530, 0.512, 0.479, 0.467, 0.453),
+    x_p=(23.5e-6, 29.7e-6, 41.6e-6, 45.97e-6, 51.03e-6),
+    alpha=1.3013045283263331,
+    C=1009332417.7957059,
+    beta=1.5,
+    radius=6.35e-3,
+)
+BUFFER = Drops(12.0, (0.4, 0.1), (0.82, 0.9), (math.nan, math.nan), 1.1, 3e4, 1.5, 0.2)
+"""Something heavy and soft, in another order, without imprints."""
+
+
+def of(code: SimulationCode, drops: Drops = STEEL, modulus: float | None = None) -> Card:
+    return card(code, drops, drops.middle, "x", modulus, 0.3, drops.radius)
+
+
+@pytest.fixture(scope="module")
+def cards() -> dict[str, Card]:
+    return {name: of(code) for name, code in CODES.items()}
+
+
+@pytest.mark.parametrize("name", CODES)
+def test_a_card_returns_what_was_measured(name: str, cards: dict[str, Card]) -> None:
+    """The formula is simulated again from the numbers as typed: nine digits, in units of the code."""
+    code, made = CODES[name], cards[name]
+    typed = {
+        one.symbol: float(f"{value.value:.9g}") for one, value in zip(code.typed, made.typed, strict=True)
+    }
+    constants = {}
+    for one in reversed(code.typed):  # a unit may hold an exponent, which is typed too
+        scale = float(
+            one.scale.subs({other.symbol: typed[other.symbol] for other in code.typed if other.unit == "1"})
+        )
+        constants[one.symbol] = typed[one.symbol] / scale
+    constants |= {symbol: STEEL.radius for symbol in code.law.constants if str(symbol) == "R"}
+    found = simulate(code.law, constants, STEEL.mass, made.speed)
+    assert found.e == pytest.approx(0.479, abs=2e-9)
+    wanted = (made.x_p, found.x_p) if name == "exudyn" else (made.x_m, found.x_m)
+    assert wanted[1] == pytest.approx(wanted[0], rel=2e-8)
+    assert [row.measured for row in made.rows] == list(STEEL.e)
+    assert made.rows[2].by_card == pytest.approx(0.479, abs=1e-9)
+    assert all(f"{value.value:.9g}" in made.snippet for value in made.typed) or name == "liggghts"
+
+
+def test_what_a_typed_restitution_returns(cards: dict[str, Card]) -> None:
+    """What the codes make of the measured .453: 8/5 by Flores, Tsuji without a pull, and with it."""
+    found = {name: made.rows[-1].typed for name, made in cards.items()}
+    assert {name: typed and round(typed, 4) for name, typed in found.items()} == {
+        "adams": None,
+        "chrono": 0.4199,
+        "drake": None,
+        "exudyn": None,
+        "exudyn-damped": 0.4535,
+        "lammps": 0.5130,
+        "liggghts": 0.5130,
+        "mujoco": None,
+        "simbody": None,
+        "yade": 0.4530,
+    }
+
+
+def test_an_imprint_is_the_measured_one_where_there_is_any(cards: dict[str, Card]) -> None:
+    for name, made in cards.items():
+        if name == "exudyn":
+            assert made.x_p_found == pytest.approx(41.6e-6, rel=1e-9)
+            typed = {value.word: value.value for value in made.typed}
+            assert typed["contactPlasticityRatio"] == pytest.approx(1 - 0.479**2, rel=1e-9)
+        else:
+            assert made.x_p_found == 0
+            assert "it leaves no imprint" in made.notes
+
+
+IN_THE_CODE = {
+    "mujoco": (0.4791175, 0.4790294, 5.530994e-5, 5.529976e-5),
+    "exudyn": (0.4790027, 0.4790002, 4.160022e-5, 4.160001e-5),
+}
+"""What MuJoCo 4.0.0 and Exudyn 1.13.6 returned of the card of the paper, by benchmarks/card_in_code.py: e
+and depth with 1000 and with 4000 steps in a contact time."""
+
+
+@pytest.mark.parametrize("name", IN_THE_CODE)
+def test_what_the_code_itself_returns_tends_to_the_card(name: str, cards: dict[str, Card]) -> None:
+    """An error of first order in the step is a third of what the last refinement by four took off."""
+    made = cards[name]
+    coarse, fine, deep, deeper = IN_THE_CODE[name]
+    assert fine - (coarse - fine) / 3 == pytest.approx(made.e_found, abs=1e-6)
+    depth = made.x_m_found if name == "mujoco" else made.x_p_found
+    assert deeper - (deep - deeper) / 3 == pytest.approx(depth, rel=1e-5)
+
+
+@pytest.mark.parametrize("name", ["adams", "liggghts", "mujoco"])
+def test_a_card_of_something_else(name: str) -> None:
+    made = of(CODES[name], BUFFER)
+    assert made.speed == 0.1
+    assert made.e_found == pytest.approx(0.9, abs=1e-9)
+    assert made.x_m_found == pytest.approx(made.x_m, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["chrono", "simbody"])
+def test_a_given_modulus_is_the_stiffness(name: str) -> None:
+    made = of(CODES[name], modulus=210e9)
+    typed = made.typed[0]
+    assert not typed.solved
+    assert typed.value == pytest.approx(
+        210e9 if name == "chrono" else 2 * (210e9 / 1.82) ** (2 / 3), rel=1e-12
+    )
+    assert made.e_found == pytest.approx(0.479, abs=1e-9)
+
+
+def test_what_no_imprint_tells_is_unreachable() -> None:
+    with pytest.raises(Unreachable, match="no loading curve is known"):
+        of(CODES["exudyn"], BUFFER)
+
+
+def test_a_formula_that_loses_nothing_is_unreachable() -> None:
+    code = CODES["drake"]
+    lossless = replace(code, law=ForceLaw("a spring", code.stiffness * x), damping_ends=(1e-3, 1e-2))
+    with pytest.raises(
+        Unreachable, match=r"the formula returns from 1\.0000 to 1\.0000 at 4\.089 m/s, not 0\.4790"
+    ):
+        of(lossless)
+
+
+# --- the identified law -----------------------------------------------------------------------------------
+def test_the_identified_law_returns_every_test() -> None:
+    law = STEEL.law()
+    for test in STEEL.tests:
+        found = simulate(law, {}, STEEL.mass, test.speed)
+        assert found.e == pytest.approx(test.e, abs=1e-9)
+        assert found.x_m == pytest.approx(test.x_m, rel=1e-9)
+        assert found.F_m == pytest.approx(STEEL.C * test.x_m**STEEL.alpha, rel=1e-9)
+        assert found.x_p == pytest.approx(test.x_m * (1 - 2.5 / (STEEL.alpha + 1) * test.e**2), rel=1e-9)
+
+
+def test_between_the_tests_it_goes_on_without_a_jump() -> None:
+    law = STEEL.law()
+    found = [simulate(law, {}, STEEL.mass, speed).e for speed in (2.0, 2.334, 3.5, 4.089, 6.0)]
+    assert found[0] == pytest.approx(found[1], abs=1e-9)
+    assert 0.479 < found[2] < 0.512
+    assert found[4] == pytest.approx(0.453, abs=1e-9)
+
+
+PLACES = [(x_m * share, x_m) for x_m in (1e-5, 3.6e-5, 5e-5, 9e-5) for share in (0.0, 0.5, 0.8, 0.9, 1.0)]
+
+
+def by_law(place: float, greatest: float) -> float:
+    forces = STEEL.law().at(STEEL.mass, 1.0, {})
+    if place >= greatest:
+        return forces.loading(place, 0.0, place)
+    return forces.unloading(place, 0.0, greatest) if place > forces.imprint(greatest) else 0.0
+
+
+def test_the_law_in_python() -> None:
+    space: dict[str, Callable[[float, float], float]] = {}
+    exec(SOURCES["python"][1](STEEL, STEEL.middle), space)
+    for place in PLACES:
+        assert space["contact_force"](*place) == pytest.approx(by_law(*place), rel=1e-14)
+
+
+def test_the_law_in_c(require: Callable[..., str], tmp_path: Path) -> None:
+    compiler = require("cc", "gcc")
+    calls = "".join(
+        f'    printf("%.17g\\n", contact_force({place!r}, {greatest!r}));\n' for place, greatest in PLACES
+    )
+    source = SOURCES["c"][1](STEEL, STEEL.middle)
+    program = f"{source}\n#include <stdio.h>\nint main(void)\n{{\n{calls}    return 0;\n}}\n"
+    (tmp_path / "law.c").write_text(program)
+    flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"]
+    subprocess.run([compiler, *flags, "law.c", "-lm", "-o", "law"], cwd=tmp_path, check=True)
+    told = subprocess.run([tmp_path / "law"], capture_output=True, text=True, check=True).stdout
+    for place, line in zip(PLACES, told.split(), strict=True):
+        assert float(line) == pytest.approx(by_law(*place), rel=1e-14)
+
+
+def test_the_law_as_a_table_has_the_loop_of_the_measured_loss() -> None:
+    first, *lines = SOURCES["table"][1](STEEL, STEEL.middle).splitlines()
+    assert first == "phase,x [m],F [N]"
+    rows = [
+        (phase, float(place), float(force)) for phase, place, force in (line.split(",") for line in lines)
+    ]
+    assert rows[100][1:] == pytest.approx(rows[101][1:], rel=1e-12)  # both branches meet
+    assert rows[-1][2] == 0
+    area = sum((b[1] - a[1]) * (a[2] + b[2]) / 2 for a, b in pairwise(rows))
+    assert area == pytest.approx((1 - 0.479**2) * STEEL.mass * 4.089**2 / 2, rel=1e-4)
+
+
+# --- the command ------------------------------------------------------------------------------------------
+def test_the_card_of_the_paper_for_programs(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["card", "paper", "--for", "drake", "--format", "json", "--speed", "4.993"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["e"] == 0.453
+    assert told["e_found"] == pytest.approx(0.453, abs=1e-9)
+    assert [row["speed"] for row in told["rows"]] == list(STEEL.v)
+    # c = d v is what the family wants for .453
+    from loopsheet.report.impacts.damping import wanted
+
+    assert told["typed"][1]["value"] * 4.993 == pytest.approx(wanted(0.453), rel=1e-8)
+
+
+def test_the_list_of_codes_needs_no_folder(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["card", "--for", "list"]) == 0
+    told = capsys.readouterr().out
+    assert [line.split()[0] for line in told.splitlines()] == [*CODES, *SOURCES]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--for", "mujocco"], "LS604]: unknown code 'mujocco'"),
+        (
+            ["--for", "drake", "--E", "210 GPa"],
+            "LS614]: --E says nothing to drake: its stiffness is not Hertz's",
+        ),
+        (["--for", "simbody", "--nu", "0.3"], "LS614]: --nu says nothing to simbody here"),
+        (["--for", "c", "--speed", "3"], "LS614]: --speed says nothing to --for c"),
+        (
+            ["--for", "drake", "--speed", "9"],
+            "LS614]: --speed 9 m/s is not among the measured speeds, 2.334 to 4.993",
+        ),
+        (["--for", "drake", "--speed", "3 mm"], "error[LS"),
+        (["--for", "chrono", "--nu", "0.5"], "error[LS"),
+        (["--for", "chrono", "--R", "-1 mm"], "error[LS"),
+    ],
+)
+def test_what_does_not_fit_is_told(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["card", "paper", *words]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_folder_without_impacts(capsys: pytest.CaptureFixture[str]) -> None:
+    folder = Path(__file__).parent.parent / "data" / "kepler"
+    assert main(["card", os.fspath(folder), "--for", "drake"]) == 2
+    assert (
+        "has no impacts that a simulation could be held to: it has no v in m/s and no m_red in kg"
+        in capsys.readouterr().err
+    )
+
+
+def test_a_campaign_of_one_s_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A ball of which only the mass is known: what wants its radius says so, and takes it."""
+    folder = tmp_path / "own"
+    shutil.copytree(Path(__file__).parent.parent / "data" / "worked_example", folder)
+    assert main(["card", os.fspath(folder), "--for", "liggghts"]) == 2
+    assert "liggghts wants the radius of the ball, which the folder does not say" in capsys.readouterr().err
+    assert main(["card", os.fspath(folder), "--for", "liggghts", "--R", "8 mm"]) == 0
+    assert "coefficientRestitution" in capsys.readouterr().out
