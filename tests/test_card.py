@@ -61,7 +61,7 @@ def test_a_card_returns_what_was_measured(name: str, cards: dict[str, Card]) -> 
     constants |= {symbol: STEEL.radius for symbol in code.law.constants if str(symbol) == "R"}
     found = simulate(code.law, constants, STEEL.mass, made.speed)
     assert found.e == pytest.approx(0.479, abs=2e-9)
-    wanted = (made.x_p, found.x_p) if name == "exudyn" else (made.x_m, found.x_m)
+    wanted = (made.wanted.imprint, found.x_p) if name == "exudyn" else (made.wanted.approach, found.x_m)
     assert wanted[1] == pytest.approx(wanted[0], rel=2e-8)
     assert [row.measured for row in made.rows] == list(STEEL.e)
     assert made.rows[2].by_card == pytest.approx(0.479, abs=1e-9)
@@ -88,11 +88,11 @@ def test_what_a_typed_restitution_returns(cards: dict[str, Card]) -> None:
 def test_an_imprint_is_the_measured_one_where_there_is_any(cards: dict[str, Card]) -> None:
     for name, made in cards.items():
         if name == "exudyn":
-            assert made.x_p_found == pytest.approx(41.6e-6, rel=1e-9)
+            assert made.returned.imprint == pytest.approx(41.6e-6, rel=1e-9)
             typed = {value.word: value.value for value in made.typed}
             assert typed["contactPlasticityRatio"] == pytest.approx(1 - 0.479**2, rel=1e-9)
         else:
-            assert made.x_p_found == 0
+            assert made.returned.imprint == 0
             assert "it leaves no imprint" in made.notes
 
 
@@ -109,8 +109,8 @@ def test_what_the_code_itself_returns_tends_to_the_card(name: str, cards: dict[s
     """An error of first order in the step is a third of what the last refinement by four took off."""
     made = cards[name]
     coarse, fine, deep, deeper = IN_THE_CODE[name]
-    assert fine - (coarse - fine) / 3 == pytest.approx(made.e_found, abs=1e-6)
-    depth = made.x_m_found if name == "mujoco" else made.x_p_found
+    assert fine - (coarse - fine) / 3 == pytest.approx(made.returned.e, abs=1e-6)
+    depth = made.returned.approach if name == "mujoco" else made.returned.imprint
     assert deeper - (deep - deeper) / 3 == pytest.approx(depth, rel=1e-5)
 
 
@@ -118,8 +118,8 @@ def test_what_the_code_itself_returns_tends_to_the_card(name: str, cards: dict[s
 def test_a_card_of_something_else(name: str) -> None:
     made = of(CODES[name], BUFFER)
     assert made.speed == 0.1
-    assert made.e_found == pytest.approx(0.9, abs=1e-9)
-    assert made.x_m_found == pytest.approx(made.x_m, rel=1e-9)
+    assert made.returned.e == pytest.approx(0.9, abs=1e-9)
+    assert made.returned.approach == pytest.approx(made.wanted.approach, rel=1e-9)
 
 
 @pytest.mark.parametrize("name", ["chrono", "simbody"])
@@ -130,7 +130,7 @@ def test_a_given_modulus_is_the_stiffness(name: str) -> None:
     assert typed.value == pytest.approx(
         210e9 if name == "chrono" else 2 * (210e9 / 1.82) ** (2 / 3), rel=1e-12
     )
-    assert made.e_found == pytest.approx(0.479, abs=1e-9)
+    assert made.returned.e == pytest.approx(0.479, abs=1e-9)
 
 
 def test_what_no_imprint_tells_is_unreachable() -> None:
@@ -214,8 +214,8 @@ def test_the_law_as_a_table_has_the_loop_of_the_measured_loss() -> None:
 def test_the_card_of_the_paper_for_programs(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["card", "paper", "--for", "drake", "--format", "json", "--speed", "4.993"]) == 0
     told = json.loads(capsys.readouterr().out)
-    assert told["e"] == 0.453
-    assert told["e_found"] == pytest.approx(0.453, abs=1e-9)
+    assert told["wanted"]["e"] == 0.453
+    assert told["returned"]["e"] == pytest.approx(0.453, abs=1e-9)
     assert [row["speed"] for row in told["rows"]] == list(STEEL.v)
     # c = d v is what the family wants for .453
     from loopsheet.report.impacts.damping import wanted

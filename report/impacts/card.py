@@ -10,7 +10,7 @@ from sympy import Expr, Symbol
 
 from ...derivations.text import text
 from ...derivations.vocabulary import NO_WORDS
-from ..result.card import Card, CardRow, TypedValue
+from ..result.card import Behaviour, Card, CardRow, TypedValue
 from .code import E, R, SimulationCode, alpha, depth, nu
 from .drops import Drop, Drops
 from .law import m_red, v_0
@@ -91,14 +91,8 @@ def card(
         snippet=_filled(code.snippet, values),
         mass=drops.mass,
         speed=drop.speed,
-        e=drop.e,
-        x_p=drop.x_p,
-        x_m=drop.x_m,
-        e_found=found.e,
-        x_p_found=found.x_p,
-        x_m_found=found.x_m,
-        F_found=found.F_m,
-        duration=found.duration,
+        wanted=Behaviour(drop.e, drop.x_p, drop.x_m),
+        returned=Behaviour(found.e, found.x_p, found.x_m, found.F_m, found.duration),
         rows=tuple(rows),
         notes=(*solver.notes, *(() if imprint else ("it leaves no imprint",)), *code.notes),
     )

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-__all__ = ["Card", "CardRow", "TypedValue"]
+__all__ = ["Behaviour", "Card", "CardRow", "TypedValue"]
 
 
 class TypedValue(NamedTuple):
@@ -16,6 +17,19 @@ class TypedValue(NamedTuple):
     unit: str
     meaning: str
     solved: bool
+
+
+class Behaviour(NamedTuple):
+    """What an impact leaves, in SI: restitution, imprint, greatest approach and force, contact time.
+
+    NaN where it is not known.
+    """
+
+    e: float
+    imprint: float
+    approach: float
+    force: float = math.nan
+    duration: float = math.nan
 
 
 class CardRow(NamedTuple):
@@ -46,12 +60,9 @@ class Card:
         How it is written in an input of the code.
     mass, speed : float
         The reduced mass and the impact speed that the card is for.
-    e, x_p, x_m : float
-        What was measured at that speed (of other speeds: between neighbours), and the approach on the curve;
-        NaN where it is not known.
-    e_found, x_p_found, x_m_found, F_found, duration : float
-        What the formula returns with what is typed: restitution, imprint, greatest approach, greatest force
-        and contact time.
+    wanted, returned : Behaviour
+        What was measured at that speed (of other speeds: between neighbours), its approach by the identified
+        law; and what the formula returns with what is typed.
     rows : tuple of CardRow
     notes : tuple of str
     """
@@ -66,14 +77,8 @@ class Card:
     snippet: str
     mass: float
     speed: float
-    e: float
-    x_p: float
-    x_m: float
-    e_found: float
-    x_p_found: float
-    x_m_found: float
-    F_found: float
-    duration: float
+    wanted: Behaviour
+    returned: Behaviour
     rows: tuple[CardRow, ...]
     notes: tuple[str, ...]
 

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 
-from ..result.card import Card
+from ..result.card import Behaviour, Card, CardRow
 from . import markdown as md
 from .budget import aligned, number
 
@@ -29,12 +29,13 @@ def _typed(card: Card) -> Iterator[list[str]]:
 
 def _returned(card: Card) -> Iterator[list[str]]:
     """What was measured, or is on the identified curve, beside what the formula returns."""
+    wanted, returned = card.wanted, card.returned
     yield ["", "measured", "returned"]
-    yield ["e", f"{card.e:.6g}", f"{card.e_found:.6g}"]
-    yield ["imprint", _metres(card.x_p), _metres(card.x_p_found)]
-    yield ["greatest approach", f"{_metres(card.x_m)}, by the curve", _metres(card.x_m_found)]
-    yield ["greatest force", "", f"{card.F_found:.5g} N"]
-    yield ["contact time", "", f"{card.duration:.5g} s"]
+    yield ["e", f"{wanted.e:.6g}", f"{returned.e:.6g}"]
+    yield ["imprint", _metres(wanted.imprint), _metres(returned.imprint)]
+    yield ["greatest approach", f"{_metres(wanted.approach)}, by the curve", _metres(returned.approach)]
+    yield ["greatest force", "", f"{returned.force:.5g} N"]
+    yield ["contact time", "", f"{returned.duration:.5g} s"]
 
 
 def _metres(value: float) -> str:
@@ -72,11 +73,15 @@ def as_markdown(card: Card, notes: Sequence[str] = ()) -> str:
 def as_json(card: Card, notes: Sequence[str] = ()) -> str:
     """All digits; in SI, but for what is typed in."""
     told = {"schema": 1, **asdict(card)}
-    told = {name: number(value) if isinstance(value, float) else value for name, value in told.items()}
+    told["wanted"], told["returned"] = _named(card.wanted), _named(card.returned)
     told["typed"] = [one._asdict() for one in card.typed]
-    told["rows"] = [{name: number(value) for name, value in row._asdict().items()} for row in card.rows]
+    told["rows"] = [_named(row) for row in card.rows]
     told["notes"] = [*card.notes, *notes]
     return json.dumps(told, indent=1, ensure_ascii=False)
+
+
+def _named(values: Behaviour | CardRow) -> dict[str, object]:
+    return {name: number(value) for name, value in values._asdict().items()}
 
 
 FORMATS: Mapping[str, Callable[[Card, Sequence[str]], str]] = {
