@@ -28,7 +28,7 @@ class Shape(StrEnum):
     """How an error is distributed; its width is half of what it may be, without ends its standard deviation.
 
     A Student t has the width s / sqrt(n) of JCGM 100 (4.2.3): the scale, not the standard deviation. What the
-    word does not tell whole, from the truncated normal on, has a law.
+    word does not tell whole, from the truncated normal on, has a law; convolved is what a sum of errors is.
     """
 
     NORMAL = "normal"
@@ -39,6 +39,7 @@ class Shape(StrEnum):
     TRUNCATED = "truncated normal"
     EXPONENTIAL = "exponential"
     SAMPLES = "samples"
+    CONVOLVED = "convolved"
 
 
 DIVISORS: Mapping[Shape, float] = MappingProxyType(
@@ -51,6 +52,7 @@ DIVISORS: Mapping[Shape, float] = MappingProxyType(
         Shape.TRUNCATED: 1.0,
         Shape.EXPONENTIAL: 1.0,
         Shape.SAMPLES: 1.0,
+        Shape.CONVOLVED: 1.0,
     }
 )
 """The width over the standard uncertainty (JCGM 100, 4.3.7, 4.3.9; JCGM 101, 6.4.6)."""

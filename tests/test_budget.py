@@ -148,14 +148,15 @@ def test_what_is_refused(campaign: str, capsys: pytest.CaptureFixture[str], word
     assert "error[LS6" in capsys.readouterr().err
 
 
-def test_the_report_says_it_of_every_result(issued: Path) -> None:
+def test_the_report_says_it_of_every_result(issued: Path, report: Report) -> None:
     values = json.loads((issued / "out" / "values.json").read_text(encoding="utf-8"))["cells"]
     page, tex = ((issued / "out" / f"report.{form}").read_text(encoding="utf-8") for form in ("html", "tex"))
     row = re.search(r'id="?caption-uncertain.*?</table>', page, re.DOTALL)
     assert row is not None
+    known = {each.name: each for each in report.uncertain().budgets}
     for name in ("alpha_mean", "alpha_median", "alpha_log", "alpha_lin"):
         u = f"{values[name]['u']:.4f}"
-        assert f"<td>{u}<td>1.96<td>" in row[0]
+        assert f"<td>{u}<td>{known[name].factor:.2f}<td>" in row[0]
         assert rf"\num{{{u}}}" in tex
     assert r"\num{0.038e9}" in tex
     assert f"{values['C_log']['u']:.2g}" == "3.8e+07"

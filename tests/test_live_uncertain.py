@@ -44,6 +44,7 @@ for (const { name } of CELLS) {
   cells[name] = { shown: figures.map((figure) => figure && figureText(figure)) };
   cells[name].values = [...trace.sheet.value[name]];
   if (follow) cells[name].u = rows.map((row) => look.sure.u(name, row));
+  if (follow && rows.length) cells[name].factor = look.sure.budget(name, 0).factor;
   if (follow) cells[name].parts = rows.map((row) => look.sure.parts(name, row));
 }
 const errors = follow ? look.sure.errors.map(({ called }) => called) : null;
@@ -113,6 +114,9 @@ def test_as_issued(told: Told, tmp_path: Path, name: str) -> None:
                 continue
             (own,) = spread.contributions([(headline, 0)])
             mine = found["cells"][headline]["parts"][0]
+            if not (budget := spread.budget(headline, 0)).second:
+                # U has two digits: this moves none of them but where it is as good as half-way between two
+                assert found["cells"][headline]["factor"] == pytest.approx(budget.factor, rel=1e-3)
             # Curves of two tests at one speed end at the same approach: the lesser of both has no one slope.
             twice = len(set(report.values.value.get("v", ()))) < len(report.inputs.tests)
             np.testing.assert_allclose(

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 from ...derivations.unit_text import UnitError, coherent, parse_unit
 from ..cells.address import address, index_text, named
-from ..distribution import Error, Shape
+from ..distribution import PARTS, Error, Shape
 from ..messages.errors import Location, listing, suggest
 from ..quantity import Printed
 from .keys import ANY, TABLES
@@ -330,7 +330,7 @@ def _shape(name: str) -> Shape:
     """What needs more than a word comes as a normal error of its standard uncertainty."""
     known = {shape.value: shape for shape in Shape}
     shape = known.get(name, Shape.NORMAL)
-    return Shape.NORMAL if shape in (Shape.TRUNCATED, Shape.EXPONENTIAL, Shape.SAMPLES) else shape
+    return shape if shape is Shape.STUDENT or shape in PARTS else Shape.NORMAL
 
 
 def _origin(found: Influences, source: Source) -> Origin:

@@ -65,7 +65,8 @@ def _rule(report: Report, found: Conformity) -> str:
     if math.isnan(found.guard):
         return ", guard band not known"
     times = "" if guard.times == 1 else f"{float(guard.times):g} "
-    of = "" if guard.width else f" ({times}U at {100 * guard.level:.12g} %)"
+    drawn = " of the draws" if found.budget.draws else ""
+    of = "" if guard.width else f" ({times}U at {100 * guard.level:.12g} %{drawn})"
     unit = behind(report.shown[name].unit)
     if not found.guard:
         return f", guard band 0{unit}{of}"

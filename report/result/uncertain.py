@@ -158,13 +158,14 @@ class Budget:
     unlooked : str
         Why nothing is known of second order; empty if it was looked at.
     shape : Shape
-        The distribution that is assigned to it: normal, Student's t, or that of a source which dominates.
+        The distribution that is assigned to it: normal, Student's t, that of the sum of its errors, or that
+        of a source which dominates.
     law : Law or None
         As of :class:`~loopsheet.report.distribution.Error`: of what the quantity is more than the value.
     summed : tuple of Together
         Columns over pairs of rows that the cell sums: pairs share their rows.
     draws : int
-        So many told its distribution; 0 where the errors' own did. The coverage factor is that of the errors.
+        So many told its distribution and the coverage factor; 0 where the errors' own did.
     """
 
     cell: str

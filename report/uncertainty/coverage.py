@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..distribution import DIVISORS, DOMINANT, LEVEL, PARTS, Shape
 from ..laws import Law
 from ..result.uncertain import ErrorSource
+from .convolution import convolved
 
 __all__ = ["assigned", "coverage", "effective"]
 
@@ -43,51 +44,73 @@ def effective(u: float, contributions: NDArray[np.float64], dof: Sequence[float]
 
 
 def assigned(
-    sources: Sequence[ErrorSource], contributions: NDArray[np.float64], dof: float, second: float = 0.0
-) -> tuple[Shape, Law | None]:
-    """The distribution of a sum, and its law if it has one; parameters as for :func:`coverage`."""
-    sizes = np.abs(contributions)
-    if sizes.size:
-        largest = int(sizes.argmax())
-        rest = math.sqrt(float(np.sum(np.delete(sizes, largest) ** 2)) + abs(second))
-        one, sure = sources[largest], math.isinf(sources[largest].dof)
-        dominates = bool(sizes[largest]) and rest <= DOMINANT * sizes[largest]
-        if sure and dominates and one.law is not None:
-            return one.shape, one.law if contributions[largest] > 0 else one.law.turned()
-        if sure and dominates and one.shape in PARTS:
-            return one.shape, None
-    return Shape.NORMAL if math.isinf(dof) else Shape.STUDENT, None
-
-
-def coverage(
     sources: Sequence[ErrorSource],
     contributions: NDArray[np.float64],
+    u: float,
     dof: float,
-    level: float = LEVEL,
     second: float = 0.0,
-) -> tuple[float, str]:
-    """The coverage factor of a sum, and what it was taken from.
+    pairs: Sequence[tuple[int, int, float]] = (),
+) -> tuple[Shape, Law | None]:
+    """The distribution of a sum, and its law if it has one.
 
     Parameters
     ----------
     sources : sequence of ErrorSource
     contributions : float array (sources,)
         What each makes.
+    u : float
+        The standard uncertainty of the sum.
+    dof : float
+        Its effective degrees of freedom.
+    second : float
+        The part of the variance that is of second order. Where there is one, the sum is no longer all: it has
+        the shape of a source that dominates, or none but the normal one.
+    pairs : sequence of (int, int, float)
+        Places of two sources that are correlated, and their coefficient.
+    """
+    plain = Shape.NORMAL if math.isinf(dof) else Shape.STUDENT
+    if not second and u > 0 and not math.isnan(dof):
+        every = convolved(sources, contributions, u, pairs)
+        if every is None:
+            return plain, None
+        one = every.parts[0]
+        if len(every.parts) > 1:
+            return Shape.CONVOLVED, every
+        return one.shape, one.law.turned() if one.law and one.size < 0 else one.law
+    sizes = np.abs(contributions)
+    if sizes.size:
+        largest = int(sizes.argmax())
+        rest = math.sqrt(float(np.sum(np.delete(sizes, largest) ** 2)) + abs(second))
+        most, sure = sources[largest], math.isinf(sources[largest].dof)
+        dominates = bool(sizes[largest]) and rest <= DOMINANT * sizes[largest]
+        if sure and dominates and most.law is not None:
+            return most.shape, most.law if contributions[largest] > 0 else most.law.turned()
+        if sure and dominates and most.shape in PARTS:
+            return most.shape, None
+    return plain, None
+
+
+def coverage(shape: Shape, law: Law | None, dof: float, level: float = LEVEL) -> tuple[float, str]:
+    """The coverage factor of a distribution that is assigned, and what it was taken from.
+
+    Parameters
+    ----------
+    shape, law
+        As :func:`assigned` tells.
     dof : float
         The effective degrees of freedom.
     level : float
         The coverage probability.
-    second : float
-        The variance of second order.
 
     Examples
     --------
-    >>> coverage([ErrorSource("g", Shape.RECTANGULAR, math.inf, ())], np.array([1.0]), math.inf)
+    >>> coverage(Shape.RECTANGULAR, None, math.inf)
     (1.6454482671904334, 'the rectangular source that dominates')
     """
     if math.isnan(dof):
         return math.nan, "nothing: correlated sources have finite degrees of freedom"
-    shape, law = assigned(sources, contributions, dof, second)
+    if shape is Shape.CONVOLVED and law is not None:
+        return law.half(level), "the convolved distributions of its sources"
     if law is not None or shape in PARTS:
         factor = DIVISORS[shape] * PARTS[shape](level) if law is None else law.half(level)
         return factor, f"the {shape} source that dominates"

@@ -124,8 +124,9 @@ def by_draws(inputs: Inputs, values: Values, budget: Budget) -> Budget:
     errors = (np.concatenate(found) - budget.value) / budget.u
     if errors.size < (1 - WITHOUT) * SOME:
         return replace(budget, factor=math.nan, because="nothing: too many draws have no value")
-    told = f"{SOME} draws: terms of first order do not tell its distribution"
-    return replace(budget, because=told, shape=Shape.SAMPLES, law=Samples(errors), draws=SOME)
+    told, law = f"{SOME} draws: terms of first order do not tell its distribution", Samples(errors)
+    factor = law.half(budget.level)
+    return replace(budget, factor=factor, because=told, shape=Shape.SAMPLES, law=law, draws=SOME)
 
 
 class _Draws:

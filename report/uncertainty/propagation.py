@@ -205,8 +205,8 @@ class Spread:
         together = self._with_correlated(found)[0, : len(self.sources)]
         shares = own / u * (together / u) if u > 0 else np.zeros(len(own))
         dof = self._effective(math.sqrt(first), own, together)
-        factor, because = coverage(self.sources, own, dof, level, second)
-        shape, law = assigned(self.sources, own, dof, second)
+        shape, law = assigned(self.sources, own, u, dof, second, self._pairs)
+        factor, because = coverage(shape, law, dof, level)
         order = [
             int(n)
             for n in np.argsort(-np.abs(shares), kind="stable")

@@ -1,7 +1,8 @@
 """The worksheet of uncertainty budgets: of every result, as EA-4/02 lays them out, in live formulas.
 
 Estimates are cells of the sheet; standard uncertainties, degrees of freedom and distributions may be changed.
-Only sensitivities are numbers as issued: a spreadsheet has no derivatives.
+Only sensitivities are numbers as issued, for a spreadsheet has no derivatives; so is what is told of a sum of
+errors that are not all normal, for it does not convolve. Where sources were edited it says what it takes.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..cells.grid import CellBlock, Grid, checked
-from ..distribution import DOMINANT
+from ..distribution import DOMINANT, Shape
 from ..quantity import behind
 from ..result.numbers import rounded
 from ..result.result import Report
@@ -186,7 +187,7 @@ class _Written:
                 _DOF,
             ),
             ("coverage probability", "", budget.level, "0.##%"),
-            ("coverage factor k", f"={self.factor(own, at, budget.level)}", budget.factor, "0.000"),
+            ("coverage factor k", f"={self.factor(own, at, budget)}", budget.factor, "0.000"),
             (
                 "expanded uncertainty U",
                 f"={at['k']}*{at['u']}",
@@ -202,7 +203,31 @@ class _Written:
                 self.style.formula(self.sheet, line, 1, formula, value, self.style("number", form))
             else:
                 self.sheet.write_number(line, 1, value, self.style("input", form))
-        return self.limits(self.statement(row + len(lines), at), own, at)
+        row = self.statement(row + len(lines), at)
+        if budget.shape is Shape.CONVOLVED:
+            told = f"{budget.because}, as issued: they do not follow an edit"
+            instead = "a normal or t distribution or a source that dominates: sources are not as issued"
+            self.style.text(self.sheet, row, 0, "k comes from", "name")
+            said = f'=IF({self.unmoved(at)},"{told}","{instead}")'
+            self.style.formula(self.sheet, row, 1, said, told, self.style("text"))
+            row += 1
+        return self.limits(row, own, at)
+
+    def unmoved(self, at: Mapping[str, str]) -> str:
+        """Whether the sources are as issued: the fourth powers of their shares, shape by shape.
+
+        As the variances make u and the fourth powers what is told besides, it is the same where these are.
+        """
+        shapes: dict[Shape, float] = {}
+        u = self.budget.u
+        for each in self.budget.contributions:
+            shapes[each.source.shape] = shapes.get(each.source.shape, 0.0) + (each.u / u) ** 4
+        own, kind = (f"${c}${self.first + 1}:${c}${self.last + 1}" for c in "HE")
+        same = [
+            f'ABS(SUMPRODUCT(({kind}="{shape}")*({own})^4)/{at["u"]}^4-({now:.15f}))<0.000001'
+            for shape, now in shapes.items()
+        ]
+        return f"AND({','.join(same)},ABS({at['dof']}/{min(self.budget.dof, _UNLIMITED):.0f}-1)<0.000001)"
 
     def limits(self, row: int, own: str, at: Mapping[str, str]) -> int:
         """The decision rule, where the cell has limits."""
@@ -218,8 +243,12 @@ class _Written:
     def assigned(self, budget: Budget, own: str, at: Mapping[str, str]) -> tuple[Callable[[str], str], str]:
         """The coverage factor for the cell of a probability, and the name of the distribution."""
         plain = f'IF({at["dof"]}>{MOST_DOF},"normal","t")'
-        named = f'"{budget.shape}"' if budget.draws else self.by_shape(own, at, SHAPES, plain)
-        return lambda p: self.factor(own, {**at, "p": p}, budget.level), named
+        if budget.draws:
+            return lambda p: as_issued(p, budget.level, budget.factor), f'"{budget.shape}"'
+        named = self.by_shape(own, at, SHAPES, plain)
+        if budget.shape is Shape.CONVOLVED:
+            named = f'IF({self.unmoved(at)},"{budget.shape}",{named})'
+        return lambda p: self.factor(own, {**at, "p": p}, budget), named
 
     def below(self, own: str, dof: str) -> str:
         """What stands below in the formula of Welch and Satterthwaite: sources of one estimate are one."""
@@ -247,18 +276,21 @@ class _Written:
             for (one, other), r in self.budget.correlations.items()
         )
 
-    def factor(self, own: str, at: Mapping[str, str], level: float) -> str:
+    def factor(self, own: str, at: Mapping[str, str], budget: Budget) -> str:
         """The coverage factor: of the shape of a source that dominates, else of t or normal.
 
-        Of a truncated normal source and of draws no spreadsheet has the formula: it is known for the level as
-        issued, and for no other.
+        Of a truncated normal source, of draws and of a sum of errors no spreadsheet has the formula: it is
+        known for the level as issued, and for no other.
         """
         p, dof = at["p"], at["dof"]
         otherwise = f"IF({dof}>{MOST_DOF},NORMSINV((1+{p})/2),TINV(1-{p},MIN({dof},{MOST_DOF})))"
         factors = {name: factor.format(p=p) for name, factor in _FACTORS.items()}
-        if (law := self.budget.law) and self.budget.shape.value not in factors:
-            factors[self.budget.shape.value] = as_issued(p, level, law.half(level))
-        return self.by_shape(own, at, factors, otherwise)
+        if budget.law and budget.shape.value not in factors:
+            factors[budget.shape.value] = as_issued(p, budget.level, budget.factor)
+        told = self.by_shape(own, at, factors, otherwise)
+        if budget.shape is Shape.CONVOLVED:
+            return f"IF({self.unmoved(at)},{factors[budget.shape.value]},{told})"
+        return told
 
     def by_shape(self, own: str, at: Mapping[str, str], formulas: Mapping[str, str], otherwise: str) -> str:
         """The formula of the shape of a source that dominates; another one if none does."""

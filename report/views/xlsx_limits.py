@@ -22,15 +22,15 @@ _SHARES = {
     Shape.ARCSINE: "(ASIN(MIN(ABS({z})/SQRT(2),1))*2/PI())",
 }
 """The share within z standard uncertainties, of the shapes that have ends."""
-_LAWS = (Shape.TRUNCATED, Shape.EXPONENTIAL, Shape.SAMPLES)
+_LAWS = (Shape.TRUNCATED, Shape.EXPONENTIAL, Shape.SAMPLES, Shape.CONVOLVED)
 SHAPES = {shape.value: f'"{shape.value}"' for shape in (*_SHARES, *_LAWS)}
 """Their names in a formula."""
 CHANCE = "0.00%"
 
 
-def as_issued(cell: str, at: float, value: float) -> str:
+def as_issued(cell: str, at: float, value: float, unless: str = "NA()") -> str:
     """A number that is known where a cell is as it was issued, and not when somebody has changed it."""
-    return f"IF(ABS({cell}-({at:.15f}))<0.000001,{value:.15f},NA())" if math.isfinite(at) else "0"
+    return f"IF(ABS({cell}-({at:.15f}))<0.000001,{value:.15f},{unless})" if math.isfinite(at) else "0"
 
 
 class _Written:
@@ -121,7 +121,11 @@ def write_limits(
     to.end("z high", "below the upper limit, over u", "({high}-{value})/{u}", z[1], "0.00")
     for name, said, now in (("low", "below", found.below), ("high", "above", found.above)):
         end = f"{{z {name}}}"
-        tail = to.tail(end) if budget.law is None else as_issued(end, z[name == "high"], now)
+        tail = to.tail(end)
+        if budget.law is not None:  # of sources that were edited it is another one
+            other = tail if budget.shape is Shape.CONVOLVED else "NA()"
+            known = as_issued(end, z[name == "high"], now)
+            tail = f'IF({{shape}}="{budget.shape}",{known},{other})'
         to.line(said, f"probability that it lies {said}", f"IF(ISNUMBER({end}),{tail},0)", now, CHANCE)
     inside = (
         "1-({below}+{above})"
@@ -132,6 +136,10 @@ def write_limits(
         )
     )
     to.line("inside", "conformance probability", inside, found.probability, CHANCE)
+    if budget.law:
+        said = "the probabilities do not follow an edit: #N/A where value or limits are not as issued"
+        style.text(sheet, to.row, 0, said)
+        to.row += 1
     no, yes, open_ = (f'"{each.value}"' for each in (Decision.DOES_NOT, Decision.CONFORMS, Decision.NONE))
     accepted = (
         "AND(IF(ISNUMBER({low}),{value}>={from low},TRUE),IF(ISNUMBER({high}),{value}<={to high},TRUE))"

@@ -74,7 +74,7 @@ class Sure {
   budget(name, row) {
     const parts = this.parts(name, row), u = this.u(name, row), variances = this.variances(parts), least = 1e-12 * Math.max(...parts.map(Math.abs));
     const from = this.errors.map((error, n) => ({ ...error, part: parts[n], share: variances[n] / u ** 2 }));
-    const factor = this.factor(parts, this.freedom(parts, variances, u));
+    const factor = this.factor(parts, this.freedom(parts, variances, u), u);
     return { u, factor, from: from.filter(({ part }) => Math.abs(part) > least).sort((a, b) => Math.abs(b.share) - Math.abs(a.share)) };
   }
 
@@ -92,17 +92,71 @@ class Sure {
     return below ? Math.max(1, Math.floor(Math.round(100 / below) / 100)) : Infinity;
   }
 
-  // From the shape of an error that dominates (EA-4/02, S9), else from a normal or a t distribution.
-  factor(parts, freedom) {
-    const sizes = parts.map(Math.abs), most = Math.max(...sizes), n = sizes.indexOf(most), { shape, dof } = this.errors[n] ?? {};
-    const rest = Math.hypot(...sizes.filter((_, other) => other !== n));
-    return freedom && !dof && most && rest <= 0.3 * most && FACTORS[shape] ? FACTORS[shape] : studentFactor(freedom);
+  // From the sum of the errors, where they are not all normal or t; as a rebuild tells it (uncertainty/convolution.py).
+  factor(parts, freedom, u) {
+    const { errors, pairs } = this, mixed = new Set(pairs.flatMap(([a, b]) => [a, b])), found = new Map();
+    const moving = [...parts.keys()].filter((n) => parts[n]), ended = (n) => !mixed.has(n) && ENDED[errors[n].shape];
+    if (!freedom || !moving.some(ended) || moving.some((n) => errors[n].dof && errors[n].shape !== "t")) return studentFactor(freedom);
+    const variances = this.variances(parts);
+    for (const n of moving) {
+      const { shape, dof, sample } = errors[n], own = ended(n) || (dof && (sample || !mixed.has(n)));
+      const key = !own ? "normal" : dof && sample ? sample : n, one = found.get(key) ?? { shape: own ? shape : "normal", dof, variance: 0 };
+      found.set(key, { ...one, variance: one.variance + variances[n] / u ** 2 });
+    }
+    return summedFactor([...found.values()].map((one) => ({ ...one, size: Math.sqrt(Math.max(0, one.variance)) })));
   }
 }
 
-// Half of what holds 95 %, in standard uncertainties.
-const FACTORS = { rectangular: 0.95 * Math.sqrt(3), triangular: Math.sqrt(6) * (1 - Math.sqrt(0.05)), arcsine: Math.SQRT2 * Math.sin(0.475 * Math.PI) };
 const NORMAL = 1.959963984540054;
+// Of errors that end: where, in standard uncertainties, and the share within a part of that.
+const ENDED = {
+  rectangular: [Math.sqrt(3), (x) => x], triangular: [Math.sqrt(6), (x) => 1 - (1 - x) ** 2], arcsine: [Math.SQRT2, (x) => 2 / Math.PI * Math.asin(x)],
+};
+const HALF = 600; // points of a distribution on either side
+
+// Half of what holds 95 % of a sum of independent errors, in standard uncertainties. The distribution of the first, normal or
+// the largest that ends, is spread by one error after the other: evenly over a width, or over points that have weights.
+function summedFactor(errors) {
+  const order = ({ shape, dof, size }) => (ENDED[shape] ? 1 - size / 8 : dof ? 2 + 1 / dof : 0), [first, ...others] = errors.sort((a, b) => order(a) - order(b));
+  const ends = ({ shape, dof, size }) => size * (ENDED[shape]?.[0] ?? (dof ? 2 * studentFactor(dof) : 6)), heaviest = errors.at(-1).dof ?? Infinity;
+  const reach = sum(errors.map(ends)), step = reach / HALF, places = Array.from({ length: 2 * HALF + 1 }, (_, n) => (n - HALF) * step);
+  const share = ENDED[first.shape]?.[1] ?? ((x) => 2 * bell(6 * x));
+  let below = places.map((x) => (1 + Math.sign(x) * share(Math.min(1, Math.abs(x) / ends(first)))) / 2);
+  // Between the points in proportion; beyond them what is left falls as the tails of a t distribution do.
+  const at = (values, x, beyond) => {
+    const n = (Math.abs(x) + reach) / step, low = Math.floor(n);
+    if (n >= 2 * HALF) return beyond(x);
+    return x < 0 ? 1 - at(values, -x, beyond) : values[low] + (n - low) * (values[low + 1] - values[low]);
+  };
+  const evenly = (half) => {
+    let all = 0;
+    const whole = below.map((one, n) => (all += n ? step * (one + below[n - 1]) / 2 : 0));
+    const upTo = (x) => (x <= -reach ? 0 : x < 0 ? upTo(-x) + x : at(whole, x, () => all + x - reach)); // below is 1 less itself turned around
+    below = places.map((x) => (upTo(x + half) - upTo(x - half)) / (2 * half));
+  };
+  const over = (points, weigh) => {
+    const weights = points.map(weigh), all = sum(weights), own = below, left = 1 - own[2 * HALF];
+    const beyond = (x) => (x < 0 ? left * (reach / -x) ** heaviest : 1 - left * (reach / x) ** heaviest);
+    below = places.map((x) => sum(points.map((point, n) => weights[n] * at(own, x - point, beyond))) / all);
+  };
+  const turns = (number) => Array.from({ length: number }, (_, n) => ((n + 0.5) / number - 0.5) * Math.PI);
+  for (const { shape, dof, size } of others.filter((one) => one.size > 0)) {
+    if (shape === "rectangular") evenly(Math.sqrt(3) * size);
+    else if (shape === "triangular") [1, 2].forEach(() => evenly(Math.sqrt(6) * size / 2));
+    else if (shape === "arcsine") over(turns(100).map((turn) => Math.SQRT2 * size * Math.sin(turn)), () => 1);
+    else over(turns(dof < 3 ? 2000 : 200).map((turn) => Math.sqrt(dof) * size * Math.tan(turn)), (t) => (1 + (t / size) ** 2 / dof) ** (-(dof - 1) / 2));
+  }
+  const within = (n) => below[HALF + n] - below[HALF - n];
+  let n = 1;
+  while (n < HALF && within(n) < 0.95) n++;
+  return step * (n - (within(n) - 0.95) / (within(n) - within(n - 1)));
+}
+
+// The share of a normal distribution between 0 and z standard deviations, by Simpson's rule.
+function bell(z) {
+  const parts = 64, at = (n) => Math.exp(-((n * z / parts) ** 2) / 2) * (n % parts ? 2 + 2 * (n % 2) : 1);
+  return z / parts / 3 / Math.sqrt(2 * Math.PI) * sum(Array.from({ length: parts + 1 }, (_, n) => at(n)));
+}
 
 // The same of a t distribution: with t = sqrt(freedom) tan(angle) it is an integral of a power of the cosine.
 function studentFactor(freedom) {

@@ -1,0 +1,224 @@
+"""The distribution of a sum of independent errors: theirs, convolved (EA-4/02, S10).
+
+To first order a cell's error is such a sum. Each error becomes shares of bins of one width, exactly, and all
+of them together are convolved by Fourier's transform: the only error is that of the bins' width, squared.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..distribution import DIVISORS, PARTS, Shape
+from ..laws import Law, Samples
+from ..result.uncertain import ErrorSource
+from .conformity import beyond
+
+__all__ = ["Convolved", "convolved"]
+
+Array = NDArray[np.float64]
+
+FINE = 2048
+"""Bins in a standard uncertainty."""
+MOST = 1 << 18
+"""Bins, at most: a t distribution of few degrees of freedom is wide."""
+OUTSIDE = 1e-6
+"""The share that may lie beyond the bins of an error without ends; it is put into the last one."""
+FAR = 12.0
+"""Standard uncertainties beyond which many errors with ends and normal ones never are together."""
+LEAST = 1e-15
+"""A probability that rounding leaves of less; it is nothing only beyond an end."""
+
+ROUNDED = 1e-12
+"""A limit so near to an end, as a share of it, is meant to be there."""
+
+
+@dataclass(frozen=True)
+class _Part:
+    """An independent part of a sum: an error in units of its width, and how often that goes into the sum."""
+
+    shape: Shape
+    size: float
+    dof: float = math.inf
+    law: Law | None = None
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Beyond which there is nothing."""
+        far = DIVISORS[self.shape] if self.shape in PARTS else math.inf
+        low, high = -far, far
+        if self.law is not None and not isinstance(self.law, Samples):
+            with np.errstate(divide="ignore"):
+                low, high = map(float, self.law.quantile(np.array([0.0, 1.0])))
+        return tuple(sorted((self.size * low, self.size * high)))  # type: ignore[return-value]
+
+    @property
+    def reach(self) -> float:
+        """Up to where bins are needed."""
+        if isinstance(self.law, Samples):
+            return float(np.abs(self.law.errors).max()) * abs(self.size)
+        if self.law is not None:
+            far = self.law.quantile(np.array([OUTSIDE, 1 - OUTSIDE]))
+            return float(np.abs(far).max()) * abs(self.size)
+        if self.shape is Shape.STUDENT:
+            from scipy.special import stdtrit
+
+            return float(stdtrit(self.dof, 1 - OUTSIDE)) * abs(self.size)
+        return (DIVISORS[self.shape] if self.shape in PARTS else FAR) * abs(self.size)
+
+    def shares(self, side: int) -> Array:
+        """How much is in the bin around 0 and in so many to either side; the last hold what is beyond."""
+        z = (np.arange(-side, side, dtype=np.float64) + 0.5) / (FINE * abs(self.size))
+        found = -np.diff(np.concatenate([[1.0], self._above(z), [0.0]]))
+        return found if self.size > 0 else found[::-1]
+
+    def _above(self, z: Array) -> Array:
+        if self.shape is Shape.STUDENT:  # of which there are many bins
+            from scipy.special import stdtr
+
+            return np.asarray(stdtr(self.dof, -z))
+        return np.array([beyond(each, self.shape, self.dof, self.law) for each in z.tolist()])
+
+
+@dataclass(frozen=True)
+class Convolved(Law):
+    """A sum of independent errors, in standard uncertainties of the whole.
+
+    Parameters
+    ----------
+    parts : sequence of _Part
+        In those.
+    """
+
+    parts: Sequence[_Part] = field(repr=False)
+
+    @cached_property
+    def ends(self) -> tuple[float, float]:
+        """Beyond which there is nothing."""
+        low, high = (sum(ends) for ends in zip(*(part.ends for part in self.parts), strict=True))
+        return low * (1 - ROUNDED), high * (1 - ROUNDED)
+
+    @cached_property
+    def _bins(self) -> tuple[Array, Array]:
+        """Where bins end, and the share of each."""
+        wide = [p.law is not None or p.shape is Shape.STUDENT for p in self.parts]
+        light = [p for p, far in zip(self.parts, wide, strict=True) if not far]
+        near = FINE * min(sum(p.reach for p in light), FAR * math.hypot(*(p.size for p in light)))
+        most = [(MOST / 2 - near) / max(1, sum(wide)) if far else math.inf for far in wide]
+        sides = [math.ceil(min(FINE * p.reach, room)) for p, room in zip(self.parts, most, strict=True)]
+        beyond = sum(side for side, far in zip(sides, wide, strict=True) if far)
+        number = 1 << (2 * (math.ceil(near) + beyond + 1)).bit_length()
+        spectrum = np.ones(number // 2 + 1, dtype=np.complex128)
+        for part, side in zip(self.parts, sides, strict=True):
+            around = np.zeros(number)
+            around[np.arange(-side, side + 1)] = part.shares(side)
+            spectrum *= np.fft.rfft(around)
+        found = np.maximum(np.roll(np.fft.irfft(spectrum, number), number // 2), 0.0)
+        return (np.arange(number) - number // 2 + 0.5) / FINE, found / found.sum()
+
+    @cached_property
+    def _above(self) -> Array:
+        return np.append(np.cumsum(self._bins[1][:0:-1])[::-1], 0.0)
+
+    @cached_property
+    def _below(self) -> Array:
+        return np.cumsum(self._bins[1])
+
+    def _moment(self, power: int, around: float) -> float:
+        ends, shares = self._bins
+        return float(shares @ (ends - 0.5 / FINE - around) ** power)
+
+    @property
+    def mean(self) -> float:
+        """As above."""
+        return self._moment(1, 0.0)
+
+    @property
+    def skewness(self) -> float:
+        """The third central moment."""
+        return self._moment(3, self.mean)
+
+    @property
+    def kurtosis(self) -> float:
+        """The fourth central moment."""
+        return self._moment(4, self.mean)
+
+    def below(self, z: float) -> float:
+        """As above."""
+        return self._told(z, self._below, z >= self.ends[1])
+
+    def above(self, z: float) -> float:
+        """As above: what is little keeps its digits."""
+        return self._told(z, self._above, z <= self.ends[0])
+
+    def _told(self, z: float, shares: Array, whole: bool) -> float:
+        if not self.ends[0] < z < self.ends[1]:
+            return float(whole)
+        return min(max(float(np.interp(z, self._bins[0], shares)), LEAST), 1.0)
+
+    def quantile(self, shares: Array) -> Array:
+        """As above."""
+        return np.interp(shares, self._below, self._bins[0])
+
+
+def convolved(
+    sources: Sequence[ErrorSource],
+    contributions: Array,
+    u: float,
+    pairs: Sequence[tuple[int, int, float]] = (),
+) -> Convolved | None:
+    """The distribution of a sum of errors; None where all of them are normal or t, or a width is not certain.
+
+    Parameters
+    ----------
+    sources : sequence of ErrorSource
+    contributions : float array (sources,)
+        What a standard uncertainty of each makes, with its sign.
+    u : float
+        The standard uncertainty of the sum, in the same unit.
+    pairs : sequence of (int, int, float)
+        Places of two sources that are correlated, and their coefficient. Such are normal, as they are drawn;
+        those from one table of draws come row by row, those of one estimate have a t distribution together.
+    """
+    sizes = contributions / u
+    moving = [n for n, size in enumerate(sizes.tolist()) if size]
+    mixed = {n for a, b, _ in pairs for n in (a, b) if not sources[n].table}
+    ended = [n for n in moving if n not in mixed and (sources[n].law or sources[n].shape in PARTS)]
+    doubtful = any(math.isfinite(sources[n].dof) and sources[n].shape is not Shape.STUDENT for n in moving)
+    if not ended or doubtful:
+        return None
+    together: dict[str, list[int]] = {}
+    for n in moving:
+        source = sources[n]
+        if n in ended:
+            key = f"table {source.table}" if source.table else f"alone {n}"
+        elif source.shape is Shape.STUDENT and (source.sample or n not in mixed):
+            key = f"sample {source.sample}" if source.sample else f"alone {n}"
+        else:
+            key = "normal"
+        together.setdefault(key, []).append(n)
+    return Convolved(
+        tuple(_one([(sources[n], float(sizes[n]), n) for n in of], pairs) for of in together.values())
+    )
+
+
+def _one(of: Sequence[tuple[ErrorSource, float, int]], pairs: Sequence[tuple[int, int, float]]) -> _Part:
+    """Errors that are no others' business as one."""
+    first, size, _ = of[0]
+    if len(of) == 1:
+        return _Part(first.shape, size, first.dof, first.law)
+    if first.table:
+        told = [size * source.law.errors for source, size, _ in of if isinstance(source.law, Samples)]
+        errors: Array = np.sum(told, axis=0)
+        sd = float(np.std(errors, ddof=1))
+        return _Part(Shape.SAMPLES, sd, math.inf, Samples(errors / sd, first.table))
+    own = {n: size for _, size, n in of}
+    variance = sum(size**2 for size in own.values())
+    variance += sum(2 * r * own[a] * own[b] for a, b, r in pairs if a in own and b in own)
+    shape = first.shape if first.shape is Shape.STUDENT else Shape.NORMAL
+    return _Part(shape, math.sqrt(max(variance, 0.0)), first.dof)
