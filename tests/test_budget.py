@@ -203,3 +203,16 @@ def test_distances_from_the_estimate_to_the_ends(
     told = as_text(report, Budget("alpha_mean", "alpha_mean", (), 1.30264, level=0.95), found)
     assert f"(equal tails{around}" in told
     assert f"(the shortest{around}" in told
+
+
+@pytest.mark.parametrize(
+    ("draws", "level", "least"), [("0", "95", 400), ("1", "95", 400), ("401", "99.9", 20000)]
+)
+def test_too_few_draws_are_refused(
+    campaign: str, capsys: pytest.CaptureFixture[str], draws: str, level: str, least: int
+) -> None:
+    assert main(["budget", "alpha_mean", campaign, "--draws", draws, "--level", level]) == 2
+    told = capsys.readouterr().err
+    assert f"error[LS614]: --draws {draws} tells nothing of an interval of {level} %" in told
+    assert f"at least {least}, of which some 10 lie beyond each end" in told
+    assert main(["budget", "alpha_mean", campaign, "--draws", "400"]) == 0

@@ -66,8 +66,9 @@ def test_how_far_from_a_limit_a_value_has_to_lie(z: float, probability: float) -
     assert f"{judged(-z, 1.0, high='0').probability:.2f}" == f"{probability:.2f}"
 
 
-TOLD_WHOLE = [s for s in Shape if s not in (Shape.TRUNCATED, Shape.EXPONENTIAL, Shape.SAMPLES, Shape.CONVOLVED)]
-"""By their word; what has a law is in test_laws.py."""
+LAWS = (Shape.TRUNCATED, Shape.EXPONENTIAL, Shape.SAMPLES, Shape.CONVOLVED)
+TOLD_WHOLE = [shape for shape in Shape if shape not in LAWS]
+"""By their word; what has a law is in test_laws.py and test_convolution.py."""
 SHAPES = st.sampled_from(TOLD_WHOLE)
 SIZES = st.floats(-8, 8)
 

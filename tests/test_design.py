@@ -286,3 +286,16 @@ def test_a_campaign_without_a_curve_plans_nothing(tmp_path: Path, capsys: pytest
     )
     assert main(["design", str(tmp_path), "--speeds", "2, 3"]) == 2
     assert "error[LS619]: this cannot be planned: there is no curve" in capsys.readouterr().err
+
+
+def test_a_cell_without_a_value_is_a_finding(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "#DOMAIN! alpha_eiv" in told(capsys, "paper", "--speeds", "3, 3 m/s", code=1)
+
+
+def test_without_any_error_a_number_is_exact(capsys: pytest.CaptureFixture[str]) -> None:
+    """Mass and beta move no exponent: what rounding leaves of their derivatives is no uncertainty."""
+    found = as_json(capsys, "paper", "--u", "v = 0; e = 0; x_p = 0", "--cell", "alpha_log")
+    assert (found["u"], found["shares"]) == (0, {})
+    assert "alpha_log = 1.3023464025015523, exactly" in told(
+        capsys, "paper", "--u", "v = 0; e = 0; x_p = 0", "--cell", "alpha_log"
+    )

@@ -31,7 +31,7 @@ from ..sheet import Sheet
 from .second_order import root_of
 from .sources import correlated, given, sources
 
-__all__ = ["MOST", "by_draws", "draw"]
+__all__ = ["BEYOND", "MOST", "by_draws", "draw", "least"]
 
 Array = NDArray[np.float64]
 
@@ -39,6 +39,8 @@ MOST = 1_000_000
 """Draws, at most, where nobody asks for another number."""
 SOME = 20_000
 """Draws, where nobody asks for any and the law of propagation does not serve."""
+BEYOND = 10
+"""Draws beyond either end of an interval, of fewer of which it is known to no digit."""
 FEWEST = 10
 """Batches before it is asked whether they are enough."""
 FAR = 5.0
@@ -47,6 +49,15 @@ WITHOUT = 0.025
 """Of so many draws without a value no interval of 95 % is told: it might as well lie there."""
 NO_MEAN, NO_DEVIATION = 1.1, 2.2
 """Up to which tail index, with what its estimate may be off, there is no mean and no standard deviation."""
+
+
+def least(level: float) -> int:
+    """How many draws are the fewest of which an interval is told.
+
+    >>> least(0.95), least(0.9973)
+    (400, 7407)
+    """
+    return round(2 * BEYOND / (1 - level))
 
 
 def draw(

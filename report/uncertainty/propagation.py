@@ -44,6 +44,8 @@ MOST_CELLS = 300
 """Of a column that is summed; of more, nobody reads eigenvalues."""
 MOST_PASSED = 100_000
 """Influences on the rows of columns that are passed on to other reports: some megabytes of a file."""
+ROUNDED = 2.0**-52
+"""Of a value: a computed one has no uncertainty that is less, for no double tells it from none."""
 NOTHING = 1e-12
 """A contribution that is less than this share of the largest is left out of a budget."""
 
@@ -138,7 +140,8 @@ class Spread:
         found = np.full((2, rows), np.nan)
         for cells in self._some(name) if name in self._known else ():
             own, at = self.contributions(cells), slice(cells[0][1], cells[-1][1] + 1)
-            found[:, at] = self._variance(own), np.nan_to_num(self._more(cells, own))
+            first, second = self._orders(cells, own)
+            found[:, at] = first, np.nan_to_num(second)
         return found
 
     def _some(self, name: str) -> Iterator[list[tuple[str, int]]]:
@@ -174,6 +177,18 @@ class Spread:
             variance: Array = np.sum(found * self._with_correlated(found), axis=1)
             return np.maximum(variance, 0.0)
 
+    def _orders(self, cells: Sequence[tuple[str, int]], own: Array) -> tuple[Array, Array]:
+        """The variances of cells, of first order and of second; this is NaN where it is not known.
+
+        A computed value has none less than the square of its rounding: derivatives that are 0 come to that.
+        """
+        first, second = self._variance(own), self._more(cells, own)
+        computed = [not isinstance(self.values.sheet[name].rule, Given) for name, _ in cells]
+        values = np.array([self.values.value[name][row] for name, row in cells])
+        with np.errstate(all="ignore"):
+            little = first + np.nan_to_num(second) <= np.square(ROUNDED * np.where(computed, values, 0.0))
+        return np.where(little, 0.0, first), np.where(little, 0.0 * second, second)
+
     # --- one cell ---
 
     def budget(self, name: str, row: int, level: float = LEVEL) -> Budget:
@@ -194,11 +209,12 @@ class Spread:
             return Budget(address(name, label), name, label, value, level=level)
         cell = [(name, row)]
         found = self.contributions(cell)
-        own, more = found[0, : len(self.sources)], self._more(cell, found)
+        (first,), more = self._orders(cell, found)
         second, unlooked = float(np.nan_to_num(more)[0]), ""
         if not np.isfinite(more[0]):
             unlooked = "the sheet is too large for that" if self.second is None else self.second.why(name)
-        first = float(self._variance(found)[0])
+        found = found if first or second else np.zeros_like(found)
+        own = found[0, : len(self.sources)]
         u = math.sqrt(first + second) if math.isfinite(first + second) else math.nan
         if math.isnan(u):
             return Budget(address(name, label), name, label, value, level=level)

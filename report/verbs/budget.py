@@ -23,7 +23,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     said = "coverage probability of the expanded uncertainty in percent (default: 95)"
     parser.add_argument("--level", metavar="P", type=_level, default=LEVEL, help=said)
     said = "draw the inputs so many times at most, and tell what the results are spread over (JCGM 101)"
-    parser.add_argument("--draws", metavar="N", type=count, default=0, help=said)
+    parser.add_argument("--draws", metavar="N", type=count, help=said)
     parser.add_argument("--seed", metavar="N", type=count, default=1, help="of the draws (default: 1)")
     format_argument(parser, "text", "markdown", "json")
     keeping_arguments(parser)
@@ -47,10 +47,23 @@ def run(options: argparse.Namespace) -> int:
 
     with Progress(sys.stderr) as progress:
         study = Study(report_folder(options.folder), step=progress)
-        draws = str(options.draws), str(options.seed)
+        _refuse_too_few(options.draws, options.level)
+        draws = str(options.draws or 0), str(options.seed)
         parts = options.cell, options.format, repr(options.level), *draws
         told = study.kept("budget", lambda: _told(study, *parts), *parts)
     return answer(*told)
+
+
+def _refuse_too_few(draws: int | None, level: float) -> None:
+    from ..messages.errors import UsageError, diagnose
+    from ..uncertainty.monte_carlo import BEYOND, least
+
+    if draws is not None and draws < (number := least(level)):
+        reason = f"--draws {draws} tells nothing of an interval of {100 * level:.12g} %"
+        known = (
+            f"at least {number}, of which some {BEYOND} lie beyond each end; 1000000 is usual (JCGM 101, 7.2)"
+        )
+        raise UsageError(diagnose("LS614", reason=reason, known=known))
 
 
 def _told(study: Study, address: str, form: str, level: str, draws: str, seed: str) -> tuple[str, bool]:

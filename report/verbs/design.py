@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from typing import TYPE_CHECKING
 
@@ -58,7 +59,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print what a planned campaign will show."""
+    """Print what a planned campaign will show; exit code 1 if it will not show what was asked for."""
     from ..inputs.folders import report_folder
     from ..study import Study
 
@@ -89,7 +90,7 @@ def _wrong(reason: str, known: str) -> UsageError:
 
 
 def _told(study: Study, options: argparse.Namespace) -> tuple[str, bool]:
-    """What is printed, and whether what was wanted is out of reach."""
+    """What is printed, and whether what was wanted is out of reach or has no value."""
     from ..messages.errors import UsageError, diagnose
     from ..uncertainty.design import NotPlanned
     from ..views.design import FORMATS
@@ -98,7 +99,8 @@ def _told(study: Study, options: argparse.Namespace) -> tuple[str, bool]:
         plan = _plan(study, options)
     except NotPlanned as error:
         raise UsageError(diagnose("LS619", reason=error)) from error
-    return FORMATS[options.format](plan), plan.needed is not None and plan.needed.is_out_of_reach
+    missed = math.isnan(plan.budget.value) or (plan.needed is not None and plan.needed.is_out_of_reach)
+    return FORMATS[options.format](plan), missed
 
 
 def _plan(study: Study, options: argparse.Namespace) -> Planned:
