@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
@@ -14,7 +15,8 @@ from ..messages.errors import suggest
 from ..result import verdict_words as words
 from ..result.agreement import Agreement
 from ..result.chi_square import RARE, SIGNIFICANT, freedom, head, largest, tail, tied
-from ..result.numbers import probability
+from ..result.conformity import decision
+from ..result.numbers import probability, rounded
 from ..result.statements import statements
 from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
 from ..workbook import FigureSpec
@@ -192,9 +194,12 @@ class Said:
         return _listed(map(self.told, sentences))
 
     def headline(self) -> Blocks:
-        """The results."""
+        """The results, and what is decided on limits."""
         names = [name for name in self.report.workbook.headline if name in self.report.sheet]
-        return (Headline(tuple(map(self._result, names))),) if names else ()
+        results = (Headline(tuple(map(self._result, names))),) if names else ()
+        decided = self.report.uncertain().conformities if self.report.inputs.limits else ()
+        told = tuple(self.rich(decision(self.report, found)) for found in decided)
+        return (*results, *((Items(told, "decided"),) if told else ()))
 
     def _result(self, name: str) -> HeadlineItem:
         material, item = self.material, self.material.item(name)
@@ -208,7 +213,23 @@ class Said:
             meaning,
             item,
             (*(rows if item.ok else ()), *(count.said for count in marks)),
+            self._sure(name),
         )
+
+    def _sure(self, name: str) -> Inlines:
+        """The expanded uncertainty of a result, where one is known."""
+        for budget in self.material.budgets:
+            if budget.name == name and budget.label == () and math.isfinite(budget.factor):
+                _, expanded = self.report.stated(name, budget.value, budget.expanded)
+                unit = self.report.shown[name].unit
+                behind = () if is_pure(unit) else ("\u00a0", Unit(unit))
+                return (
+                    "±\u00a0",
+                    Number(expanded),
+                    *behind,
+                    f" (k\u00a0=\u00a0{rounded(budget.factor, 3).text})",
+                )
+        return ()
 
     def oddities(self) -> Blocks:
         """What there is to tell of the data themselves."""

@@ -14,7 +14,7 @@ from ..inputs.measurements import LeftOut
 from ..inputs.published import PublishedValue
 from ..quantity import span
 from ..result import verdict_words as words
-from ..result.conformity import conforming, risk
+from ..result.conformity import accepted, conforming, risk
 from ..result.numbers import Numeral, decimals, read, rounded, table_format
 from ..result.result import Comparison
 from ..result.shares import SEEN, foremost
@@ -221,7 +221,16 @@ class Tables:
         )
         level = f"{100 * self.material.budgets[0].level:.12g}\u00a0%"
         caption = (Strong(("Uncertainty of the results.",)), f" U is the expanded one, for {level}")
-        return _table("uncertain", caption, made, [((), self.material.budgets)], look="list", wide=True)
+        every = self.material.budgets
+        legend = self._bent([(Code(each.cell),) for each in every if each.second])
+        return _table("uncertain", caption, made, [((), every)], look="list", wide=True, legend=legend)
+
+    @staticmethod
+    def _bent(cells: Sequence[Inlines]) -> Inlines:
+        """That a normal distribution need not be that of some cells."""
+        asked = Code("loopsheet budget CELL --draws 1000000")
+        told = " so that U may not hold: ", asked, " tells the interval."
+        return ("Terms of second order count in ", *joined(cells, ", ", " and "), ",", *told) if cells else ()
 
     def budget(self) -> tuple[Table, ...]:
         """Where the uncertainty of the first result comes from, source by source; nothing if none is seen.
@@ -263,6 +272,7 @@ class Tables:
             _Made("result", lambda found: Code(found.budget.cell), "words"),
             _Made("limits", self._tolerance, "words", 0.16),
             _Made("guard band", self._guard, "words"),
+            _Made("acceptance limits", self._accepted, "words", 0.16),
             _Made("decision", lambda found: str(found.decision), "words"),
             _Made("conformance probability", lambda found: _whole(conforming(found)), "words", 0.12),
             _Made("specific risk", lambda found: _whole(risk(found)), "words", 0.14),
@@ -279,6 +289,14 @@ class Tables:
         low, high = ("" if end is None else end.text for end in (found.limits.low, found.limits.high))
         units = {end.unit for end in (found.limits.low, found.limits.high) if end is not None}
         return (str(found.limits),) if len(units) > 1 else (span(low, high), *_in(units.pop()))
+
+    def _accepted(self, found: Conformity) -> Inlines:
+        if math.isnan(found.guard):
+            return ("not known",)
+        if not found.guard:
+            return self._tolerance(found)
+        within = accepted(self.report, found)
+        return (within, *_in(self._of(found.budget).unit)) if within else ("none",)
 
     def _guard(self, found: Conformity) -> Inlines:
         if not found.guard > 0:

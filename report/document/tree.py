@@ -330,7 +330,7 @@ class Note(Block):
 
 @dataclass(frozen=True)
 class Items(Block):
-    """A list; one of ``versions`` is set close together."""
+    """A list; one of ``versions`` is set close together, one of what is ``decided`` follows no edit."""
 
     items: tuple[Inlines, ...]
     look: str = ""
@@ -338,12 +338,13 @@ class Items(Block):
 
 @dataclass(frozen=True)
 class HeadlineItem:
-    """A cell that is a result: how many rows it rests on where that is not all, and how many carry marks."""
+    """A cell that is a result: how sure it is, over how many rows if not all, how many carry marks."""
 
     symbol: Math
     meaning: Inlines
     item: Item
     said: tuple[str, ...]
+    sure: Inlines = ()
 
 
 @dataclass(frozen=True)

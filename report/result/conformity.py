@@ -13,7 +13,7 @@ from .uncertain import Conformity, Decision
 if TYPE_CHECKING:
     from .result import Report
 
-__all__ = ["conforming", "lines", "probabilities", "risk", "sentence"]
+__all__ = ["accepted", "conforming", "decision", "lines", "probabilities", "risk", "sentence"]
 
 
 def sentence(found: Conformity) -> str:
@@ -29,6 +29,12 @@ def lines(report: Report, found: Conformity) -> Iterator[str]:
     yield sentence(found)
     if told := ", ".join(probabilities(found)):
         yield told + (f", by {found.budget.because}" if found.budget.u else "")
+
+
+def decision(report: Report, found: Conformity) -> str:
+    """All of that in one sentence, the decision first."""
+    limits = f"{found.limits}{_rule(report, found)}"
+    return f"{sentence(found)} ({'; '.join((limits, *probabilities(found)))})."
 
 
 def probabilities(found: Conformity) -> Iterator[str]:
@@ -71,15 +77,17 @@ def _rule(report: Report, found: Conformity) -> str:
     if not found.guard:
         return f", guard band 0{unit}{of}"
     width = report.stated(name, found.budget.value, found.guard)[1].text
-    return f", guard band {width}{unit}{of}, {_accepted(report, found)}"
+    within = accepted(report, found)
+    within = f"acceptance limits {within}{unit}" if within else "no acceptance limits: the guard bands meet"
+    return f", guard band {width}{unit}{of}, {within}"
 
 
-def _accepted(report: Report, found: Conformity) -> str:
-    """The acceptance limits, with as many digits as the guard band has."""
+def accepted(report: Report, found: Conformity) -> str:
+    """The acceptance limits with as many digits as the guard band has; empty where nothing is accepted."""
     name, (low, high) = found.budget.name, found.acceptance
     if low > high:
-        return "no acceptance limits: the guard bands meet"
+        return ""
     least, most = (
         report.stated(name, end, found.guard)[0].text if math.isfinite(end) else "" for end in (low, high)
     )
-    return f"acceptance limits {span(least, most)}{behind(report.shown[name].unit)}"
+    return span(least, most)

@@ -178,7 +178,8 @@ def notes(report: Report, budget: Budget) -> Iterator[str]:
     if budget.unlooked and budget.is_known:
         yield f"terms of second order were not looked at: {budget.unlooked}; --draws tells more"
     if budget.second:
-        yield f"terms of second order make {percent(budget.second / budget.u**2)} of the variance"
+        share = percent(budget.second / budget.u**2)
+        yield f"terms of second order make {share} of the variance: U may not hold, --draws tells more"
     if budget.is_known and budget.u:
         if not math.isinf(budget.dof) and not math.isnan(budget.dof):
             yield f"{budget.dof:.0f} effective degrees of freedom"

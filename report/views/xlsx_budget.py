@@ -211,6 +211,10 @@ class _Written:
             said = f'=IF({self.unmoved(at)},"{told}","{instead}")'
             self.style.formula(self.sheet, row, 1, said, told, self.style("text"))
             row += 1
+        if budget.second:
+            told = "terms of second order count, so that U may not hold: 'budget --draws' tells the interval"
+            self.style.text(self.sheet, row, 0, told)
+            row += 1
         return self.limits(row, own, at)
 
     def unmoved(self, at: Mapping[str, str]) -> str:

@@ -51,6 +51,7 @@ function makeAround() {
     const rest = LIVE.shared && chapter.querySelector("#uncertain") && all(".table:not(#uncertain)", chapter);
     return rest ? rest.map((table) => [table.firstChild, "table"]) : [[chapter.querySelector("h2"), "chapter"]];
   });
+  for (const list of all("main .decided")) parts.push([list, "decision"]);
   for (const legend of all("main .legend")) if (legend.textContent.includes("Stated uncertainties:")) parts.push([legend, "list of stated uncertainties"]);
   page.stale = parts.map(([place, what]) => {
     const word = make("p", { class: "stale", hidden: true }, `This ${what} is as issued, before the edits.`);

@@ -186,7 +186,7 @@ function sureOf(look, name, row) {
   return { texts: [...of(u), known ? figureText(rounded(factor, order(factor) - 2)) : "", known ? of(factor * u)[1] : ""], from };
 }
 
-// The table of the results with their uncertainties, again.
+// The results with their uncertainties, again: in their table, and where they stand first.
 function writeUncertain(look) {
   for (const line of LIVE.shared ? all("#uncertain tbody tr") : []) {
     const [, name, index = ""] = ADDRESS.exec(line.cells[0].textContent), row = look.trace.row(name, index);
@@ -195,6 +195,11 @@ function writeUncertain(look) {
     texts.forEach((text, n) => setText(line.cells[n + 1], text));
     const most = from.slice(0, 3).filter(({ share }) => share >= 0.05);
     line.cells[6].replaceChildren(...most.flatMap(({ called, share }, n) => [n ? ", " : "", make("code", {}, called), `\u00a0${percent(share)}`]));
+  }
+  for (const told of all(".headline .sure")) {
+    const name = told.parentElement.querySelector("[data-cell]").dataset.cell, known = LIVE.shared && sureOf(look, name, 0);
+    const unit = LIVE.columns[name].unit === "1" ? [] : ["\u00a0", ...part(name, "unit")], [, , factor, wide] = known ? known.texts : [];
+    told.replaceChildren(...(wide ? [`±\u00a0${wide}`, ...unit, ` (k\u00a0=\u00a0${factor})`] : []));
   }
 }
 
