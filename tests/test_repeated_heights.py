@@ -156,3 +156,12 @@ def test_who_averaged_all_pairs_is_told_so_and_has_misprinted_nothing(
 def test_a_budget_tells_together_what_the_average_is_of(report: Report) -> None:
     (together,) = Spread(report.inputs, report.values).budget("alpha_mean", 0).summed
     assert (together.name, len(together.eigenvalues)) == ("alpha", len(TOLD))
+
+
+def test_a_pair_that_tells_nothing_is_neither_inside_nor_outside_of_a_range(report: Report) -> None:
+    """Of 15 pairs three are of one height: what comes out as their exponent is no finding about (4)."""
+    found = report.marks.limited("alpha")
+    assert found.size == 12
+    alpha = exponents(report.values)
+    assert found.number == sum(not 1 <= alpha[pair] <= 1.5 for pair in TOLD)
+    assert found.inside == f"{12 - found.number} of 12 pairs"

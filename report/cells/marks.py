@@ -42,7 +42,7 @@ class Margin:
 
 @dataclass(frozen=True)
 class MarkCount:
-    """How many rows lie outside of a limit, of those for which that is known."""
+    """How many rows lie outside of a limit, of those for which that is known and tells something."""
 
     margin: Margin
     number: int
@@ -129,10 +129,18 @@ class Marks:
         found: NDArray[np.bool_] = self.values.value[margin.column.name] < 0
         return found
 
+    def telling(self, margin: Margin) -> NDArray[np.bool_]:
+        """Which rows are known and tell something: those of which a report is silent do not (rows,)."""
+        found: NDArray[np.bool_] = self.values.status[margin.column.name] == Status.OK
+        for other in self._by_name.get(margin.of.name, ()):
+            if other.limit.silent and other is not margin:
+                found = found & ~self.outside(other)
+        return found
+
     def count(self, margin: Margin) -> MarkCount:
-        """How many do."""
-        known = self.values.status[margin.column.name] == Status.OK
-        return MarkCount(margin, int(self.outside(margin).sum()), int(known.sum()))
+        """How many of these do."""
+        known = self.telling(margin)
+        return MarkCount(margin, int((self.outside(margin) & known).sum()), int(known.sum()))
 
     def limiting(self, name: str) -> tuple[Margin, ...]:
         """The margins of a column's limits."""

@@ -117,7 +117,7 @@ TABLES: dict[tuple[str, ...], dict[str, Key]] = {
 """The keys of each table of report.toml, by its place."""
 
 MEASURED = {
-    "test": Key("1", "The number of the row; or as the method calls its rows.", True),
+    "test": Key("1", "The number of the row, or as the method calls its rows; without it they are counted."),
     ANY: Key(
         "29.7", "A measured column `x_p [um]`: digits as they were read, `29.7(2)` with an uncertainty.", True
     ),

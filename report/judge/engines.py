@@ -176,7 +176,8 @@ class _Tally:
         if units > self.units:
             self.units, self.units_where = units, place
         if not units <= LIMIT:
-            self.findings.append(f"{place}: {self.engine} is off by {relative:.1e}")
+            off = f"{relative:.1e}" if scale else f"{float(difference):.1e} (in SI), where 50 digits say 0"
+            self.findings.append(f"{place}: {self.engine} is off by {off}")
 
 
 def _addresses(values: Values, column: Column) -> list[str]:

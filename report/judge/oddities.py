@@ -109,9 +109,9 @@ class _Oddities:
         yield from self.of_left_out()
 
     def cells(self, margin: Margin) -> Iterator[Cell]:
-        """The cells outside of a limit."""
-        labels = self.values.labels(margin.of)
-        for row in np.flatnonzero(self.report.marks.outside(margin)).tolist():
+        """The cells outside of a limit, of those that tell something."""
+        labels, marks = self.values.labels(margin.of), self.report.marks
+        for row in np.flatnonzero(marks.outside(margin) & marks.telling(margin)).tolist():
             yield self.values.cell(margin.of.name, labels[row])
 
     def tests(self, cell: Cell) -> tuple[int, ...]:

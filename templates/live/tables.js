@@ -134,9 +134,11 @@ function writeCounts(look) {
   }
 }
 
-// How many rows lie outside of a limit, of those for which that is known.
+// How many rows lie outside of a limit, of those for which that is known and tells something.
 function howMany(look, margin) {
-  const known = look.trace.sheet.value[margin].filter((room) => room === room);
+  const { value } = look.trace.sheet, beside = Object.values(LIVE.columns).map(({ limits }) => limits ?? []);
+  const others = beside.find((limits) => limits.some(([name]) => name === margin)).filter(([name, , , silent]) => silent && name !== margin);
+  const known = value[margin].filter((room, row) => room === room && !others.some(([name]) => value[name][row] < 0));
   return [known.filter((room) => room < 0).length, known.length];
 }
 
