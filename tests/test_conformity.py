@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import mpmath
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -210,6 +211,55 @@ def test_what_the_law_of_propagation_does_not_tell_is_drawn(
     assert "the guard bands meet" not in words
     assert "(U at 90 % of the draws)" in words
     assert re.search(r"conformance probability \d\d\.\d %, by 20000 draws: ", words)
+
+
+def of_two(tmp_path: Path, first: str, second: str, limit: str) -> str:
+    """A folder whose y is a sum of two numbers, with a limit."""
+    (tmp_path / "workbook.py").write_text(SUM, encoding="utf-8")
+    (tmp_path / "measurements.csv").write_text("test,r [1]\n1,1\n2,2\n", encoding="utf-8")
+    given = f'x_1 = "{first}"\nx_2 = "{second}"\nx_3 = "0, exact"\nx_4 = "0, exact"\n'
+    toml = f'workbook = "workbook.py"\n[parameters]\n{given}[measurements]\nfile = "measurements.csv"\n'
+    toml += f'[limits]\ny = "{limit}"\n[limits.rule]\nguard = "U"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    return str(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("limit", "said"),
+    [
+        ("<= 10.00", "conformance probability 90.00 %, by the convolved"),
+        ("<= 10.09", "conformance probability 100 %, specific consumer’s risk 0 %, by"),
+        ("<= 10.08", "conformance probability 100 %, specific consumer’s risk 0 %, by"),
+        ("<= 9.90", "conformance probability 50.00 %, by"),
+        ("9.80 .. 10.05", "conformance probability 88.59 %, by"),  # 10 % below, 0.03^2 / 0.064 above
+    ],
+)
+def test_two_rectangular_sources_make_a_trapezoid(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], limit: str, said: str
+) -> None:
+    campaign = of_two(tmp_path, "9.90, +-0.10 rect", "0.00, +-0.08 rect", limit)
+    assert said in told(capsys, "y", campaign)
+
+
+@pytest.mark.parametrize("other", ["0.05, exponential", "0.00, u = 0.08, min = 0", "0.00, s = 0.10, n = 4"])
+def test_a_source_beside_a_rectangular_one_is_as_it_is_drawn(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], other: str
+) -> None:
+    """With draws of our own; the guard band is half of what holds 95 % of them around the value."""
+    found = json.loads(
+        told(capsys, "y", of_two(tmp_path, "9.80, +-0.10 rect", other, "<= 10"), "--format", "json")
+    )
+    draws, size = np.random.default_rng(2), 400_000
+    beside = {
+        "exponential": draws.exponential(0.05, size),
+        "min = 0": np.abs(draws.normal(0, 0.08, size)),
+        "n = 4": 0.05 * draws.standard_t(3, size),
+    }
+    (drawn,) = (9.8 + draws.uniform(-0.1, 0.1, size) + each for word, each in beside.items() if word in other)
+    share = float(np.mean(drawn > 10))
+    assert found["conformity"]["above"] == pytest.approx(share, abs=4 * math.sqrt(share / size))
+    inside = np.mean(np.abs(drawn - found["value"]) < found["conformity"]["guard"])
+    assert inside == pytest.approx(0.95, abs=4 * math.sqrt(0.95 * 0.05 / size))
 
 
 def test_guard_bands_that_meet_accept_nothing() -> None:

@@ -104,6 +104,16 @@ def test_correlated_errors(tmp_path: Path, r: str, u: float) -> None:
     assert found.u == pytest.approx(u, rel=0.02)
 
 
+def test_that_correlated_errors_are_normal_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    said = "correlated errors are taken as normal, without the ends that are stated of them"
+    for correlation, told in (('"x_1, x_2" = "1"', True), ("", False)):
+        of_a_sum(tmp_path, "+-1 rect", "+-1 rect", "exact", "exact", correlation=correlation, most=1000)
+        assert main(["budget", "y", str(tmp_path)]) == 0
+        assert (said in capsys.readouterr().out) == told
+
+
 def test_what_was_truncated_is_shifted(tmp_path: Path) -> None:
     text = (PAPER / "report.toml").read_text(encoding="utf-8")
     assert "[measurements.printed]" not in text

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from ..cells.address import address
+from ..distribution import Shape
 from ..quantity import behind
 from ..result.conformity import lines
 from ..result.numbers import decimals, rounded, stated
@@ -168,6 +169,10 @@ def notes(report: Report, budget: Budget) -> Iterator[str]:
         alike.setdefault((*map(columns.__getitem__, pair), f"{r:g}"), []).append(" and ".join(pair))
     for (one, other, told), pairs in alike.items():
         yield f"{pairs[0] if len(pairs) == 1 else f'{one} and {other} of a row'} are correlated: {told}"
+    tied = {name for pair in budget.correlations for name in pair}
+    sources = (each.source for each in budget.contributions if each.source.name in tied)
+    if any(source.shape not in (Shape.NORMAL, Shape.STUDENT) and not source.table for source in sources):
+        yield "correlated errors are taken as normal, without the ends that are stated of them"
     for each in budget.contributions:
         law, (name, _, _) = each.source.law, each.source.moves[0]
         if law is not None and abs(law.mean) >= SHIFTED:
