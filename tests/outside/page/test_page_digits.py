@@ -147,7 +147,7 @@ def test_digits_follow_the_uncertainty(live: Live) -> None:
 def test_the_bar_says_how_sure_a_cell_is_and_why(live: Live) -> None:
     live.page.locator("#cell-alpha_mean").click(position={"x": 3, "y": 3})
     said = live.text("bar-sure")
-    assert "u = 0.0035, U = 0.0069 with k = 1.96 for 95\u00a0%" in said
+    assert "u = 0.0035, U = 0.0067 with k = 1.93 for 95\u00a0%" in said
     assert live.page.locator("#bar-sure button").first.inner_text().split() == ["x_p[1]", "44", "%"]
     live.type("x_p", 1, "23.50")
     live.page.locator("#cell-alpha_mean").click(position={"x": 3, "y": 3})
