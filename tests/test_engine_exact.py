@@ -16,6 +16,7 @@ from loopsheet.report.cells.values import Status
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.judge import engines
+from loopsheet.report.judge.engines import _Tally
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
 
@@ -222,3 +223,10 @@ def test_a_part_of_a_sheet_is_rounded_alone() -> None:
     sheet, judged = spoiled()
     part = Sheet(tuple(column for column in sheet.columns if isinstance(column.rule, Given)))
     assert set(judged.rounded(part).value) == {column.name for column in part.columns}
+
+
+def test_what_should_be_nothing_is_told_by_its_size() -> None:
+    """Beside 0 nothing is a part of anything: "off by 0.0e+00" told nobody what was wrong."""
+    tally = _Tally("abacus")
+    tally.add("y", mpmath.mpf("3e-20"), 0.0, 0)
+    assert tally.findings == ["y: abacus is off by 3.0e-20 (in SI), where 50 digits say 0"]
