@@ -36,7 +36,7 @@ paper. A report goes to FOLDER/out, that of the paper to out.
 exit codes:
   0  everything as expected
   1  findings: a proof fails, a published value differs unexpectedly, two reports are not the same, a cell
-     that 'show' or 'budget' is asked for has no value
+     that 'show' or 'budget' is asked for has no value, a card is made from data that 'check' finds fault with
   2  the input or the command line is wrong; the message says where
   3  a bug of loopsheet
 

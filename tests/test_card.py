@@ -262,6 +262,94 @@ def test_a_folder_without_impacts(capsys: pytest.CaptureFixture[str]) -> None:
     )
 
 
+DATA = Path(__file__).parent.parent / "data" / "soft_steel"
+FAULTS = {
+    "interchanged depths": (("0.530,23.5", "0.530,51.03"), ("0.453,51.03", "0.453,23.5")),
+    "a restitution of one": (("0.479", "1"),),
+}
+
+
+def changed(folder: Path, changes: tuple[tuple[str, str], ...], left_out: str = "") -> str:
+    """The campaign of the paper with other digits, and a test that somebody left out."""
+    shutil.copytree(DATA, folder)
+    toml = (folder / "report.toml").read_text()
+    (folder / "report.toml").write_text(toml[: toml.index("[published]")])
+    table = folder / "measurements.csv"
+    text = table.read_text()
+    for before, after in changes:
+        assert before in text
+        text = text.replace(before, after, 1)
+    if left_out:
+        head, first, *others = text.splitlines()
+        text = "\n".join([f"{head},left out", f"{first},{left_out}", *(f"{line}," for line in others), ""])
+    table.write_text(text)
+    return os.fspath(folder)
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_card_tells_what_check_finds_in_the_data(
+    fault: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """On the card, on the other stream with the place, and by the exit code."""
+    folder = changed(tmp_path / "own", FAULTS[fault])
+    assert main(["card", folder, "--for", "mujoco"]) == 1
+    told = capsys.readouterr()
+    found = [line for line in told.err.splitlines() if line.startswith("finding: ")]
+    assert found
+    assert "\nfinding: alpha: " in told.out
+    assert folder not in told.out
+    assert main(["card", folder, "--for", "mujoco", "--format", "json"]) == 1
+    oddities = json.loads(capsys.readouterr().out)["oddities"]
+    assert [odd["word"] for odd in oddities].count("finding") == len(found)
+    assert main(["card", folder, "--for", "mujoco", "--format", "markdown"]) == 1
+    assert "\nfinding: alpha: " in capsys.readouterr().out
+
+
+def test_a_card_of_the_paper_has_the_warning_of_its_fit(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["card", "paper", "--for", "mujoco"]) == 0
+    told = capsys.readouterr()
+    assert "\nwarning: chi2_eiv = 55 on 3 degrees of freedom" in told.out
+    assert "warning" not in told.err
+
+
+@pytest.mark.parametrize("code", ["mujoco", "python"])
+def test_tests_that_are_not_in_a_card_are_named(
+    code: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """By whom they are left out: by the card, which no damping can return e = 1, or by the author."""
+    folder = changed(tmp_path / "own", FAULTS["a restitution of one"], left_out="bounced twice")
+    assert main(["card", folder, "--for", code]) == 1
+    told = capsys.readouterr().out
+    assert "left out: test 1, bounced twice" in told
+    assert "test 3 is left out here: e = 1, nothing is lost" in told
+
+
+def test_a_card_tells_which_curve_it_took(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = changed(tmp_path / "own", FAULTS["interchanged depths"])
+    assert main(["card", folder, "--for", "mujoco"]) == 1
+    assert "the loading curve is that of alpha_log: alpha_eiv has no value" in capsys.readouterr().out
+    assert main(["card", "paper", "--for", "mujoco"]) == 0
+    assert "curve is that of alpha" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("code", SOURCES)
+def test_what_is_found_is_a_comment_of_the_law_which_nothing_ends(
+    code: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = changed(tmp_path / "own", FAULTS["interchanged depths"], left_out="*/ /*/ \\")
+    assert main(["card", folder, "--for", code]) == 1
+    source = SOURCES[code]
+    lines = capsys.readouterr().out.splitlines()
+    remarks = [
+        line for line in lines if line.startswith((f"{source.begins}finding", f"{source.begins}left out"))
+    ]
+    assert len(remarks) > 1
+    for line in remarks:
+        inside = line.removeprefix(source.begins).removesuffix(source.ends)
+        assert line == source.begins + inside + source.ends
+        assert code != "c" or not ("*/" in inside or "/*" in inside)
+
+
 def test_a_campaign_of_one_s_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A ball of which only the mass is known: what wants its radius says so, and takes it."""
     folder = tmp_path / "own"

@@ -56,7 +56,8 @@ class Drops:
     @cached_property
     def tests(self) -> tuple[Drop, ...]:
         """The tests whose speed and restitution are known, by speed; of one speed their mean."""
-        known = [row for row in zip(self.v, self.e, self.x_p, strict=True) if row[0] > 0 and 0 < row[1] < 1]
+        rows = zip(self.v, self.e, self.x_p, strict=True)
+        known = [row for row in rows if not _lacks(row[0], row[1])]
         found = []
         for speed in sorted({row[0] for row in known}):
             alike = np.array([row for row in known if row[0] == speed])
@@ -64,6 +65,12 @@ class Drops:
             depth = float(depths.mean()) if depths.size else math.nan
             found.append(Drop(speed, float(alike[:, 1].mean()), depth, self.depth(speed)))
         return tuple(found)
+
+    @property
+    def aside(self) -> tuple[tuple[int, str], ...]:
+        """The rows that are no tests for a simulation, from 0, and why."""
+        found = enumerate(map(_lacks, self.v, self.e))
+        return tuple((row, why) for row, why in found if why)
 
     @property
     def middle(self) -> Drop:
@@ -110,6 +117,15 @@ class Drops:
         back = paper.law_r.value.xreplace({paper.Cprime: paper.eq9.sides[0]}).xreplace({paper.x_m: x_max})
         loading, back = (part.xreplace({paper.x: x, **numbers}) for part in (paper.law_c.value, back))
         return ForceLaw("law (3)", loading, back, paper.x_p, where=((paper.x_p, x_max * _between(knots)),))
+
+
+def _lacks(speed: float, e: float) -> str:
+    """Why a contact cannot be held to an impact; empty if it can."""
+    if math.isnan(speed + e):
+        return "no speed or no restitution"
+    if not e < 1:
+        return f"e = {e:g}, nothing is lost"
+    return "" if e > 0 else "e = 0, nothing comes back"
 
 
 def _imprint_share() -> Expr:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from sympy import Expr, ccode, pycode
 
 from .drops import Drop, Drops
 
-__all__ = ["SOURCES", "as_table"]
+__all__ = ["SOURCES", "Language", "as_table"]
 
 _TEMPLATES = Path(__file__).resolve().parents[2] / "templates" / "impacts"
 POINTS = 100
@@ -57,9 +58,23 @@ def as_table(drops: Drops, drop: Drop) -> str:
     return "\n".join(lines)
 
 
-SOURCES: dict[str, tuple[str, Callable[[Drops, Drop], str]]] = {
-    "table": ("the identified law, force over approach at one speed, as CSV", as_table),
-    "c": ("the identified law as a function in C, for any speed", as_c),
-    "python": ("the identified law as a function in Python, for any speed", as_python),
+class Language(NamedTuple):
+    """A language: what it is for, what prints the law in it, and how a line of comment begins and ends."""
+
+    said: str
+    printed: Callable[[Drops, Drop], str]
+    begins: str = "# "
+    ends: str = ""
+
+    def of(self, drops: Drops, drop: Drop, remarks: Sequence[str]) -> str:
+        """The law below comments, in which nothing ends a comment."""
+        safe = (line.replace("*/", "* /").replace("/*", "/ *") for line in remarks)
+        return "\n".join([*(self.begins + line + self.ends for line in safe), self.printed(drops, drop)])
+
+
+SOURCES = {
+    "table": Language("the identified law, force over approach at one speed, as CSV", as_table),
+    "c": Language("the identified law as a function in C, for any speed", as_c, "/* ", " */"),
+    "python": Language("the identified law as a function in Python, for any speed", as_python),
 }
 """What prints the law itself, by the word for it."""

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from ..messages.diagnostics import Check
+
 __all__ = ["Behaviour", "Card", "CardRow", "TypedValue"]
 
 
@@ -65,6 +67,8 @@ class Card:
         law; and what the formula returns with what is typed.
     rows : tuple of CardRow
     notes : tuple of str
+    oddities : tuple of Check
+        What is told of the data that it was made from.
     """
 
     of: str
@@ -81,6 +85,7 @@ class Card:
     returned: Behaviour
     rows: tuple[CardRow, ...]
     notes: tuple[str, ...]
+    oddities: tuple[Check, ...] = ()
 
     @property
     def takes_e(self) -> bool:

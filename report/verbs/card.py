@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from .common import OK, Progress, folder_argument, format_argument, keeping_arguments
+from .common import FINDINGS, OK, Progress, folder_argument, format_argument, keeping_arguments, told
 
 if TYPE_CHECKING:
     from sympy import Symbol
@@ -47,7 +48,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print a card, a list of the codes, or the identified law."""
+    """Print a card, a list of the codes, or the identified law; exit code 1 if the data are at fault."""
     from ..impacts.codes import CODES
     from ..impacts.source import SOURCES
     from ..inputs.folders import report_folder
@@ -56,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
 
     if options.code == "list":
         titles = [(code.name, code.title) for code in CODES.values()]
-        titles += [(name, said) for name, (said, _) in SOURCES.items()]
+        titles += [(name, source.said) for name, source in SOURCES.items()]
         print(*(f"{name:14} {title}" for name, title in titles), sep="\n")
         return OK
     if options.code not in CODES and options.code not in SOURCES:
@@ -68,23 +69,33 @@ def run(options: argparse.Namespace) -> int:
         study = Study(report_folder(options.folder), step=progress)
         names = ("code", "speed", "E", "nu", "R", "format")
         parts = [f"{name} {getattr(options, name)!r}" for name in names]
-        told = study.kept("card", lambda: _told(study, options), *parts)
-    print(told)
-    return OK
+        # What is found names its place, and so the folder as it is written here.
+        made, found = study.kept("card", lambda: _told(study, options), *parts, str(study.folder))
+    for finding in found:  # first: who reads the card may close the pipe before its end
+        print(finding, file=sys.stderr)
+    print(made)
+    return FINDINGS if found else OK
 
 
-def _told(study: Study, options: argparse.Namespace) -> str:
+def _told(study: Study, options: argparse.Namespace) -> tuple[str, list[str]]:
+    """The card, and what is found wrong with the data that it is made from."""
+    report = study.computed
+    return _made(study, report, options), told(odd for odd in report.oddities if not odd.passed)
+
+
+def _made(study: Study, report: Report, options: argparse.Namespace) -> str:
     from ..impacts.card import Unreachable, card
     from ..impacts.code import R, nu
     from ..impacts.codes import CODES
     from ..impacts.source import SOURCES
     from ..messages.errors import UsageError, diagnose
     from ..views.card import FORMATS
+    from ..views.checks import lines
 
-    report = study.computed
     drops = _drops(report)
+    taken = _taken(report, drops)
     if options.code in SOURCES:
-        return _law(drops, options)
+        return _law(drops, options, [*lines(report.oddities), *taken])
     code = CODES[options.code]
     if options.E is not None and code.by_hertz is None:
         raise _wrong(f"--E says nothing to {code.name}: its stiffness is not Hertz's", "leave --E out")
@@ -103,7 +114,22 @@ def _told(study: Study, options: argparse.Namespace) -> str:
         made = card(code, drops, drop, report.title, modulus, poisson, radius)
     except Unreachable as error:
         raise UsageError(diagnose("LS625", text=code.title, reason=error)) from error
-    return FORMATS[options.format](made, _assumptions(options, asked, radius, poisson))
+    notes = (*made.notes, *_assumptions(options, asked, radius, poisson), *taken)
+    return FORMATS[options.format](replace(made, notes=notes, oddities=report.oddities))
+
+
+def _taken(report: Report, drops: Drops) -> list[str]:
+    """Which tests are not in it, and which curve is, if not the best."""
+    inputs = report.inputs
+    found = [
+        f"{inputs.workbook.row} {inputs.called(inputs.tests[row])} is left out here: {why}"
+        for row, why in drops.aside
+    ]
+    better = [name for name, _ in _CURVES if name in report.sheet]
+    name = _curve(report)[0]
+    if name in better[1:]:
+        found.append(f"the loading curve is that of {name}: {better[0]} has no value")
+    return found
 
 
 def _assumptions(
@@ -120,7 +146,7 @@ def _assumptions(
     return tuple(told)
 
 
-def _law(drops: Drops, options: argparse.Namespace) -> str:
+def _law(drops: Drops, options: argparse.Namespace, remarks: list[str]) -> str:
     """The identified law itself."""
     from ..impacts.source import SOURCES
     from ..messages.errors import UsageError, diagnose
@@ -132,7 +158,7 @@ def _law(drops: Drops, options: argparse.Namespace) -> str:
         raise _wrong(f"--{names[0]} says nothing to --for {options.code}", f"leave --{names[0]} out")
     if not drops.has_curve:
         raise UsageError(diagnose("LS624", text="the folder", reason="no loading curve was found"))
-    return SOURCES[options.code][1](drops, _drop(drops, options))
+    return SOURCES[options.code].of(drops, _drop(drops, options), remarks)
 
 
 def _drop(drops: Drops, options: argparse.Namespace) -> Drop:
@@ -154,30 +180,20 @@ def _drops(report: Report) -> Drops:
     from ..impacts.drops import Drops
     from ..messages.errors import UsageError, diagnose
 
-    found = report.values.value
     wanted = {"v": "m/s", "e": "1", "m_red": "kg"}
     units = {column.name: column.unit for column in report.sheet.columns}
     lacking = [f"{name} in {unit}" for name, unit in wanted.items() if units.get(name) != unit]
-
-    def column(name: str) -> tuple[float, ...]:
-        return tuple(map(float, found[name])) if name in report.sheet and name in found else ()
-
-    def number(name: str) -> float:
-        values = column(name)
-        return values[0] if len(values) == 1 else math.nan
-
-    curves = [(number(a), number(c)) for a, c in _CURVES]
-    alpha, C = next((pair for pair in curves if math.isfinite(sum(pair))), (math.nan, math.nan))
-    v = column("v")
+    v = _column(report, "v")
+    _, alpha, C = _curve(report)
     drops = Drops(
-        number("m_red"),
+        _number(report, "m_red"),
         v,
-        column("e"),
-        column("x_p") or (math.nan,) * len(v),
+        _column(report, "e"),
+        _column(report, "x_p") or (math.nan,) * len(v),
         alpha,
         C,
-        number("beta"),
-        number("ball_diameter") / 2,
+        _number(report, "beta"),
+        _number(report, "ball_diameter") / 2,
     )
     if lacking:
         reason = f"it has no {' and no '.join(lacking)}"
@@ -188,6 +204,22 @@ def _drops(report: Report) -> Drops:
     else:
         return drops
     raise UsageError(diagnose("LS624", text=f"the report '{report.title}'", reason=reason))
+
+
+def _curve(report: Report) -> tuple[str, float, float]:
+    """Which loading curve is taken, and its two numbers; NaN where there is none."""
+    curves = ((a, _number(report, a), _number(report, c)) for a, c in _CURVES)
+    return next((curve for curve in curves if math.isfinite(sum(curve[1:]))), ("", math.nan, math.nan))
+
+
+def _column(report: Report, name: str) -> tuple[float, ...]:
+    found = report.values.value
+    return tuple(map(float, found[name])) if name in report.sheet and name in found else ()
+
+
+def _number(report: Report, name: str) -> float:
+    values = _column(report, name)
+    return values[0] if len(values) == 1 else math.nan
 
 
 def _read(text: str, option: str, unit: str, usual: str, high: float | None = None) -> float:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
+
+from msgspec import to_builtins
 
 from ..result.card import Behaviour, Card, CardRow
 from . import markdown as md
 from .budget import aligned, number
+from .checks import lines
+from .json import oddities
 
 __all__ = ["FORMATS", "as_json", "as_markdown", "as_text"]
 
@@ -49,34 +53,33 @@ def _rows(card: Card) -> Iterator[list[str]]:
         yield [f"{row.speed:.4g}", f"{row.measured:.4f}", f"{row.by_card:.4f}", *typed]
 
 
-def as_text(card: Card, notes: Sequence[str] = ()) -> str:
+def as_text(card: Card) -> str:
     """What to type in, what is returned, and what the card misses over the measured speeds."""
     typed = aligned([list(_TYPED), *_typed(card)])
     returned, rows = aligned([*_returned(card)]), aligned([*_rows(card)])
-    told = [*card.notes, *notes]
-    parts = [[*_head(card)], typed, [card.snippet], returned, rows, told]
-    return "\n\n".join("\n".join(part) for part in parts)
+    parts = [[*_head(card)], lines(card.oddities), typed, [card.snippet], returned, rows, card.notes]
+    return "\n\n".join("\n".join(part) for part in parts if part)
 
 
-def as_markdown(card: Card, notes: Sequence[str] = ()) -> str:
+def as_markdown(card: Card) -> str:
     """The same for a pull request."""
-    head = "\n\n".join(map(md.cell, _head(card)))
+    head = "\n\n".join(map(md.cell, (*_head(card), *lines(card.oddities))))
     tables = [[list(_TYPED), *_typed(card)], [*_returned(card)], [*_rows(card)]]
     typed, returned, rows = (
         md.table([md.cell(text) for text in first], ([md.cell(text) for text in row] for row in others))
         for first, *others in tables
     )
-    said = "".join(f"\n{md.cell(note)}\n" for note in (*card.notes, *notes))
+    said = "".join(f"\n{md.cell(note)}\n" for note in card.notes)
     return f"{head}\n\n{typed}\n{md.code(card.snippet)}\n\n{returned}\n{rows}{said}".rstrip()
 
 
-def as_json(card: Card, notes: Sequence[str] = ()) -> str:
+def as_json(card: Card) -> str:
     """All digits; in SI, but for what is typed in."""
     told = {"schema": 1, **asdict(card)}
     told["wanted"], told["returned"] = _named(card.wanted), _named(card.returned)
     told["typed"] = [one._asdict() for one in card.typed]
     told["rows"] = [_named(row) for row in card.rows]
-    told["notes"] = [*card.notes, *notes]
+    told["oddities"] = to_builtins(oddities(card.oddities))
     return json.dumps(told, indent=1, ensure_ascii=False)
 
 
@@ -84,7 +87,7 @@ def _named(values: Behaviour | CardRow) -> dict[str, object]:
     return {name: number(value) for name, value in values._asdict().items()}
 
 
-FORMATS: Mapping[str, Callable[[Card, Sequence[str]], str]] = {
+FORMATS: Mapping[str, Callable[[Card], str]] = {
     "text": as_text,
     "markdown": as_markdown,
     "json": as_json,

@@ -12,7 +12,7 @@ from ..messages.diagnostics import visible
 from ..result.findings import Check
 from . import markdown as md
 
-__all__ = ["FORMATS", "as_github", "as_json", "as_junit", "as_markdown", "summary"]
+__all__ = ["FORMATS", "as_github", "as_json", "as_junit", "as_markdown", "lines", "summary"]
 
 Checks = Sequence[Check]
 Details = Mapping[str, Any]
@@ -43,6 +43,15 @@ def _tally(checks: Checks) -> tuple[int, int, int, int]:
 
 def _count(number: int, word: str) -> str:
     return f"{number} {word}{'s' * (number != 1)}"
+
+
+def lines(checks: Checks) -> list[str]:
+    """What there is to tell, a line each, without the place: for what is carried away from its folder.
+
+    >>> lines([Check("data", "cells", False, "v[3] has no value"), Check("proof", "(1)", True, "it stands")])
+    ['finding: v[3] has no value']
+    """
+    return [f"{check.word}: {visible(check.message)}" for check in checks if check.word]
 
 
 def as_json(checks: Checks, title: str, more: Details) -> str:

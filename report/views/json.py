@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from ..files import values as form
 from ..files.form import SCHEMA, alike, text
 from ..files.manifest import Manifest
 from ..machine.staging import put
+from ..messages.diagnostics import Check
 from ..result import verdict_data
 from ..result.result import Comparison, Report
 from ..result.uncertain import Conformity, ErrorSource
@@ -25,7 +26,7 @@ from ..result.verdict import Verdict
 from ..sheet import Column, Formula, RepeatAxis
 from .issued import Issued
 
-__all__ = ["manifest", "proof_grounds", "proof_statuses", "values", "write"]
+__all__ = ["manifest", "oddities", "proof_grounds", "proof_statuses", "values", "write"]
 
 
 def write(made: Issued, stage: Path) -> None:
@@ -45,11 +46,7 @@ def values(report: Report) -> str:
             workbook=report.workbook.name,
             title=report.title,
             cells={column.name: _column(report, column) for column in report.sheet.columns},
-            oddities=[
-                form.Oddity(kind=check.kind, name=check.name, word=check.word, sentence=check.message)
-                for check in report.oddities
-                if check.word
-            ],
+            oddities=oddities(report.oddities),
             conformity=[_decided(each) for each in report.uncertain().conformities] or UNSET,
             proofs=proof_statuses(report),
             rests_on=proof_grounds(report),
@@ -59,6 +56,15 @@ def values(report: Report) -> str:
             referee=UNSET if report.referee.joint is None else verdict_data.data(report.referee),
         )
     )
+
+
+def oddities(checks: Iterable[Check]) -> list[form.Oddity]:
+    """What is told of the data, without the place: a file that is carried away names no path."""
+    return [
+        form.Oddity(kind=check.kind, name=check.name, word=check.word, sentence=check.message)
+        for check in checks
+        if check.word
+    ]
 
 
 def _decided(found: Conformity) -> form.Conformity:
