@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 from types import MappingProxyType
@@ -92,6 +92,8 @@ class Error:
         their degrees of freedom are the same ones. Empty for an estimate of its own.
     law : Law or None
         How it is distributed, where the shape does not tell it whole.
+    where : str
+        ``file:line:column`` of what states it of one number alone; empty elsewhere.
     """
 
     width: Fraction
@@ -100,6 +102,7 @@ class Error:
     said: str = ""
     sample: str = ""
     law: Law | None = None
+    where: str = field(default="", compare=False)
 
     @property
     def table(self) -> str:

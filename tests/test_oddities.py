@@ -521,3 +521,73 @@ def test_a_test_that_is_exact_is_named_where_tests_are_weighed(
     said = "; ".join(check.message for check in report.oddities)
     assert ("test 3 has d without uncertainty, so that no other test would count beside it" in said) == named
     assert "test 5 has" not in said
+
+
+# --- uncertainties that cannot be meant
+SHARED = '[uncertainty.shared.scale]\nof = "x_p"\nstated = "{}"\n'
+
+
+def with_column(folder: Path, head: str, sizes: tuple[str, ...]) -> Path:
+    """The campaign with a column of standard uncertainties at its right."""
+    table = write(folder, SOUND) / "measurements.csv"
+    lines = zip(table.read_text().splitlines(), (head, *sizes), strict=True)
+    table.write_text("\n".join([*map(",".join, lines), ""]))
+    return folder
+
+
+def test_micrometres_under_a_head_of_millimetres_are_told_where_they_stand(tmp_path: Path) -> None:
+    folder = with_column(tmp_path, "u(x_p) [mm]", ("0.0002", "0.0002", "0.2", "0.0002", "0.0002", "0.0002"))
+    found = checks(folder)["uncertainty x_p"]
+    assert (found.word, str(found.at)) == ("warning", f"{folder.as_posix()}/measurements.csv:4:22")
+    assert found.message.startswith(
+        "u(x_p): 1 of 6 tests: 2 u reach below 0, where none can lie: 2.0\u00a0×\u00a010² um of x_p[3] = "
+    )
+    assert found.message.endswith("is its unit right, and is it a standard uncertainty?")
+
+
+@pytest.mark.parametrize(("size", "odd"), [("10.32", False), ("10.33", True)])
+def test_an_uncertainty_of_half_the_value_is_the_largest_that_is_plausible(
+    size: str, odd: bool, tmp_path: Path
+) -> None:
+    sizes = (size, "1", "1", "1", "1", "1")
+    assert bool(checks(with_column(tmp_path, "u(x_p) [um]", sizes))["uncertainty x_p"].word) == odd
+
+
+@pytest.mark.parametrize(
+    ("stated", "odd"), [("+-150 % of reading rect", True), ("+-5 % of reading rect", False)]
+)
+def test_a_shared_error_counts_for_each_number(stated: str, odd: bool, tmp_path: Path) -> None:
+    found = checks(write(tmp_path, SOUND, SHARED.format(stated)))["uncertainty x_p"]
+    assert bool(found.word) == odd
+    assert not odd or "6 of 6 tests: " in found.message
+
+
+def test_a_group_has_the_shared_error_that_others_have_not(tmp_path: Path) -> None:
+    more = SHARED.format("u = 30 um") + "groups = [[1, 2], [3]]\n"
+    assert "3 of 6 tests: " in checks(write(tmp_path, SOUND, more))["uncertainty x_p"].message
+
+
+@pytest.mark.parametrize(
+    ("stated", "odd"),
+    [("+- 11.01 mm", True), ("+- 10.99 mm", False), ("exponential", False), ("u = 12 mm, truncated", False)],
+)
+def test_of_a_parameter_too_but_for_errors_that_keep_to_bounds(
+    stated: str, odd: bool, tmp_path: Path
+) -> None:
+    folder = write(
+        tmp_path, SOUND, f'[uncertainty]\nball_diameter = "{stated}{" rect" * ("+-" in stated)}"\n'
+    )
+    assert bool(checks(folder)["uncertainty ball_diameter"].word) == odd
+
+
+def test_an_implausible_uncertainty_can_be_expected(tmp_path: Path) -> None:
+    more = f'{SHARED.format("u = 30 um")}groups = [[1]]\n[expected]\n"x_p[1]" = "read in a photograph"\n'
+    assert "uncertainty x_p" in checks(write(tmp_path, SOUND, more))
+    assert told(tmp_path)[-1] == (
+        "expected: x_p[1], read in a photograph: x_p[1] has an implausible uncertainty"
+    )
+
+
+def test_quantities_that_may_be_zero_are_not_asked(tmp_path: Path) -> None:
+    """A restitution of 0 is one: its uncertainty may be larger."""
+    assert "uncertainty e" not in checks(write(tmp_path, SOUND, stated()))

@@ -214,7 +214,9 @@ def read_measurements(
                     )
                     if beside is not None:
                         given = _uncertainty(table, beside, name, of_u[name], findings)
-                        printed = printed and _with(table, cell, printed, name, given, findings)
+                        printed = printed and _with(
+                            table, cell, printed, name, given, source.trace(beside.offset), findings
+                        )
                 read.append(printed)
             values[name] = tuple(read)
     if len(findings.found) > before:
@@ -411,15 +413,21 @@ def _uncertainty(
 
 
 def _with(
-    table: CsvTable, field: Field, printed: Printed, name: str, u: Fraction | None, findings: Findings
+    table: CsvTable,
+    field: Field,
+    printed: Printed,
+    name: str,
+    u: Fraction | None,
+    where: str,
+    findings: Findings,
 ) -> Printed:
     """A number with the standard uncertainty of its column, of which it says nothing itself."""
     if printed.stated is not None:
         hint = f"leave out the column u({name}), or what stands in parentheses"
         findings.add("LS433", table.at(field), name=name, suggestion=hint)
-    return replace(printed, stated=_known(name, u))
+    return replace(printed, stated=_known(name, u, where))
 
 
-def _known(name: str, u: Fraction | None) -> tuple[Error, ...] | None:
+def _known(name: str, u: Fraction | None, where: str = "") -> tuple[Error, ...] | None:
     """The error that a column of uncertainties says."""
-    return None if u is None else (Error(u, said=f"u({name})"),)
+    return None if u is None else (Error(u, said=f"u({name})", where=where),)

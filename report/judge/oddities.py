@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
@@ -13,8 +14,10 @@ import numpy as np
 from ..cells.marks import Margin, MarkCount, margins
 from ..cells.values import Cell, Status
 from ..messages.diagnostics import Check, Location
+from ..quantity import behind
 from ..result.chi_square import RARE, freedom, head, tail, tied
 from ..result.numbers import probability
+from ..result.statements import of_column
 from ..sheet import Column, Given, Sheet
 from .claims import CLAIM
 from .suspects import suspected
@@ -28,7 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["names", "oddities"]
 
-DATA, LIMIT, SQUARES, GROUPS = "data", "limit", "squares", "groups"
+DATA, LIMIT, UNCERTAINTY, SQUARES, GROUPS = "data", "limit", "uncertainty", "squares", "groups"
 CONSTANTS = "constants"
 EXPECTED, LEFT_OUT = "expected", "left out"
 """The kinds of these checks."""
@@ -42,6 +45,8 @@ MOST = 6
 """So many cells are named; the rest are counted."""
 CAUSES = 4
 """And so many causes of one column."""
+REACH = 2
+"""So many standard uncertainties, an interval of 95 %, lie above zero where nothing can lie below it."""
 
 
 def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
@@ -49,6 +54,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
     return {
         DATA: [CELLS, ROWS, RESULT],
         LIMIT: list(map(_name, margins(sheet))),
+        UNCERTAINTY: _stated(sheet, inputs),
         SQUARES: [squares.name for squares in inputs.workbook.squares],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
         CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
@@ -60,6 +66,17 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
 
 def _name(margin: Margin) -> str:
     return f"{margin.of.name}: {margin.limit.mark}"
+
+
+def _stated(sheet: Sheet, inputs: Inputs) -> list[str]:
+    """The given columns of positive quantities of whose uncertainty something is stated."""
+    shared = {each.of for each in inputs.uncertainty.shared}
+    return [
+        name
+        for name, bounds in sheet.bounds.items()
+        if bounds.low == 0 and bounds.low_open and not bounds.integer
+        if name in shared or any(each.stated for each in inputs.numbers(name))
+    ]
 
 
 def _adjusted(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, list[str]]]:
@@ -102,6 +119,7 @@ class _Oddities:
         yield self.of_rows()
         yield self.of_result()
         yield from map(self.of_limit, self.report.marks.margins)
+        yield from map(self.of_uncertainty, _stated(self.sheet, self.inputs))
         yield from map(self.of_squares, self.report.workbook.squares)
         yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
         yield from (self.of_constants(*each) for each in _adjusted(self.sheet, self.inputs))
@@ -236,6 +254,39 @@ class _Oddities:
             LIMIT, name, f"{margin.of.name}: {said}{_some(list(map(self.valued, odd.told)))}", odd
         )
 
+    def of_uncertainty(self, name: str) -> Check:
+        """Whether what is stated of the numbers of a positive quantity leaves them above zero."""
+        column, reach = self.sheet[name], dict[Cell, str]()
+        for cell in self.values.cells(name):
+            number = self.printed(cell)
+            u = 0.0 if number is None else self.stated_u(name, cell.label, number)
+            if number is not None and REACH * u > number.value > 0:
+                unit = behind(self.report.shown[name].unit)
+                reach[cell] = f"{self.report.sure(name, u).text}{unit} of {self.valued(cell)}"
+        if not reach:
+            return Check(UNCERTAINTY, name, True, f"u({name}): plausible", self.inputs.place)
+        odd = _Odd(self, reach, "has an implausible uncertainty")
+        of = f"{len(odd.told)} of {self.size(column)}: " if column.axis is not None else ""
+        said = f"u({name}): {of}{REACH} u reach below 0, where none can lie: "
+        said += f"{_some([reach[cell] for cell in odd.told])}; stated is {of_column(self.report, name)}: "
+        said += "is its unit right, and is it a standard uncertainty?"
+        return self.check(UNCERTAINTY, name, said, odd, self.where_stated(odd.told[0]))
+
+    def stated_u(self, name: str, label: tuple[int, ...], number: Printed) -> float:
+        """What is stated of a number and of what shares errors with it, in SI; not what keeps to bounds."""
+        shared = (
+            each.error(number)
+            for each in self.inputs.uncertainty.shared
+            if each.of == name and (not each.groups or any(set(label) & set(group) for group in each.groups))
+        )
+        return math.hypot(*(error.u for error in (*(number.stated or ()), *shared) if error.law is None))
+
+    def where_stated(self, cell: Cell) -> str:
+        """Where the uncertainty of a number stands, if that is beside it."""
+        number = self.printed(cell)
+        errors = (number.stated or ()) if number is not None else ()
+        return next((error.where for error in errors if error.where), "")
+
     def of_squares(self, squares: SquareSum) -> Check:
         """Whether chance makes a sum of squares as large as it is, and as small."""
         cell, name, dof = self.values.cell(squares.name), squares.name, freedom(squares, self.report)
@@ -301,15 +352,16 @@ class _Oddities:
                 LEFT_OUT, f"{self.inputs.workbook.row} {each.test}", True, said, each.at, note="left out"
             )
 
-    def check(self, kind: str, name: str, said: str, odd: _Odd) -> Check:
+    def check(self, kind: str, name: str, said: str, odd: _Odd, where: str = "") -> Check:
         """A check that found something: with the test to look at, or with why it is expected."""
         if not odd.open:
             return Check(kind, name, True, f"{said}, as is expected", self.inputs.place)
         if any(self.suspect in self.tests(cell) for cell in odd.open):
             first = f"{self.inputs.workbook.row} {self.inputs.called(self.suspect)}"
             said += f"; look at {first} first: {self.because}"
-        warns = kind in (LIMIT, SQUARES)
-        return Check(kind, name, warns, said, self.place(odd.open), note="warning" * warns)
+        warns = kind in (LIMIT, UNCERTAINTY, SQUARES)
+        at = self.at(where) if where else self.place(odd.open)
+        return Check(kind, name, warns, said, at, note="warning" * warns)
 
     # --- where
 
@@ -320,11 +372,15 @@ class _Oddities:
             row = self.inputs.tests.index(self.suspect)
             columns = self.inputs.measured.items()
             printed = next((column[row] for name, column in columns if name not in self.inputs.taken), None)
-        found = re.fullmatch(r"(.*):(\d+):(\d+)", printed.where) if printed is not None else None
-        if printed is None or found is None:
+        return self.inputs.place if printed is None else self.at(printed.where, len(printed.text))
+
+    def at(self, where: str, length: int = 1) -> Location:
+        """The place that a trace tells, else report.toml."""
+        found = re.fullmatch(r"(.*):(\d+):(\d+)", where)
+        if found is None:
             return self.inputs.place
         path = Path(self.inputs.folder, found[1]).as_posix()
-        return Location(path, int(found[2]), int(found[3]), len(printed.text))
+        return Location(path, int(found[2]), int(found[3]), length)
 
     def printed(self, cell: Cell) -> Printed | None:
         """A given cell as it was printed."""
