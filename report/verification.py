@@ -29,6 +29,10 @@ from .which_workbook import shipped_workbook
 __all__ = ["Verification", "verify"]
 
 _UNTOLD = "lies there, but is no part of the build that its manifest tells of"
+_UNEXPLAINED = (
+    "input, sources, libraries and processor are the same, so nothing that is recorded explains it; an "
+    "output was edited together with its fingerprint, or a program that the manifest does not tell made it"
+)
 _HALF = "a build was killed while it put its files in place: some are of it, some are older"
 
 
@@ -97,7 +101,8 @@ def verify(
             *_outputs(out, then, now, rounded),
             *_moves(differences),
         )
-    return Verification(checks, differences, _verdict(checks, then, differences, rounded))
+        verdict = _verdict(checks, then, now, differences, rounded, bool(report.exactly))
+    return Verification(checks, differences, verdict)
 
 
 def _rounded_otherwise(then: Manifest, now: Manifest, found: Differences | None) -> str:
@@ -209,7 +214,14 @@ def _moves(found: Differences | None) -> Iterator[Check]:
             yield Check(kind, change.name, False, said)
 
 
-def _verdict(checks: tuple[Check, ...], then: Manifest, found: Differences | None, rounded: str) -> str:
+def _verdict(
+    checks: tuple[Check, ...],
+    then: Manifest,
+    now: Manifest,
+    found: Differences | None,
+    rounded: str,
+    exactly: bool,
+) -> str:
     """What changed, as far as it is known."""
     failed = [check for check in checks if not check.passed]
     if not failed:
@@ -226,6 +238,8 @@ def _verdict(checks: tuple[Check, ...], then: Manifest, found: Differences | Non
         return "different: the outputs were changed after they were built, and nothing else was"
     if not then.sources:
         return "different: the manifest does not say with which sources it was built"
-    if found is not None and not found.any and found.noise:
+    if found is not None and not found.any and found.noise and not exactly:
         return f"different: nothing changed but the machine, which rounds {found.noise} numbers otherwise"
+    if then.processor == now.processor:
+        return f"different: {_UNEXPLAINED}"
     return "different: input, sources and libraries are the same; other programs or the machine made it"

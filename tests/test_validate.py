@@ -50,6 +50,22 @@ def test_a_record_says_what_was_run_and_that_it_passes(
     assert capsys.readouterr().out == told
 
 
+def test_what_is_not_checked_says_why(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A sum of squares where errors are shared waits for no program."""
+    monkeypatch.setenv("PATH", "")
+    steel = copytree(PAPER, tmp_path / "steel", ignore=lambda *_: ["out"])
+    shared = '[uncertainty.shared.datum]\nof = "x_p"\nstated = "u = 0.1 um"\n\n[published]'
+    edit(steel / "report.toml", "[published]", shared)
+    (steel / "published.csv").write_text("source,cell,index,value,unit\nhere,alpha_mean,,1.303,1\n")
+    text = (steel / "report.toml").read_text()
+    (steel / "report.toml").write_text(text[: text.index("by = ")])
+    assert main(["validate", str(steel)]) == 0
+    told = capsys.readouterr().out
+    assert "2 not checked: a program is not installed, 1 not checked: chi2_eiv: errors are shared" in told
+
+
 @pytest.mark.parametrize(
     ("printed", "wrong", "named"),
     [

@@ -186,6 +186,27 @@ def test_what_is_correctly_rounded_is_not_rounded_otherwise(campaign: Path) -> N
     assert found.differences is not None
     assert (found.differences.noise, found.differences.any) == (1, False)
     assert failed(found)["output"] == ["values.json"]
+    assert not found.verdict.startswith("different: nothing changed but the machine")
+
+
+def test_a_digit_that_was_forged_in_output_and_manifest_is_laid_to_no_machine(campaign: Path) -> None:
+    """The same machine would make the same bytes of the same input, sources and libraries."""
+    values, manifest = campaign / "out" / "values.json", campaign / "out" / "manifest.json"
+    text = values.read_text()
+    values.write_text(text.replace("1.2579", "1.2578"))
+    was, now = (hashlib.sha256(each).hexdigest() for each in (text.encode(), values.read_bytes()))
+    assert was != now
+    told = manifest.read_text().replace(was, now)
+    manifest.write_text(told)
+    found = verify(campaign / "out", campaign)
+    assert failed(found) == {"output": ["values.json"], "number": ["alpha[1-2]"]}
+    assert (
+        "so nothing that is recorded explains it; an output was edited together with its fingerprint"
+        in found.verdict
+    )
+    manifest.write_text(told.replace(provenance.processor(), "x86_64 X86_V1"))
+    found = verify(campaign / "out", campaign)
+    assert found.verdict.endswith("other programs or the machine made it")
 
 
 def test_the_folder_is_the_one_that_holds_the_report_or_where_one_stands_or_the_paper(

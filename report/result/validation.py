@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -17,6 +18,10 @@ __all__ = ["Example", "Validation"]
 
 NOTHING = "NOTHING TO COMPARE"
 """Said where nothing is published, so that no number was held against another."""
+
+
+MISSING = "a program is not installed"
+"""Why an engine is not checked; whatever else is not says why itself."""
 
 
 @dataclass(frozen=True)
@@ -99,10 +104,11 @@ class Validation:
     def verdict(self) -> str:
         """The same in a line."""
         found = self.checks
-        failed, skipped = sum(not each.passed for each in found), sum(each.skipped for each in found)
+        failed, skipped = sum(not each.passed for each in found), [each for each in found if each.skipped]
         number = len(self.examples)
         some = f"{len(found)} checks of {number} example{'s' * (number != 1)}"
-        rest = f", {skipped} not checked: a program is not installed" if skipped else ""
+        why = Counter(MISSING if each.kind == "engine" else each.message for each in skipped)
+        rest = "".join(f", {times} not checked: {said}" for said, times in why.items())
         if not self.passed:
             return f"FAIL: {failed} of {some}{rest}"
         silent = [example.name for example in self.examples if not example.compares]
