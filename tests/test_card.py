@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import shutil
 import subprocess
 from collections.abc import Callable
@@ -136,6 +137,14 @@ def test_a_given_modulus_is_the_stiffness(name: str) -> None:
 def test_what_no_imprint_tells_is_unreachable() -> None:
     with pytest.raises(Unreachable, match="no loading curve is known"):
         of(CODES["exudyn"], BUFFER)
+
+
+@pytest.mark.parametrize("radius", [1e297, 1e-293])
+def test_a_radius_with_which_no_stiffness_stops_the_bodies(radius: float) -> None:
+    with pytest.raises(
+        Unreachable, match=rf"no stiffness from .* after 5\.5.*e-05 m with R = {re.escape(f'{radius:g}')} m"
+    ):
+        card(CODES["lammps"], STEEL, STEEL.middle, "x", None, 0.3, radius)
 
 
 def test_a_formula_that_loses_nothing_is_unreachable() -> None:

@@ -1,12 +1,14 @@
 """What no double holds has a code and a sentence of its own in every engine, and no fit loses a pair."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import engine_cases
 import mpmath
 import numpy as np
 import pytest
+from slipped_campaigns import PAPER, write
 from sympy import Piecewise, Sum, Symbol, acos, exp, log, symbols
 from uncertain_data import uncertain
 
@@ -18,6 +20,7 @@ from loopsheet.report.judge.readers import Case, run_javascript
 from loopsheet.report.plan.domain import defined, is_positive
 from loopsheet.report.plan.nodes import RowSum
 from loopsheet.report.quantity import SMALLEST
+from loopsheet.report.study import Study
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 k, n = symbols("k n", integer=True, positive=True)
@@ -50,6 +53,19 @@ def test_50_digits_go_by_what_the_value_rounds_to() -> None:
                 with pytest.raises(exact._Failed) as failed:
                     exact._held(value, positive=value >= 0)
                 assert failed.value.status is code
+
+
+def test_a_derivative_that_no_double_holds_is_no_warning(tmp_path: Path) -> None:
+    """Of a ball of 1e300 g: warnings are errors here."""
+    folder = write(tmp_path, PAPER)
+    toml = folder / "report.toml"
+    text = toml.read_text()
+    toml.write_text(
+        text.replace('ball_diameter = "12.7 mm"\nball_density = "7800 kg/m^3"', 'ball_mass = "1e300 g"')
+    )
+    assert "1e300" in toml.read_text()
+    known = Study(folder).computed.uncertain().u
+    assert 0 < known["alpha_mean"].item() < 1
 
 
 # --- where a value is ------------------------------------------------------------------------------------

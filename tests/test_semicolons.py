@@ -60,6 +60,31 @@ def test_semicolons_may_separate_and_commas_be_decimal(csv: str, read: Reader) -
     }
 
 
+@pytest.mark.parametrize(
+    "csv",
+    [
+        "sep=;\n" + GERMAN,
+        "\ufeffsep=;\r\n" + GERMAN.replace("\n", "\r\n"),
+        '"sep=;"\n' + CSV.replace(",", ";"),
+        "SEP=,\n" + CSV,
+    ],
+)
+def test_a_line_above_may_say_what_separates(csv: str, read: Reader) -> None:
+    assert read(csv=csv).measured["x_p"][0] is not None
+    plain, other = read(csv=CSV).measured, read(csv=csv).measured
+    assert [[p and p.text for p in column] for column in other.values()] == [
+        [p and p.text for p in column] for column in plain.values()
+    ]
+    assert other["v"][0] is not None
+    assert other["v"][0].where.startswith("measurements.csv:3:")
+
+
+def test_what_a_line_above_says_is_believed(findings: Findings) -> None:
+    """A comma in the first line of names is one, where semicolons separate; other signs never do."""
+    assert findings(csv="sep=;\n" + GERMAN.replace("v [m/s]", "v [m/s],")) == ["LS305 measurements.csv:2:6+8"]
+    assert findings(csv="sep=|\n" + CSV.replace(",", "|"))
+
+
 def test_uncertainties_and_reasons_in_such_a_table(read: Reader) -> None:
     rows = ["1;2,334(5);0,530;2,35e1;", "2;2,940(5);0,512;29,7;", '3;2,9;0,5;30;"1,5; 2,5, or so"']
     found = read(csv="\n".join(["test;v [m/s];e [1];x_p [um];left out", *rows]))

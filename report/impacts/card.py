@@ -21,6 +21,8 @@ __all__ = ["Unreachable", "card"]
 CLOSE = 1e-11
 """How near to the wanted depth the search for the stiffness ends, over it."""
 _TURNS = 30
+_STIFFNESSES = -60.0, 100.0
+"""Between which stiffnesses one is sought: their logarithms, in SI."""
 _STEP = 6.0
 """The factor by which a damping is made stronger until the restitution is passed."""
 
@@ -184,7 +186,15 @@ class _Solver:
         def excess(log: float) -> float:
             return math.log(self._static(math.exp(log), self.wanted) * self.wanted / energy)
 
-        return math.exp(brentq(excess, -60.0, 100.0, xtol=1e-6))
+        try:
+            return math.exp(brentq(excess, *_STIFFNESSES, xtol=1e-6))
+        except (ArithmeticError, ValueError) as error:
+            least, most = map(math.exp, _STIFFNESSES)
+            given = f" with R = {self.radius:g} m" if R in self.code.law.constants else ""
+            raise Unreachable(
+                f"no stiffness from {least:.0e} to {most:.0e} in SI units stops the bodies after "
+                f"{self.wanted:g} m{given}"
+            ) from error
 
     def _at(self, strength: float, stiffness: float) -> tuple[dict[Symbol, float], Impact]:
         damping = {self.code.damping: strength * self.unit}

@@ -1,8 +1,8 @@
 """Comma-separated tables (RFC 4180) with the place of every field, which Python's csv does not keep.
 
 A table of measurements may be separated by semicolons, too, as spreadsheets write it where the comma is
-decimal. Its numbers then have decimal points, or all of them decimal commas, of which one at least can mean
-nothing else.
+decimal; a line ``sep=;`` above its names says so, as Excel reads it. Its numbers then have decimal points, or
+all of them decimal commas, of which one at least can mean nothing else.
 """
 
 from __future__ import annotations
@@ -31,6 +31,8 @@ _COMMA = re.compile(r"(?P<whole>[+-]?[0-9]+),(?P<rest>[0-9]+(?:[eE][+-]?[0-9]+)?
 _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
 """What may mean a number and a thousand times it: 1,234."""
 _POINT = re.compile(r"[+-]?[0-9]*\.[0-9].*")
+_SAYS = re.compile(r'\s*"?sep=(?P<separator>[,;])"?[ \t]*(?:\r\n?|\n)', re.IGNORECASE)
+"""A first line that says what stands between the fields."""
 _QUOTE = re.compile(r'"("?)')
 
 
@@ -91,11 +93,15 @@ def read_table(
     findings : Findings
         Rows with a wrong number of fields, and quotes that do not close.
     semicolons : bool
-        Whether they may stand between the fields, if no comma stands in the first line.
+        Whether they may stand between the fields: if a line above the names says so, or no comma stands in
+        these.
     """
+    says = _SAYS.match(source.text) if semicolons else None
     head = source.text.lstrip().partition("\n")[0]
     separator = ";" if semicolons and ";" in head and "," not in head else ","
-    rows = _rows(source, findings, separator)
+    if says is not None:
+        separator = says["separator"]
+    rows = _rows(source, findings, separator, says.end() if says else 0)
     if separator == ";":
         rows = _pointed(rows)
     while rows and _is_blank(rows[-1]):
@@ -201,9 +207,8 @@ def _pointed(rows: list[CsvRow]) -> list[CsvRow]:
     return [row._replace(fields=[pointed(field) for field in row.fields]) for row in rows]
 
 
-def _rows(source: Source, findings: Findings, separator: str) -> list[CsvRow]:
+def _rows(source: Source, findings: Findings, separator: str, position: int) -> list[CsvRow]:
     rows = []
-    position = 0
     text = source.text
     while position < len(text):
         end = source.line_end(position)

@@ -89,9 +89,10 @@ class Along:
         found[..., cells.rows[direct], cells.by[direct]] = self.entries[..., cells.entries[direct]]
         scalars, entries, first, rows = cells.by_scalars(sources)
         if rows.size:
-            terms = self.entries[..., entries, None] * self.whole[..., scalars, :]
-            terms[..., first, :] = found[..., rows, :] + terms[..., first, :]
-            found[..., rows, :] = np.add.reduceat(terms, first, axis=-2)
+            with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
+                terms = self.entries[..., entries, None] * self.whole[..., scalars, :]
+                terms[..., first, :] = found[..., rows, :] + terms[..., first, :]
+                found[..., rows, :] = np.add.reduceat(terms, first, axis=-2)
         return found
 
     def of(self, name: str) -> Any:
