@@ -10,6 +10,7 @@ import re
 import shutil
 import subprocess
 import sys
+from argparse import Namespace
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -22,9 +23,11 @@ from loopsheet.report.cli import main
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.machine.background import Later
+from loopsheet.report.machine.staging import put, strangers
 from loopsheet.report.messages.errors import InputError, OutputError, UsageError
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
+from loopsheet.report.verbs.build import out_of
 
 
 def copy_paper(folder: Path) -> Path:
@@ -153,6 +156,41 @@ def test_other_files_in_the_output_folder_stay(tmp_path: Path, gauge: Path) -> N
     build.build(Study(gauge), out, ("json",))
     assert (out / "notes.txt").read_text() == "mine"
     assert sorted(p.name for p in out.iterdir()) == ["manifest.json", "notes.txt", "values.json"]
+
+
+FOREIGN = {
+    "nothing": ({}, True),
+    "what is hidden": ({".gitkeep": ""}, True),
+    "notes": ({"notes.txt": "mine"}, False),
+    "a manifest of something else": ({"manifest.json": '{"name": "a page"}', "a.png": ""}, False),
+    "a damaged manifest": ({"manifest.json": '<<<<<<< {"versions": {"loopsheet": "0"}}', "a.txt": ""}, True),
+    "what a killed build left": ({".loopsheet-abcdefgh/manifest.json": "", "report.html": ""}, True),
+}
+
+
+@pytest.mark.parametrize("case", FOREIGN)
+def test_a_folder_of_something_else_is_no_output(case: str, tmp_path: Path) -> None:
+    files, ours = FOREIGN[case]
+    (tmp_path / "out").mkdir()
+    for name, text in files.items():
+        put(tmp_path / "out" / name, text)
+    assert (strangers(tmp_path / "out") == []) == ours
+    assert strangers(tmp_path / "none") == []
+
+
+@pytest.mark.parametrize("verb", ["build", "watch"])
+def test_nothing_is_written_among_the_files_of_somebody(
+    verb: str, tmp_path: Path, gauge: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    put(tmp_path / "mine" / "notes.txt", "mine")
+    assert main([verb, str(gauge), "--out", str(tmp_path / "mine")]) == 2
+    assert "holds what no build has written: notes.txt" in capsys.readouterr().err
+    assert [path.name for path in (tmp_path / "mine").iterdir()] == ["notes.txt"]
+
+
+def test_a_report_folder_may_hold_its_report(tmp_path: Path, gauge: Path) -> None:
+    own = shutil.copytree(gauge, tmp_path / "own", ignore=lambda *_: ["out"])
+    assert out_of(Namespace(out=str(own)), own) == own
 
 
 def test_a_failure_while_writing_leaves_everything_as_it_was(

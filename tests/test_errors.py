@@ -41,6 +41,7 @@ from loopsheet.report.messages.errors import (
 )
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.verbs import check
+from loopsheet.report.verbs.build import out_of
 from loopsheet.report.views.validation import TITLE
 from loopsheet.report.workbook import Measured, Parameter, Workbook
 
@@ -177,6 +178,12 @@ def nothing_to_take() -> None:
 def record_over_notes() -> None:
     Path("notes.txt").write_text("mine\n")
     own(Path("notes.txt"), TITLE.encode())
+
+
+def build_over_notes() -> None:
+    Path("thesis").mkdir()
+    Path("thesis", "notes.txt").write_text("mine\n")
+    out_of(Namespace(out="thesis"), Path("campaign"))
 
 
 def huge() -> None:
@@ -357,6 +364,7 @@ CASES: dict[str, Callable[[], None]] = {
         text="IMPACT",
         reason="the formula returns from 0.2000 to 0.9000 at 3 m/s, not 0.1000",
     ),
+    "LS626": build_over_notes,
 }
 
 

@@ -169,6 +169,12 @@ def test_published_values_keep_their_digits(known: dict[str, Any]) -> None:
     assert tables["rows"][0] == ["alpha", "1-2", "1.234", ["1", "1"], False, "1.258", ""]
 
 
+def test_a_unit_keeps_its_closing_parenthesis() -> None:
+    hertz = Study(PAPER.parent / "hertz").computed
+    columns = json.loads(live.data(hertz, Material(hertz)))["columns"]
+    assert columns["K"]["unit"] == hertz.shown["K"].unit == "N/m^(3/2)"
+
+
 def test_foreign_text_cannot_end_the_element(tmp_path: Path) -> None:
     nasty = "</script><!-- <script> ]]>"
     (tmp_path / "report.toml").write_text(

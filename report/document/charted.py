@@ -13,7 +13,7 @@ from .material import Material
 from .notation import fragments
 from .tree import Math, Refer
 
-__all__ = ["PREFIXES", "Letters", "Scale", "Words", "plain", "unit_text"]
+__all__ = ["PREFIXES", "Letters", "Scale", "Words", "plain", "plain_unit", "unit_text"]
 
 Letters = tuple[tuple[str, str], ...]
 """Pieces of a text: upright (``""``) or a symbol's, on the line (``i``), below or above it (``_``, ``^``)."""
@@ -54,8 +54,17 @@ def unit_text(unit: str) -> str:
     >>> unit_text("um"), unit_text("m/s"), unit_text("1")
     ('µm', '(m/s)', '')
     """
-    pretty = re.sub(r"\b[uμ](?=(?:m|s|in)\b)", "µ", unit)
-    return "" if is_pure(unit) else f"({pretty})" if "/" in pretty else pretty
+    pretty = plain_unit(unit)
+    return f"({pretty})" if "/" in pretty else pretty
+
+
+def plain_unit(unit: str) -> str:
+    """A unit as plain text: µ for u, and nothing for a pure number.
+
+    >>> plain_unit("um/(L min)"), plain_unit("1")
+    ('µm/(L min)', '')
+    """
+    return "" if is_pure(unit) else re.sub(r"\b[uμ](?=(?:m|s|in)\b)", "µ", unit)
 
 
 def plain(letters: Letters) -> str:

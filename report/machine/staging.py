@@ -11,10 +11,10 @@ from itertools import count
 from pathlib import Path
 
 from ..messages.errors import EXHAUSTED, Diagnostic, Location, OutputError, diagnose
-from .scratch import left_over, locked, scratch
+from .scratch import PREFIX, left_over, locked, scratch
 from .stopping import unstoppable
 
-__all__ = ["half_moved", "own", "put", "replaced", "staged", "written"]
+__all__ = ["half_moved", "own", "put", "replaced", "staged", "strangers", "written"]
 
 PATIENCE = 60.0
 """Seconds to wait for somebody else who builds into the same folder."""
@@ -130,6 +130,23 @@ def _replaced(path: Path, before: bytes | None, after: bytes) -> None:
             os.replace(draft, target)
     except OSError as error:
         raise OutputError(_unwritable(path, error)) from error
+
+
+def strangers(out: Path) -> list[str]:
+    """The names in a folder that no build has written into; none of what is hidden, as .gitkeep is.
+
+    Whose manifest is damaged, or whose build was killed, is of a build all the same.
+    """
+    try:
+        names = sorted(path.name for path in out.iterdir())
+        manifest = out / "manifest.json"
+        if any(name.startswith(PREFIX) for name in names):
+            return []
+        if manifest.is_file() and b'"loopsheet"' in manifest.read_bytes():
+            return []
+    except OSError:
+        return []  # who writes there is told why that cannot be
+    return [name for name in names if not name.startswith(".")]
 
 
 @contextmanager

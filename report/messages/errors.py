@@ -473,6 +473,12 @@ CATALOGUE: dict[str, Entry] = {
         "{text} cannot return what was measured: {reason}",
         "another code, another speed, or the law itself: --for table, c or python",
     ),
+    "LS626": Entry(
+        "folder of something else",
+        "'{text}' holds what no build has written: {known}",
+        "a folder that is empty or does not exist yet, or one that an earlier build has written",
+        "nothing was written; choose another folder with --out",
+    ),
 }
 
 

@@ -21,6 +21,25 @@ def out_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", metavar="DIR", type=named, help=where)
 
 
+def out_of(options: argparse.Namespace, folder: Path) -> Path:
+    """Where the report of a folder goes, if that is asked for or not.
+
+    Raises
+    ------
+    OutputError
+        There are files of something else.
+    """
+    from ..inputs.folders import output
+    from ..machine.staging import strangers
+    from ..messages.errors import OutputError, diagnose, listing
+
+    out = Path(options.out) if options.out else output(folder)
+    found = strangers(out)
+    if found and out.resolve() != folder.resolve():  # a folder may hold its own report
+        raise OutputError(diagnose("LS626", text=out.as_posix(), known=listing(found, most=3)))
+    return out
+
+
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     folder_argument(parser)
@@ -42,13 +61,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Build, and tell the result and what is not as expected."""
     from .. import build
-    from ..inputs.folders import output, report_folder
+    from ..inputs.folders import report_folder
     from ..messages.diagnostics import visible
     from ..study import Study
 
     formats = None if options.to is None else build.parse_formats(options.to)
     folder = report_folder(options.folder)
-    out = Path(options.out) if options.out else output(folder)
+    out = out_of(options, folder)
     if formats is None:
         formats = build.formats_again(out)
 
@@ -65,7 +84,7 @@ def run(options: argparse.Namespace) -> int:
         for n in ("report.html", "report.pdf", "report.tex", "report.xlsx", "values.json", "manifest.json")
         if n in names
     )
-    print(f"{len(found.files)} files in {out}; look at {first}")
+    say(f"{len(found.files)} files in {out}; look at {first}")
     return OK if found.told["passed"] else FINDINGS
 
 

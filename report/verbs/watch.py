@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .build import out_argument, summary
+from .build import out_argument, out_of, summary
 from .common import OK, Progress, folder_argument, keeping_arguments
 
 if TYPE_CHECKING:
@@ -40,15 +40,17 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Build and wait, until Ctrl-C."""
     from ..build import parse_formats
-    from ..inputs.folders import output, report_folder, told
+    from ..inputs.folders import report_folder, told
     from ..machine.local_server import Server
+    from ..messages.diagnostics import visible
 
     formats = parse_formats(f"{options.to},json")
     folder = report_folder(options.folder)
-    out = Path(options.out) if options.out else output(folder)
+    out = out_of(options, folder)
     try:
         with Server(out) as server:
-            print(f"watching {told(folder)}; its report is at {server.address} (Ctrl-C ends)", flush=True)
+            said = f"watching {told(folder)}; its report is at {server.address} (Ctrl-C ends)"
+            print(visible(said), flush=True)
             _watch(folder, lambda: _again(folder, out, formats, server.tell))
     except KeyboardInterrupt as stopped:
         if getattr(stopped, "number", signal.SIGINT) != signal.SIGINT:
@@ -112,7 +114,7 @@ def _again(folder: Path, out: Path, formats: tuple[str, ...], tell: Callable[...
     after = _result(out)
     changed = as_text(compare(before, after), MOST) if before and after else ""
     told = changed.splitlines() if changed else found.told["lines"]
-    print(*told, f"{len(found.files)} files in {out}", sep="\n", flush=True)
+    print(*told, visible(f"{len(found.files)} files in {out}"), sep="\n", flush=True)
     tell(changed=changed)
     return study.files
 

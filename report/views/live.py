@@ -18,7 +18,7 @@ from typing import Any
 from ...derivations.unit_text import ParsedUnit, parse_unit
 from ..cells.address import index_text
 from ..charts import Chart, Series
-from ..document.charted import PREFIXES, Words, unit_text
+from ..document.charted import PREFIXES, Words, plain_unit, unit_text
 from ..document.material import Material
 from ..document.parts import slug
 from ..document.tree import Inlines, Math, Unit
@@ -202,7 +202,7 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
     head = document.head(column)
     entry: dict[str, Any] = {
         "source": column.source,
-        "unit": unit_text(shown.unit).strip("()") or "1",
+        "unit": plain_unit(shown.unit) or "1",
         "scale": shown.scale,
         "zero": shown.zero,
     }
