@@ -166,7 +166,8 @@ def _run(arguments: Sequence[str] | None) -> int:
 
     options = argparse.Namespace(traceback=False)
     try:
-        options = _parse(sys.argv[1:] if arguments is None else arguments)
+        with heeded():  # reading the command line imports, too
+            options = _parse(sys.argv[1:] if arguments is None else arguments)
         with heeded(), _kept(options):
             code: int = options.run(options)
             sys.stdout.flush()

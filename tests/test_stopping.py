@@ -17,13 +17,13 @@ import uuid
 from collections import Counter
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import pytest
 from campaign_sizes import Sizes
 from small_report import end_gauge
 
-from loopsheet.report import stages
+from loopsheet.report import cli, stages
 from loopsheet.report.cli import main
 from loopsheet.report.files.manifest import read_manifest
 from loopsheet.report.machine import staging
@@ -201,7 +201,7 @@ def test_a_build_stopped_at_any_moment(
 STEPS = """
 import json, os, signal, sys
 from pathlib import Path
-from loopsheet.report import stages
+from loopsheet.report import cli, stages
 from loopsheet.report.machine import staging
 from loopsheet.report.machine.stopping import stoppable
 fatal, number, out = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
@@ -537,3 +537,21 @@ def test_a_worker_that_is_told_to_end_says_nothing(moment: str) -> None:
         [sys.executable, "-c", WORKER.format(moment=moment)], capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_an_import_that_is_ended_while_the_command_line_is_read_is_no_fault_of_ours(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What a library makes of a signal that comes in the middle of its import."""
+
+    def parse(_: object) -> NoReturn:
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(5)
+        except KeyboardInterrupt:
+            raise SystemError("initialisation failed") from None
+        raise AssertionError("no signal came")
+
+    monkeypatch.setattr(cli, "_parse", parse)
+    assert main(["build", "paper"]) == 128 + signal.SIGINT
+    assert capsys.readouterr().err == "\nstopped; nothing was half-written\n"
