@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import sys
 import unicodedata
 from pathlib import Path
@@ -108,3 +109,16 @@ def test_a_terminal_of_another_encoding_gets_escapes(tmp_path: Path, monkeypatch
     monkeypatch.setattr(sys, "stdout", terminal)
     assert main(["diff", str(tmp_path / "a.json"), str(tmp_path / "b.json")]) == 1
     assert b"\\u03b1" in terminal.buffer.getvalue()  # type: ignore[attr-defined]
+
+
+def test_the_name_of_a_folder_stays_on_its_line(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One with a line break is told with an escape, as text in a file is."""
+    broken = os.fspath(tmp_path / "first\nsecond")
+    main(["build", os.fspath(folder), "--out", broken, "--to", "json"])
+    assert main(["crate", broken, os.fspath(folder), "--date", "2026-03-31", "--license", "MIT"]) == 0
+    assert main(["new", os.path.join(broken, "own")]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert sum(line.startswith("second") for line in lines) == 1  # a command as it has to be typed
+    assert sum(r"first\x0asecond" in line for line in lines) == 5

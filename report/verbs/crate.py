@@ -29,8 +29,9 @@ def run(options: argparse.Namespace) -> int:
     """Write ro-crate-metadata.json and name it."""
     from ..archive.crate import write
     from ..inputs.folders import report_folder, result
+    from ..messages.diagnostics import visible
 
     folder = report_folder(options.folder) if options.folder else None
     whose = options.author, options.organization
-    print(write(result(options.out), options.date, options.license, *whose, folder))
+    print(visible(str(write(result(options.out), options.date, options.license, *whose, folder))))
     return OK

@@ -28,6 +28,7 @@ def run(options: argparse.Namespace) -> int:
     """Write the folder and name its files."""
     from ..archive import scaffold
     from ..inputs.folders import written
+    from ..messages.diagnostics import visible
     from ..messages.errors import UnknownWorkbook, UsageError, diagnose, listing, suggest
     from ..which_workbook import find_workbook
     from ..workbooks import SHIPPED
@@ -50,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
         raise UsageError(diagnose("LS604", kind="service", text=options.ci, known=known, suggestion=hint))
     folder = Path(options.folder)
     for path in scaffold.new(folder, workbook, options.ci, content):
-        print(path)
+        print(visible(str(path)))
     if options.ci and scaffold.repository(folder) is None:
         print(f"{options.ci} reads the last one once {folder} is the root of a repository")
     print(f"edit them, then: loopsheet build {written(folder)}")
