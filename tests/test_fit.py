@@ -491,3 +491,28 @@ def test_a_start_may_be_taken_over_rows(tmp_path: Path, start: str) -> None:
     assert cells(report.values, "b")[0] == pytest.approx(1.506, abs=2e-3)
     assert "b_start" in report.workbook.aside
     stages.book(report)
+
+
+RATES = """from loopsheet import Method, fit, measured, unknown
+
+
+class Rates(Method, rows="readings"):
+    "L Michaelis, M L Menten, Die Kinetik der Invertinwirkung."
+    S = measured("mmol/L", "concentration", positive=True)
+    v = measured("umol/(L min)", "initial rate", positive=True)
+    V_max = unknown("limiting rate", "umol/(L min)", start=2)
+    K_M = unknown("Michaelis constant", "mmol/L", start=1)
+    line = fit(v, V_max * S / (K_M + S))
+"""
+RATED = "0.10,0.45\n0.25,0.93\n0.50,\n1.00,2.25\n2.00,2.88\n4.00,3.35\n"
+
+
+def test_the_referee_steps_without_a_row_that_is_empty(tmp_path: Path) -> None:
+    """A missing datum is none of the size of a SI unit, from which the steps would not settle."""
+    write(tmp_path, RATES, f"S [mmol/L],v [umol/(L min)]\n{RATED}", '[published]\nfile = "p.csv"\n')
+    (tmp_path / "p.csv").write_text(
+        "source,cell,index,value,unit\nbook,K_M,,0.809,mmol/L\n", encoding="utf-8"
+    )
+    referee = Study(tmp_path).refereed.referee
+    assert referee is not None
+    assert [(found.verdict, found.low < found.high) for found in referee.values] == [("reachable", True)]

@@ -12,6 +12,7 @@ from test_left_out import campaign, refused
 
 import loopsheet
 from loopsheet.report.cli import main
+from loopsheet.report.result.verdict import EXACT, NOT_FOUND, REACHABLE
 from loopsheet.report.study import Study
 from loopsheet.report.views import html
 
@@ -144,6 +145,21 @@ def test_the_verbs_go_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert "bug" not in said.err
     assert "reason" in said.out
     assert "mean_both = 0.0032500 m" in said.out
+
+
+@pytest.mark.parametrize(
+    ("printed", "verdict"), [("3.2500", EXACT), ("3.24", REACHABLE), ("3.60", NOT_FOUND)]
+)
+def test_the_referee_leaves_an_empty_cell_empty(tmp_path: Path, printed: str, verdict: str) -> None:
+    """A number that was not taken explains nothing."""
+    folder = readings(tmp_path / "r", more='[published]\nfile = "published.csv"\n')
+    rows = f"source,cell,index,value,unit\nbook,mean_both,,{printed},mm\n"
+    (folder / "published.csv").write_text(rows, encoding="utf-8")
+    referee = Study(folder).refereed.referee
+    assert referee is not None
+    (found,) = referee.values
+    assert found.verdict == verdict
+    assert all((each.cell, each.index) != ("b", (2,)) for each in found.witness)
 
 
 def test_the_page_keeps_an_empty_cell_empty(tmp_path: Path) -> None:

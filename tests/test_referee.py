@@ -71,6 +71,7 @@ def test_printed_again_in_the_same_digits(value: float, like: Printed, again: st
         (1524.587, "1.5e3", True),
         (1524.587, "1500", False),
         (-0.0004, "0.000", True),
+        (float("nan"), "1.50", False),
     ],
 )
 def test_it_prints_the_same_by_value_and_decimals_not_by_text(value: float, text: str, same: bool) -> None:

@@ -147,7 +147,7 @@ class Chain:
         The sheet's derivatives.
     layouts : mapping of axis name to Layout
     sources : mapping of node name to integer array (rows,)
-        For what derivatives are taken by, the number of each row among all of it.
+        For what derivatives are taken by, the number of each row among all of it; -1 for a row that is not.
     """
 
     def __init__(self, made: Made, layouts: Mapping[str, Layout], sources: Mapping[str, Numbered]) -> None:
@@ -161,8 +161,9 @@ class Chain:
         """How many entries there are. The first is 1."""
         self.patterns: dict[str, Pattern] = {}
         for node in nodes:
-            by = sources.get(node.name, np.zeros(0, dtype=np.intp))
-            self._add(node.name, np.arange(by.size), by)
+            by = sources.get(node.name, _NONE)
+            rows = np.flatnonzero(by >= 0)
+            self._add(node.name, rows, by[rows])
         self.ones = self.length  # what a source is by itself
         depth: dict[str, int] = {}
         for node in nodes:

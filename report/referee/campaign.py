@@ -181,7 +181,7 @@ class Campaign:
         return {}
 
     def unknowns(self, sheet: Sheet, cut: Sequence[str], asked: Sequence[str] = ()) -> Iterator[Unknown]:
-        """The given cells that are not exact; free ones without their print.
+        """The given cells that are not exact; free ones without their print. A missing datum stays missing.
 
         Parameters
         ----------
@@ -204,6 +204,8 @@ class Campaign:
                 zip(self.values.labels(column), values.tolist(), strict=True)
             ):
                 text = None if column.name in cut else printed[row]
+                if text is None and column.name not in cut and not np.isfinite(value):
+                    continue
                 start = value if np.isfinite(value) else 1.0
                 start = start if text is None else float(text.value)
                 reach = self.reaches.get((column.name, row), 0.0) if self.stated else 0.0

@@ -72,7 +72,8 @@ def _enclosure(problem: Problem, low: Array, high: Array) -> Enclosure:
         for name, value in problem.data(low).items()
         if name not in problem.rows
     }
-    data |= {name: Intervals.near(low[..., rows], high[..., rows]) for name, rows in problem.rows.items()}
+    ends = {name: (problem.column(name, low), problem.column(name, high)) for name in problem.rows}
+    data |= {name: Intervals.near(*each) for name, each in ends.items()}
     return Enclosure(problem.sheet, problem.program, dict(problem.campaign.values.layouts), data)
 
 

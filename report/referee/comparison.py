@@ -64,10 +64,11 @@ def prints_same(value: float, printed: Printed) -> bool:
     """Whether a value in SI prints as it was printed: by value and decimals, whatever the notation.
 
     >>> from fractions import Fraction
-    >>> prints_same(238.94213, Printed("2.3894e+02", "1", Fraction("238.94"), Fraction(1)))
-    True
+    >>> like = Printed("2.3894e+02", "1", Fraction("238.94"), Fraction(1))
+    >>> prints_same(238.94213, like), prints_same(math.nan, like)
+    (True, False)
     """
-    return Fraction(print_as(value, printed)) == Fraction(printed.text)
+    return math.isfinite(value) and Fraction(print_as(value, printed)) == Fraction(printed.text)
 
 
 def compare(published: tuple[PublishedValue, ...], values: Values) -> tuple[Comparison, ...]:

@@ -190,15 +190,24 @@ class Problem:
 
     @cached_property
     def sources(self) -> dict[str, NDArray[np.intp]]:
-        """The same for derivatives."""
-        return {name: np.array(places) for name, places in self.rows.items()}
+        """The same for derivatives, row by row: -1 for one that is missing."""
+        found = {}
+        for name, places in self.rows.items():
+            found[name] = np.full(len(self.campaign.values.labels(self.sheet[name])), -1)
+            found[name][[self.unknowns[n].row for n in places]] = places
+        return found
 
     def data(self, points: Any) -> dict[str, Any]:
         """The given columns of the sheet, with the unknowns taken from the last dimension of points."""
         found = {
             c.name: self.campaign.data[c.name] for c in self.sheet.columns if c.name in self.campaign.data
         }
-        return found | {name: points[..., rows] for name, rows in self.rows.items()}
+        return found | {name: self.column(name, points) for name in self.rows}
+
+    def column(self, name: str, points: Any) -> Array:
+        """A given column with its unknowns (..., rows) at points (..., unknowns); NaN for a missing datum."""
+        places = self.sources[name]
+        return np.where(places < 0, np.nan, points[..., places])
 
     def restarted(self, points: Array) -> Array:
         """Points (points, unknowns) with what is free as it would follow from the rest.
@@ -217,7 +226,7 @@ class Problem:
         program = self.campaign.program(names)
         given = [column.name for column in program.sheet.columns if isinstance(column.rule, Given)]
         data = {name: self.campaign.data[name] for name in given}
-        data |= {name: points[..., rows] for name, rows in self.rows.items() if name in data}
+        data |= {name: self.column(name, points) for name in self.rows if name in data}
         values = evaluate(program.sheet, self.campaign.labels, data, program.guessing)
         found = points.copy()
         for n in free:
@@ -361,8 +370,8 @@ class Problem:
         for column in self.sheet.columns:
             size = 1 if column.axis is None else layouts[column.axis.name].size
             rests[column.name] = np.zeros((number, size), dtype=bool)
-            for row, n in enumerate(self.rows.get(column.name, ())):
-                rests[column.name][n, row] = True
+            for n in self.rows.get(column.name, ()):
+                rests[column.name][n, self.unknowns[n].row] = True
         again = True
         while again:  # once, but for columns that rest on one another
             again = False

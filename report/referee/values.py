@@ -143,7 +143,8 @@ class _Alone:
             for m, unknown in enumerate(problem.unknowns)
             if unknown.printed is None and self.slopes[n, m] and not 0 < by[m] <= ROUNDED * abs(self.here[n])
         ]
-        low, high = (None, None) if free else (float(np.nanmin(seen)), float(np.nanmax(seen)))
+        seen = seen[np.isfinite(seen)]
+        low, high = (None, None) if free or not seen.size else (float(seen.min()), float(seen.max()))
         return Verdict(
             word, low, high, bound_low, bound_high,
             mismatch=mismatch if np.isfinite(mismatch) else None,
