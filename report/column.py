@@ -5,6 +5,7 @@ Nothing here knows a model, a number or an output.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -32,6 +33,7 @@ __all__ = [
     "Root",
     "Rule",
     "SheetError",
+    "shown_as",
 ]
 
 
@@ -488,7 +490,8 @@ class Column:
     latex : str
         How it is printed; ``%s`` is where an index goes.
     display : str
-        The unit it is shown in; ``like x_p`` follows the unit that the user wrote for a given column.
+        The unit it is shown in; ``like x_p`` follows that of another column, as the user wrote it if that is
+        given.
     positive : bool
         Whether it is positive wherever it has a value: a formula that gives zero or less is then outside
         its domain. (A root is held by its interval, a given value by what the workbook allows.)
@@ -623,3 +626,22 @@ class Reference:
     def written(self) -> str:
         """As the sheet writes it."""
         return self.name if self.index is None else f"{self.name}[{self.index}]"
+
+
+def shown_as(column: Column, columns: Mapping[str, Column]) -> Column:
+    """The column whose unit another is shown in: itself, or what it is declared to be shown like, to the end.
+
+    Parameters
+    ----------
+    column : Column
+    columns : mapping of str to Column
+        One that it is shown like and that is not among them is the end.
+    """
+    way = {column.name}
+    while column.display.startswith("like "):
+        like = columns.get(column.display.removeprefix("like "))
+        if like is None or like.name in way:
+            break
+        way.add(like.name)
+        column = like
+    return column

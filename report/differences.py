@@ -15,7 +15,7 @@ from sympy import Expr, Float, Indexed, Rational, Symbol
 
 from ..derivations.evaluation import UNDEFINED, NotEvaluable, Tape
 from ..derivations.unit_text import ParsedUnit, UnitError, parse_open
-from .column import Axis, Column, Formula
+from .column import Axis, Column, Formula, shown_as
 from .named import name_of
 
 __all__ = ["is_difference", "shown_in"]
@@ -31,10 +31,9 @@ _DIGITS, _SAME = 50, 1e-30
 
 def shown_in(column: Column, columns: Mapping[str, Column]) -> ParsedUnit:
     """The unit that a column is declared to be shown in."""
-    like = columns.get(column.display.removeprefix("like "))
-    display = like.display if like and column.display.startswith("like ") else column.display
+    like = shown_as(column, columns)
     try:
-        return parse_open(display or column.unit)
+        return parse_open(like.display or like.unit)
     except UnitError:
         return parse_open(column.unit)  # it is refused elsewhere
 

@@ -11,6 +11,7 @@ from typing import Any
 from sympy import Expr, Indexed, Integer, Symbol
 
 from ..derivations.least_squares import FitQuantity, LeastSquares
+from ..derivations.unit_text import parse_open
 from ..derivations.vocabulary import spelt
 from .cells.units import named_unit_of
 from .charts import VERMILION, Chart, Series
@@ -102,7 +103,7 @@ class DeclaredFit:
         for each, said in sought.items():
             unit = {"unit": "" if fit.linear else "1", **said.column}
             made[str(each)] = Column(str(each), None, Given(), meaning=words[each], positive=False, **unit)
-        self._weighed, self._shown = u is not None, {f"s_{each}": made[str(each)].display for each in sought}
+        self._weighed, self._shown = u is not None, {f"s_{each}": f"like {each}" for each in sought}
         self._latex = self._printed([made[str(each)] for each in sought])
         parts = (*fit.results, *fit.helpers)
         for part in _in_turn(parts, () if fit.linear else map(str, sought)):
@@ -144,8 +145,11 @@ class DeclaredFit:
     def _blank(self, part: FitQuantity) -> Column:
         """The column of a part, without what it is computed from."""
         names, rows = self._fit.names, isinstance(part.cell, Indexed)
+        own = self._observed
         as_observed = {names["fitted"], names["residual"], *(() if self._weighed else [names["s"]])}
-        like = f"like {self._observed.name}" if part.name in as_observed else self._shown.get(part.name, "")
+        like = f"like {own.name}" if part.name in as_observed else self._shown.get(part.name, "")
+        if part.name == names["S"] and not self._weighed:
+            like = _squared(own)
         latex = self._latex.get(part.name, part.latex)
         symbol = part.cell.base.label if rows else part.cell
         more: dict[str, Any] = {"is_u": part.name.startswith("s_"), "spare": part.name == names["s"]}
@@ -169,6 +173,14 @@ class DeclaredFit:
             said = f"{up.meaning} over {over.meaning}{with_it}"
             chart = Chart(said, over.meaning, up.meaning, (points(up), *more), whole=True)
             yield FigureSpec(f"plot_{n}", str(n), f"{said[:1].upper()}{said[1:]}.", chart=chart)
+
+
+def _squared(of: Column) -> str:
+    """The unit that squares of a column are shown in, if that is another than in SI."""
+    unit = parse_open(of.written)
+    if of.written == of.unit or unit.zero or not unit.dimension:
+        return ""
+    return f"{of.written}^2" if of.written.isalpha() else f"({of.written})^2"
 
 
 def _stated(of: Column) -> Column:

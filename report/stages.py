@@ -296,20 +296,21 @@ def compared(report: Report) -> Report:
 def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:
     """In which unit a column is shown, and with how many digits.
 
-    What was printed is shown in the unit it was printed in, whatever the workbook would show it in.
+    What was printed is shown in the unit it was printed in, whatever the workbook would show it in, and so is
+    what is to be shown like it.
     The digits of a cell follow from its uncertainty; where that is not known, from the inputs: one more than
     the least precise measured number that the column rests on. Zero and what is exact are no such number.
     """
+    from .column import shown_as
     from .result.result import Shown
     from .sheet import Given
 
-    unit = column.display or column.unit
-    like = (column.rule.u_of or column.name) if isinstance(column.rule, Given) else ""
-    if unit.startswith("like "):
-        like = like or unit.removeprefix("like ")
-    if printed := inputs.numbers(like):
+    u_of = column.rule.u_of if isinstance(column.rule, Given) else ""
+    like = shown_as(column, sheet.by_name)
+    unit = like.display or like.unit
+    if printed := inputs.numbers(u_of or column.name) or inputs.numbers(like.name):
         unit = printed[0].unit
-        if like != column.name and isinstance(column.rule, Given):
+        if u_of:
             unit = of_differences(parse_unit(unit))  # an uncertainty
     try:
         size = parse_unit(unit)

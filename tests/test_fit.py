@@ -516,3 +516,42 @@ def test_the_referee_steps_without_a_row_that_is_empty(tmp_path: Path) -> None:
     referee = Study(tmp_path).refereed.referee
     assert referee is not None
     assert [(found.verdict, found.low < found.high) for found in referee.values] == [("reachable", True)]
+
+
+RECIPROCALS = """from loopsheet import Method, fit, let, measured, unknown
+
+
+class Reciprocals(Method, rows="readings"):
+    "H Lineweaver, D Burk, The determination of enzyme dissociation constants."
+    S = measured("mmol/L", "concentration", positive=True)
+    v = measured("umol/(L min)", "initial rate", positive=True)
+    x = let(1 / S, "reciprocal concentration", "L/mmol")
+    y = let(1 / v, "reciprocal rate", "L min/umol")
+    a = unknown("intercept", "L min/umol")
+    b = unknown("slope", "min mmol/umol")
+    line = fit(y, a + b * x)
+    again = let(line.fitted + line.residual, "reciprocal rate again", like=line.fitted)
+    K_M = unknown("Michaelis constant", "mmol/L", start=1)
+    V_max = unknown("limiting rate", "umol/(L min)", start=2)
+    curve = fit(v, V_max * S / (K_M + S))
+"""
+
+
+def test_all_of_a_fit_is_shown_in_the_unit_of_what_it_belongs_to(tmp_path: Path) -> None:
+    """What is shown like a computed column has that one's unit, in the report and in the cells of charts."""
+    from loopsheet.report import stages
+
+    write(tmp_path, RECIPROCALS, f"S [mmol/L],v [nmol/(mL min)]\n{RATED}")
+    report = Study(tmp_path).computed
+    rate, reciprocal = "nmol/(mL min)", "L min/umol"
+    units = {
+        **dict.fromkeys(("line_fitted", "line_residual", "line_s", "again", "s_a"), reciprocal),
+        **{"line_S": "(L min/umol)^2", "s_b": "min mmol/umol", "s_K_M": "mmol/L", "s_V_max": "umol/(L min)"},
+        **dict.fromkeys(("curve_fitted", "curve_residual", "curve_s"), rate),
+    }
+    assert {name: report.shown[name].unit for name in units} == units
+    grid, _ = stages.book(report)
+    drawn = {"plotted_y": reciprocal, "plotted_line_fitted": reciprocal, "plotted_line_residual": reciprocal}
+    assert {name: grid[name].unit for name in drawn} == drawn
+    in_unit = [float(cell) for cell in grid["plotted_line_fitted"].values if isinstance(cell, float)]
+    assert in_unit[0] == pytest.approx(1 / 0.45, rel=0.01)

@@ -15,6 +15,7 @@ from typing import Any, get_args
 from ...derivations.unit_text import ParsedUnit, UnitError, parse_open, parse_unit
 from ..cells.grid import CHECKED, FIRST_ROW, SCALARS, STEPS, CellBlock, Place, as_issued, checked
 from ..cells.layout import Layout
+from ..column import shown_as
 from ..plan.kept import as_data
 from ..plan.lowering import lowered
 from ..plan.nodes import RootNode
@@ -235,10 +236,8 @@ class Assembly:
 
     def unit(self, column: Column) -> ParsedUnit:
         """The unit of a column's cells."""
-        unit = self.units.get(column.name, "")
-        if not unit and column.display.startswith("like "):
-            unit = self.units.get(column.display.removeprefix("like "), "")
-        unit = unit or column.display or column.unit
+        like = shown_as(column, self.whole.by_name)
+        unit = self.units.get(column.name) or self.units.get(like.name) or like.display or like.unit
         try:
             return parse_unit(unit)
         except UnitError:
