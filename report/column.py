@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Axis",
     "Column",
+    "CountedAxis",
     "Formula",
     "Given",
     "Iterated",
@@ -125,6 +126,11 @@ class Axis:
     def parents(self) -> tuple[Axis, ...]:
         """The axes that its rows are made of."""
         return ()
+
+    @property
+    def is_given(self) -> bool:
+        """Whether its rows come with the data."""
+        return not self.parents
 
     @property
     def repeats(self) -> str | None:
@@ -244,6 +250,40 @@ class RepeatAxis(Axis):
     def described(self) -> str:
         """How its rows are counted."""
         return f"{self.step_name} = 1, 2, ... {self.count} for each of {self.of.name}"
+
+
+@dataclass(frozen=True)
+class CountedAxis(Axis):
+    """A number of rows, counted by `step` = 1, 2, ..., whatever the data: the points of a curve."""
+
+    step: Symbol
+    number: int
+    _WORDS = (*Axis._WORDS, "step_name", "number")
+
+    @cached_property
+    def step_name(self) -> str:
+        """What the running number is called."""
+        return str(self.step.name)
+
+    @property
+    def ordinals(self) -> tuple[Symbol, ...]:
+        """The running number."""
+        return (self.step,)
+
+    @property
+    def is_given(self) -> bool:
+        """They do not."""
+        return False
+
+    @property
+    def parts(self) -> tuple[tuple[str, str], ...]:
+        """The running number."""
+        return ((self.step_name, "running number"),)
+
+    @property
+    def described(self) -> str:
+        """How many."""
+        return f"{self.number} rows, whatever the data"
 
 
 # --- rules -----------------------------------------------------------------------------------------------

@@ -5,17 +5,19 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from functools import cached_property
 from itertools import combinations
 from typing import Any
 
-from sympy import Expr, Indexed, Integer, Symbol
+from sympy import Expr, Indexed, Integer, Min, Piecewise, Rational, Symbol, diff
 
 from ..derivations.least_squares import FitQuantity, LeastSquares
+from ..derivations.reductions import Greatest, Least
 from ..derivations.unit_text import parse_open
 from ..derivations.vocabulary import spelt
 from .cells.units import named_unit_of
-from .charts import VERMILION, Chart, Series
-from .column import Axis, Column, Formula, Given, Iterated, SheetError
+from .charts import VERMILION, Chart, Series, drawn
+from .column import Axis, Column, CountedAxis, Formula, Given, Iterated, SheetError
 from .named import name_of
 from .quantity import Bounds
 from .workbook import FigureSpec, SquareSum
@@ -23,6 +25,10 @@ from .workbook import FigureSpec, SquareSum
 __all__ = ["DeclaredFit"]
 
 STATED = "stated"
+POINTS = 65
+"""Of a fitted curve: straight lines between so many look like one."""
+BEYOND = Rational(1, 20)
+"""How far a fitted curve goes on beyond the rows, in shares of their range."""
 NONE = (
     "the steps from the stated start do not settle: begin nearer; or no parameters make the sum of squares "
     "least, or these rows do not tell them apart"
@@ -156,16 +162,47 @@ class DeclaredFit:
         axis, positive = self._axis if rows else None, bool(symbol.is_positive)
         return Column(part.name, axis, Given(), "", part.title, latex, like, positive=positive, **more)
 
+    @property
+    def _over(self) -> Column | None:
+        """The column that the model names, if it is one."""
+        named = sorted({name_of(cell) for cell in self._model.atoms(Indexed)})
+        return self._known[named[0]] if len(named) == 1 else None
+
+    @cached_property
+    def curve(self) -> tuple[Column, ...]:
+        """What the model says between the rows and a little beyond, but not beyond zero: figures show it.
+
+        Two ends are enough of a straight line. There is none of a model that names several columns.
+        """
+        over, own, called = self._over, self._observed, self._fit.called
+        if over is None:
+            return ()
+        row, size, step = (
+            Symbol(f"{called}_{each}", integer=True, positive=True) for each in ("row", "points", "point")
+        )
+        straight = diff(self._model, over.cell, 2) == 0
+        axis = CountedAxis(f"{called}_curve", row, size, step, 2 if straight else POINTS)
+        low, high = (taken(over.cell, (self._axis.index, 1, self._axis.size)) for taken in (Least, Greatest))
+        below, above = (
+            BEYOND * Piecewise((Min(high - low, zero), zero >= 0), (high - low, True))
+            for zero in (low, -high)
+        )
+        way = (high - low + below + above) * (step - 1) / (axis.number - 1)
+        x, y = low - below + way, self._rows[0]
+        across = drawn(f"{axis.name}_x", axis, x, over.unit, over.meaning, display=f"like {over.name}")
+        value = self._model.xreplace({over.cell: across[row]})
+        return across, drawn(f"{axis.name}_y", axis, value, own.unit, y.meaning, display=f"like {own.name}")
+
     def figures(self, number: int) -> Iterator[FigureSpec]:
         """Points and curve, and what is left over; over the column that the model names, if it is one."""
         own, (fitted, residual) = self._observed, self._rows
-        named = sorted({name_of(cell) for cell in self._model.atoms(Indexed)})
-        over = self._known[named[0]] if len(named) == 1 else fitted
+        over = self._over or fitted
 
         def points(up: Column) -> Series:
             return Series(over.name, up.name, up.meaning, "points", bars=True)
 
-        curve = Series(over.name, fitted.name, fitted.meaning, "line", VERMILION)
+        across, up = self.curve or (over, fitted)
+        curve = Series(across.name, up.name, fitted.meaning, "line", VERMILION)
         for n, up, more, with_it in (
             (number, own, (curve,), ", with the fit"),
             (number + 1, residual, (), ""),

@@ -15,7 +15,20 @@ from ..derivations.equation import Equation, Ledger
 from ..derivations.vocabulary import Vocabulary
 from .cells.marks import margins
 from .charts import Drawn
-from .column import Axis, Column, Formula, Given, Iterated, Limit, Mentioned, PairAxis, RepeatAxis, Root, Rule
+from .column import (
+    Axis,
+    Column,
+    CountedAxis,
+    Formula,
+    Given,
+    Iterated,
+    Limit,
+    Mentioned,
+    PairAxis,
+    RepeatAxis,
+    Root,
+    Rule,
+)
 from .document.names import latex_names
 from .document.parts import Placed
 from .document.written import placed
@@ -30,7 +43,7 @@ from .workbook import Workbook
 
 __all__ = ["drawn_of", "ledger_of", "of_shipped", "sheet_of"]
 
-_KINDS = {kind.__name__: kind for kind in (Axis, PairAxis, RepeatAxis)}
+_KINDS = {kind.__name__: kind for kind in (Axis, CountedAxis, PairAxis, RepeatAxis)}
 
 
 @dataclass(frozen=True)

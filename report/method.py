@@ -25,7 +25,7 @@ from sympy import Expr, Symbol, false, sympify, true
 from ..derivations.equation import Ledger
 from ..derivations.reductions import Median
 from ..derivations.vocabulary import Quantity, Vocabulary, spelt
-from .charts import BLUE, VERMILION, Chart, Series
+from .charts import BLUE, VERMILION, Chart, Drawn, Series
 from .column import Column, SheetError
 from .messages.errors import listing
 from .method_body import ComputedLine, Declaration, FitLine, InputLine, MethodBody, UnknownLine, exact
@@ -513,6 +513,7 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
     words = Vocabulary(*(_drawn(one, body.columns[one.name]) for one in body.inputs if _has_limits(one)))
     in_tables = {*body.aside, *(each for spec in body.tables for each in spec.columns)}
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
+    curves = Drawn(tuple(body.curves))
     columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
     rows = zip(*(body.examples.get(one.name, "").split() for one in columns_of), strict=False)
     head = (body.axis.row, *(f"{one.name} [{one.unit}]" for one in columns_of))
@@ -532,6 +533,7 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
         aside=frozenset(body.aside),
         tables=(*body.tables, *tables_of(sheet, in_tables)) if body.tables else (),
         figures=tuple(body.figures),
+        drawn=(lambda sheet: curves) if curves.columns else None,
         example=(head, *((str(place), *row) for place, row in enumerate(rows, start=1)))
         if columns_of
         else (),

@@ -47,7 +47,7 @@ class Prepared:
     @property
     def labels(self) -> dict[str, tuple[int, ...]]:
         """Row numbers of the axes that come with the data."""
-        return {axis.name: self.inputs.tests for axis in self.sheet.axes if not axis.parents}
+        return {axis.name: self.inputs.tests for axis in self.sheet.axes if axis.is_given}
 
     @cached_property
     def layouts(self) -> dict[str, Layout]:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from .column import (
     Axis,
     Column,
+    CountedAxis,
     Formula,
     Given,
     Iterated,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Axis",
     "Column",
+    "CountedAxis",
     "CycleError",
     "Formula",
     "Given",
@@ -368,6 +370,8 @@ def _check_names(sheet: Sheet) -> None:
         own = {axis.index_name: "the index", axis.size_name: "the size"}
         if isinstance(axis, PairAxis):
             own |= dict(zip(axis.members, ("the first member", "the second member"), strict=True))
+        elif isinstance(axis, CountedAxis):
+            own |= {axis.step_name: "the running number"}
         elif isinstance(axis, RepeatAxis):
             own |= {axis.step_name: "the running number"}
             count = sheet.by_name.get(axis.count)

@@ -219,7 +219,7 @@ def judged(report: Report, every: bool = True, step: Step = silent) -> Report:
         return replace(report, engines=_agreements(report, computed, every))
     few = evaluated(made, report.algebra, silent)
     found = _agreements(few, sample.with_own(computed, whole), every)
-    rows = next(axis.name for axis in report.sheet.axes if not axis.parents)
+    rows = next(axis.name for axis in report.sheet.axes if axis.is_given)
     told = f"{len(inputs.tests)} of {len(report.inputs.tests)} {rows}"
     of = how_large(whole.sheet, whole.layouts)
     return replace(report, engines=tuple(replace(each, of=of, sample=told) for each in found))

@@ -41,7 +41,18 @@ from loopsheet.report.engines import ENGINES, excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.judge.readers import Book, Case, Reading
 from loopsheet.report.quantity import Bounds
-from loopsheet.report.sheet import Axis, Column, Formula, Given, Iterated, PairAxis, RepeatAxis, Root, Sheet
+from loopsheet.report.sheet import (
+    Axis,
+    Column,
+    CountedAxis,
+    Formula,
+    Given,
+    Iterated,
+    PairAxis,
+    RepeatAxis,
+    Root,
+    Sheet,
+)
 from loopsheet.report.views.xlsx_columns import ColumnwiseSheet
 
 OK, INPUT, DOMAIN, OVERFLOW = Status.OK, Status.INPUT, Status.DOMAIN, Status.OVERFLOW
@@ -152,6 +163,14 @@ without = case("without_the_least", 1 / (a[k] - 2), ROWS, [DOMAIN, 1, Rational(1
 case("a_least_alongside", Least(a[k], (k, 1, n)), None, [3], alongside=(without,))
 needs = ((a[j] < a[i] + 5, "not far"), (a[i] > 2, "not small"))
 case("conditions", 2 * gap[p], PAIRS, [DOMAIN, DOMAIN, 8], requires=needs)
+
+# --- rows that are counted, whatever the data -------------------------------------------------------------
+
+c, m = whole("c"), whole("m")
+WAY = CountedAxis("way", m, whole("n_way"), c, 3)
+first, last = Least(a[k], (k, 1, n)), Greatest(a[k], (k, 1, n))
+way = case("points_between_extremes", first + (last - first) * (c - 1) / 2, WAY, [2, Rational(9, 2), 7])
+case("a_curve", w.symbol * way[m] ** 2, WAY, [2, Rational(81, 8), Rational(49, 2)])
 
 # --- roots ------------------------------------------------------------------------------------------------
 

@@ -204,7 +204,7 @@ def test_a_fit_has_cells_equations_and_figures() -> None:
     over, left = book.charts
     assert [(s.x, s.y, s.style) for s in over.series] == [
         ("t", "rate", "points"),
-        ("t", "decay_fitted", "line"),
+        ("decay_curve_x", "decay_curve_y", "line"),
     ]
     assert [(s.x, s.y) for s in left.series] == [("t", "decay_residual")]
 
@@ -463,6 +463,10 @@ def test_shipped_fits_come_out_as_published(name: str, values: int) -> None:
 PLACES = "from loopsheet import Method, fit, mean, measured, unknown\nclass Places(Method):\n    'Places.'\n"
 
 
+LINE = "    a = unknown('a')\n    b = unknown('b')\n    f = fit(y, a + b * x)\n"
+POWER = "    b = unknown('b', start=1.4)\n    f = fit(y, x**b)\n"
+
+
 def in_folder(tmp_path: Path, body: str, rows: str) -> Any:
     """What is computed of a method of x and y."""
     head = PLACES + "    x = measured('1', 'x')\n    y = measured('1', 'y')\n"
@@ -551,7 +555,29 @@ def test_all_of_a_fit_is_shown_in_the_unit_of_what_it_belongs_to(tmp_path: Path)
     }
     assert {name: report.shown[name].unit for name in units} == units
     grid, _ = stages.book(report)
-    drawn = {"plotted_y": reciprocal, "plotted_line_fitted": reciprocal, "plotted_line_residual": reciprocal}
+    drawn = dict.fromkeys(("plotted_y", "line_curve_y", "plotted_line_residual"), reciprocal)
     assert {name: grid[name].unit for name in drawn} == drawn
-    in_unit = [float(cell) for cell in grid["plotted_line_fitted"].values if isinstance(cell, float)]
-    assert in_unit[0] == pytest.approx(1 / 0.45, rel=0.01)
+    (*_, largest) = grid["line_curve_y"].values
+    assert largest == pytest.approx(0.2543 + 0.1979 * (10 + 9.75 / 20), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("body", "rows", "ends", "number"),
+    [
+        (LINE, "-1,-1.1\n1,0.9\n3,3.2\n", (-1.2, 3.2), 2),
+        (LINE, "1,1.1\n4,,\n2,1.9\n".replace(",,", ","), (0.95, 4.15), 2),
+        (LINE, "-6,1.1\n-1,1.9\n-2,1.7\n", (-6.25, -0.95), 2),
+        (POWER, "1,1.0\n2,2.8\n21,96.2\n", (0.95, 22), 65),
+    ],
+)
+def test_a_curve_goes_through_the_rows_and_a_little_beyond(
+    tmp_path: Path, body: str, rows: str, ends: tuple[float, float], number: int
+) -> None:
+    """But not beyond zero, where there may be a pole; between the rows it is no chord."""
+    numbered = "".join(f"{n},{row}\n" for n, row in enumerate(rows.splitlines(), start=1))
+    values = in_folder(tmp_path, body, numbered).plotted().values
+    x, y = (values.value[f"f_curve_{each}"] for each in "xy")
+    a, b = (values.scalar(each) if each in values.value else 0.0 for each in "ab")
+    assert (x[0], x[-1], len(x)) == (pytest.approx(ends[0]), pytest.approx(ends[1]), number)
+    np.testing.assert_allclose(np.diff(x), (x[-1] - x[0]) / (number - 1))
+    np.testing.assert_allclose(y, a + b * x if body is LINE else x**b, rtol=1e-12)

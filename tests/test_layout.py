@@ -8,7 +8,7 @@ from sympy import Sum, Symbol
 
 from loopsheet.derivations.equation import Equation
 from loopsheet.report.cells.layout import lay_out, precedents
-from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, RepeatAxis, Sheet
+from loopsheet.report.sheet import Axis, Column, CountedAxis, Formula, Given, PairAxis, RepeatAxis, Sheet
 
 
 def whole(name: str) -> Symbol:
@@ -40,6 +40,16 @@ def test_a_repeated_axis_of_a_repeated_axis_keeps_both_running_numbers() -> None
     assert layout.ordinals["t"].tolist() == [1, 2, 3, 1, 2, 3]
     assert layout.labels.tolist()[-1] == [1, 2, 2, 3]
     assert set(layout.rows) == set("pijqr")
+
+
+def test_a_counted_axis_has_its_rows_whatever_the_data() -> None:
+    way = CountedAxis("way", whole("m"), whole("n_way"), whole("c"), 3)
+    point = Column("point", way, Formula(Equation("(P)", (Symbol("point"), way.step), "for this test")))
+    for rows in ([], [1, 4]):
+        layout = lay_out(Sheet((*SHEET.columns, point)), {"rows": rows}, {"count": 1, "often": 1})["way"]
+        assert (layout.size, layout.labels.tolist()) == (3, [[1], [2], [3]])
+        assert layout.ordinals["c"].tolist() == [1, 2, 3]
+        assert layout.rows["m"].tolist() == [0, 1, 2]
 
 
 @given(st.integers(0, 12), st.integers(0, 4))

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ..sheet import Axis, Column, PairAxis, RepeatAxis, Sheet
+from ..sheet import Axis, Column, CountedAxis, PairAxis, RepeatAxis, Sheet
 
 __all__ = ["Layout", "Precedent", "how_large", "lay_out", "precedents"]
 
@@ -60,6 +60,8 @@ def lay_out(
             layouts[axis.name] = _pairs(axis, layouts[axis.of.name])
         elif isinstance(axis, RepeatAxis):
             layouts[axis.name] = _repeats(axis, layouts[axis.of.name], counts[axis.count])
+        elif isinstance(axis, CountedAxis):
+            layouts[axis.name] = _counted(axis)
         else:
             layouts[axis.name] = _given(axis, labels[axis.name])
     return layouts
@@ -101,6 +103,12 @@ def _repeats(axis: RepeatAxis, parent: Layout, count: int) -> Layout:
     ordinals = {name: number[which] for name, number in parent.ordinals.items()}
     ordinals[axis.step_name] = step.astype(np.float64)
     return Layout(which.size, rows, ordinals, np.hstack([parent.labels[which], step.reshape(-1, 1)]))
+
+
+def _counted(axis: CountedAxis) -> Layout:
+    step = np.arange(1, axis.number + 1)
+    ordinals = {axis.step_name: step.astype(np.float64)}
+    return Layout(axis.number, {axis.index_name: step - 1}, ordinals, step.reshape(-1, 1))
 
 
 @dataclass(frozen=True)

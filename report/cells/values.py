@@ -197,7 +197,7 @@ class Values:
     @property
     def given_labels(self) -> dict[str, list[int]]:
         """Row numbers of the axes that come with the data, by the name of the axis."""
-        axes = (axis for axis in self.sheet.axes if not axis.parents)
+        axes = (axis for axis in self.sheet.axes if axis.is_given)
         return {axis.name: self.layouts[axis.name].labels[:, 0].tolist() for axis in axes}
 
     def labels(self, column: Column) -> list[tuple[int, ...]]:

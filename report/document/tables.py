@@ -155,10 +155,10 @@ class Tables:
     def _rows(self, spec: TableSpec, axis: Axis) -> Table:
         heads, columns = zip(*map(self.material.items, spec.columns), strict=True)
         labels = self.report.values.labels(self.report.sheet[spec.columns[0]])
-        most = MOST if axis.parents else len(labels)  # what was measured is shown whole
+        most = len(labels) if axis.is_given else MOST  # what was measured is shown whole
         rows = islice(zip(labels, *columns, strict=True), most)
-        inputs, measured = self.report.inputs, any(head.given for head in heads) and not axis.parents
-        words = () if axis.parents else inputs.remarks if measured else inputs.naming
+        inputs, measured = self.report.inputs, any(head.given for head in heads) and axis.is_given
+        words = () if not axis.is_given else inputs.remarks if measured else inputs.naming
 
         def row(label: tuple[int, ...], items: Iterable[Entry], state: str = "") -> Row:
             told = (_run(inputs.rows[label[0]][name]) for name in words)

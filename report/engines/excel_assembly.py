@@ -125,7 +125,7 @@ class Assembly:
             parts = self.layouts[axis.name].labels.shape[1]
             room = self.rooms[axis.name]
             self.indices[axis.name] = tuple(room.next() for _ in range(parts))
-            if not axis.parents:
+            if axis.is_given:
                 self.words[room.worksheet] = tuple(room.next() for _ in range(self.worded))
         self.put_scalars()
         given = [c for c in self.whole.columns if c.axis is not None and isinstance(c.rule, Given)]

@@ -76,7 +76,7 @@ def grid(
 
         return Assembly(worksheets, sheet, values.sheet, whole, layouts, counts, units, first, worded).told()
 
-    own = [layouts[axis.name].labels.tolist() for axis in whole.axes if not axis.parents]
+    own = [layouts[axis.name].labels.tolist() for axis in whole.axes if axis.is_given]
     words = [(column.meaning, column.unit, column.display, column.source) for column in whole.columns]
     names = [list(each.by_name) for each in (sheet, values.sheet)]
     hangs_on = repr((names, own, sorted(counts.items()), words, sorted(units.items()), list(first), worded))

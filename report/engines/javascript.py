@@ -20,7 +20,7 @@ from sympy.printing.jscode import JavascriptCodePrinter
 from ..plan.lowering import lowered
 from ..plan.nodes import GivenNode, Leaf, LoopNode, Map, Plan, RootNode, RowOrder, RowSum, Total
 from ..plan.nodes import Node as PlanNode
-from ..sheet import Axis, Column, PairAxis, RepeatAxis, Sheet
+from ..sheet import Axis, Column, CountedAxis, PairAxis, RepeatAxis, Sheet
 from .certified import certified, slope, typed_form
 from .javascript_intervals import enclose, needed
 
@@ -275,13 +275,15 @@ def _references(sheet: Sheet, column: Column) -> Iterable[str]:
 
 
 def _axis(axis: Axis) -> str:
-    entry = {"name": axis.name, "kind": "given", "index": str(axis.index)}
+    entry: dict[str, str | int] = {"name": axis.name, "kind": "given", "index": str(axis.index)}
     if isinstance(axis, PairAxis):
         entry |= {"kind": "pairs", "of": axis.of.name, "first": str(axis.first), "second": str(axis.second)}
         chosen = JavaScriptPrinter().doprint(axis.chosen)
         return f'{json.dumps(entry)[:-1]}, "chosen": ({axis.first}, {axis.second}) => {chosen}}}'
     if isinstance(axis, RepeatAxis):
         entry |= {"kind": "repeat", "of": axis.of.name, "step": str(axis.step), "count": axis.count}
+    if isinstance(axis, CountedAxis):
+        entry |= {"kind": "counted", "step": str(axis.step), "number": axis.number}
     return json.dumps(entry)
 
 

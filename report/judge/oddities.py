@@ -138,7 +138,7 @@ class _Oddities:
         if column.axis is None:
             return ()
         layout, row = self.values.layouts[column.axis.name], self.values.row(column, cell.label)
-        own = (index for index, axis in column.axis.named.items() if not axis.parents)
+        own = (index for index, axis in column.axis.named.items() if axis.is_given)
         return tuple(self.inputs.tests[layout.rows[index][row]] for index in own)
 
     def pairs(self, cells: Iterable[Cell]) -> set[tuple[int, ...]]:

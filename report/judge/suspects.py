@@ -64,7 +64,7 @@ def _furthest(report: Report, tests: Sequence[int]) -> tuple[int, str]:
     without = np.array([[test == other for other in own] for test in tests])
     for name in data.keys() & report.inputs.measured.keys():
         data[name] = np.where(without, np.nan, data[name])
-    labels = {axis.name: own for axis in sheet.axes if not axis.parents}
+    labels = {axis.name: own for axis in sheet.axes if axis.is_given}
     after = evaluate(sheet, labels, data).value[column.name][:, 0]
     moved = np.nan_to_num(np.abs(after - before))
     if np.count_nonzero(moved == moved.max()) > 1:

@@ -140,7 +140,7 @@ class Campaign:
     @cached_property
     def labels(self) -> dict[str, tuple[int, ...]]:
         """Row numbers of the axes that come with the data."""
-        return {axis.name: self.inputs.tests for axis in self.sheet.axes if not axis.parents}
+        return {axis.name: self.inputs.tests for axis in self.sheet.axes if axis.is_given}
 
     def program(self, wanted: Collection[str], cut: tuple[str, ...] = ()) -> Program:
         """The program of some columns and what they rest on, where some others are given.

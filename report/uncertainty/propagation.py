@@ -358,7 +358,7 @@ def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Un
     ]
     budgets = (spread.budget(name, row) for name, row in cells[:MOST_BUDGETS])
     scalars = [(c.name, 0) for c in sheet.columns if c.axis is None]
-    rows = [c.name for c in sheet.columns if inputs.own_workbook and c.axis and not c.axis.parents]
+    rows = [c.name for c in sheet.columns if inputs.own_workbook and c.axis and c.axis.is_given]
     passed_on = [
         cell
         for cell in dict.fromkeys((*cells[:MOST_BUDGETS], *scalars))

@@ -74,7 +74,7 @@ def _lines(report: Report, column: Column, labels: Collection[tuple[int, ...]]) 
     names = {
         label: f"{inputs.rows[label[0]][name]}  "
         for name in inputs.naming
-        for label in (every if over is not None and not over.parents else ())
+        for label in (every if over is not None and over.is_given else ())
     }
     wide = max(map(len, names.values()), default=0)
     nothing = [0.0] * len(every)

@@ -116,7 +116,7 @@ def data(report: Report, document: Material) -> str:
         "columns": {column.name: _least(_column(report, document, column)) for column in sheet.columns},
         **given(report),
         **uncertain(report),
-        "rows": next(([axis.name, axis.row] for axis in sheet.axes if not axis.parents), ["rows", "row"]),
+        "rows": next(([axis.name, axis.row] for axis in sheet.axes if axis.is_given), ["rows", "row"]),
         "headline": [name for name in report.workbook.headline if name in sheet],
         "figures": drawn(report),
         "squares": {one.name: [one.axis, one.fitted] for one in report.workbook.squares},

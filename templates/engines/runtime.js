@@ -29,6 +29,9 @@ function layOut(axis, layouts, labels, data) {
       for (let row = 0, of = 0; of < parent.size; of++) every.fill(named[of], row, (row += count));
     }
     label = (row) => [...parent.labels[Math.floor(row / count)], step[row]];
+  } else if (axis.kind === "counted") {
+    const step = (ordinals[axis.step] = new Float64Array((size = axis.number)).map((_, row) => row + 1));
+    label = (row) => [step[row]];
   } else {
     size = labels[axis.name].length;
     label = (row) => [labels[axis.name][row]];
