@@ -16,6 +16,8 @@ LONGEST = 32_000
 _LINE = 15
 """Points that a line of text is high."""
 _MOST_DECIMALS = 9
+_NOTHING = f"{1e-15:.15f}"
+"""What is less is shown as 0 where nothing is expected. (Not every reader knows exponents there.)"""
 _INK, _PAPER, _PALE, _LINE_COLOUR = "#1F2A36", "#FFFFFF", "#EEF2F6", "#C9D3DD"
 _INPUT, _INPUT_INK, _ERROR = "#FFF8DC", "#1F4E9E", "#B00020"
 
@@ -124,9 +126,17 @@ def number_format(figure: Numeral | None) -> str:
 
     >>> number_format(rounded(1.258, 4)), number_format(rounded(9.6e8, 4)), number_format(rounded(1525.4, 4))
     ('0.000', '0.000E+00', '0')
+
+    What is nothing, as the steps of a fit are where it rests, is shown as 0 whatever rounding leaves of it in a
+    spreadsheet, and needs no more room than that:
+
+    >>> number_format(Numeral(False, "0", "0" * 22, None)).split(";")
+    ['[>=0.000000000000001]0.0E+00', '[<=-0.000000000000001]-0.0E+00', '0']
     """
     if figure is None:
         return "General"
+    if len(figure.fraction) > _MOST_DECIMALS and not int(figure.whole + figure.fraction):
+        return f"[>={_NOTHING}]0.0E+00;[<=-{_NOTHING}]-0.0E+00;0"
     point = f"0.{'0' * len(figure.fraction)}" if figure.fraction else "0"
     return point if figure.exponent is None else f"{point}E+00"
 
