@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import combinations
@@ -22,7 +23,7 @@ from .named import name_of
 from .quantity import Bounds
 from .workbook import FigureSpec, SquareSum
 
-__all__ = ["DeclaredFit"]
+__all__ = ["DeclaredFit", "told_apart"]
 
 STATED = "stated"
 POINTS = 65
@@ -66,6 +67,8 @@ class DeclaredFit:
         The sum that tells whether the model describes the rows, if their uncertainties are known.
     scatter_told : str
         The column that tells how far the rows lie from the curve.
+    letters : tuple of str
+        The columns that are printed by letters of the fit's own, such as s.
     """
 
     def __init__(
@@ -127,6 +130,7 @@ class DeclaredFit:
         new = [column for column in stated if known.get(column.name) != column]
         self.columns = (*new, *(made[part.name] for part in parts))
         self._rows = made[fit.names["fitted"]], made[fit.names["residual"]]
+        self.letters = tuple(part.name for part in parts if part.latex)
         self.scatter_told = fit.names["s"]
 
     def __getattr__(self, name: str) -> Expr:
@@ -210,6 +214,43 @@ class DeclaredFit:
             said = f"{up.meaning} over {over.meaning}{with_it}"
             chart = Chart(said, over.meaning, up.meaning, (points(up), *more), whole=True)
             yield FigureSpec(f"plot_{n}", str(n), f"{said[:1].upper()}{said[1:]}.", chart=chart)
+
+
+def told_apart(columns: Iterable[Column], fits: Sequence[DeclaredFit]) -> tuple[Column, ...]:
+    """Columns with the name of its fit in what would be printed as something else is: of two fits, s of each.
+
+    Parameters
+    ----------
+    columns : iterable of Column
+        Of a sheet.
+    fits : sequence of DeclaredFit
+    """
+    columns = tuple(columns)
+    printed = {column.name: (column.latex or spelt(column.name)).replace("%s", "") for column in columns}
+    often = Counter(printed.values())
+    named = dict[str, str]()
+    some = any(often[printed[name]] > 1 for fit in fits for name in fit.letters)
+    for fit in fits:
+        rows = (column.name for column in fit._rows if often[printed[column.name]] > 1)
+        named |= dict.fromkeys((*rows, *(fit.letters if some else ())), fit._fit.called)
+    return tuple(
+        replace(column, latex=_of_fit(column.latex, named[column.name])) if column.name in named else column
+        for column in columns
+    )
+
+
+def _of_fit(latex: str, name: str) -> str:
+    r"""A symbol with the name of a fit below it.
+
+    >>> [_of_fit(latex, "line") for latex in ("s", "z'%s", "J_{1%s}")]
+    ['s_{\\mathrm{line}}', "z'_{\\mathrm{line}%s}", 'J_{1,\\mathrm{line}%s}']
+    """
+    parts = re.fullmatch(r"(?P<letter>[^_%]+)(_\{(?P<below>.*?)(?P<inner>%s)?\})?(?P<index>%s)?", latex)
+    if parts is None:
+        return latex  # as its author printed it
+    below = f"{parts['below']}," if parts["below"] else ""
+    index = parts["inner"] or parts["index"] or ""
+    return rf"{parts['letter']}_{{{below}\mathrm{{{name.replace('_', ' ')}}}{index}}}"
 
 
 def _squared(of: Column) -> str:

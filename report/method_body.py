@@ -25,7 +25,7 @@ from ..derivations.unit_text import (
 from .cells.units import named_unit_of, unit_of
 from .column import Axis, Column, Formula, Given, PairAxis, Root, SheetError
 from .differences import is_difference, shown_in
-from .fitted import DeclaredFit
+from .fitted import DeclaredFit, told_apart
 from .named import name_of, references
 from .quantity import Bounds
 from .sheet import Sheet
@@ -196,6 +196,7 @@ class MethodBody(dict[str, Any]):
         self.aside: list[str] = []
         self.of_fits: dict[str, bool] = {}  # and whether it is a parameter
         self.squares: list[SquareSum] = []
+        self.fits: list[DeclaredFit] = []
         self.claims: list[Claimed] = []
         self.own = map("(L{})".format, itertools.count(1))
 
@@ -313,7 +314,8 @@ class MethodBody(dict[str, Any]):
         lines = (name for name in below if name not in self.of_fits)
         named = set[str]().union(*(below[name] for name in lines))
         columns = (replace(c, spare=False) if c.spare and c.name in named else c for c in sheet.columns)
-        return tuple(replace(c, alongside=tuple(asked(c))) if c.name in sums else c for c in columns)
+        whole = (replace(c, alongside=tuple(asked(c))) if c.name in sums else c for c in columns)
+        return told_apart(whole, self.fits)
 
     def column(self, name: str) -> Column:
         """What was declared under a name."""
@@ -408,6 +410,7 @@ class MethodBody(dict[str, Any]):
         self.aside += found.aside
         self.of_fits |= {column.name: Symbol(column.name, real=True) in sought for column in found.columns}
         self.squares += found.squares
+        self.fits.append(found)
         self.inputs = [
             replace(each, scatter=found.scatter_told)
             if isinstance(each, Measured) and each.name == name_of(said.observed)

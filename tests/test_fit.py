@@ -460,7 +460,9 @@ def test_shipped_fits_come_out_as_published(name: str, values: int) -> None:
     assert len(declared) <= {"gum_h3": 10, "misra1a": 6}[name]
 
 
-PLACES = "from loopsheet import Method, fit, mean, measured, unknown\nclass Places(Method):\n    'Places.'\n"
+PLACES = (
+    "from loopsheet import Method, fit, let, mean, measured, unknown\nclass Places(Method):\n    'Places.'\n"
+)
 
 
 LINE = "    a = unknown('a')\n    b = unknown('b')\n    f = fit(y, a + b * x)\n"
@@ -581,3 +583,37 @@ def test_a_curve_goes_through_the_rows_and_a_little_beyond(
     assert (x[0], x[-1], len(x)) == (pytest.approx(ends[0]), pytest.approx(ends[1]), number)
     np.testing.assert_allclose(np.diff(x), (x[-1] - x[0]) / (number - 1))
     np.testing.assert_allclose(y, a + b * x if body is LINE else x**b, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("body", "latex"),
+    [
+        ("    a = unknown('a')\n    line = fit(y, a)\n", {"line_s": "s", "line_S": "S", "line_N1": "N_{1}"}),
+        (
+            "    S = let(2 * y, 'twice')\n    a = unknown('a')\n    line = fit(y, a)\n",
+            {
+                "S": "",
+                "line_S": r"S_{\mathrm{line}}",
+                "line_s": r"s_{\mathrm{line}}",
+                "line_fitted": r"\hat{y}%s",
+            },
+        ),
+        (
+            "    a = unknown('a')\n    line = fit(y, a)\n    b = unknown('b')\n    c = unknown('c')\n"
+            "    bent_line = fit(y, b + c * x, u=0.1 * x)\n",
+            {
+                "line_s": r"s_{\mathrm{line}}",
+                "bent_line_s": r"s_{\mathrm{bent line}}",
+                "bent_line_w": r"w_{\mathrm{bent line}%s}",
+                "bent_line_r1_2": r"r_{12,\mathrm{bent line}}",
+                "line_fitted": r"\hat{y}_{\mathrm{line}%s}",
+                "bent_line_residual": r"\delta y_{\mathrm{bent line}%s}",
+                "s_b": "s(b)",
+            },
+        ),
+    ],
+)
+def test_two_fits_are_told_apart_by_their_symbols(tmp_path: Path, body: str, latex: dict[str, str]) -> None:
+    """One alone is printed short, unless its letters mean something else, too."""
+    sheet = in_folder(tmp_path, body, "1,1,1.0\n2,2,2.8\n3,3,5.2\n").sheet
+    assert {name: sheet[name].latex for name in latex} == latex

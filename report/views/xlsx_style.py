@@ -127,8 +127,8 @@ def number_format(figure: Numeral | None) -> str:
     >>> number_format(rounded(1.258, 4)), number_format(rounded(9.6e8, 4)), number_format(rounded(1525.4, 4))
     ('0.000', '0.000E+00', '0')
 
-    What is nothing, as the steps of a fit are where it rests, is shown as 0 whatever rounding leaves of it in a
-    spreadsheet, and needs no more room than that:
+    What is nothing, as the steps of a fit are where it rests, is shown as 0 whatever rounding leaves of it in
+    a spreadsheet, and needs no more room than that:
 
     >>> number_format(Numeral(False, "0", "0" * 22, None)).split(";")
     ['[>=0.000000000000001]0.0E+00', '[<=-0.000000000000001]-0.0E+00', '0']
