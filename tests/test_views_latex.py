@@ -158,3 +158,25 @@ def test_much_that_is_said_of_a_result_is_broken_into_lines(
     assert "; over 9 of 10 pairs" in first
     (tmp_path / "report.tex").write_text(first, encoding="utf-8")
     assert not re.search(r"^!|Overfull", _log(tmp_path), re.MULTILINE)
+
+
+def test_no_heading_stands_alone_at_the_foot_of_a_page(
+    article: str, tmp_path: Path, require: Callable[..., str]
+) -> None:
+    """Wherever it falls, its first claim follows."""
+    require("pdflatex")
+    require("pdftotext")
+    preamble, body = article.split(r"\begin{document}")
+    rest = body.partition(r"\section{Derivations}")[2]
+    first = re.match(r"(?s).*?\\end\{(align\*?|equation\*?|gather\*?)\}", rest)
+    assert first is not None
+    claim = re.sub(r"\\label{.*?}", "", first[0])
+    pages = (
+        rf"\newpage top\vspace*{{{height}pt}}\section{{Derivations}}{claim}" for height in range(540, 680, 10)
+    )
+    text = "\n\n".join([preamble, r"\begin{document}", *pages, r"\end{document}"])
+    (tmp_path / "report.tex").write_text(text, encoding="utf-8")
+    assert not re.search(r"^!", _log(tmp_path), re.MULTILINE)
+    subprocess.run(["pdftotext", "report.pdf", "t.txt"], cwd=tmp_path, check=True, timeout=60)
+    for page in (tmp_path / "t.txt").read_text(encoding="utf-8").split("\f"):
+        assert not re.search(r"Derivations\s+\d*\s*$", page)
