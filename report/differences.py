@@ -15,7 +15,8 @@ from sympy import Expr, Float, Indexed, Rational, Symbol
 
 from ..derivations.evaluation import UNDEFINED, NotEvaluable, Tape
 from ..derivations.unit_text import ParsedUnit, UnitError, parse_open
-from .column import Axis, Column, Formula, shown_as
+from .axis import Axis
+from .column import Column, Formula, shown_as
 from .named import name_of
 
 __all__ = ["is_difference", "shown_in"]

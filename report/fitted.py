@@ -16,9 +16,10 @@ from ..derivations.least_squares import FitQuantity, LeastSquares
 from ..derivations.reductions import Greatest, Least
 from ..derivations.unit_text import parse_open
 from ..derivations.vocabulary import spelt
+from .axis import Axis, CountedAxis
 from .cells.units import named_unit_of
 from .charts import VERMILION, Chart, Series, drawn
-from .column import Axis, Column, CountedAxis, Formula, Given, Iterated, SheetError
+from .column import Column, Formula, Given, Iterated, SheetError
 from .named import name_of
 from .quantity import Bounds
 from .workbook import FigureSpec, SquareSum

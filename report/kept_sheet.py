@@ -13,22 +13,10 @@ from typing import Any
 
 from ..derivations.equation import Equation, Ledger
 from ..derivations.vocabulary import Vocabulary
+from .axis import Axis, CountedAxis, PairAxis, RepeatAxis
 from .cells.marks import margins
 from .charts import Drawn
-from .column import (
-    Axis,
-    Column,
-    CountedAxis,
-    Formula,
-    Given,
-    Iterated,
-    Limit,
-    Mentioned,
-    PairAxis,
-    RepeatAxis,
-    Root,
-    Rule,
-)
+from .column import Column, Formula, Given, Iterated, Limit, Mentioned, Root, Rule
 from .document.names import latex_names
 from .document.parts import Placed
 from .document.written import placed

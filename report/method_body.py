@@ -22,8 +22,9 @@ from ..derivations.unit_text import (
     of_differences,
     parse_open,
 )
+from .axis import Axis, PairAxis
 from .cells.units import named_unit_of, unit_of
-from .column import Axis, Column, Formula, Given, PairAxis, Root, SheetError
+from .column import Column, Formula, Given, Root, SheetError
 from .differences import is_difference, shown_in
 from .fitted import DeclaredFit, told_apart
 from .named import name_of, references

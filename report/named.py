@@ -9,7 +9,8 @@ from sympy import And, Basic, Eq, Expr, Indexed, Rational, Symbol, floor
 from sympy.logic.boolalg import Boolean
 
 from ..derivations.reductions import REDUCTIONS, OrderStatistic
-from .column import Axis, Column, Iterated, Reference, Root, SheetError
+from .axis import Axis
+from .column import Column, Iterated, Reference, Root, SheetError
 from .messages.errors import close
 from .quantity import Bounds
 

@@ -12,21 +12,8 @@ from functools import cached_property
 from keyword import iskeyword
 from typing import TYPE_CHECKING, Any
 
-from .column import (
-    Axis,
-    Column,
-    CountedAxis,
-    Formula,
-    Given,
-    Iterated,
-    Limit,
-    PairAxis,
-    Reference,
-    RepeatAxis,
-    Root,
-    Rule,
-    SheetError,
-)
+from .axis import Axis, CountedAxis, PairAxis, RepeatAxis
+from .column import Column, Formula, Given, Iterated, Limit, Reference, Root, Rule, SheetError
 from .partly import partly
 from .quantity import Bounds
 

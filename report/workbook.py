@@ -12,8 +12,9 @@ if TYPE_CHECKING:
     from sympy import Expr
 
     from ..derivations.equation import Ledger
+    from .axis import Axis
     from .charts import Chart, Drawn
-    from .column import Axis, Column
+    from .column import Column
     from .sheet import Sheet
 
 __all__ = ["Design", "FigureSpec", "Measured", "Parameter", "SquareSum", "TableSpec", "Workbook", "tables_of"]

@@ -93,8 +93,21 @@ def test_the_workbook_draws_them_from_cells(tmp_path: Path) -> None:
     )
     assert [(axis, cells) for axis, cells, _ in bars] == [
         ("x", "figures!$U$3:$U$5"),
-        ("y", "figures!$V$3:$V$5"),
+        ("y", "figures!$X$3:$X$5"),
     ]
     assert all(f"<c:f>{cells}</c:f>" in below for _, cells, below in bars)
     assert f"; {BARS} as issued<" in chart
+    # A frame has room for points, and the ends of bars are points that nobody sees.
+    at = columns["warm less u [degC]"]
+    cells = [grid["warm"].place.cell(row) for row in range(3)]
+    assert [sheet.cell(row, at.column).value for row in (3, 4, 5)] == [
+        f"=IF(ISNUMBER({cell}),{cell}-$X${row},NA())" for row, cell in enumerate(cells, start=3)
+    ]
+    shown = openpyxl.load_workbook(io.BytesIO(book), data_only=True)["figures"]
+    low = [shown.cell(row, at.column).value for row in (3, 4, 5)]
+    assert low == pytest.approx(report.shown["warm"].of(report.values.value["warm"]) - u["warm"])
+    series = re.findall("<c:ser>.*?</c:ser>", chart)
+    unseen = [each for each in series if f"<c:f>figures!${at.column_letter}$3:" in each]
+    assert len(unseen) == 1
+    assert len(re.findall("<c:legendEntry>.*?<c:delete", chart)) >= 4
     assert grid["T"].place.scale == 1

@@ -11,9 +11,10 @@ import pytest
 from sympy import Expr, Float, Function, Symbol, log, sqrt
 
 from loopsheet.derivations.equation import Equation, Kind
+from loopsheet.report.axis import Axis, PairAxis
 from loopsheet.report.cells.layout import lay_out
 from loopsheet.report.cells.values import Status
-from loopsheet.report.column import Axis, Column, Formula, Given, PairAxis, Root
+from loopsheet.report.column import Column, Formula, Given, Root
 from loopsheet.report.content import Untold, content
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines import numpy_texts

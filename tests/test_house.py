@@ -50,8 +50,8 @@ def rooms(*names: str) -> set[str]:
 
 
 # What an author of a workbook writes with, and what becomes of it.
-AUTHOR = PROVER | rooms("messages", "laws", "distribution", "quantity", "column", "named", "partly", "sheet")
-AUTHOR |= rooms("charts", "workbook")
+AUTHOR = PROVER | rooms("messages", "laws", "distribution", "quantity", "axis", "column", "named", "partly")
+AUTHOR |= rooms("sheet", "charts", "workbook")
 DECLARED = AUTHOR | rooms("cells")
 
 MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
@@ -70,9 +70,10 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.quantity": (rooms("distribution") | {"derivations.unit_text"}, set()),
     "report.content": (set(), ALGEBRA),
     "report.partly": (set(), set()),
-    "report.column": (PROVER | rooms("content", "quantity"), ALGEBRA),
-    "report.named": (PROVER | rooms("column", "messages", "quantity"), ALGEBRA),
-    "report.sheet": (rooms("column", "named", "partly", "quantity"), ALGEBRA),
+    "report.axis": (rooms("content"), ALGEBRA),
+    "report.column": (PROVER | rooms("axis", "content", "quantity"), ALGEBRA),
+    "report.named": (PROVER | rooms("axis", "column", "messages", "quantity"), ALGEBRA),
+    "report.sheet": (rooms("axis", "column", "named", "partly", "quantity"), ALGEBRA),
     "report.charts": (PROVER | rooms("sheet"), ALGEBRA),
     "report.cells": (DECLARED - rooms("workbook"), ALGEBRA | {"numpy"}),
     "report.workbook": (DECLARED, ALGEBRA),
@@ -93,7 +94,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.engines.elementary": (set(), {"numpy"}),
     "report.engines.intervals": (rooms("engines.elementary"), {"numpy"}),
     "report.fitting": (
-        rooms("column", "engines.kernels", "engines.numpy_code", "fitting"),
+        rooms("axis", "column", "engines.kernels", "engines.numpy_code", "fitting"),
         {"numpy", "sympy"},
     ),
     "report.result": (

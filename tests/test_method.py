@@ -198,7 +198,10 @@ def test_points_and_lines_are_declared(tmp_path: Path, monkeypatch: pytest.Monke
     assert main(["new", "line", "--workbook", "line"]) == 0
     report = Study(Path("line")).report
     fit, left = report.workbook.charts
-    assert [(s.x, s.y, s.style) for s in fit.series] == [("x", "y", "points"), ("x", "line_fitted", "line")]
+    assert [(s.x, s.y, s.style) for s in fit.series] == [
+        ("x", "y", "points"),
+        ("line_curve_x", "line_curve_y", "line"),
+    ]
     assert [(s.y, s.style) for s in left.series] == [("line_residual", "points")]
     assert "lie outside" not in charts.draw(report, fit).legends[0].get_texts()[0].get_text()
     assert fit.whole

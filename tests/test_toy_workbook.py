@@ -276,7 +276,7 @@ def test_the_command_line_takes_it(folder: Path) -> None:
 HERE = Path(__file__).resolve().parent.parent
 GENERAL = sorted(
     path
-    for name in ("column", "sheet", "cells/*", "plan/*", "engines/*", "document/*", "views/*")
+    for name in ("axis", "column", "sheet", "cells/*", "plan/*", "engines/*", "document/*", "views/*")
     for path in (HERE / "report").glob(f"{name}.py")
 )
 # Docstrings may take their examples from the paper; code may not.

@@ -51,7 +51,8 @@ from sympy import (
 )
 from sympy.core.function import ArgumentIndexError
 
-from ..column import Axis, Column
+from ..axis import Axis
+from ..column import Column
 from ..sheet import Sheet
 from .lowering import RESERVED, lowered
 from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Part, Plan, RootNode, RowSum, Total, free_name

@@ -10,7 +10,8 @@ from typing import Any, ClassVar, Literal
 from sympy import Basic, Expr, Integer, Symbol, diff, false, true
 from sympy.logic.boolalg import Boolean
 
-from ..column import Axis, Column
+from ..axis import Axis
+from ..column import Column
 from .order import Word
 
 __all__ = [

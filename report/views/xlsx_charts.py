@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,13 @@ _ROWS = 29
 _BESIDE = 20
 """The first column, from 0, of how long bars are."""
 _INK, _GRID = "#1F2A36", "#E3E8ED"
+_UNSEEN: dict[str, Any] = {
+    "name": "",
+    "marker": {"type": "none"},
+    "line": {"none": True},
+    "x_error_bars": None,
+    "y_error_bars": None,
+}
 
 
 def charted(report: Report, grid: Grid) -> list[FigureSpec]:
@@ -50,6 +58,7 @@ def write_charts(book: Any, sheet: Any, style: Style, report: Report, grid: Grid
         assert chart is not None
         drawn = book.add_chart({"type": "scatter"})
         labels: list[str] = []
+        ends: list[dict[str, Any]] = []
         for place, series in enumerate(chart.series):
             bars = list(_barred(words, grid, series))
             for each in _series(words, grid, series):
@@ -57,12 +66,16 @@ def write_charts(book: Any, sheet: Any, style: Style, report: Report, grid: Grid
                 for axis, name, u in bars:
                     head = f"u({name}) as issued{said(grid[name].unit)}"
                     each[f"{axis}_error_bars"] = _bars(sheet, style, beside, head, u, series.colour)
-                    beside += 1
+                    own = _ends(sheet, style, beside, axis, grid[name], u, axis in chart.log)
+                    ends += [{**each, **end} for end in own]
+                    beside += 3
                 labels.append(each["name"])
                 if value := series.value or (series.y if series.style == "level" else ""):
                     # Behind the chart, a formula: what is told of a number follows it.
                     each["name"] = _told(sheet, style, top + place, labels[-1], grid[value], words)
                 drawn.add_series(each)
+        for each in ends:
+            drawn.add_series(each)
         title = f"Figure {figure.number}: {plain(words.letters(chart.title))}"
         drawn.set_title({"name": title, "name_font": {"size": 13, "color": _INK}, "overlay": False})
         for axis, scale, set_axis in zip(
@@ -70,6 +83,7 @@ def write_charts(book: Any, sheet: Any, style: Style, report: Report, grid: Grid
         ):
             set_axis(_axis(plain(scale.titled(scale.unit)), chart.from_zero, axis in chart.log))
         again = [place for place, label in enumerate(labels) if label in labels[:place]]
+        again += range(len(labels), len(labels) + len(ends))
         told = len(labels) > 1 or BARS in labels[0]
         drawn.set_legend({"position": "right", "delete_series": again} if told else {"none": True})
         drawn.set_size(_SIZE)
@@ -84,6 +98,7 @@ def _axis(name: str, from_zero: bool, log: bool) -> dict[str, Any]:
         "name": name,
         "name_font": {"size": 11, "bold": False},
         "num_format": "General",
+        "label_position": "low",  # below the points, also where the other axis crosses between them
         "major_gridlines": {"visible": True, "line": {"color": _GRID, "width": 0.75}},
         # Where the other axis crosses: on a logarithmic one, zero is nowhere.
         **({"log_base": 10, "crossing": "min"} if log else {"min": 0} if from_zero else {}),
@@ -144,6 +159,27 @@ def _bars(sheet: Any, style: Style, column: int, head: str, u: list[float], colo
         for what, said in (("values", cells), ("data", u))
     }
     return {"type": "custom", **sides, "end_style": 0, "line": {"color": colour, "width": 0.75}}
+
+
+def _ends(
+    sheet: Any, style: Style, column: int, axis: str, block: CellBlock, u: list[float], log: bool
+) -> Iterator[dict[str, Any]]:
+    """Write the ends of bars beside how long they are: points that nobody sees, which a frame takes in."""
+    lengths, what = Place(sheet.get_name(), 2, column, len(u)), "categories" if axis == "x" else "values"
+    for n, (way, head) in enumerate(((-1, "less"), (1, "and")), start=1):
+        style.text(sheet, 1, column + n, f"{block.name} {head} u{said(block.unit)}", "head")
+        sheet.set_column(column + n, column + n, 18)
+        ends: list[float | None] = []
+        for row, (value, length) in enumerate(zip(block.values, u, strict=True)):
+            end = value + way * length if isinstance(value, float) else None
+            ends.append(None if end is None or (log and end <= 0) else end)
+            cell = block.place.cell(row)
+            far = f"{cell}{'-+'[way > 0]}{lengths.cell(row, lengths.worksheet)}"
+            asked = f"IF(ISNUMBER({cell}),{far}>0,FALSE)" if log else f"ISNUMBER({cell})"
+            formula = f"=IF({asked},{far},NA())"
+            style.formula(sheet, lengths.row + row, column + n, formula, ends[-1], style("number"))
+        place = replace(lengths, column=column + n)
+        yield {what: f"={place.range()}", f"{what}_data": ends, **_UNSEEN}
 
 
 def _one(

@@ -1,0 +1,247 @@
+"""The index sets of a sheet: which rows there are, what they are made of and how they are called.
+
+Nothing here knows a model, a number or an output.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from .content import content
+
+if TYPE_CHECKING:
+    from sympy import Symbol
+    from sympy.logic.boolalg import Boolean
+
+__all__ = ["Axis", "CountedAxis", "PairAxis", "RepeatAxis"]
+
+
+@dataclass(frozen=True)
+class Axis:
+    """An index set whose rows come with the data, such as the tests of a campaign.
+
+    Parameters
+    ----------
+    name : str
+        ``tests``, ``pairs``, ``points``.
+    index : Symbol
+        The running number of a row in formulas, ``k``.
+    size : Symbol
+        How many rows there are: the upper limit of sums over the axis.
+    """
+
+    name: str
+    index: Symbol
+    size: Symbol
+    _WORDS: ClassVar[tuple[str, ...]] = ("index_name", "size_name")
+
+    @property
+    def row(self) -> str:
+        """What one of its rows is called: ``test`` of ``tests``."""
+        return self.name.removesuffix("s") or self.name
+
+    @cached_property
+    def index_name(self) -> str:
+        """What the index is called."""
+        return str(self.index.name)
+
+    @cached_property
+    def size_name(self) -> str:
+        """What its size is called."""
+        return str(self.size.name)
+
+    @property
+    def words(self) -> dict[str, Any]:
+        """What it says, but its symbols and parents."""
+        own = {name: getattr(self, name) for name in self._WORDS}
+        return {"name": self.name, "content": self.content, **own}
+
+    @cached_property
+    def alone(self) -> Axis:
+        """The same with rows that come with the data, whatever it is made of."""
+        return Axis(self.name, self.index, self.size)
+
+    @property
+    def maps(self) -> dict[Symbol, Axis]:
+        """For every index that may be used in a formula on this axis, the axis whose rows it names."""
+        return {self.index: self}
+
+    @property
+    def named(self) -> dict[str, Axis]:
+        """The same by what the indices are called."""
+        return {self.index_name: self}
+
+    @property
+    def ordinals(self) -> tuple[Symbol, ...]:
+        """Running numbers that a formula on this axis may use as values, its own first."""
+        return ()
+
+    @cached_property
+    def content(self) -> str:
+        """All that it says."""
+        return content(self)
+
+    @property
+    def parents(self) -> tuple[Axis, ...]:
+        """The axes that its rows are made of."""
+        return ()
+
+    @property
+    def is_given(self) -> bool:
+        """Whether its rows come with the data."""
+        return not self.parents
+
+    @property
+    def repeats(self) -> str | None:
+        """The given scalar that says how many rows it has for each of its parent's."""
+        return None
+
+    @property
+    def parts(self) -> tuple[tuple[str, str], ...]:
+        """What the numbers that name a row are called, and what they are: ``i``, ``j``, ``s``."""
+        return ((self.row, "number"),)
+
+    @property
+    def described(self) -> str:
+        """Its rows in words."""
+        return "one row each"
+
+
+@dataclass(frozen=True)
+class PairAxis(Axis):
+    """Pairs of another axis' rows in lexical order: every i < j, or what a subclass chooses."""
+
+    of: Axis
+    first: Symbol
+    second: Symbol
+    _WORDS = (*Axis._WORDS, "members", "choice")
+
+    @property
+    def maps(self) -> dict[Symbol, Axis]:
+        """The pair's own number and those of its two members."""
+        return {self.index: self, self.first: self.of, self.second: self.of}
+
+    @cached_property
+    def members(self) -> tuple[str, str]:
+        """What the numbers of both members are called."""
+        return self.first.name, self.second.name
+
+    @property
+    def named(self) -> dict[str, Axis]:
+        """The same by what the indices are called."""
+        return {self.index_name: self, **dict.fromkeys(self.members, self.of)}
+
+    @property
+    def parents(self) -> tuple[Axis, ...]:
+        """The axis that is paired."""
+        return (self.of,)
+
+    @property
+    def chosen(self) -> Boolean:
+        """Which of all pairs are rows, by the places of both members, from 1."""
+        return self.first < self.second
+
+    @cached_property
+    def choice(self) -> str:
+        """The same in words; empty if it is every i < j."""
+        return "" if self.chosen == (self.first < self.second) else str(self.chosen)
+
+    @property
+    def parts(self) -> tuple[tuple[str, str], ...]:
+        """The numbers of both members."""
+        return tuple(
+            (member, f"{which} of {self.of.name}")
+            for member, which in zip(self.members, ("first", "second"), strict=True)
+        )
+
+    @property
+    def described(self) -> str:
+        """Which pairs."""
+        return f"every pair {self.choice or ' < '.join(self.members)} of {self.of.name}"
+
+
+@dataclass(frozen=True)
+class RepeatAxis(Axis):
+    """A number of rows, counted by `step` = 1, 2, ..., for each row of another axis."""
+
+    of: Axis
+    step: Symbol
+    count: str
+    """Name of the given scalar that says how many, the same for all."""
+    _WORDS = (*Axis._WORDS, "step_name", "count")
+
+    @property
+    def maps(self) -> dict[Symbol, Axis]:
+        """The row's own number, and all that its parent's row may name."""
+        return {self.index: self, **self.of.maps}
+
+    @cached_property
+    def step_name(self) -> str:
+        """What the running number is called."""
+        return str(self.step.name)
+
+    @property
+    def named(self) -> dict[str, Axis]:
+        """The same by what the indices are called."""
+        return {self.index_name: self, **self.of.named}
+
+    @property
+    def ordinals(self) -> tuple[Symbol, ...]:
+        """The running number within the parent's row, then what the parent's row may use."""
+        return (self.step, *self.of.ordinals)
+
+    @property
+    def parents(self) -> tuple[Axis, ...]:
+        """The axis that is repeated."""
+        return (self.of,)
+
+    @property
+    def repeats(self) -> str:
+        """The given scalar that says how many."""
+        return self.count
+
+    @property
+    def parts(self) -> tuple[tuple[str, str], ...]:
+        """What names the parent's row, and the number in it."""
+        return (*self.of.parts, (self.step_name, f"running number in each of {self.of.name}"))
+
+    @property
+    def described(self) -> str:
+        """How its rows are counted."""
+        return f"{self.step_name} = 1, 2, ... {self.count} for each of {self.of.name}"
+
+
+@dataclass(frozen=True)
+class CountedAxis(Axis):
+    """A number of rows, counted by `step` = 1, 2, ..., whatever the data: the points of a curve."""
+
+    step: Symbol
+    number: int
+    _WORDS = (*Axis._WORDS, "step_name", "number")
+
+    @cached_property
+    def step_name(self) -> str:
+        """What the running number is called."""
+        return str(self.step.name)
+
+    @property
+    def ordinals(self) -> tuple[Symbol, ...]:
+        """The running number."""
+        return (self.step,)
+
+    @property
+    def is_given(self) -> bool:
+        """They do not."""
+        return False
+
+    @property
+    def parts(self) -> tuple[tuple[str, str], ...]:
+        """The running number."""
+        return ((self.step_name, "running number"),)
+
+    @property
+    def described(self) -> str:
+        """How many."""
+        return f"{self.number} rows, whatever the data"
