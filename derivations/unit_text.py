@@ -26,6 +26,7 @@ __all__ = [
     "coherent",
     "examples",
     "is_pure",
+    "micro",
     "misfit",
     "of_differences",
     "parse_open",
@@ -155,6 +156,10 @@ def _table() -> dict[str, tuple[Fraction, Dimension]]:
 COMMON = _table()
 """The commonest units: exact size in SI and dimension."""
 
+_MICRO = re.compile(
+    r"(?<![^\W_])[uμ](?=(?:m|g|s|N|Pa|J|A|V|K|in|mol|L|l|W|Hz|C|F|T|S|H|ohm|bar|rad|eV|Bq|Gy|Sv)(?![^\W_]))"
+)
+
 _CELSIUS = Fraction(1), (("K", 1),), (), Fraction(27315, 100)
 _FAHRENHEIT = Fraction(5, 9), (("K", 1),), (), Fraction(45967, 180)
 _SHIFTED: dict[str, tuple[Fraction, Dimension, Open, Fraction]] = {
@@ -250,6 +255,15 @@ def coherent(unit: ParsedUnit) -> str:
         if scale == 1 and dimension == unit.dimension and dimension and (name != "Hz" or name in unit.text):
             return name
     return "*".join(f"{base}{_behind(power)}" for base, power in unit.dimension) or "1"
+
+
+def micro(text: str) -> str:
+    """A unit for the eye: µ for u.
+
+    >>> micro("umol/(L min)"), micro("us"), micro("u"), micro("turn")
+    ('µmol/(L min)', 'µs', 'u', 'turn')
+    """
+    return _MICRO.sub("µ", text)
 
 
 def well_named(text: str, known: Iterable[str]) -> str:

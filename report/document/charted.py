@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
-from ...derivations.unit_text import is_pure
+from ...derivations.unit_text import is_pure, micro
 from ..charts import Chart, Series
 from ..result.result import Report
 from ..sheet import Axis, RepeatAxis
@@ -64,7 +63,7 @@ def plain_unit(unit: str) -> str:
     >>> plain_unit("um/(L min)"), plain_unit("1")
     ('µm/(L min)', '')
     """
-    return "" if is_pure(unit) else re.sub(r"\b[uμ](?=(?:m|s|in)\b)", "µ", unit)
+    return "" if is_pure(unit) else micro(unit)
 
 
 def plain(letters: Letters) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 
-from ...derivations.unit_text import is_pure
+from ...derivations.unit_text import is_pure, micro
 from ..result.numbers import RAISED
 from .escape import Markup, html, tex
 
@@ -16,7 +16,6 @@ _TOKEN = re.compile(
     r"|(?P<power>\s*(?:\^|\*\*)\s*\(?(?P<exponent>[+-]?\w+(?:[./]\d+)?)\)?|(?P<raised>[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+))"
     r"|(?P<times>\s*[*·⋅×.]\s*|\s+)|(?P<over>\s*[/∕]\s*)|(?P<other>.)"
 )
-_MICRO = re.compile(r"[uµμ](?=(?:m|g|s|N|Pa|J|A|V|K|in)$)")
 _LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻", "0123456789+-")
 
 
@@ -27,7 +26,7 @@ def _tokens(unit: str) -> Iterable[tuple[str, str]]:
         if match["power"]:
             yield "power", (match["exponent"] or match["raised"]).translate(_LOWERED).removeprefix("+")
         elif kind == "name":
-            yield kind, _MICRO.sub("µ", match["name"])
+            yield kind, micro(match["name"])
         else:
             yield kind, match.group()
 
@@ -35,8 +34,8 @@ def _tokens(unit: str) -> Iterable[tuple[str, str]]:
 def unit_html(unit: str, names: Mapping[str, Markup] | None = None) -> Markup:
     """A unit in HTML; `names` says how a name in an exponent is printed.
 
-    >>> print(unit_html("kg/m^3"), unit_html("um"))
-    kg/m³ µm
+    >>> print(unit_html("kg/m^3"), unit_html("um"), unit_html("umol/L"))
+    kg/m³ µm µmol/L
     """
     if is_pure(unit):
         return Markup("1")

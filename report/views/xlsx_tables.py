@@ -122,7 +122,7 @@ def mark_errors(
 
 def _width(block: CellBlock) -> float:
     if block.kind == "index":
-        return _INDEX_WIDTH
+        return max(_INDEX_WIDTH, 1.15 * len(block.title) + 2)
     if block.kind == "step":
         return _STEP_WIDTH
     return max(_WIDTH, 1.15 * len(block.name) + 6)
