@@ -506,14 +506,14 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
     if not entries:
         raise SheetError(f"{name} computes nothing: it has no let(...), no root(...) and no fit(...)", name)
     columns = body.whole
-    sheet = Sheet(columns)
+    sheet, curves = Sheet(columns), Drawn(tuple(body.curves))
+    Sheet((*columns, *curves.columns))  # a name that both have is told now
     used = {each.name for c in columns for each in sheet.precedents(c) if each.name != c.name}
     scalars = (c.name for c in columns if c.axis is None and c.equation)
     last = [each for each in scalars if body.of_fits.get(each, each not in used)]
     words = Vocabulary(*(_drawn(one, body.columns[one.name]) for one in body.inputs if _has_limits(one)))
     in_tables = {*body.aside, *(each for spec in body.tables for each in spec.columns)}
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
-    curves = Drawn(tuple(body.curves))
     columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
     rows = zip(*(body.examples.get(one.name, "").split() for one in columns_of), strict=False)
     head = (body.axis.row, *(f"{one.name} [{one.unit}]" for one in columns_of))

@@ -234,6 +234,10 @@ def write(folder: Path, code: str, table: str, more: str = "") -> None:
         ("a_1 = unknown('x', start=1); f = fit(y, a + sin(a_1 * x))", "the model of f is not linear"),
         ("s_a = let(x, 'x'); f = fit(y, a)", "s_a is declared twice: f has one of that name, too"),
         (
+            "b = unknown('b'); f = fit(y, a + b * x); f_points = let(b, 'b')",
+            "the column 'f_points' is called as",
+        ),
+        (
             "f = fit(y, a); g = let(f.scatter, 'scatter')",
             "scatter is nothing that a fit has: there are a, s_a, s, f",
         ),
