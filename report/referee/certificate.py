@@ -73,7 +73,8 @@ def _enclosure(problem: Problem, low: Array, high: Array) -> Enclosure:
         if name not in problem.rows
     }
     ends = {name: (problem.column(name, low), problem.column(name, high)) for name in problem.rows}
-    data |= {name: Intervals.near(*each) for name, each in ends.items()}
+    # Of a missing datum nothing is known.
+    data |= {name: Intervals.near(*each).where(problem.sources[name] >= 0) for name, each in ends.items()}
     return Enclosure(problem.sheet, problem.program, dict(problem.campaign.values.layouts), data)
 
 
