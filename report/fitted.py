@@ -10,7 +10,7 @@ from functools import cached_property
 from itertools import combinations
 from typing import Any
 
-from sympy import Expr, Indexed, Integer, Min, Piecewise, Rational, Symbol, diff
+from sympy import Abs, Expr, Indexed, Integer, Min, Rational, Symbol, diff
 
 from ..derivations.least_squares import FitQuantity, LeastSquares
 from ..derivations.reductions import Greatest, Least
@@ -30,7 +30,7 @@ STATED = "stated"
 POINTS = 65
 """Of a fitted curve: straight lines between so many look like one."""
 BEYOND = Rational(1, 20)
-"""How far a fitted curve goes on beyond the rows, in shares of their range."""
+"""How far a fitted curve goes on beyond the rows: in shares of their range, or of their distance to zero."""
 NONE = (
     "the steps from the stated start do not settle: begin nearer; or no parameters make the sum of squares "
     "least, or these rows do not tell them apart"
@@ -188,12 +188,9 @@ class DeclaredFit:
         straight = diff(self._model, over.cell, 2) == 0
         axis = CountedAxis(f"{called}_curve", row, size, step, 2 if straight else POINTS)
         low, high = (taken(over.cell, (self._axis.index, 1, self._axis.size)) for taken in (Least, Greatest))
-        below, above = (
-            BEYOND * Piecewise((Min(high - low, zero), zero >= 0), (high - low, True))
-            for zero in (low, -high)
-        )
-        way = (high - low + below + above) * (step - 1) / (axis.number - 1)
-        x, y = low - below + way, self._rows[0]
+        first, last = (end + way * BEYOND * Min(high - low, Abs(end)) for way, end in ((-1, low), (1, high)))
+        x = (first * (axis.number - step) + last * (step - 1)) / (axis.number - 1)
+        y = self._rows[0]
         across = drawn(f"{axis.name}_x", axis, x, over.unit, over.meaning, display=f"like {over.name}")
         value = self._model.xreplace({over.cell: across[row]})
         return across, drawn(f"{axis.name}_y", axis, value, own.unit, y.meaning, display=f"like {own.name}")

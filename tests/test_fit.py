@@ -570,7 +570,7 @@ def test_all_of_a_fit_is_shown_in_the_unit_of_what_it_belongs_to(tmp_path: Path)
 @pytest.mark.parametrize(
     ("body", "rows", "ends", "number"),
     [
-        (LINE, "-1,-1.1\n1,0.9\n3,3.2\n", (-1.2, 3.2), 2),
+        (LINE, "-1,-1.1\n1,0.9\n3,3.2\n", (-1.05, 3.15), 2),
         (LINE, "1,1.1\n4,,\n2,1.9\n".replace(",,", ","), (0.95, 4.15), 2),
         (LINE, "-6,1.1\n-1,1.9\n-2,1.7\n", (-6.25, -0.95), 2),
         (POWER, "1,1.0\n2,2.8\n21,96.2\n", (0.95, 22), 65),
