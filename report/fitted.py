@@ -22,7 +22,7 @@ from .charts import VERMILION, Chart, Series, drawn
 from .column import Column, Formula, Given, Iterated, SheetError
 from .named import name_of
 from .quantity import Bounds
-from .workbook import FigureSpec, SquareSum
+from .workbook import Curve, FigureSpec
 
 __all__ = ["DeclaredFit", "told_apart"]
 
@@ -64,10 +64,8 @@ class DeclaredFit:
     entries : tuple of Equation or Derivation
     aside : tuple of str
         The columns that only lead there, and stated uncertainties, which no table shows.
-    squares : tuple of SquareSum
-        The sum that tells whether the model describes the rows, if their uncertainties are known.
-    scatter_told : str
-        The column that tells how far the rows lie from the curve.
+    curve : Curve
+        What tells whether the model describes the rows.
     letters : tuple of str
         The columns that are printed by letters of the fit's own, such as s.
     """
@@ -108,7 +106,10 @@ class DeclaredFit:
             )
         self.entries, self.aside = tuple(fit.entries), tuple(part.name for part in fit.helpers)
         self.aside += tuple(column.name for column in stated)
-        self.squares = (SquareSum(fit.names["S"], axis.name, len(words)),) if stated else ()
+        self.curve = Curve(
+            fit.names["S"], axis.name, self._observed.name, fit.names["residual"], fit.names["s"],
+            tuple(map(str, sought)), u is not None,
+        )  # fmt: skip
         made = {column.name: column for column in stated}
         for each, said in sought.items():
             unit = {"unit": "" if fit.linear else "1", **said.column}
@@ -132,7 +133,6 @@ class DeclaredFit:
         self.columns = (*new, *(made[part.name] for part in parts))
         self._rows = made[fit.names["fitted"]], made[fit.names["residual"]]
         self.letters = tuple(part.name for part in parts if part.latex)
-        self.scatter_told = fit.names["s"]
 
     def __getattr__(self, name: str) -> Expr:
         """The cell of one of its quantities."""

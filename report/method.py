@@ -527,7 +527,7 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
         sheet=lambda names: Sheet(columns),
         headline=tuple(headline) or tuple(last),
         row=body.axis.row,
-        squares=tuple(body.squares),
+        curves=tuple(body.curves),
         claims=tuple(body.claims),
         adjusted=frozenset(body.adjusted),
         aside=frozenset(body.aside),

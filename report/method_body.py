@@ -30,7 +30,7 @@ from .fitted import DeclaredFit, told_apart
 from .named import name_of, references
 from .quantity import Bounds
 from .sheet import Sheet
-from .workbook import Claimed, FigureSpec, Measured, Parameter, SquareSum, TableSpec
+from .workbook import Claimed, Curve, FigureSpec, Measured, Parameter, TableSpec
 
 __all__ = [
     "FUNCTIONS",
@@ -196,7 +196,7 @@ class MethodBody(dict[str, Any]):
         self.unnamed: list[Declaration | FitLine] = []
         self.aside: list[str] = []
         self.of_fits: dict[str, bool] = {}  # and whether it is a parameter
-        self.squares: list[SquareSum] = []
+        self.curves: list[Curve] = []
         self.fits: list[DeclaredFit] = []
         self.claims: list[Claimed] = []
         self.own = map("(L{})".format, itertools.count(1))
@@ -410,10 +410,10 @@ class MethodBody(dict[str, Any]):
         self.entries += found.entries
         self.aside += found.aside
         self.of_fits |= {column.name: Symbol(column.name, real=True) in sought for column in found.columns}
-        self.squares += found.squares
+        self.curves.append(found.curve)
         self.fits.append(found)
         self.inputs = [
-            replace(each, scatter=found.scatter_told)
+            replace(each, scatter=found.curve.scatter)
             if isinstance(each, Measured) and each.name == name_of(said.observed)
             else each
             for each in self.inputs

@@ -17,7 +17,17 @@ if TYPE_CHECKING:
     from .column import Column
     from .sheet import Sheet
 
-__all__ = ["Design", "FigureSpec", "Measured", "Parameter", "SquareSum", "TableSpec", "Workbook", "tables_of"]
+__all__ = [
+    "Curve",
+    "Design",
+    "FigureSpec",
+    "Measured",
+    "Parameter",
+    "SquareSum",
+    "TableSpec",
+    "Workbook",
+    "tables_of",
+]
 
 
 @dataclass(frozen=True)
@@ -143,6 +153,35 @@ class SquareSum:
 
 
 @dataclass(frozen=True)
+class Curve:
+    """A curve that was fitted to rows: its residuals tell whether it describes them.
+
+    Parameters
+    ----------
+    name : str
+        The cell of its sum of squares.
+    axis : str
+        The rows that it sums over.
+    observed, residual : str
+        The columns of what was observed, and of what the curve leaves of that.
+    scatter : str
+        The cell of the scatter about the curve.
+    fitted : tuple of str
+        The cells that were fitted to them.
+    weighed : bool
+        Whether rows were weighed.
+    """
+
+    name: str
+    axis: str
+    observed: str
+    residual: str
+    scatter: str
+    fitted: tuple[str, ...]
+    weighed: bool
+
+
+@dataclass(frozen=True)
 class Claimed:
     """Two formulas in cells of the sheet that are to be equal whatever is measured.
 
@@ -234,6 +273,8 @@ class Workbook:
     row: str = "test"
     squares: tuple[SquareSum, ...] = ()
     """The sums of squares to be no larger and no smaller than chance makes them."""
+    curves: tuple[Curve, ...] = ()
+    """The curves whose residuals are to be no larger and no smaller than their uncertainties make them."""
     claims: tuple[Claimed, ...] = ()
     """What is to hold of its cells, whatever is measured."""
     adjusted: frozenset[str] = frozenset()

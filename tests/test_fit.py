@@ -30,6 +30,7 @@ from loopsheet.report.engines.numpy import evaluate
 from loopsheet.report.fitting.model import Model
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.study import Study
+from loopsheet.report.uncertainty.misfit import least_squares_of_errors
 from loopsheet.report.uncertainty.monte_carlo import draw
 from loopsheet.report.uncertainty.propagation import Spread
 
@@ -158,7 +159,7 @@ def test_weights_are_those_of_the_solver() -> None:
         assert cells(values, "s_a", "s_b", "s_c") == pytest.approx(found.u_by_scatter, rel=1e-10)
         assert values.scalar("f_S") == pytest.approx(found.fitted.chi2, rel=1e-12)
         assert [sheet[name].unit for name in ("a", "b", "c", "f_s")] == ["m", "m/s", "m/s^2", "1"]
-        assert [square.name for square in method.workbook.squares] == (["f_S"] if u else [])
+        assert [(curve.name, curve.weighed) for curve in method.workbook.curves] == [("f_S", True)]
 
 
 def test_of_rows_without_a_number_nothing_is_told() -> None:
@@ -317,8 +318,108 @@ def test_two_fits_of_one_column_by_its_stated_uncertainties(tmp_path: Path) -> N
     assert cells(report.values, "a", "b") == pytest.approx([offset, slope], rel=1e-12)
     assert [report.sheet[name].rule.start for name in ("A", "tau")] == [2, 5]
     found = loopsheet.load(tmp_path).findings
-    assert any("growth_S = " in line and "does not describe" in line for line in found)
-    assert not any("line_S" in line for line in found)
+    assert any("growth_residual: chi2 = " in line and "does not describe" in line for line in found)
+    assert not any("line_residual" in line for line in found)
+
+
+LINE = """\
+from loopsheet import Method, fit, measured, unknown
+
+
+class Line(Method):
+    x = measured("s", "time")
+    y = measured("mV", "voltage")
+    a, b = unknown("offset", "mV"), unknown("slope", "mV/s")
+    line = fit(y, a + b * x)
+"""
+TIME = np.array([1, 2, 3.5, 4, 5, 7])
+VOLTS = np.array([2.1, 3.2, 4.7, 4.9, 6.3, 8.2])
+
+
+def of_line(folder: Path, said: str, code: str = LINE, sizes: Any = "") -> tuple[Any, list[str]]:
+    """What is known of the residuals of a line, and what is told of it."""
+    sizes = [f"({size})" if size else "" for size in (sizes or [0] * 6)]
+    read = zip(TIME, VOLTS, sizes, strict=True)
+    rows = "".join(f"{n},{x},{y}{u}\n" for n, (x, y, u) in enumerate(read, start=1))
+    write(folder, code, f"reading,x [s],y [mV]\n{rows}", f"[uncertainty]\n{said}")
+    report = Study(folder).computed
+    told = [check.message for check in report.oddities if check.word and check.kind == "squares"]
+    return report.uncertain().misfits["line_S"], told
+
+
+def least(covariance: Array) -> float:
+    """The least sum of squares with a covariance matrix of what was observed."""
+    slopes, inverse = np.stack([np.ones(6), TIME], axis=1), np.linalg.inv(covariance)
+    found = np.linalg.solve(slopes.T @ inverse @ slopes, slopes.T @ inverse @ VOLTS)
+    left = VOLTS - slopes @ found
+    return float(left @ inverse @ left)
+
+
+def test_residuals_are_held_against_what_is_stated(tmp_path: Path) -> None:
+    """However rows were weighed, whatever they share and whichever variable has the error."""
+    own = np.array([1, 2, 1, 3, 2, 1]) * 0.1
+    exact, weighed = 'x = "exact"\n', LINE.replace("b * x)", 'b * x, u="stated")')
+    for code in (LINE, weighed):
+        known, _ = of_line(tmp_path, exact, code, [1, 2, 1, 3, 2, 1])
+        assert (known.chi2, known.dof, known.known_by) == (pytest.approx(least(np.diag(own**2))), 4, math.inf)
+    shared = '[uncertainty.shared."zero"]\nof = "y"\nstated = "u = 0.5 mV"\ngroups = [[1, 2], [3, 4, 5, 6]]\n'
+    known, _ = of_line(tmp_path, f'{exact}y = "u = 0.2 mV"\n{shared}', LINE)
+    group = np.array([0, 0, 1, 1, 1, 1])
+    together = np.eye(6) * 0.2**2 + 0.5**2 * (group[:, None] == group)
+    assert known.chi2 == pytest.approx(least(together))
+    known, _ = of_line(tmp_path, 'x = "u = 0.3 s"\ny = "u = 0.1 mV"\n')
+    assert known.chi2 == pytest.approx(of_both(VOLTS, 0.3, 0.1)[0], rel=1e-6)
+
+
+def of_both(volts: Array, u_x: float, u_y: float) -> tuple[float, float]:
+    """With errors in both variables: by differences of what polyfit leaves, and by the adjusted points."""
+
+    def left(data: Array) -> Array:
+        x, y = data[:6], data[6:]
+        return np.asarray(y - np.polyval(np.polyfit(x, y, 1), x))
+
+    data, step, size = np.concatenate([TIME, volts]), 1e-4, [u_x] * 6 + [u_y] * 6
+    moved = np.stack([left(data + step * e) - left(data - step * e) for e in np.diag(size)]) / (2 * step)
+    found, dof = least_squares_of_errors(left(data), moved.T @ moved, np.full(6, u_y), 2)
+    assert dof == 4
+    a, b, x, y = symbols("a b x y")
+    model = Model(y - a - b * x, (a, b), (x, y))
+    return found, model.fit({x: TIME, y: volts}, {x: u_x, y: u_y}, [0, 1]).fitted.chi2
+
+
+def test_errors_of_both_variables_count_as_adjusted_points_do() -> None:
+    """To first order: what is missing falls with the square of the errors."""
+    line = np.polyval(np.polyfit(TIME, VOLTS, 1), TIME)
+    first, second = (
+        abs(1 - found / adjusted)
+        for part in (1, 0.1)
+        for found, adjusted in [of_both(line + part * (VOLTS - line), part * 0.3, part * 0.1)]
+    )
+    assert second < 1e-4
+    assert first == pytest.approx(100 * second, rel=0.1)
+
+
+def test_a_scatter_that_is_not_what_was_stated_is_told(tmp_path: Path) -> None:
+    """Too much, too little, what the scatter itself says, few readings, and what the printed digits say."""
+    (_, (said,)) = of_line(tmp_path, 'x = "exact"\ny = "u = 0.01 mV"\n')
+    scatter = math.sqrt(least(np.eye(6)) / 4)
+    assert "does not describe all readings, or their standard uncertainties are understated" in said
+    assert f"u is {scatter / 0.01:.0f} times what is stated (Birge's ratio): y = " in said
+    (stated,) = re.findall('"(u = .*, dof = 4)"', said)
+    (known, told) = of_line(tmp_path, f'x = "exact"\ny = "{stated}"\n')
+    assert not told
+    assert known.chi2 == pytest.approx(4, rel=0.05)
+    (_, (said,)) = of_line(tmp_path, 'x = "exact"\ny = "u = 3 mV"\n')
+    assert "the standard uncertainties of the readings are overstated" in said
+    (_, (said,)) = of_line(tmp_path, 'x = "exact"\ny = "u = 0.04 mV"\n')
+    (_, told) = of_line(tmp_path, 'x = "exact"\ny = "u = 0.04 mV, dof = 2"\n')
+    assert "understated" in said
+    assert not told  # two degrees of freedom may be as far off
+    (known, (said,)) = of_line(tmp_path, 'x = "exact"\n')
+    assert not known.is_stated
+    assert "times what the printed digits say" in said
+    (_, told) = of_line(tmp_path, '[expected]\nline_S = "the clock jumped"\n')
+    assert told == [f"{said.partition(';')[0]}{said[said.index(';') :]}, as is expected"] or not told
 
 
 DECAY = """from sympy import exp

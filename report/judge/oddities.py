@@ -16,7 +16,7 @@ from ..cells.values import Cell, Status
 from ..messages.diagnostics import Check, Location
 from ..quantity import behind
 from ..result.chi_square import RARE, freedom, head, tail, tied
-from ..result.numbers import probability
+from ..result.numbers import probability, rounded
 from ..result.statements import of_column
 from ..sheet import Column, Given, Sheet
 from .claims import CLAIM
@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from ..inputs.uncertainty import SharedError
     from ..quantity import Printed
     from ..result.result import Report
-    from ..workbook import SquareSum
+    from ..result.uncertain import Misfit
+    from ..workbook import Curve, SquareSum
 
 __all__ = ["names", "oddities"]
 
@@ -51,16 +52,17 @@ REACH = 2
 
 def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
     """The names of all checks of a campaign's data, by kind, without computing anything."""
+    workbook = inputs.workbook
     return {
         DATA: [CELLS, ROWS, RESULT],
         LIMIT: list(map(_name, margins(sheet))),
         UNCERTAINTY: _stated(sheet, inputs),
-        SQUARES: [squares.name for squares in inputs.workbook.squares],
+        SQUARES: [*(each.name for each in workbook.squares), *(each.name for each in workbook.curves)],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
         CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
-        CLAIM: [claim.label for claim in inputs.workbook.claims],
+        CLAIM: [claim.label for claim in workbook.claims],
         EXPECTED: [expectation.address for expectation in inputs.expected],
-        LEFT_OUT: [f"{inputs.workbook.row} {each.test}" for each in inputs.left_out],
+        LEFT_OUT: [f"{workbook.row} {each.test}" for each in inputs.left_out],
     }
 
 
@@ -121,6 +123,7 @@ class _Oddities:
         yield from map(self.of_limit, self.report.marks.margins)
         yield from map(self.of_uncertainty, _stated(self.sheet, self.inputs))
         yield from map(self.of_squares, self.report.workbook.squares)
+        yield from map(self.of_curve, self.report.workbook.curves)
         yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
         yield from (self.of_constants(*each) for each in _adjusted(self.sheet, self.inputs))
         yield from self.of_expectations()
@@ -296,17 +299,47 @@ class _Oddities:
         if tied(self.report):
             said = f"{name}: errors are shared or correlated, and its weights leave that out"
             return Check(SQUARES, name, True, said, self.inputs.place, skipped=True)
-        large, small = tail(cell.value, dof), head(cell.value, dof)
         found = f"{name} = {self.report.text(cell)} on {dof} degrees of freedom"
+        return self.by_chance(cell, found, squares.axis, tail(cell.value, dof), head(cell.value, dof))
+
+    def of_curve(self, curve: Curve) -> Check:
+        """Whether the uncertainties of its rows make the residuals of a curve as large as they are."""
+        known = self.report.uncertain().misfits.get(curve.name)
+        if known is None:
+            said = f"{curve.name}: no uncertainties of the {curve.axis} to compare the residuals with"
+            return Check(SQUARES, curve.name, True, said, self.inputs.place, skipped=True)
+        found = f"{curve.residual}: chi2 = {rounded(known.chi2, 3).plain} on {known.dof} degrees of freedom"
+        if math.isfinite(known.known_by):
+            found += f" by a u with {known.known_by:.0f}"
+        large, small = (how(known.chi2, known.dof, known.known_by) for how in (tail, head))
+        if not known.is_stated:
+            small = 1.0  # nobody overstated what the printed digits say
+        instead = self.instead(curve, known) if large < RARE else ""
+        return self.by_chance(self.values.cell(curve.name), found, curve.axis, large, small, instead)
+
+    def instead(self, curve: Curve, known: Misfit) -> str:
+        """What to state if the model is right: what the scatter about the curve tells."""
+        what = "what is stated" if known.is_stated else "what the printed digits say"
+        told = f"; if the model is right, u is {rounded(known.birge, 2).plain} times {what} (Birge's ratio)"
+        if curve.observed not in self.inputs.measured or curve.weighed:
+            return f"{told}, and by the scatter {_some([f's_{each}' for each in curve.fitted])}"
+        shown = self.report.shown[curve.scatter]
+        size = rounded(shown.of(self.values.scalar(curve.scatter)), 2).plain + behind(shown.unit)
+        return f'{told}: {curve.observed} = "u = {size}, dof = {known.dof}" under [uncertainty] says so'
+
+    def by_chance(
+        self, cell: Cell, found: str, axis: str, large: float, small: float, instead: str = ""
+    ) -> Check:
+        """What to say of a sum of squares with the probabilities of so much and of so little."""
         if min(large, small) >= RARE:
-            return Check(SQUARES, name, True, f"{found} is what chance makes", self.inputs.place)
+            return Check(SQUARES, cell.name, True, f"{found}, which is what chance makes", self.inputs.place)
         said = (
             f"the probability of so much is {probability(large)}: {MISFIT}"
             if large < RARE
             else f"the probability of so little is {probability(small)}: {OVERSTATED}"
         )
-        said = f"{found}; {said.format(axis=squares.axis)}"
-        return self.check(SQUARES, name, said, _Odd(self, [cell], "is improbable"))
+        said = f"{found}; {said.format(axis=axis)}{instead}"
+        return self.check(SQUARES, cell.name, said, _Odd(self, [cell], "is improbable"))
 
     def of_groups(self, shared: SharedError) -> Check:
         """Whether every test is in a group of an error that groups share."""

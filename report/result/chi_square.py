@@ -31,7 +31,7 @@ def freedom(squares: SquareSum, report: Report) -> int:
     return report.values.rows_summed(squares.name, squares.axis) - squares.fitted
 
 
-def tail(chi2: float, dof: int) -> float:
+def tail(chi2: float, dof: int, known_by: float = math.inf) -> float:
     """The probability of a sum of squares at least so large, of so many independent standard normal numbers.
 
     Parameters
@@ -39,24 +39,36 @@ def tail(chi2: float, dof: int) -> float:
     chi2 : float
     dof : int
         At least 1.
+    known_by : float
+        The degrees of freedom of the standard uncertainty that the numbers were divided by: with a finite one
+        the sum over `dof` has Fisher's distribution F(dof, known_by).
 
     Examples
     --------
-    >>> f"{tail(3.841459, 1):.6f}", f"{tail(55.1908, 3):.2e}"
-    ('0.050000', '6.25e-12')
+    >>> f"{tail(3.841459, 1):.6f}", f"{tail(55.1908, 3):.2e}", f"{tail(4 * 5.1922, 4, 5):.5f}"
+    ('0.050000', '6.25e-12', '0.05000')
     """
+    if math.isfinite(known_by):
+        return _beta(known_by, dof, known_by / (chi2 + known_by))
     return float(mpmath.gammainc(mpmath.mpf(dof) / 2, mpmath.mpf(chi2) / 2, regularized=True))
 
 
-def head(chi2: float, dof: int) -> float:
+def head(chi2: float, dof: int, known_by: float = math.inf) -> float:
     """The probability of a sum of squares at most so large: the rest of :func:`tail`, which may be tiny.
 
     Examples
     --------
-    >>> f"{head(0.484419, 4):.6f}", f"{head(1e-4, 4):.3e}"
-    ('0.025000', '1.250e-09')
+    >>> f"{head(0.484419, 4):.6f}", f"{head(1e-4, 4):.3e}", f"{head(4 / 6.2561, 4, 5):.5f}"
+    ('0.025000', '1.250e-09', '0.05000')
     """
+    if math.isfinite(known_by):
+        return _beta(dof, known_by, chi2 / (chi2 + known_by))
     return float(mpmath.gammainc(mpmath.mpf(dof) / 2, 0, mpmath.mpf(chi2) / 2, regularized=True))
+
+
+def _beta(one: float, other: float, part: float) -> float:
+    """The share that a sum of `one` squares has of that of `one` and `other` is at most this, so often."""
+    return float(mpmath.betainc(mpmath.mpf(one) / 2, mpmath.mpf(other) / 2, 0, part, regularized=True))
 
 
 def largest(deviation: float, number: int, left_out: int = 0) -> float:

@@ -27,6 +27,7 @@ __all__ = [
     "Distributed",
     "ErrorSource",
     "Influence",
+    "Misfit",
     "Together",
     "Uncertainties",
 ]
@@ -330,6 +331,34 @@ class Influence:
 
 
 @dataclass(frozen=True)
+class Misfit:
+    """What the residuals of a curve come to beside the standard uncertainties that were known before.
+
+    Parameters
+    ----------
+    chi2 : float
+        The least sum of squares of errors, each over its standard uncertainty, that make these residuals.
+    dof : int
+        Its degrees of freedom: the rows less what was fitted to them.
+    known_by : float
+        The degrees of freedom of the standard uncertainties themselves, the least of all rows; infinite where
+        they are known.
+    is_stated : bool
+        Whether any of them was stated; else they follow from printed digits alone.
+    """
+
+    chi2: float
+    dof: int
+    known_by: float
+    is_stated: bool
+
+    @property
+    def birge(self) -> float:
+        """How many times too small the standard uncertainties are, if the model is right (Birge's ratio)."""
+        return math.sqrt(self.chi2 / self.dof)
+
+
+@dataclass(frozen=True)
 class Uncertainties:
     """The standard uncertainty of every cell, and the budgets of the result.
 
@@ -345,6 +374,8 @@ class Uncertainties:
         On those cells and all scalars.
     bent : mapping of column name to bool array (rows,)
         Whether terms of second order are a part of it.
+    misfits : mapping of str to Misfit
+        Of the workbook's curves, by the cells of their sums of squares; those that are known.
     """
 
     u: Mapping[str, NDArray[np.float64]]
@@ -352,3 +383,4 @@ class Uncertainties:
     conformities: tuple[Conformity, ...] = ()
     influence: Influence | None = None
     bent: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
+    misfits: Mapping[str, Misfit] = field(default_factory=dict)

@@ -22,10 +22,12 @@ from ..inputs.inputs import Inputs
 from ..inputs.limits import Limits
 from ..judge.chain import Chain, Made
 from ..judge.sensitivity import Numbers
-from ..result.uncertain import Budget, Conformity, Contribution, Influence, Together, Uncertainties
+from ..result.uncertain import Budget, Conformity, Contribution, Influence, Misfit, Together, Uncertainties
 from ..sheet import Column, Given, PairAxis, RepeatAxis
+from ..workbook import Curve
 from .conformity import conformity
 from .coverage import assigned, coverage, effective
+from .misfit import least_squares_of_errors
 from .monte_carlo import by_draws
 from .second_order import SecondOrder, root_of
 from .sources import correlated, given, sources
@@ -46,6 +48,8 @@ MOST_PASSED = 100_000
 """Influences on the rows of columns that are passed on to other reports: some megabytes of a file."""
 ROUNDED = 2.0**-52
 """Of a value: a computed one has no uncertainty that is less, for no double tells it from none."""
+MOST_ROWS = 1000
+"""Of a curve; of more, the covariance of all residuals is too large to be taken apart."""
 NOTHING = 1e-12
 """A contribution that is less than this share of the largest is left out of a budget."""
 
@@ -307,6 +311,26 @@ class Spread:
         estimate = float(self.values.value[name][row]) if len(source.moves) == 1 else None
         return Contribution(source, estimate, self.values.sheet[name].unit, u, share)
 
+    def misfit(self, curve: Curve) -> Misfit | None:
+        """What the residuals of a curve come to beside the uncertainties that are propagated to them.
+
+        None where nothing is left over, where a row has no uncertainty, and where there are too many rows.
+        """
+        rows = np.flatnonzero(self.values.status[curve.residual] == Status.OK)
+        if not len(curve.fitted) < len(rows) <= MOST_ROWS or not self.knows(curve.residual):
+            return None
+        own, observed = ([(name, int(row)) for row in rows] for name in (curve.residual, curve.observed))
+        moved = self.contributions(observed)
+        together, size = self._with_correlated(moved), np.sqrt(self._variance(moved))
+        if not np.all(size > 0):
+            return None
+        residuals = self.values.value[curve.residual][rows]
+        chi2, dof = least_squares_of_errors(residuals, self.covariance(own), size, len(curve.fitted))
+        known_by = min(map(self._effective, size.tolist(), moved, together))
+        moving = np.any(moved != 0, axis=0)
+        stated = any(source.said for source, moves in zip(self.sources, moving, strict=True) if moves)
+        return Misfit(chi2, dof, known_by, stated) if dof else None
+
     def _effective(self, u: float, own: Array, together: Array) -> float:
         """Of independent estimates: the sources of one sample are one of them."""
         samples = [source.sample or n for n, source in enumerate(self.sources)]
@@ -372,4 +396,5 @@ def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Un
         tuple(map(spread.conformity, inputs.limits)),
         spread.influence(passed_on, [name for name in rows if spread.knows(name)]),
         {name: second != 0 for name, (_, second) in variances.items()},
+        {each.name: found for each in inputs.workbook.curves if (found := spread.misfit(each))},
     )
