@@ -21,6 +21,7 @@ class Lab(Method, rows="readings", headline="m"):
     m = let(mean(z), "mean rest", "N")
 """
 TABLE = "reading,x [mm],y [N]\n1,1.00,2.0\n2,1.10,2.2\n3,1.30,2.7\n"
+FULLER = "reading,x [mm],y [N],z [N]\n1,1.00,2.0,3.0\n2,1.10,2.2,3.3\n"
 TOML = 'workbook = "workbook.py"\n[parameters]\nK = "2.00 N/mm"\n[measurements]\nfile = "measurements.csv"\n'
 SHARED = '[uncertainty.shared.gauge]\nof = "x"\nstated = "u = 0.01 mm"\ngroups = [[1, 2], [2, 3]]\n'
 
@@ -38,6 +39,8 @@ SHARED = '[uncertainty.shared.gauge]\nof = "x"\nstated = "u = 0.01 mm"\ngroups =
         ("workbook.py", "", '    q = unknown("nothing")\n', "12:5", "neither a root nor a fit finds it"),
         ("measurements.csv", "1.10", "-", "3:3", "the cell of what was not measured is empty"),
         ("measurements.csv", "3,1.30", "2,1.30", "4:1", "reading 2 is there twice, first in line 3"),
+        ("measurements.csv", TABLE, FULLER, "1:22", "allowed: reading, x, y, u(x), u(y) or left out"),
+        ("measurements.csv", "reading", "raeding", "1:1", "did you mean 'reading'?"),
     ],
 )  # fmt: skip
 def test_hints(tmp_path: Path, file: str, old: str, new: str, place: str, told: str) -> None:
@@ -60,3 +63,15 @@ def test_a_row_is_expected_to_be_odd_by_its_own_word(tmp_path: Path, row: str) -
         (tmp_path / name).write_text(text, encoding="utf-8")
     oddities = Study(tmp_path).computed.oddities
     assert f"{row}, slipped: x[3] has no value (#INPUT!)" in [check.message for check in oddities]
+
+
+def test_an_error_that_rows_share_names_them_by_their_own_word(tmp_path: Path) -> None:
+    shared = SHARED.replace("[[1, 2], [2, 3]]", "[[1, 2], [3]]")
+    for name, text in {"workbook.py": CODE, "measurements.csv": TABLE, "report.toml": TOML + shared}.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    report = Study(tmp_path).computed
+    (budget,) = report.uncertain().budgets
+    assert {"gauge (readings 1, 2)", "gauge (reading 3)"} <= {one.source.name for one in budget.contributions}
+    (tmp_path / "report.toml").write_text(TOML + shared.replace(", [3]", ""), encoding="utf-8")
+    told = [check.message for check in Study(tmp_path).computed.oddities if check.kind == "groups"]
+    assert told == ["gauge: reading 3 is in no group of it, and so without it; a group may be of one reading"]

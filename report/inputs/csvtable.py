@@ -276,6 +276,7 @@ def match_columns(
     required: Mapping[str, str],
     optional: Sequence[str],
     findings: Findings,
+    called: Mapping[str, str] | None = None,
 ) -> dict[str, int]:
     """Say where each column is, and report those that are missing, doubled or unknown.
 
@@ -291,8 +292,10 @@ def match_columns(
         Those that may be there.
     findings : Findings
         Where findings go.
+    called : mapping of str to str, optional
+        What some of them are called in what is told.
     """
-    known = [*required, *optional]
+    known, own = [*required, *optional], called or {}
     places: dict[str, int] = {}
     meant: Counter[str | None] = Counter()
     for place, (name, field) in enumerate(zip(names, table.header, strict=True)):
@@ -301,11 +304,12 @@ def match_columns(
         elif name in known:
             places[name] = place
         elif name or not field.text:
-            missing = [word for word in known if word not in names]
+            told = list(dict.fromkeys(own.get(word, word) for word in known))
+            missing = [own.get(word, word) for word in known if word not in names]
             meant[close(name, missing)] += 1  # a misspelt column is one problem, not two
-            suggestion = suggest(name, missing) or suggest(name, known)
-            findings.add("LS303", table.at(field), text=name, known=listing(known), suggestion=suggestion)
+            suggestion = suggest(name, missing) or suggest(name, told)
+            findings.add("LS303", table.at(field), text=name, known=listing(told), suggestion=suggestion)
     for name, example in required.items():
-        if name not in places and not meant[name]:
+        if name not in places and not meant[own.get(name, name)]:
             findings.add("LS301", table.end_of_header(), text=name, example=example)
     return places

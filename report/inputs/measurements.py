@@ -177,7 +177,7 @@ def read_measurements(
             optional += {"test": None} if has_names else {"test": None, called: None}
         known = [*([] if has_names else [called]), *required, *optional, *elsewhere]
         remarks = tuple(_remarks(table, heads, names, known))
-        places = match_columns(table, names, required, [*optional, *remarks], findings)
+        places = match_columns(table, names, required, [*optional, *remarks], findings, {"test": called})
     tests = tuple(range(1, len(table.rows) + 1))
     if "test" in places:
         tests = _tests(table, places["test"], findings)

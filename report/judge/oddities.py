@@ -100,6 +100,7 @@ class _Oddities:
 
     def __init__(self, report: Report) -> None:
         self.report, self.inputs, self.sheet, self.values = report, report.inputs, report.sheet, report.values
+        self.rows = next((a.name for a in self.sheet.axes if not a.parents), "")
         self.met: dict[str, list[str]] = {each.address: [] for each in self.inputs.expected}
         self.failed = _Odd(self, report.faults)
         self.outside = {
@@ -177,7 +178,7 @@ class _Oddities:
         for row, test in enumerate(self.inputs.tests):
             if weighed and not any(self.values.value[name][row] for name in weighed):
                 said = f"{self.inputs.workbook.row} {self.inputs.called(test)} has {of} without uncertainty"
-                yield f"{said}, so that no other test would count beside it"
+                yield f"{said}, so that no other {self.inputs.workbook.row} would count beside it"
 
     def without_value(self, column: Column, cells: Sequence[Cell]) -> str:
         """``alpha: 4 of 10 pairs have no value: alpha[1-2] and alpha[2-3] #NOROOT!: ...``."""
@@ -342,16 +343,15 @@ class _Oddities:
         return self.check(SQUARES, cell.name, said, _Odd(self, [cell], "is improbable"))
 
     def of_groups(self, shared: SharedError) -> Check:
-        """Whether every test is in a group of an error that groups share."""
+        """Whether every row is in a group of an error that groups share."""
         rest = [test for test in self.inputs.tests if not any(test in group for group in shared.groups)]
+        row = self.inputs.workbook.row
         if not rest:
-            return Check(
-                GROUPS, shared.name, True, f"{shared.name}: every test is in a group", self.inputs.place
-            )
-        which = (
-            f"test{'s' * (len(rest) > 1)} {_some(list(map(str, rest)))} {'is' if len(rest) == 1 else 'are'}"
-        )
-        said = f"{shared.name}: {which} in no group of it, and so without it; a group may be of one test"
+            said = f"{shared.name}: every {row} is in a group"
+            return Check(GROUPS, shared.name, True, said, self.inputs.place)
+        rows = row if len(rest) == 1 else self.rows
+        which = f"{rows} {_some(list(map(str, rest)))} {'is' if len(rest) == 1 else 'are'}"
+        said = f"{shared.name}: {which} in no group of it, and so without it; a group may be of one {row}"
         return Check(GROUPS, shared.name, True, said, self.inputs.place, note="warning")
 
     def of_constants(self, cell: str, constants: Sequence[str]) -> Check:

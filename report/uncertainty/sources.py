@@ -61,7 +61,9 @@ def _shared(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
             own = [rows[label] for label in ((test,) if test else () for test in group) if label in rows]
             errors = {row: each.error(number) for row in own if (number := printed[row]) is not None}
             moves = tuple((column.name, row, error.u) for row, error in errors.items())
-            named = f" (test{'s' * (len(group) > 1)} {', '.join(map(str, group))})" if each.groups else ""
+            named = ""
+            if each.groups and (axis := column.axis):
+                named = f" ({axis.name if len(group) > 1 else axis.row} {', '.join(map(str, group))})"
             if any(u for _, _, u in moves):
                 one = next(iter(errors.values()))
                 yield ErrorSource(

@@ -78,7 +78,7 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
         weighed = any(block.name in report.sheet.weighed for block in blocks)
         stays = " but standard uncertainties, which stay as issued" * weighed
         says = f"Type over the yellow cells; all else follows{stays}."
-        style.text(sheet, 1, 0, f"{says} An empty one leaves its test out of all sums.", "subtitle")
+        style.text(sheet, 1, 0, f"{says} An empty one leaves its {axis.row} out of all sums.", "subtitle")
         given = [b for b in blocks if b.kind == "given" and b.place.row == FIRST_ROW]
         says = "whether the given cells are what they may be"
         _write_head(sheet, style, grid.notes[name].column, _NOTE_WIDTH, "check", says)
