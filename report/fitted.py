@@ -108,7 +108,7 @@ class DeclaredFit:
         self.aside += tuple(column.name for column in stated)
         self.curve = Curve(
             fit.names["S"], axis.name, self._observed.name, fit.names["residual"], fit.names["s"],
-            tuple(map(str, sought)), u is not None,
+            tuple(map(str, sought)), u is not None, tuple(each.claim.label for each in fit.claims),
         )  # fmt: skip
         made = {column.name: column for column in stated}
         for each, said in sought.items():

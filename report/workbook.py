@@ -170,6 +170,9 @@ class Curve:
         The cells that were fitted to them.
     weighed : bool
         Whether rows were weighed.
+    slopes : tuple of str
+        The labels of the claims that the sum of squares has no slope by each; none of a linear model, whose
+        parameters have proved equations of their own.
     """
 
     name: str
@@ -179,6 +182,7 @@ class Curve:
     scatter: str
     fitted: tuple[str, ...]
     weighed: bool
+    slopes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -450,6 +450,33 @@ def test_how_far_a_fit_steps_is_no_corner_of_what_it_finds(tmp_path: Path) -> No
     assert budget.u == pytest.approx(drawn.u, rel=0.04)
 
 
+def test_why_of_what_a_fit_finds_names_its_data_its_start_and_its_proof(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = "test,t [s],A [1],left out\n1,0,10.2,\n2,2,,\n3,4,2.4,\n4,5,1.9,\n5,6,9.9,dust\n"
+    write(tmp_path, DECAY, table, '[uncertainty]\nA = "u = 1"\nt = "exact"\n')
+    assert main(["why", "c", str(tmp_path)]) == 0
+    told = capsys.readouterr().out
+    for line in (
+        "  from      (1b) definition\n            f_G2 = sum(f_J2,k*f_residual,k, k = 1..n) = 0\n",
+        "  fitted    to A of 3 of 4 readings, with A_0, by least squares; f_s = ",
+        "  begun     at 0.4 1/s\n  proof     (L14) slope of the sum of squares by c: proved\n",
+        "  left out  reading 2: #INPUT! f_residual[2] needs A[2]: the datum is missing or invalid\n",
+        "  left out  reading 5: dust\n",
+        "  rests on  t[1] = 0 s, t[3] = 4 s, t[4] = 5 s, A[1] = 10.2, A[3] = 2.4, A[4] = 1.9\n",
+        "  used by   f_fitted[1] = ",
+    ):
+        assert line in told
+    assert "f_J1" not in told.partition("used by")[2]
+    write(tmp_path, LINE, "reading,x [s],y [mV]\n1,1,2.1\n2,2,3.2\n3,4,4.9\n")
+    assert main(["why", "b", str(tmp_path)]) == 0
+    told = capsys.readouterr().out
+    assert "  from      (1b) proved\n" in told
+    assert "  fitted    to y of 3 readings, with a, by least squares; line_s = " in told
+    assert "  rests on  x[1] = 1 s, x[2] = 2 s, x[3] = 4 s, y[1] = 2.1 mV, " in told
+    assert "begun" not in told
+
+
 def test_what_is_fitted_does_not_scatter_about_its_mean(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -38,4 +38,4 @@ def _told(study: Study, address: str) -> str:
     from ..views.why import equations_of, why
 
     column, label = find_one(report := study.computed, address)
-    return why(replace(report, proofs=study.proofs(equations_of(column))), column.name, label)
+    return why(replace(report, proofs=study.proofs(equations_of(report, column))), column.name, label)

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+import numpy as np
 from sympy import Expr, Symbol
 
 from ...derivations.equation import Equation
 from ...derivations.reductions import REDUCTIONS
 from ...derivations.text import Wording, text_of_equation
 from ..cells.trace import Group, dependents_of, precedents_of
-from ..cells.values import Cell
+from ..cells.values import Cell, Status
 from ..quantity import behind
 from ..result.result import Report
-from ..sheet import Column, Formula, Given, Root
+from ..sheet import Column, Formula, Given, Iterated, Root
+from ..workbook import Curve
 
 __all__ = ["equations_of", "why"]
 
@@ -57,9 +59,14 @@ def why(report: Report, name: str, label: tuple[int, ...] = ()) -> str:
     else:
         lines += list(_sources(report, column))
         lines += list(_equation(report, column, row, cell))
-    before = _told(report, precedents_of(report.values, column, row))
+    curve = _curve_of(report, column)
+    lines += list(_fitted(report, column, curve)) if curve else []
+    groups = _data(report, curve) if curve else precedents_of(report.values, column, row)
+    before = _told(report, (group for group in groups if group.column != column))
     lines += [_line("marked", count.said) for count in report.marks.behind(column) if count.number]
-    after = _told(report, dependents_of(report.values, column, row))
+    aside = report.workbook.aside if curve else frozenset()
+    users = dependents_of(report.values, column, row)
+    after = _told(report, (each for each in users if each.column != column and each.column.name not in aside))
     lines += [_line("rests on", before)] if before else []
     lines += [_line("used by", after)] if after else []
     return "\n".join(lines)
@@ -114,32 +121,43 @@ def _where(report: Report, name: str, row: int) -> str:
 # --- equations -------------------------------------------------------------------------------------------
 
 
-def equations_of(column: Column) -> list[Equation]:
-    """The equations that a column comes from: its own, and the one that its root is sought in."""
+def equations_of(report: Report, column: Column) -> list[Equation]:
+    """The equations that a column comes from: its own, and the one that its root is sought in.
+
+    Of what a fit that is not linear finds, also that the sum of squares has no slope there.
+    """
     equations = [column.equation] if column.equation is not None else []
     if isinstance(column.rule, Root) and column.rule.form.label != column.rule.equation.label:
         equations.append(column.rule.form)
+    if (curve := _curve_of(report, column)) and curve.slopes:
+        label = curve.slopes[curve.fitted.index(column.name)]
+        equations += [each for each in report.ledger.equations() if each.label == label]
     return equations
 
 
 def _sources(report: Report, column: Column) -> Iterator[str]:
     """The numbers of its equations with what the proofs say of them."""
-    equations = equations_of(column)
+    equations = equations_of(report, column)
     statuses = {proof.equation.label: proof.status.value for proof in report.proofs}
-    told = [f"{e.label} {statuses[e.label]}" for e in equations if e.label in statuses]
+    slopes = curve.slopes if (curve := _curve_of(report, column)) else ()
+    told = [
+        f"{e.label} {statuses[e.label]}" for e in equations if e.label in statuses and e.label not in slopes
+    ]
     yield _line("from", ", solved as ".join(told) or column.source)
 
 
 def _equation(report: Report, column: Column, row: int, cell: Cell) -> Iterator[str]:
     equation = column.equation
     assert equation is not None
-    yield _line("", text_of_equation(equation.origin, report.ledger.vocabulary))
+    is_zero = isinstance(column.rule, Iterated) and 0 in column.rule.equation.sides
+    yield _line("", text_of_equation(equation.origin, report.ledger.vocabulary) + " = 0" * is_zero)
     summed = report.sheet.summed_axes(column)
     if cell.value is None:
         return
     if any(member.has(*REDUCTIONS) for member in equation.members):
-        sizes = (f"{report.values.rows_summed(column.name, a.name)} {a.name}" for a in summed)
-        yield _line("", f"over {', '.join(sizes)}")
+        sizes = [f"{report.values.rows_summed(column.name, a.name)} {a.name}" for a in summed]
+        if sizes:
+            yield _line("", f"over {', '.join(sizes)}")
     else:
         # A formula's own side is the cell itself; a root's equation shows the cell inside of it.
         text = Wording(report.ledger.vocabulary).text
@@ -147,6 +165,51 @@ def _equation(report: Report, column: Column, row: int, cell: Cell) -> Iterator[
         if isinstance(column.rule, Formula):
             numbers = [cell.address, numbers[-1], _number(cell.value)]
         yield _line("in SI", " = ".join(numbers))
+
+
+# --- fits ------------------------------------------------------------------------------------------------
+
+
+def _curve_of(report: Report, column: Column) -> Curve | None:
+    """The fit that finds a column."""
+    return next((curve for curve in report.workbook.curves if column.name in curve.fitted), None)
+
+
+def _data(report: Report, curve: Curve) -> Iterator[Group]:
+    """What was given, of the rows that a fit is over."""
+    values, sheet = report.values, report.sheet
+    own = sheet[curve.residual].axis
+    used = tuple(np.flatnonzero(values.status[curve.residual] == Status.OK).tolist())
+    for column in sheet.ancestors(sheet[curve.residual]):
+        if _is_given(column) and column.axis in (own, None):
+            yield Group(column, used if column.axis == own else (0,))
+
+
+def _fitted(report: Report, column: Column, curve: Curve) -> Iterator[str]:
+    """Over which rows a fit is, which are left out and why, and where it begins."""
+    values, inputs, row = report.values, report.inputs, report.workbook.row
+    size, used = values.layouts[curve.axis].size, values.rows_summed(curve.name, curve.axis)
+    number = f"{used} {curve.axis}" if used == size else f"{used} of {size} {curve.axis}"
+    beside = [name for name in curve.fitted if name != column.name]
+    found = f", with {', '.join(beside)}" if beside else ""
+    scatter = f"{curve.scatter} = {report.text(values.cell(curve.scatter))}"
+    yield _line("fitted", f"to {curve.observed} of {number}{found}, by least squares; {scatter}")
+    if isinstance(column.rule, Iterated):
+        start = column.rule.start
+        at = Wording(report.ledger.vocabulary).text(start)
+        if start.is_number:
+            at = f"{report.shown[column.name].of(float(start)):.15g}{_unit(report, column.name)}"
+        yield _line("begun", f"at {at}")
+    for proof in (proof for proof in report.proofs if proof.equation.label in curve.slopes):
+        yield _line("proof", f"{proof.equation.label} {proof.equation.title}: {proof.status.value}")
+    lost = (
+        {cell.label[0]: cell.reason for cell in values.cells(curve.residual) if cell.status is not Status.OK}
+        if used < size
+        else {}
+    )
+    gone = {each.test: each.reason for each in inputs.left_out}
+    for test, reason in (*lost.items(), *gone.items()):
+        yield _line("left out", f"{row} {inputs.called(test)}: {reason}")
 
 
 def _number(value: float) -> str:
