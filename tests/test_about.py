@@ -9,6 +9,7 @@ from small_report import FILES, end_gauge
 
 from loopsheet.report.cli import main
 from loopsheet.report.inputs.about import About, read_about
+from loopsheet.report.study import Study
 
 HEADER = "source,cell,index,value,unit,expect,recomputed,reason"
 
@@ -90,3 +91,41 @@ def test_the_report_shows_them_beside_what_is_computed(
         assert "Published uncertainties" in told
         assert "a slip" in told
         assert "26" in told
+
+
+SIGNS = """from loopsheet import Method, let, mean, measured
+
+
+class Signs(Method, rows="readings"):
+    'Values of both signs.'
+
+    x = measured("mm", "length")
+    y = let(-x / 7, "share", "mm")
+    m = let(mean(y), "mean share", "mm")
+"""
+
+
+@pytest.mark.parametrize(
+    ("modes", "m", "u", "differs"),
+    [
+        ('m = "truncated"\n"u(y)" = "truncated"', "-2.88", "0.0041", 0),
+        ('m = "truncated"\n"u(y)" = "truncated"', "-2.89", "0.0041", 1),
+        ('m = "truncated"\n"u(y)" = "truncated"', "-2.88", "0.0042", 1),
+        ('m = "truncated"', "-2.88", "0.0041", 1),
+        ('"u(y)" = "truncated"', "-2.89", "0.0041", 0),
+    ],
+)
+def test_digits_were_cut_off_of_what_is_said_to_be_truncated(
+    tmp_path: Path, modes: str, m: str, u: str, differs: int
+) -> None:
+    """A mean of -2.88571 and u = 0.00419: each of both ways is told from the other."""
+    published = f"source,cell,index,value,unit\nT,m,,{m},mm\nT,u(y),1,{u},mm\n"
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\nx = "u = 0.0293 mm"\n'
+    toml += f'[published]\nfile = "published.csv"\n[published.printed]\n{modes}\n'
+    table = "reading,x [mm]\n1,10.0000\n2,20.0000\n3,30.6000\n"
+    files = {"workbook.py": SIGNS, "published.csv": published, "report.toml": toml, "m.csv": table}
+    for name, text in files.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    study = Study(tmp_path)
+    found = [c for c in (*study.report.comparisons, *study.report.comparisons_u) if c.verdict != "same"]
+    assert len(found) == differs

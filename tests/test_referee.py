@@ -267,11 +267,19 @@ def test_a_stated_uncertainty_may_reach_further_than_the_digits(tmp_path: Path) 
 
 
 @pytest.mark.parametrize(
-    ("text", "verdict"),
-    [("30.999", WITHIN), ("31.001", UNREACHABLE), ("29.001", WITHIN), ("28.999", UNREACHABLE)],
+    ("text", "mode", "verdict"),
+    [
+        *(("30.999", "rounded", WITHIN), ("31.001", "rounded", UNREACHABLE)),
+        *(("29.001", "rounded", WITHIN), ("28.999", "rounded", UNREACHABLE)),
+        *(("30.999", "truncated", WITHIN), ("31.000", "truncated", UNREACHABLE)),
+        *(("29.000", "truncated", WITHIN), ("28.999", "truncated", UNREACHABLE)),
+    ],
 )
-def test_uncertainties_combine_in_quadrature_and_cover_twice(text: str, verdict: str) -> None:
-    """JCGM 100:2008, (10) and 6.3.3: u(a) = 0.3 and u(b) = 0.4 are 0.5 in a + b, twice that is covered."""
+def test_uncertainties_combine_in_quadrature_and_cover_twice(text: str, mode: str, verdict: str) -> None:
+    """JCGM 100:2008, (10) and 6.3.3: u(a) = 0.3 and u(b) = 0.4 are 0.5 in a + b, twice that is covered.
+
+    What was truncated stands for a number that is half a unit larger on the average.
+    """
     k, n = (Symbol(name, integer=True, positive=True) for name in "kn")
     a, b = (Column(name, Axis("rows", k, n), Given()) for name in "ab")
     total = Formula(Equation("", (Symbol("y"), a[k] + b[k]), "for a test", Kind.DEFINITION))
@@ -280,7 +288,8 @@ def test_uncertainties_combine_in_quadrature_and_cover_twice(text: str, verdict:
         name: [replace(pure(digits), stated=(Error(Fraction(u), said=f"u = {u}"),))]
         for name, digits, u in (("a", "10.000", "0.3"), ("b", "20.000", "0.4"))
     }
-    (comparison,) = judged(sheet, measured, {}, lambda _: [PublishedValue("Table", "y", (1,), pure(text))])
+    printed = replace(pure(text), mode=mode)
+    (comparison,) = judged(sheet, measured, {}, lambda _: [PublishedValue("Table", "y", (1,), printed)])
     found = comparison.refereed
     assert found is not None
     assert found.u == pytest.approx(0.5, rel=1e-9)

@@ -155,7 +155,7 @@ class _Alone:
     def _else(self, n: int, bound_low: Array, bound_high: Array) -> str:
         """The word for a value that nothing was found for."""
         u = self._u(n)
-        distance = abs(self.here[n] - float(self.problem.published[n].printed.value))
+        distance = abs(self.here[n] - self.problem.published[n].printed.spread[0])
         if u is not None and distance <= COVERAGE * u:
             return WITHIN
         low, high = (float(end) for end in self.problem.published[n].printed.interval)
