@@ -22,8 +22,9 @@ def given(report: Report) -> dict[str, Any]:
     return {
         "tests": _tests(report, measured),
         "parameters": {name: number.text for name, number in inputs.parameters.items() if name in sheet},
-        "heads": inputs.heads or {"test": "test"},
+        "heads": inputs.heads or {"test": inputs.workbook.row},
         "texts": _texts(report, measured),
+        "naming": [*inputs.naming],
         "toml": list(_toml(report)),
         **_files(report),
     }

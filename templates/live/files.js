@@ -22,10 +22,14 @@ function savedField(test, name) {
   if (name === "test") return String(label);
   if (name === "left out") return leftOut(test);
   if (cells[of] === "" && issuedCell(label, of)) return "";
-  if (!(name in cells)) return was ?? (of in cells ? uncertaintyOf(LIVE.columns[of], label, cells[of]) : "");
+  if (!(name in cells)) return was ?? (of in cells ? uncertaintyOf(LIVE.columns[of], label, cells[of]) : wordOf(label, name));
   const issued = issuedCell(label, name);
   return was && was !== issued ? (cells[name] === issued ? was : withStated(cells[name], CONCISE.exec(was))) : cells[name];
 }
+
+// What stands beside a row in a column of words: a row that was added has a name where all others have one, because a
+// build tells the names only of tables in which none is missing.
+const wordOf = (label, name) => LIVE.texts[label]?.[name] ?? (LIVE.naming.includes(name) ? `${ROW} ${label}` : "");
 
 // A number with the uncertainty that another text has in parentheses, and as many digits as say it.
 function withStated(text, [, other, u]) {

@@ -45,7 +45,7 @@ class Table {
   newRow(index) {
     const text = index.replaceAll("-", "–");
     const row = make("tr", { "data-label": index }, make("th", { scope: "row" }, text));
-    for (const head of this.words) row.append(make("td", { class: head.className }, LIVE.texts[index]?.[head.textContent] ?? ""));
+    for (const head of this.words) row.append(make("td", { class: head.className }, wordOf(index, head.textContent)));
     for (const { name, identified } of this.columns) {
       const data = { id: identified ? cellId("cell", name, index) : null, "data-cell": name, "data-index": index };
       if (!LIVE.columns[name].given) {

@@ -41,7 +41,7 @@ _WORDS = """() => Array.from(document.querySelectorAll("main table:not(.list) tr
 ])"""
 
 
-def test_rows_keep_their_names_and_a_new_one_has_none(open_page: Callable[..., Live], tmp_path: Path) -> None:
+def test_rows_keep_their_names_and_a_new_one_gets_one(open_page: Callable[..., Live], tmp_path: Path) -> None:
     folder = gas.folder(tmp_path / "gas", table=gas.NAMED, code=gas.IN_TABLES)
     build.build(Study(folder), tmp_path / "out", ("html",))
     live = open_page(tmp_path / "out" / "report.html")
@@ -71,16 +71,17 @@ def test_rows_keep_their_names_and_a_new_one_has_none(open_page: Callable[..., L
     live.click("live-add")  # and is no other's, whose words would stand beside it
     live.page.keyboard.type("25.0")
     live.press("Enter")
-    assert words() == [*measured[:3], ["5", "", ""], *computed, ["5", ""]]
+    assert words() == [*measured[:3], ["5", "", "reading 5"], *computed, ["5", "reading 5"]]
     saved = live.save(tmp_path / "saved", "workbook.py", "published.csv")
     assert (saved / "measurements.csv").read_text(encoding="utf-8").splitlines() == [
         "reading,note,specimen,T [degC],left out",
         '1,,"=1+1",20.5,',
         f'2,"{note}","@x <b>y</b>",22.5,',
         f'3,,"{code}",-3.2,',
-        "5,,,25.0,",
+        "5,,reading 5,25.0,",
         "4,,17,30,fell",
     ]
+    assert Study(saved).inputs.naming == ("specimen",)
     live.click("live-reset")
     assert words() == [*measured[:3], ["4", "", "17"], *computed]
 
