@@ -307,8 +307,11 @@ class _Oddities:
         """Whether the uncertainties of its rows make the residuals of a curve as large as they are."""
         known = self.report.uncertain().misfits.get(curve.name)
         if known is None:
-            said = f"{curve.name}: no uncertainties of the {curve.axis} to compare the residuals with"
-            return Check(SQUARES, curve.name, True, said, self.inputs.place, skipped=True)
+            left = self.values.rows_summed(curve.name, curve.axis) > len(curve.fitted)
+            said = f"nothing left over of {curve.axis}"
+            if left:
+                said = f"{curve.observed} has no uncertainty to compare the residuals with, or too many rows"
+            return Check(SQUARES, curve.name, True, f"{curve.name}: {said}", self.inputs.place, skipped=left)
         found = f"{curve.residual}: chi2 = {rounded(known.chi2, 3).plain} on {known.dof} degrees of freedom"
         if math.isfinite(known.known_by):
             found += f" by a u with {known.known_by:.0f}"
