@@ -42,8 +42,9 @@ function fillBar(look, name, row, index) {
   if (column.given) fillLine("bar-source", `given, ${here.axis === null ? "in report.toml" : `in ${LIVE.file}, ${ROW} ${index}`}`);
   else fillLine("bar-source", ...sourceLine(column), ...publishedMath(column, name));
   if (column.put && trace.isOk(name, row)) fillLine("bar-put", ...putIn(look, name, row));
-  fillCells(look, "bar-precedents", "rests on", trace.precedents(name, row));
-  fillCells(look, "bar-dependents", "used by", trace.dependents(name, row));
+  const others = (groups) => groups.filter((one) => one.name !== name); // what is iterated names itself
+  fillCells(look, "bar-precedents", "rests on", others(trace.precedents(name, row)));
+  fillCells(look, "bar-dependents", "used by", others(trace.dependents(name, row)));
 }
 
 // Its uncertainty and what most of it comes from.

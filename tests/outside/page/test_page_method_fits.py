@@ -50,3 +50,8 @@ def test_the_edited_page_is_what_a_rebuild_gives(
         assert float(cell.value) == pytest.approx(again.value[cell.name][row], rel=0, abs=1e-13 * size)
     assert not {cell.name for cell in live.cells()} & set(HELPERS), "what only leads there is in no table"
     assert set(HELPERS) & again.sheet.by_name.keys()
+    if shipped == "misra1a":
+        live.page.locator('main [data-cell="b_1"]').first.click()
+        assert live.page.locator("#formula-bar").get_attribute("data-cell") == "b_1"
+        beside = live.page.locator("#bar-precedents button, #bar-dependents button")
+        assert "b_1" not in beside.evaluate_all("all => all.map((one) => one.dataset.goto)")
