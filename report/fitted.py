@@ -174,7 +174,7 @@ class DeclaredFit:
         return self._known[named[0]] if len(named) == 1 else None
 
     @cached_property
-    def curve(self) -> tuple[Column, ...]:
+    def traced(self) -> tuple[Column, ...]:
         """What the model says between the rows and a little beyond, but not beyond zero: figures show it.
 
         Two ends are enough of a straight line. There is none of a model that names several columns.
@@ -203,7 +203,7 @@ class DeclaredFit:
         def points(up: Column) -> Series:
             return Series(over.name, up.name, up.meaning, "points", bars=True)
 
-        across, up = self.curve or (over, fitted)
+        across, up = self.traced or (over, fitted)
         curve = Series(across.name, up.name, fitted.meaning, "line", VERMILION)
         for n, up, more, with_it in (
             (number, own, (curve,), ", with the fit"),

@@ -506,7 +506,7 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
     if not entries:
         raise SheetError(f"{name} computes nothing: it has no let(...), no root(...) and no fit(...)", name)
     columns = body.whole
-    sheet, curves = Sheet(columns), Drawn(tuple(body.curves))
+    sheet, curves = Sheet(columns), Drawn(tuple(body.drawn))
     Sheet((*columns, *curves.columns))  # a name that both have is told now
     used = {each.name for c in columns for each in sheet.precedents(c) if each.name != c.name}
     scalars = (c.name for c in columns if c.axis is None and c.equation)

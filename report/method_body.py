@@ -189,7 +189,7 @@ class MethodBody(dict[str, Any]):
         self.entries: list[Equation | Derivation] = []
         self.examples: dict[str, str] = {}
         self.figures: list[FigureSpec] = []
-        self.curves: list[Column] = []  # what figures alone ask for
+        self.drawn: list[Column] = []  # what figures alone ask for
         self.tables: list[TableSpec] = []
         self.announced: dict[str, UnknownLine] = {}
         self.adjusted: list[str] = []
@@ -420,7 +420,7 @@ class MethodBody(dict[str, Any]):
         ]
         if said.figures:
             self.figures += found.figures(len(self.figures) + 1)
-            self.curves += found.curve
+            self.drawn += found.traced
         return found
 
     def _begun(self, sought: UnknownLine, name: str) -> UnknownLine:
