@@ -5,10 +5,12 @@ The Excel engine makes it, the workbook view draws it; neither knows the other.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
+from typing import NamedTuple
 
 from ..charts import Drawn
 from ..quantity import Bounds
@@ -20,6 +22,7 @@ __all__ = [
     "SCALARS",
     "STEPS",
     "CellBlock",
+    "FilledDown",
     "Grid",
     "Place",
     "as_issued",
@@ -138,6 +141,10 @@ class Place:
         """The absolute address of a cell, with its worksheet unless it is seen from there."""
         return f"{self._prefix(seen_from)}${letters(self.column)}${self.row + row + 1}"
 
+    def moving(self, row: int = 0, seen_from: str = "") -> str:
+        """The address of a cell whose row moves where a formula is filled down."""
+        return f"{self._prefix(seen_from)}${letters(self.column)}{self.row + row + 1}"
+
     def cells(self, rows: Iterable[int], seen_from: str = "") -> list[str]:
         """The absolute addresses of many cells."""
         column = f"{self._prefix(seen_from)}${letters(self.column)}$"
@@ -167,6 +174,37 @@ def quoted(worksheet: str) -> str:
     return worksheet if plain else "'" + worksheet.replace("'", "''") + "'"
 
 
+class FilledDown(NamedTuple):
+    """A formula, filled down over so many rows: rows without a ``$`` move with the row that they stand in.
+
+    Parameters
+    ----------
+    rows : int
+    first : str
+        The formula of the first of them, beginning with ``=``.
+    """
+
+    rows: int
+    first: str
+
+    def formulas(self) -> list[str]:
+        """The formula of each row.
+
+        >>> FilledDown(2, "=IF('a $B1'!$A$7>$B9,$B9,0)").formulas()
+        ["=IF('a $B1'!$A$7>$B9,$B9,0)", "=IF('a $B1'!$A$7>$B10,$B10,0)"]
+        """
+        return [_ADDRESSES.sub(partial(_moved, down), self.first) for down in range(self.rows)]
+
+
+_ADDRESSES = re.compile(r"""'[^']*'|"[^"]*"|(\$[A-Z]+)([0-9]+)""")
+"""What is in quotes, or the address of a cell in a row that moves."""
+
+
+def _moved(down: int, found: re.Match[str]) -> str:
+    column, row = found.groups()
+    return f"{column}{int(row) + down}" if column else found[0]
+
+
 @dataclass(frozen=True)
 class CellBlock:
     """The cells of one quantity.
@@ -182,8 +220,8 @@ class CellBlock:
     title, meaning : str
         What stands above or beside its cells.
     place : Place
-    formulas : tuple of str
-        One a cell, beginning with ``=``; none if the cells hold values.
+    filled : tuple of FilledDown
+        The formulas of the cells, from top to bottom; none if the cells hold values.
     array : bool
         Whether they must be entered as array formulas.
     shows : tuple of str
@@ -212,7 +250,7 @@ class CellBlock:
     title: str
     meaning: str
     place: Place
-    formulas: tuple[str, ...] = ()
+    filled: tuple[FilledDown, ...] = ()
     array: bool = False
     shows: tuple[str, ...] = ()
     values: tuple[float | str | None, ...] = ()
@@ -223,6 +261,11 @@ class CellBlock:
     kept: Mapping[str, str] = field(default_factory=dict)
     bounds: Bounds = field(default_factory=Bounds)
     guard: str = ""
+
+    @cached_property
+    def formulas(self) -> tuple[str, ...]:
+        """The formula of each cell."""
+        return tuple(formula for each in self.filled for formula in each.formulas())
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import Any, get_args
 
 from ...derivations.unit_text import ParsedUnit, UnitError, parse_open, parse_unit
-from ..cells.grid import CHECKED, FIRST_ROW, SCALARS, STEPS, CellBlock, Place, as_issued, checked
+from ..cells.grid import CHECKED, FIRST_ROW, SCALARS, STEPS, CellBlock, FilledDown, Place, as_issued, checked
 from ..cells.layout import Layout
 from ..column import shown_as
 from ..plan.kept import as_data
@@ -348,10 +348,10 @@ class Assembly:
         yield replace(block, name=counted, title="counted", meaning=says, place=place, shows=shows)
 
 
-def _computed(block: CellBlock, formulas: tuple[str, ...]) -> CellBlock:
+def _computed(block: CellBlock, filled: tuple[FilledDown, ...]) -> CellBlock:
     """The block with its formulas; those that work on ranges are array formulas."""
     taken = (f"{word.upper()}(IF(" for word in get_args(Word))
-    return replace(block, formulas=formulas, array=any(each in formulas[0] for each in taken))
+    return replace(block, filled=filled, array=any(each in filled[0].first for each in taken))
 
 
 def _counting(unrolled: Unrolled) -> tuple[str, ...]:

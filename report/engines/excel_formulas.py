@@ -6,14 +6,16 @@ by row: printing is slow, and a report may have a hundred thousand points.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from sympy import And, Expr, Float, Rational, Rel, Symbol
 
-from ..cells.grid import Place, as_issued, checked
+from ..cells.grid import FilledDown, Place, as_issued, checked
 from ..cells.layout import Layout
 from ..cells.values import CODES, Status
 from ..named import within
@@ -97,41 +99,41 @@ class Formulas:
         self.sheet, self.plan, self.layouts, self.places = sheet, plan, layouts, places
         self.maps = {node.column.name: node for node in plan.every if isinstance(node, Map)}
 
-    def checked(self, column: Column, guard: str) -> tuple[str, ...]:
+    def checked(self, column: Column, guard: str) -> tuple[FilledDown, ...]:
         """The formulas of what is given, if it is allowed, or else its code."""
         writing = _Writing(self, column, column.name)
         cell = writing.fill(self.places.typed[column.name])
         return writing.rows(f"IF({guard.format(cell)},{cell},{_CODE[Status.INPUT]})")
 
-    def column(self, column: Column, unrolled: Unrolled | None = None) -> tuple[str, ...]:
+    def column(self, column: Column, unrolled: Unrolled | None = None) -> tuple[FilledDown, ...]:
         """The formulas of a computed column, one a row."""
         writing = _Writing(self, column, column.name, unrolled.plan if unrolled else None)
         if isinstance(column.rule, Iterated):
             return writing.rows(writing.iterated())
         return writing.rows(writing.root(unrolled) if unrolled else writing.formula(self.maps[column.name]))
 
-    def drawn(self, column: Column) -> tuple[str, ...]:
+    def drawn(self, column: Column) -> tuple[FilledDown, ...]:
         """The formulas of a column for a chart: its values, or what charts leave out."""
         writing = _Writing(self, column, column.name)
         return writing.rows(writing.drawn(self.maps[column.name]))
 
-    def check(self, unrolled: Unrolled) -> tuple[str, ...]:
+    def check(self, unrolled: Unrolled) -> tuple[FilledDown, ...]:
         """The formulas of the cell that says whether a root can be sought."""
         writing = _Writing(self, unrolled.column, unrolled.check.name)
         return writing.rows(writing.inherited(f'"{READY}"'))
 
-    def issued(self, name: str, column: Column, given: Sequence[str]) -> tuple[str, ...]:
+    def issued(self, name: str, column: Column, given: Sequence[str]) -> tuple[FilledDown, ...]:
         """The formulas of the cell that says whether given columns are as issued (1) or not (0)."""
         writing = _Writing(self, column, name)
         pairs = [(self.places.columns[checked(one)], self.places.columns[as_issued(one)]) for one in given]
         return writing.rows(writing.same(pairs))
 
-    def auxiliary(self, unrolled: Unrolled, cell: Auxiliary) -> tuple[str, ...]:
+    def auxiliary(self, unrolled: Unrolled, cell: Auxiliary) -> tuple[FilledDown, ...]:
         """The formulas of a cell on the way to a root."""
         writing = _Writing(self, unrolled.column, cell.name, unrolled.plan)
         return writing.rows(writing.auxiliary(unrolled, cell))
 
-    def carried(self, cells: Leaf) -> tuple[str, ...]:
+    def carried(self, cells: Leaf) -> tuple[FilledDown, ...]:
         """The formulas that repeat another axis' cells on this one."""
         stand_in = Column(carried_name(cells), cells.axis, Given())
         writing = _Writing(self, stand_in, stand_in.name)
@@ -170,15 +172,27 @@ class _Writing:
         self.open: list[tuple[Place, Any]] = []
         """Cells that change with the row: their column's place, and the row for each row of the axis."""
 
-    def rows(self, template: str) -> tuple[str, ...]:
-        """Fill the template in for every row."""
-        every = range(self.place.rows)
-        cells = [
-            place.cells(every if which is None else which.tolist(), self.here) for place, which in self.open
-        ]
-        if not cells:
-            return (f"={template}",) * self.place.rows
-        return tuple(f"={template.format(*row)}" for row in zip(*cells, strict=True))
+    def rows(self, template: str) -> tuple[FilledDown, ...]:
+        """Fill the template in for every row, as few times as filling it down gives all rows."""
+        size = self.place.rows
+        if not self.open:
+            return (FilledDown(size, f"={template}"),)
+        every = np.arange(size)
+        rows = np.array([every if which is None else which for _, which in self.open])
+        steps = np.diff(rows)
+        # Excel fills no formula down by itself in which a row of another worksheet moves.
+        near = np.array([place.worksheet == self.here for place, _ in self.open])
+        filled = []
+        for first, last in _stretches(steps, near):
+            moves = (
+                steps[:, first] if last > first else [size > 1 and which is None for _, which in self.open]
+            )
+            cells = [
+                (place.moving if move else place.cell)(int(row), self.here)
+                for (place, _), row, move in zip(self.open, rows[:, first], moves, strict=True)
+            ]
+            filled.append(FilledDown(last - first + 1, f"={template.format(*cells)}"))
+        return tuple(filled)
 
     # --- references
 
@@ -388,6 +402,27 @@ class _Writing:
         if not isinstance(value, IfError):
             printed = f'IFERROR({printed},"")'
         return f'IF({wanted},{printed},"")'
+
+
+def _stretches(steps: NDArray[np.intp], near: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
+    """The first and the last row of stretches in which each address stays or moves with its row.
+
+    Parameters
+    ----------
+    steps : array of int, shape (addresses, rows - 1)
+        How far each goes from a row to the next.
+    near : array of bool, shape (addresses,)
+        Whether it may move.
+    """
+    stays = (steps == 0) | (near[:, None] & (steps == 1))
+    breaks = ~stays.all(axis=0)
+    changes = np.append([False], (steps[:, 1:] != steps[:, :-1]).any(axis=0))[: breaks.size]
+    first = 0
+    for row in np.flatnonzero(breaks | changes).tolist():
+        if breaks[row] or row > first:
+            yield first, row
+            first = row + 1
+    yield first, breaks.size
 
 
 def _all(tests: list[str]) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cells.grid import CellBlock, Place
+from ..cells.grid import CellBlock, FilledDown, Place
 from ..cells.layout import precedents
 from ..cells.values import CODES, Status, Values, inherited, rows_kept
 from .kernels import Array
@@ -52,8 +52,8 @@ def filled(
         elif what == "carried":
             axis, index = more
             shown = tuple(shown[row] for row in values.layouts[axis].rows[index].tolist())
-        formulas = tuple(map(_literal, shown)) if what.startswith("typed") else block.formulas
-        yield replace(block, values=shown, formulas=formulas)
+        typed = tuple(FilledDown(1, _literal(value)) for value in shown)
+        yield replace(block, values=shown, filled=typed if what.startswith("typed") else block.filled)
 
 
 def _cells(values: Values, name: str, place: Place) -> tuple[float | str | None, ...]:

@@ -298,7 +298,7 @@ def without_results(content: bytes) -> bytes:
         for name in old.namelist():
             part = old.read(name)
             if name.startswith("xl/worksheets/sheet"):
-                part = re.sub(rb"(</f>)<v>[^<]*</v>", rb"\1", part)
+                part = re.sub(rb"(</f>|<f [^>]*/>)<v>[^<]*</v>", rb"\1", part)
             new.writestr(name, part, zipfile.ZIP_DEFLATED)
     return buffer.getvalue()
 

@@ -45,7 +45,7 @@ def write_block(
         for row, cell in enumerate(zip(block.formulas, block.values, forms, strict=True), start=place.row):
             style.formula(sheet, row, place.column, *cell, array=True)
     else:
-        sheet.write_formulas(place.row, place.column, block.formulas, block.values, forms)
+        sheet.write_filled(place.row, place.column, block.filled, block.values, forms)
     if block.kind == "computed":
         # No formula names the roots that there are; as issued they are known.
         values, labels = report.values, report.values.labels(report.sheet[block.name])
@@ -56,7 +56,7 @@ def write_block(
 
 def _number_formats(report: Report, block: CellBlock) -> Sequence[str]:
     """Of each cell that the report shows its own; else one for all; none of a step."""
-    rows = len(block.formulas)
+    rows = block.place.rows
     if block.kind == "step":
         return [""] * rows
     column = report.sheet.by_name.get(block.of or block.name)
