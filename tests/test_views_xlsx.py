@@ -256,9 +256,10 @@ def test_no_formula_names_a_given_cell_but_its_check(grid: Grid, book: Any) -> N
                 formula = cell.value.text if isinstance(cell.value, ArrayFormula) else cell.value
                 if not isinstance(formula, str) or not formula.startswith("="):
                     continue
-                found = re.findall(r"(?:(\w+)!)?(\$[A-Z]+\$[0-9]+)", formula)
+                found = re.findall(r"(?:(\w+)!)?(\$[A-Z]+)\$?([0-9]+)", formula)
                 found = {
-                    f"{of}!{address}" if of else f"{sheet.title} alone {address}" for of, address in found
+                    f"{of}!{letters}${row}" if of else f"{sheet.title} alone {letters}${row}"
+                    for of, letters, row in found
                 }
                 if found & typed:
                     named.add((sheet.title, cell.coordinate))
