@@ -40,12 +40,12 @@ from sympy.core.parameters import evaluate
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.report import stages
-from loopsheet.report.cells.grid import CellBlock, Grid, Place, checked, factors, letters, quoted
+from loopsheet.report.cells.grid import CellBlock, FilledDown, Grid, Place, checked, factors, letters, quoted
 from loopsheet.report.engines import excel_assembly, excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.excel import ExcelPrinter, IfError, IsNumber, NotPrintable
 from loopsheet.report.engines.excel_assembly import auxiliary_texts
-from loopsheet.report.engines.excel_formulas import guard
+from loopsheet.report.engines.excel_formulas import _stretches, guard
 from loopsheet.report.engines.excel_roots import Unrolled, unroll
 from loopsheet.report.engines.excel_values import auxiliary_values
 from loopsheet.report.machine.kept import SETTING
@@ -226,11 +226,12 @@ def made(
     *columns: Column,
     units: dict[str, str] | None = None,
     bounds: dict[str, Bounds] | None = None,
+    items: tuple[int, ...] = (1, 2),
     **data: Any,
 ) -> Grid:
-    given = {"a": [3.0, 5.0], "w": 2.0, "per": 2, **data}
+    given = {"a": [3.0, 5.0, 7.0][: len(items)], "w": 2.0, "per": 2, **data}
     sheet = Sheet(columns).bounded(bounds or {})
-    values = engine.evaluate(sheet, {"items": (1, 2)}, {name: given[name] for name in given if name in sheet})
+    values = engine.evaluate(sheet, {"items": items}, {name: given[name] for name in given if name in sheet})
     return excel_grid.grid(sheet, values, units or {})
 
 
@@ -242,13 +243,52 @@ LEAST = "(2)^(0-1022)"
 """The least positive number that has all its digits."""
 
 
-def test_a_row_names_the_cells_of_its_members() -> None:
-    grid = made(a, column("b", PAIRS, a[i] / a[j], positive=False))
-    assert first(grid, "b") == (
-        "=IF(AND(ISNUMBER(items!$D$8),ISNUMBER(items!$D$9)),"
-        'IFERROR(items!$D$8/items!$D$9,IFERROR(IF(items!$D$9<>0,"#OVERFLOW!","#DOMAIN!"),"#DOMAIN!")),'
-        '"#INPUT!")'
+def test_a_row_names_the_cells_of_its_members_which_are_repeated_beside_it() -> None:
+    grid = made(a, column("b", PAIRS, a[i] / a[j], positive=False), items=(1, 2, 3))
+    one, other = grid["a[i] of pairs"], grid["a[j] of pairs"]
+    assert one.formulas == ("=items!$D$8", "=items!$D$8", "=items!$D$9")
+    assert other.formulas == ("=items!$D$9", "=items!$D$10", "=items!$D$10")
+    assert grid["b"].filled == (
+        FilledDown(
+            3,
+            "=IF(AND(ISNUMBER($D8),ISNUMBER($E8)),"
+            'IFERROR($D8/$E8,IFERROR(IF($E8<>0,"#OVERFLOW!","#DOMAIN!"),"#DOMAIN!")),'
+            '"#INPUT!")',
+        ),
     )
+
+
+def test_a_formula_is_filled_down_as_long_as_no_row_of_another_worksheet_moves() -> None:
+    b = column("b", PAIRS, a[i] * a[j], positive=False)
+    grid = made(a, per, b, column("c", POINTS, b[p] * s, positive=False), items=(1, 2, 3))
+    assert grid["c"].filled == tuple(
+        FilledDown(
+            2,
+            f"=IF(ISNUMBER(report!$G$6),IF(ISNUMBER(pairs!$C${row}),"
+            f'IFERROR($C{top}*pairs!$C${row},"#OVERFLOW!"),pairs!$C${row}),"#INPUT!")',
+        )
+        for row, top in ((8, 8), (9, 10), (10, 12))
+    )
+    assert [block.name for block in grid.on("points") if block.kind == "carried"] == []
+
+
+@pytest.mark.parametrize(
+    ("rows", "near", "stretches"),
+    [
+        ([[0, 1, 2, 3]], [True], [(0, 3)]),
+        ([[0, 1, 2, 3]], [False], [(0, 0), (1, 1), (2, 2), (3, 3)]),
+        ([[5, 5, 5, 6]], [False], [(0, 2), (3, 3)]),
+        ([[0, 1, 2, 3], [7, 7, 8, 8]], [True, False], [(0, 1), (2, 3)]),
+        ([[0, 1, 2, 2]], [True], [(0, 2), (3, 3)]),
+        ([[0, 1, 1, 2]], [True], [(0, 1), (2, 3)]),
+        ([[0, 2, 4]], [True], [(0, 0), (1, 1), (2, 2)]),
+        ([[4]], [True], [(0, 0)]),
+    ],
+)
+def test_in_a_stretch_of_rows_each_address_stays_or_moves(
+    rows: list[list[int]], near: list[bool], stretches: list[tuple[int, int]]
+) -> None:
+    assert list(_stretches(np.diff(np.array(rows)), np.array(near))) == stretches
 
 
 @pytest.mark.parametrize(

@@ -215,7 +215,7 @@ class CellBlock:
         The column's name; for a cell on the way to a root the column's, a dot and its own.
     kind : str
         ``index`` (the numbers of rows), ``given``, ``checked`` (what is given, if it is allowed),
-        ``computed``, ``carried`` (another axis' cells, repeated for a sum), ``step`` (on the way to a
+        ``computed``, ``carried`` (another axis' cells, repeated on this one), ``step`` (on the way to a
         root), ``margin`` (how far inside of a limit another's cells lie) or ``drawn`` (for a chart).
     title, meaning : str
         What stands above or beside its cells.

@@ -285,7 +285,7 @@ class Assembly:
         for name, (leaf, axis) in sorted(self.carried.items()):
             column = self.whole[leaf.name]
             block = CellBlock(
-                name, "carried", leaf.written, f"{column.name} of each row, for its sums",
+                name, "carried", leaf.written, f"{column.name} of each row",
                 self.places[name], unit=self.unit(column).text, of=column.name,
                 shows=("carried", column.name, axis.name, str(leaf.index)),
             )  # fmt: skip

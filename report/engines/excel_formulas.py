@@ -22,7 +22,7 @@ from ..named import within
 from ..plan.nodes import Leaf, Map, Plan, RootNode
 from ..plan.order import Word
 from ..quantity import Bounds
-from ..sheet import Axis, Column, Given, Iterated, Reference, Sheet
+from ..sheet import Axis, Column, Given, Iterated, Reference, RepeatAxis, Sheet
 from .excel import ExcelPrinter, IfError
 from .excel_loops import PASSES, pass_name
 from .excel_roots import Auxiliary, Unrolled
@@ -70,9 +70,18 @@ def carried_name(cells: Leaf) -> str:
 
 
 def carried(sheet: Sheet, column: Column) -> dict[str, tuple[Leaf, Axis]]:
-    """Cells that a column sums although they stand on another axis: no range reaches them."""
-    summed = ((_leaf(named, named.over), named.over) for named in sheet.named(column) if named.over)
-    return {carried_name(leaf): (leaf, over) for leaf, over in summed if leaf.index is not None}
+    """Cells of another axis that are repeated on the rows of this one.
+
+    No range reaches those that a column sums, and no formula is filled down that names others from row to
+    row. Rows that repeat a row name the same cells one after the other, and need none of their own.
+    """
+    named = [(reference, reference.over or column.axis) for reference in sheet.named(column)]
+    return {
+        carried_name(leaf): (leaf, axis)
+        for reference, axis in named
+        if axis and (reference.over or not isinstance(axis, RepeatAxis))
+        if (leaf := _leaf(reference, axis)).index is not None
+    }
 
 
 def _leaf(reference: Reference, axis: Axis | None) -> Leaf:
@@ -135,9 +144,11 @@ class Formulas:
 
     def carried(self, cells: Leaf) -> tuple[FilledDown, ...]:
         """The formulas that repeat another axis' cells on this one."""
+        assert cells.axis is not None
         stand_in = Column(carried_name(cells), cells.axis, Given())
         writing = _Writing(self, stand_in, stand_in.name)
-        return writing.rows(writing.address(cells))
+        which = self.layouts[cells.axis.name].rows[cells.index or ""]
+        return writing.rows(writing.fill(self.places.columns[cells.name], which))
 
     def kept(self, column: Column) -> dict[str, str]:
         """For each axis that a column sums over, the formula that counts the rows with values."""
@@ -209,22 +220,27 @@ class _Writing:
         self.open.append((place, which))
         return f"{{{len(self.open) - 1}}}"
 
-    def place_of(self, leaf: Leaf, rows: bool = False) -> Place:
-        """Where cells and running numbers stand; for sums, those of another axis are repeated on this one."""
+    def place_of(self, leaf: Leaf) -> Place:
+        """Where cells and running numbers stand."""
         if leaf.kind == "ordinal" and leaf.axis and leaf.index:
             # Among the parts that name a row, its own number is the last.
             steps = [step.name for step in leaf.axis.ordinals]
             return self.places.indices[leaf.axis.name][-1 - steps.index(leaf.index)]
-        return self.places.columns[carried_name(leaf) if rows and leaf.index is not None else leaf.name]
+        return self.repeated(leaf) or self.places.columns[leaf.name]
+
+    def repeated(self, leaf: Leaf) -> Place | None:
+        """Where cells of another axis are repeated on this one."""
+        return self.places.columns.get(carried_name(leaf)) if leaf.index is not None else None
 
     def address(self, leaf: Leaf, rows: bool = False) -> str:
         """The address of what a row names, or of all rows that a sum runs over."""
-        place = self.place_of(leaf, rows)
+        place = self.place_of(leaf)
         if leaf.axis is None:
             return place.cell(0, self.here)
         if rows:
             return place.range(self.here)
-        return self.fill(place, self.layouts[leaf.axis.name].rows.get(leaf.index or ""))
+        named = None if self.repeated(leaf) else leaf.index
+        return self.fill(place, self.layouts[leaf.axis.name].rows.get(named or ""))
 
     def symbol(self, symbol: Symbol, rows: bool = False) -> str:
         """What a symbol stands for, in SI: on a row, or on all rows that a sum runs over."""
@@ -281,7 +297,7 @@ class _Writing:
                 holds = f"ISNUMBER({address})"
             else:
                 # Its first row tells why: if no row has values, some cell of it is in error.
-                address = self.place_of(leaf, rows=True).cell(0, self.here)
+                address = self.place_of(leaf).cell(0, self.here)
                 holds = f"OR({self.number_kept(over.name)}>0,ISNUMBER({address}))"
             code = _CODE[Status.INPUT] if given else address
             if groups and groups[-1][1] == code:

@@ -52,8 +52,10 @@ def filled(
         elif what == "carried":
             axis, index = more
             shown = tuple(shown[row] for row in values.layouts[axis].rows[index].tolist())
-        typed = tuple(FilledDown(1, _literal(value)) for value in shown)
-        yield replace(block, values=shown, filled=typed if what.startswith("typed") else block.filled)
+        told = replace(block, values=shown)
+        if what.startswith("typed"):
+            told = replace(told, filled=tuple(FilledDown(1, _literal(value)) for value in shown))
+        yield told
 
 
 def _cells(values: Values, name: str, place: Place) -> tuple[float | str | None, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -24,6 +24,8 @@ _ROWS = 29
 """Rows of the worksheet that a chart covers."""
 _BESIDE = 20
 """The first column, from 0, of how long bars are."""
+_PICTURED = 6
+"""Digits of a number that nobody reads but a chart, which is less than a thousand points wide."""
 _INK, _GRID = "#1F2A36", "#E3E8ED"
 _UNSEEN: dict[str, Any] = {
     "name": "",
@@ -196,8 +198,13 @@ def _one(
         "name": label,
         "categories": f"={x.place.range(first=first, rows=rows)}",
         "values": f"={y.place.range(first=first, rows=rows)}",
-        # What viewers draw before they calculate; a cell without a value is a gap.
-        "categories_data": list(x.values[stretch]),
-        "values_data": list(y.values[stretch]),
+        # What viewers draw before they calculate.
+        "categories_data": _pictured(x.values[stretch]),
+        "values_data": _pictured(y.values[stretch]),
         **looks,
     }
+
+
+def _pictured(values: Iterable[float | str | None]) -> list[float | str | None]:
+    """What a chart knows of cells before it reads them; one without a value is a gap."""
+    return [float(f"{value:.{_PICTURED}g}") if isinstance(value, float) else value for value in values]

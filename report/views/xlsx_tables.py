@@ -22,7 +22,7 @@ _GROUPS = {
     "margin": TITLE,
     "drawn": "for the charts",
     "checked": "as checked",
-    "carried": "repeated for sums",
+    "carried": "of other worksheets",
 }
 
 
