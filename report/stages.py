@@ -131,10 +131,17 @@ def _drawings(inputs: Inputs) -> Collection[str]:
 
 def evaluated(made: Prepared, ledger: Callable[[], Ledger], step: Step) -> Report:
     """Everything but the proofs."""
+    from .judge.oddities import oddities
+
+    report = _evaluated(made, ledger, step)
+    return replace(report, oddities=(*oddities(report), *_claims(report)))
+
+
+def _evaluated(made: Prepared, ledger: Callable[[], Ledger], step: Step) -> Report:
+    """All cells, at which nobody has looked for what is odd."""
     inputs, sheet = made.inputs, made.sheet
     from .cells.layout import how_large
     from .cells.marks import Marks, margins, with_margins
-    from .judge.oddities import oddities
     from .referee import compare
     from .result.result import Report
 
@@ -142,7 +149,7 @@ def evaluated(made: Prepared, ledger: Callable[[], Ledger], step: Step) -> Repor
     inputs = made.check_cells()
     workbook, limits = inputs.workbook, margins(sheet)
     exactly, (values, whole) = made.computed(with_margins(sheet), EXACTLY)
-    report = Report(
+    return Report(
         title=inputs.title,
         workbook=workbook,
         inputs=inputs,
@@ -159,7 +166,6 @@ def evaluated(made: Prepared, ledger: Callable[[], Ledger], step: Step) -> Repor
         uncertain=cache(lambda: uncertain(workbook, values, inputs)),
         versions=versions(),
     )
-    return replace(report, oddities=(*oddities(report), *_claims(report)))
 
 
 def computing(sheet: Sheet, columns: Sequence[Column]) -> Callable[[Inputs], Marks]:
@@ -217,7 +223,7 @@ def judged(report: Report, every: bool = True, step: Step = silent) -> Report:
     computed = evaluate(whole.sheet, made.labels, made.data)
     if inputs is report.inputs:
         return replace(report, engines=_agreements(report, computed, every))
-    few = evaluated(made, report.algebra, silent)
+    few = _evaluated(made, report.algebra, silent)
     found = _agreements(few, sample.with_own(computed, whole), every)
     rows = next(axis.name for axis in report.sheet.axes if axis.is_given)
     told = f"{len(inputs.tests)} of {len(report.inputs.tests)} {rows}"
