@@ -81,6 +81,16 @@ def test_it_says_of_how_many_cells_they_are(
     assert {each["of"] for each in engines.values() if not each["missing"]} == {cells}
 
 
+def test_nobody_looks_for_what_is_odd_in_them(report: Report, monkeypatch: pytest.MonkeyPatch) -> None:
+    """That was told of the whole campaign already, and takes longer than to compare."""
+    asked: list[str] = []
+    monkeypatch.setattr("loopsheet.report.judge.oddities.oddities", lambda own: asked.append(own.title) or ())
+    stages.judged(report, every=False)
+    assert not asked
+    stages.evaluated(Prepared(report.inputs, report.sheet), report.algebra, stages.silent)
+    assert asked == [report.title]
+
+
 def test_the_numbers_that_are_written_are_judged(report: Report) -> None:
     """Not those that the same program would have found in a smaller campaign."""
     values = report.marks.values

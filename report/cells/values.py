@@ -227,6 +227,11 @@ class Values:
         for row, label in enumerate(self.labels(column)):
             yield self._cell(column, row, label)
 
+    def numbers(self, name: str) -> list[float | None]:
+        """The values of all cells of a column; None where there is none, for whatever reason."""
+        pairs = zip(self.value[name].tolist(), self.status[name].tolist(), strict=True)
+        return [None if status else value for value, status in pairs]
+
     def cell(self, name: str, label: tuple[int, ...] = ()) -> Cell:
         """One cell by its label."""
         column = self.sheet[name]
@@ -240,15 +245,20 @@ class Values:
         """The value of a scalar; NaN if it has none."""
         return float(self.value[name][..., 0])
 
-    def errors(self) -> Iterator[Cell]:
+    def errors(self) -> tuple[Cell, ...]:
         """All cells where an error begins."""
-        for column in self.sheet.order:
-            for row in np.flatnonzero(self.status[column.name]):
-                cell = self._cell(column, int(row), self.labels(column)[row])
-                if cell.culprit is None:
-                    yield cell
+        return self._errors
 
     # --- what is looked up again and again -------------------------------------------------------------
+
+    @cached_property
+    def _errors(self) -> tuple[Cell, ...]:
+        failed = (
+            self._cell(column, row, self.labels(column)[row])
+            for column in self.sheet.order
+            for row in np.flatnonzero(self.status[column.name]).tolist()
+        )
+        return tuple(cell for cell in failed if cell.culprit is None)
 
     @cached_property
     def _labels_by_axis(self) -> dict[str, list[tuple[int, ...]]]:

@@ -260,7 +260,7 @@ class Report:
         """The cells of a column in the unit that it is shown in; None where there is no value."""
         # A double divided by a scale such as 1e-6 is not exact; the error is far below any shown digit.
         how = self.shown[name]
-        return [None if cell.value is None else how.of(cell.value) for cell in self.values.cells(name)]
+        return [None if value is None else how.of(value) for value in self.values.numbers(name)]
 
     def places(self, name: str) -> list[int]:
         """The power of ten of the last digit that is shown of each cell of a column, in its unit."""

@@ -71,6 +71,9 @@ class ColumnwiseSheet(Worksheet):  # type: ignore[misc] # XlsxWriter comes witho
         for place in (row, row + len(cells) - 1) if cells else ():
             self._check_dimensions(place, column)
 
+    def _calculate_spans(self) -> None:
+        """Leave out from where to where a row has cells: no reader needs it, and every cell is asked."""
+
     def _prepare_formula(self, formula: str, expand_future_functions: bool = False) -> str:
         # XlsxWriter looks into each for thirty functions of newer Excels; the engine prints none of them.
         return formula.removeprefix("{").removeprefix("=").removesuffix("}")
