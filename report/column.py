@@ -10,15 +10,19 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from ..derivations.unit_text import UnitError, parse_open
 from .axis import Axis
 from .content import content
 from .quantity import Bounds
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from sympy import Basic, Expr, Indexed, Rel, Symbol
     from sympy.logic.boolalg import Boolean
 
     from ..derivations.equation import Equation
+    from ..derivations.unit_text import ParsedUnit
 
 __all__ = [
     "Column",
@@ -32,6 +36,7 @@ __all__ = [
     "Rule",
     "SheetError",
     "shown_as",
+    "shown_in",
 ]
 
 
@@ -450,3 +455,19 @@ def shown_as(column: Column, columns: Mapping[str, Column]) -> Column:
         way.add(like.name)
         column = like
     return column
+
+
+def shown_in(column: Column, columns: Mapping[str, Column]) -> ParsedUnit:
+    """The unit that a column is declared to be shown in; that of another column, if it is shown like it.
+
+    Parameters
+    ----------
+    column : Column
+    columns : mapping of str to Column
+        By name.
+    """
+    like = shown_as(column, columns)
+    try:
+        return parse_open(like.display or like.unit)
+    except UnitError:
+        return parse_open(column.unit)  # it is refused elsewhere

@@ -14,12 +14,11 @@ import mpmath
 from sympy import Expr, Float, Indexed, Rational, Symbol
 
 from ..derivations.evaluation import UNDEFINED, NotEvaluable, Tape
-from ..derivations.unit_text import ParsedUnit, UnitError, parse_open
 from .axis import Axis
-from .column import Column, Formula, shown_as
+from .column import Column, Formula, shown_in
 from .named import name_of
 
-__all__ = ["is_difference", "shown_in"]
+__all__ = ["is_difference"]
 
 _MOVE = Symbol("move", real=True)
 _FAR = 10**4
@@ -28,15 +27,6 @@ _ROWS = (5, 6, 7)
 """How many rows are written out in turn: what divides by the degrees of freedom may have none."""
 _DIGITS, _SAME = 50, 1e-30
 """Of the values that are compared, and by how much of them they may differ."""
-
-
-def shown_in(column: Column, columns: Mapping[str, Column]) -> ParsedUnit:
-    """The unit that a column is declared to be shown in."""
-    like = shown_as(column, columns)
-    try:
-        return parse_open(like.display or like.unit)
-    except UnitError:
-        return parse_open(column.unit)  # it is refused elsewhere
 
 
 def is_difference(formula: Expr, columns: Mapping[str, Column], axis: Axis) -> bool:

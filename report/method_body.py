@@ -24,8 +24,8 @@ from ..derivations.unit_text import (
 )
 from .axis import Axis, PairAxis
 from .cells.units import named_unit_of, unit_of
-from .column import Column, Formula, Given, Root, SheetError
-from .differences import is_difference, shown_in
+from .column import Column, Formula, Given, Root, SheetError, shown_in
+from .differences import is_difference
 from .fitted import DeclaredFit, told_apart
 from .named import name_of, references
 from .quantity import Bounds

@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from .column import Given
+from .column import Given, shown_in
 from .inputs.inputs import Inputs, check_cells
 
 if TYPE_CHECKING:
@@ -70,9 +70,13 @@ class Prepared:
             With every finding.
         """
         rows = {name: set(map(tuple, layout.labels.tolist())) for name, layout in self.layouts.items()}
-        columns = self.sheet.columns
+        columns, by_name = self.sheet.columns, self.sheet.by_name
         return check_cells(
-            self.inputs, {c.name: (c.written, {()} if c.axis is None else rows[c.axis.name]) for c in columns}
+            self.inputs,
+            {
+                c.name: (shown_in(c, by_name).text, {()} if c.axis is None else rows[c.axis.name])
+                for c in columns
+            },
         )
 
     @property

@@ -76,7 +76,7 @@ def test_a_chart_is_drawn_in_degc(tmp_path: Path) -> None:
         ("T [degC]", "T [degc]", "did you mean 'degC'?"),
         ("T [degC]", "T [kelvin*m/m*degC]", "say K or delta_degC of a difference"),
         ("3,-3.2", "3,-50.1", "between -50 and 60 degC (temperature)"),
-        ("12 .. 14 degC", "12 .. 14 kg", "which does not convert to K"),
+        ("12 .. 14 degC", "12 .. 14 kg", "which does not convert to degC"),
     ],
 )
 def test_what_is_ambiguous_is_refused(
@@ -86,6 +86,74 @@ def test_what_is_ambiguous_is_refused(
     folder = gas.folder(tmp_path, gas.TOML.replace(old, new), gas.TABLE.replace(old, new))
     assert main(["build", str(folder)]) == 2
     assert said in capsys.readouterr().err
+
+
+WIDTH = """\
+from loopsheet import Method, given, let
+
+
+class Width(Method):
+    \"\"\"Of a transition, and the middle of it.\"\"\"
+
+    D = given("K", "width")
+    T = given("degC", "middle")
+    W = let(D * 1, "width again", "K")
+    M = let(T * 1, "middle again", like=T)
+"""
+
+
+def width(folder: Path, limits: str = "", guard: str = "", published: str = "W,,26.1,K") -> Path:
+    toml = 'title = "W"\nworkbook = "workbook.py"\n[parameters]\nD = "26.1 K, u = 0.4 K"\nT = "20.0 degC"\n'
+    toml += f'[limits]\n{limits}\n[limits.rule]\n{guard}\n[published]\nfile = "published.csv"\n'
+    gas.folder(folder, toml, code=WIDTH)
+    (folder / "published.csv").write_text(f"source,cell,index,value,unit\nL,{published}\n")
+    return folder
+
+
+NO_DIFFERENCE = "declared in K: a difference is in K or delta_degC; declare a temperature in degC"
+
+
+@pytest.mark.parametrize(
+    ("said", "place", "hint"),
+    [
+        ({"limits": 'W = "<= 20 degC"'}, "report.toml:7:1", NO_DIFFERENCE),
+        ({"limits": 'W = "10 K .. 20 degC"'}, "report.toml:7:1", NO_DIFFERENCE),
+        ({"limits": 'W = ">= -300 degC"'}, "report.toml:7:1", NO_DIFFERENCE),
+        ({"limits": 'W = "<= 70 degF"'}, "report.toml:7:1", NO_DIFFERENCE),
+        ({"limits": 'W = "<= 30 K"', "guard": 'guard = "1 degC"'}, "report.toml:9:9", NO_DIFFERENCE),
+        ({"limits": 'M = "<= 25 delta_degC"'}, "report.toml:7:1", "this is a temperature, no difference"),
+        ({"limits": 'M = ">= -300 degC"'}, "report.toml:7:1", "at least -273.15 degC"),
+        ({"limits": 'M = ">= -20 K"'}, "report.toml:7:1", "at least 0 K"),
+        ({"limits": 'M = "-460 .. 70 degF"'}, "report.toml:7:1", "at least -459.67 degF"),
+        ({"published": "W,,26.1,degC"}, "published.csv:2:11", NO_DIFFERENCE),
+        ({"published": "M,,20.0,delta_degC"}, "published.csv:2:11", "this is a temperature, no difference"),
+        ({"published": "u(W),,0.4,degC"}, "published.csv:2:13", NO_DIFFERENCE),
+    ],
+)
+def test_limits_and_published_values_are_in_a_unit_of_what_is_declared(
+    tmp_path: Path, said: dict[str, str], place: str, hint: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["build", str(width(tmp_path, **said)), "--to", "json"]) == 2
+    told = capsys.readouterr().err
+    assert place in told
+    assert hint in told
+    assert told.count("LS4") == 1
+
+
+@pytest.mark.parametrize(
+    ("limits", "guard", "expected"),
+    [
+        ('W = "<= 30 K"', 'guard = "1 K"', 0),
+        ('W = "<= 20 delta_degC"', "", 1),
+        ('W = ">= -20 K"', "", 0),  # a difference may be negative
+        ('M = "-10 .. 25 degC"', 'guard = "1 degC"', 0),
+        ('M = "<= 19 degC"', "", 1),
+        ('M = "<= 293.15 K"', "", 0),
+        ('M = "0 K .. 68 degF"', 'guard = "0 delta_degC"', 0),
+    ],
+)
+def test_a_limit_is_that_which_is_written(tmp_path: Path, limits: str, guard: str, expected: int) -> None:
+    assert main(["build", str(width(tmp_path, limits, guard)), "--to", "json"]) == expected
 
 
 def test_uncertainties_in_a_column_are_differences(tmp_path: Path) -> None:

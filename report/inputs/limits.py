@@ -21,11 +21,11 @@ from typing import TYPE_CHECKING
 from ...derivations.unit_text import UnitError, examples, is_pure, parse_open
 from ..cells.address import address, named
 from ..distribution import LEVEL
-from ..quantity import behind, span
+from ..quantity import Bounds, behind, span
 from .expected import check_expected
 from .keys import fixed
 from .number_text import NumberError, read_number, read_printed
-from .published import convertible
+from .published import unit_fits
 from .stated import LARGEST, StatementError
 
 if TYPE_CHECKING:
@@ -207,7 +207,7 @@ def check_limits(
     cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
     findings: Findings,
 ) -> None:
-    """Find limits of cells that there are not, twice of one, or in a unit of another dimension.
+    """Find limits of cells that there are not, twice of one, in a unit of another dimension, or below 0 K.
 
     Parameters
     ----------
@@ -223,17 +223,29 @@ def check_limits(
             continue
         if each.address != (own := address(name, index)):
             findings.add("LS506", each.at, name=name, text=each.address, known=own)
-        unit = cells[name][0]
-        numbers = ((each.low, each.at), (each.high, each.at), (each.guard.width, each.guard.at))
-        for number, at in numbers:
-            others = convertible(number.unit, unit) if number else None
-            if number and is_pure(number.unit) and not is_pure(unit):
-                others = examples(parse_open(unit))  # 5 of what is shown in deg would be read as radians
-            if number and others is not None:
-                said = f"the limit of {name}"
-                if number.unit == "1":
-                    example = f"{number.text} {unit}"
-                    findings.add("LS211", at, name=said, text=number.text, unit=unit, example=example)
-                else:
-                    findings.add("LS422", at, name=said, text=number.unit, unit=unit, known=others)
-                break
+        ends, width = [number for number in (each.low, each.high) if number], each.guard.width
+        said, unit = f"the limit of {name}", cells[name][0]
+        if all(_in_place(number, unit, said, each.at, findings) for number in ends) and width:
+            _in_place(width, unit, said, each.guard.at, findings, width=True)
+
+
+def _in_place(
+    number: Printed, unit: str, said: str, at: Location | None, findings: Findings, *, width: bool = False
+) -> bool:
+    """Whether a number can be a limit of what is declared in a unit, or a width there; if not, it is told."""
+    if is_pure(number.unit) and not is_pure(unit):  # 5 of what is shown in deg would be read as radians
+        if number.unit == "1":
+            example = f"{number.text} {unit}"
+            findings.add("LS211", at, name=said, text=number.text, unit=unit, example=example)
+        else:
+            known = examples(parse_open(unit))
+            findings.add("LS422", at, name=said, text=number.unit, unit=unit, known=known)
+        return False
+    if not unit_fits(number.unit, unit, said, at, findings, width=width):
+        return False
+    declared = parse_open(unit)
+    if declared.zero and not width and number.value < 0:
+        text, allowed = f"{number.text}{behind(number.unit)}", Bounds(low=0).said(number.unit)
+        findings.add("LS406", at, name=said, text=text, allowed=allowed, unit=number.unit)
+        return False
+    return True

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from ...derivations.unit_text import ParsedUnit, UnitError, examples, parse_open, parse_unit
+from ...derivations.unit_text import ParsedUnit, UnitError, examples, misfit, parse_open, parse_unit
 from ..cells.address import index_text
 from ..messages.errors import Findings, Location, listing, suggest
 from .about import FORMS, About, read_about
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..quantity import Printed
     from .sources import Source
 
-__all__ = ["COLUMNS", "Pin", "PublishedValue", "check_published", "convertible", "read_published"]
+__all__ = ["COLUMNS", "Pin", "PublishedValue", "check_published", "read_published", "unit_fits"]
 
 _REQUIRED = tuple(name for name, column in PUBLISHED.items() if column.required)
 _OPTIONAL = tuple(name for name, column in PUBLISHED.items() if not column.required)
@@ -271,13 +271,44 @@ def check_published(
                 findings.add("LS506", at, name=name, text=text, known=_indices(cells[name][1]))
         if value.about and value.about.is_pure:
             unit = "1"
-        others = None if "unit" in value.unread else convertible(value.printed.unit, unit)
-        if others is not None:
-            at = value.places.get("unit")
-            findings.add("LS422", at, name=value.cell, text=value.printed.unit, unit=unit, known=others)
+        if "unit" not in value.unread:
+            at, width = value.places.get("unit"), value.about is not None and value.about.is_width
+            unit_fits(value.printed.unit, unit, value.cell, at, findings, width=width)
 
 
-def convertible(written: str, unit: str) -> str | None:
+def unit_fits(
+    written: str, unit: str, name: str, at: Location | None, findings: Findings, *, width: bool = False
+) -> bool:
+    """Whether a number of a cell may be in a unit; if not, it is told.
+
+    Parameters
+    ----------
+    written : str
+        The unit of the number.
+    unit : str
+        That which the cell is declared in.
+    name : str
+        What the number is.
+    at : Location or None
+        Where it stands.
+    findings : Findings
+    width : bool
+        Whether it is a difference of values of the cell, as an uncertainty is.
+    """
+    if (others := _not_convertible(written, unit)) is not None:
+        findings.add("LS422", at, name=name, text=written, unit=unit, known=others)
+        return False
+    try:
+        declared, own = parse_unit(unit), parse_unit(written)
+    except UnitError:
+        return True  # the unit hangs on an exponent, and is the same
+    hint = "" if width and declared.zero else misfit(own, declared)
+    if hint:
+        findings.add("LS423", at, text=written, suggestion=hint)
+    return not hint
+
+
+def _not_convertible(written: str, unit: str) -> str | None:
     """None where a unit converts to that of a cell, else what does."""
     try:
         expected = parse_unit(unit)
