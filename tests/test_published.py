@@ -98,7 +98,7 @@ def test_check_counts_what_prints_the_same_in_any_notation(tmp_path: Path, check
     published(tmp_path, f"H.1,l,1,{text},mm")
     code, out = check()
     assert code == 0
-    assert "published  1 values: 1 print the same, 0 differ as is known\n" in out
+    assert "published  1 value: 1 print the same, 0 differ as is known\n" in out
     assert "->" not in out
 
 
@@ -112,7 +112,7 @@ def test_one_number_without_an_index_is_judged(
     published(tmp_path, f"H.1,{cell},,{value},K")
     code, out = check()
     assert code == bool(verdict)
-    assert f"published  1 values: {0 if verdict else 1} print the same" in out
+    assert f"published  1 value: {0 if verdict else 1} print the same" in out
     assert verdict in out
 
 

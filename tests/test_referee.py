@@ -15,6 +15,7 @@ from small_report import found, judged, pure
 from sympy import Symbol
 
 from loopsheet.derivations.equation import Equation, Kind
+from loopsheet.report.cli import main
 from loopsheet.report.distribution import Error
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.inputs.folders import PAPER
@@ -24,7 +25,7 @@ from loopsheet.report.quantity import Printed
 from loopsheet.report.referee import print_as, prints_same
 from loopsheet.report.result.findings import checks
 from loopsheet.report.result.result import Report
-from loopsheet.report.result.verdict import EXACT, REACHABLE, UNREACHABLE, WITHIN, Referee
+from loopsheet.report.result.verdict import EXACT, REACHABLE, UNEXPECTED, UNREACHABLE, WITHIN, Referee
 from loopsheet.report.result.verdict_words import lines
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
 from loopsheet.report.stages import refereed
@@ -294,6 +295,52 @@ def test_uncertainties_combine_in_quadrature_and_cover_twice(text: str, mode: st
     assert found is not None
     assert found.u == pytest.approx(0.5, rel=1e-9)
     assert found.verdict == verdict
+    assert comparison.finding == UNEXPECTED
+
+
+OILS = """\
+from loopsheet import Method, given, let
+
+
+class Oil(Method):
+    \"\"\"Viscosity by a capillary.\"\"\"
+
+    C = given("mm^2/s^2", "constant of the capillary")
+    t = given("s", "flow time")
+    nu = let(C * t, "kinematic viscosity", "mm^2/s")
+"""
+
+
+@pytest.mark.parametrize(
+    ("published", "word", "failed", "summary"),
+    [
+        ("104.22,", EXACT, 0, "1 value: 1 print the same"),
+        ("104.40,", WITHIN, 3, "1 differs within the stated uncertainties alone\n"),
+        ("104.50,", WITHIN, 3, "1 differs within the stated uncertainties alone\n"),
+        ("104.60,", UNREACHABLE, 3, "0 print the same, 0 differ as is known\n"),
+        ("104.40,differs", WITHIN, 0, "1 differ as is known"),
+    ],
+)
+def test_an_error_of_arithmetic_is_none_of_measurement(
+    tmp_path: Path, published: str, word: str, failed: int, summary: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """C is known to 0.35 % alone, and whoever multiplies what is printed gets 104.22 all the same."""
+    toml = 'title = "O"\nworkbook = "workbook.py"\n[parameters]\n'
+    toml += 'C = "0.1003000 mm^2/s^2, U = 0.35 %, k = 2"\n'
+    (tmp_path / "report.toml").write_text(f'{toml}t = "1039.07 s"\n[published]\nfile = "published.csv"\n')
+    (tmp_path / "workbook.py").write_text(OILS)
+    rows = f"value,unit,expect,recomputed,reason,cell,index,source\n{published.partition(',')[0]},mm^2/s,"
+    rows += f"{published.partition(',')[2]},{'104.40 -> 104.22,measured apart' if 'd' in published else ','},"
+    (tmp_path / "published.csv").write_text(f"{rows}nu,,Report 7\n")
+    report = refereed(Study(tmp_path).computed)
+    (comparison,) = report.comparisons
+    assert comparison.word == word
+    assert sum(not check.passed for check in checks(report)) == failed
+    assert main(["check", str(tmp_path)]) == bool(failed)
+    told = capsys.readouterr().out
+    assert summary in told
+    assert ("everything as expected" in told) is (not failed)
+    assert ("another measurement would explain it" in told) is (word == WITHIN)
 
 
 def test_a_truncated_column_is_no_misprint(tmp_path: Path) -> None:
@@ -384,7 +431,7 @@ def test_stated_uncertainties_explain_what_digits_do_not(
     assert referee.joint is not None
     assert [table.verdict for table in (*referee.tables, referee.joint)] == [together] * 2
     said = list(lines(referee, str))
-    told = "the stated uncertainties explain it, the digits do not" in said[0]
+    told = "another measurement would explain it, the printed digits do not" in said[0]
     assert told == (together == WITHIN)
     # nobody is accused of what is explained, and of what is not still somebody is asked for
     assert referee.asked_why == (together == UNREACHABLE)

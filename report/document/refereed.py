@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from ..result import verdict_words as words
 from ..result.numbers import Numeral, decimals, read
 from ..result.result import Report
-from ..result.verdict import EXACT, REACHABLE, UNREACHABLE, WITHIN, Verdict
+from ..result.verdict import EXACT, REACHABLE, UNREACHABLE, Verdict
 from ..workbook import FigureSpec
 from .parts import Head, Pair
 
 __all__ = ["FIGURE", "GOOD", "RefereedPair", "figure", "figures", "shown_mismatch"]
 
-GOOD = (EXACT, REACHABLE, WITHIN)
-"""Verdicts that ask for no explanation."""
+GOOD = (EXACT, REACHABLE)
+"""Verdicts on what comes out of what is printed."""
 
 FIGURE = "referee"
 """The name of the picture, of its drawing and of the chapter."""

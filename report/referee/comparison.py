@@ -22,7 +22,6 @@ from ..result.verdict import (
     UNEXPLAINED,
     UNPINNED,
     UNREASONED,
-    WITHIN,
     Referee,
     Verdict,
 )
@@ -123,7 +122,7 @@ def _refereed(comparison: Comparison, verdict: Verdict, found: Referee) -> str:
     """What is not as expected: the referee excuses what is reachable, and knows what explains the rest."""
     published = comparison.published
     if not published.expect:
-        possible = verdict.verdict in (EXACT, REACHABLE, WITHIN) or found.as_printed
+        possible = verdict.verdict in (EXACT, REACHABLE) or found.as_printed
         return "" if possible else UNEXPECTED
     if comparison.finding:
         return comparison.finding

@@ -44,7 +44,8 @@ EXACT = "exact"
 REACHABLE = "reachable"
 """An input that prints as given yields a value that prints as published; it is kept."""
 WITHIN = "within-uncertainty"
-"""It is not reachable, but nearer than twice the standard uncertainty that the user gave."""
+"""It is not reachable, but nearer than twice the standard uncertainty that the user gave: another measurement
+would explain it, a calculation from the printed digits does not."""
 UNREACHABLE = "unreachable"
 """It is certain that no input which prints as given yields it."""
 NOT_FOUND = "not found"
@@ -163,8 +164,8 @@ class TableVerdict:
 
     @property
     def possible(self) -> bool:
-        """Whether one input yields them all, or nothing can be said of it."""
-        return self.verdict in (EXACT, REACHABLE, WITHIN, NOT_CHECKABLE)
+        """Whether one input that prints as given yields them all, or nothing can be said of it."""
+        return self.verdict in (EXACT, REACHABLE, NOT_CHECKABLE)
 
 
 @dataclass(frozen=True)
@@ -370,5 +371,5 @@ class Referee:
 
     @property
     def asked_why(self) -> bool:
-        """Whether explanations were looked for."""
-        return self.joint is not None and not self.joint.possible
+        """Whether explanations were looked for: nobody is accused of what is within uncertainty."""
+        return self.joint is not None and not self.joint.possible and self.joint.verdict != WITHIN

@@ -150,7 +150,9 @@ def _whole(value: Fraction, places: int, rounding: str) -> Decimal:
 
 
 def called(published: PublishedValue, found: Verdict) -> str:
-    """The verdict on a value, and what is certain of one that cannot be reached."""
+    """The verdict on a value, and what that means where it does not come out."""
+    if found.verdict == WITHIN:
+        return f"{CALLED[WITHIN]}, but no input that prints as given was found to yield it"
     ends = bounds(found, published.printed)
     if found.verdict != UNREACHABLE or ends is None:
         return CALLED[found.verdict]
@@ -176,9 +178,9 @@ def together(table: TableVerdict) -> str:
             return f"{whose} can come out of one input that prints as given, with a worst mismatch of {off}"
         case "within-uncertainty":
             return (
-                f"{whose} {come} out of an input that is as near as the stated uncertainties say. None was "
-                f"found that prints as given, the best leaves a mismatch of {off}: the stated uncertainties "
-                "explain it, the digits do not"
+                f"no input that prints as given was found from which {whose} {come} out; the best leaves "
+                f"a mismatch of {off}. One that is as near as the stated uncertainties say was found: "
+                "another measurement would explain it, the printed digits do not"
             )
         case "unreachable":
             because = f". {table.because} alone makes that certain" if table.because else ""

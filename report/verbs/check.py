@@ -110,6 +110,7 @@ def _ask(report: Report) -> None:
 
 
 def _print(report: Report, found: Sequence[Check]) -> None:
+    from ..result.verdict import WITHIN
     from ..result.verdict_words import lines
 
     passed = sum(p.status.passes for p in report.proofs)
@@ -122,9 +123,13 @@ def _print(report: Report, found: Sequence[Check]) -> None:
     same = sum(c.verdict == "same" for c in every)
     known = sum(bool(c.published.expect) and c.as_expected for c in every)
     other = sum(c.verdict != "same" and not c.published.expect and c.as_expected for c in every)
+    within = sum(c.word == WITHIN and not c.as_expected for c in every)
     if every:
-        of_others = f", {other} come out of other inputs that print as given" if other else ""
-        print(f"published  {len(every)} values: {same} print the same, {known} differ as is known{of_others}")
+        said = [f"{same} print the same", f"{known} differ as is known"]
+        come, differ = ("comes" if other == 1 else "come"), ("differs" if within == 1 else "differ")
+        said += [f"{other} {come} out of other inputs that print as given"] * bool(other)
+        said += [f"{within} {differ} within the stated uncertainties alone"] * bool(within)
+        print(f"published  {len(every)} value{'s' * (len(every) != 1)}: {', '.join(said)}")
     for comparison in every:
         if comparison.verdict != "same":
             where = f"{comparison.published.source} {comparison.cell.address}"
