@@ -92,6 +92,12 @@ class DeclaredFit:
         if isinstance(u, str):
             if u != STATED:
                 raise SheetError(f"{name}: u is a formula, or 'stated', not {u!r}", name)
+            if not isinstance(self._observed.rule, Given):
+                raise SheetError(
+                    f"{name}: nothing is stated of {self._observed.name}, which is computed: give a formula "
+                    "of its standard uncertainties instead of 'stated', or leave u out",
+                    name,
+                )
             stated = [_stated(self._observed)]
             u = stated[0].cell
         words = {each: said.meaning or str(each) for each, said in sought.items()}

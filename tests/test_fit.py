@@ -232,6 +232,10 @@ def write(folder: Path, code: str, table: str, more: str = "") -> None:
         ("f = fit(2 * y, a)", "2*y[k] is no column over the rows: let(...) it be one"),
         ("f = fit(y, a + x)", "f_z (L1): cannot add m and A^-1 kg m^2 s^-3"),
         ("f = fit(y, a, u='known')", "u is a formula, or 'stated', not 'known'"),
+        (
+            "z = let(2 * y, 'twice'); f = fit(z, a, u='stated')",
+            "f: nothing is stated of z, which is computed: give a formula of its standard uncertainties",
+        ),
         ("a_1 = unknown('x', start=1); f = fit(y, a + sin(a_1 * x))", "the model of f is not linear"),
         ("s_a = let(x, 'x'); f = fit(y, a)", "s_a is declared twice: f has one of that name, too"),
         (

@@ -90,6 +90,28 @@ def test_rows_and_the_cells_that_they_name_are_told_in_one_round(tmp_path: Path,
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize(
+    ("row", "told"),
+    [
+        (
+            "A,l,1,50.00084(2),mm",
+            "the number alone; its uncertainty is a row of its own, with the cell u(l)\n",
+        ),
+        ("A,l,1,50.00084 ± 0.00002,mm", "a row of its own, with the cell u(l)\n"),
+        ("A,u(l),1,0.00003(1),mm", "the number alone\n"),
+        ("A,l,1,5 0,mm", "write the digits without spaces"),
+    ],
+)
+def test_an_uncertainty_behind_a_value_is_told_where_it_belongs(
+    tmp_path: Path, check: Check, row: str, told: str
+) -> None:
+    published(tmp_path, row)
+    code, said = check()
+    assert code == 2
+    assert told in said
+    assert "41.6(2)" not in said
+
+
 # --- what prints the same ----------------------------------------------------------------------------------
 
 

@@ -16,7 +16,15 @@ if TYPE_CHECKING:
     from ..messages.errors import Findings, Location
     from ..quantity import Bounds
 
-__all__ = ["Declared", "NumberError", "read_number", "read_printed", "read_unit_of", "read_value"]
+__all__ = [
+    "Declared",
+    "NumberError",
+    "read_number",
+    "read_printed",
+    "read_unit_of",
+    "read_value",
+    "with_uncertainty",
+]
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE](?P<exponent>[+-]?[0-9]+))?")
 _COMMA = re.compile(
@@ -104,7 +112,7 @@ def _why_not(text: str) -> NumberError:
         thousands = f" or '{text.replace(',', '')}', whichever is meant" if _EITHER.fullmatch(text) else ""
         return NumberError("LS402", text=text, example=plain, thousands=thousands)
     suggestion = ""
-    if re.search(r"[(±]|.\+/?-", text):
+    if with_uncertainty(text):
         suggestion = "its uncertainty stands in parentheses behind all digits, 41.6(2), or in [uncertainty]"
     elif _NUMBER.fullmatch(text.replace("\u2212", "-").replace("\u2013", "-")):
         suggestion = "write the minus sign as an ordinary hyphen"
@@ -113,6 +121,15 @@ def _why_not(text: str) -> NumberError:
     elif _NUMBER.fullmatch(re.sub(r"[\s_']", "", text, flags=re.ASCII)):
         suggestion = "write the digits without spaces or marks between them"
     return NumberError("LS401", text=text, suggestion=suggestion)
+
+
+def with_uncertainty(text: str) -> bool:
+    """Whether what is no number looks like one with its uncertainty behind it.
+
+    >>> with_uncertainty("41.6(2)"), with_uncertainty("41.6 ± 0.2"), with_uncertainty("+-41.6")
+    (True, True, False)
+    """
+    return re.search(r"[(±]|.\+/?-", text) is not None
 
 
 def read_printed(text: str, unit: ParsedUnit, *, mode: str = "rounded", where: str = "") -> Printed:

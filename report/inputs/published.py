@@ -14,7 +14,7 @@ from ..messages.errors import Findings, Location, listing, suggest
 from .about import FORMS, About, read_about
 from .csvtable import CsvTable, Field, match_columns, read_table
 from .keys import PUBLISHED
-from .number_text import NumberError, read_number, read_printed
+from .number_text import NumberError, read_number, read_printed, with_uncertainty
 
 if TYPE_CHECKING:
     from ..quantity import Printed
@@ -218,14 +218,18 @@ def _printed(table: CsvTable, fields: Mapping[str, Field], unread: set[str], fin
         known = "a unit, 1 for a pure number"
         findings.add(error.code, at, text=error.text, suggestion=error.suggestion, known=known)
         unread.add("unit")
-    return _number(table, number, unit, findings)
+    return _number(table, number, unit, fields["cell"].text, findings)
 
 
-def _number(table: CsvTable, number: Field, unit: ParsedUnit, findings: Findings) -> Printed:
+def _number(table: CsvTable, number: Field, unit: ParsedUnit, cell: str, findings: Findings) -> Printed:
     try:
         return read_printed(number.text, unit, where=table.source.trace(number.offset))
     except NumberError as error:
-        findings.add(error.code, table.at(number), name="value", **error.fields)
+        told = dict(error.fields)
+        if error.code == "LS401" and with_uncertainty(number.text):
+            own = "" if "(" in cell else f"; its uncertainty is a row of its own, with the cell u({cell})"
+            told["suggestion"] = f"the number alone{own}"
+        findings.add(error.code, table.at(number), name="value", **told)
     return read_printed("0", unit)  # it is refused, and its cell is looked at all the same
 
 
