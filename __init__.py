@@ -3,6 +3,7 @@
 __version__ = "0.1.0"
 
 __all__ = [
+    "LoopsheetError",
     "Method",
     "claim",
     "constant",
@@ -24,13 +25,22 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
-    """What declares a method, and what loads a report, when they are asked for: they import much."""
+    """What declares a method, what loads a report and what that raises, once asked for: it imports much."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     if name == "load":
         from .report.loaded import load
 
         return load
+    if name == "LoopsheetError":
+        from .report.messages.errors import LoopsheetError
+
+        return LoopsheetError
     from .report import method
 
     return getattr(method, name)
+
+
+def __dir__() -> list[str]:
+    """What there is, asked for already or not."""
+    return sorted({*globals(), *__all__})

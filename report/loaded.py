@@ -6,12 +6,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from .cells.address import index_text
 from .cells.values import CODES
+from .column import Column
 from .inputs.folders import report_folder
 from .quantity import behind
 from .result.findings import checks
@@ -38,6 +40,8 @@ class Estimates:
         none.
     index : tuple of str
         What the rows are called: ``2``, ``1-2``; empty for a scalar.
+    names : tuple of str
+        The same with the names that rows have in the table of measurements, ``2 (S-17)``.
     status : tuple of str
         ``ok``, or the code of a cell without a value: ``#NOROOT!``.
     texts, sure : tuple of str
@@ -50,6 +54,7 @@ class Estimates:
     value: Array
     u: Array
     index: tuple[str, ...]
+    names: tuple[str, ...]
     status: tuple[str, ...]
     texts: tuple[str, ...] = field(repr=False)
     sure: tuple[str, ...] = field(repr=False)
@@ -58,15 +63,31 @@ class Estimates:
         """The value of a scalar."""
         return float(self.value)
 
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        """The values, for NumPy; of a scalar without an axis."""
+        return np.array(self.value, dtype=dtype) if copy else np.asarray(self.value, dtype=dtype)
+
     def __len__(self) -> int:
         """How many rows it has."""
         return len(self.index)
 
+    def __iter__(self) -> Iterator[float]:
+        """The values, row by row; a scalar has none."""
+        return iter(self.value.tolist())
+
+    def __getitem__(self, rows: Any) -> Any:
+        """The values of rows, which are counted from 0 as in an array of NumPy."""
+        return self.value[rows]
+
+    def __format__(self, how: str) -> str:
+        """The value of a scalar with a format, ``{x:.2f}``; without one what it is."""
+        return format(float(self.value), how) if how else str(self)
+
     @property
-    def rows(self) -> Iterator[tuple[str, str, str]]:
+    def rows(self) -> tuple[tuple[str, str, str], ...]:
         """Address, cell and uncertainty as texts, row by row."""
         at = [f"{self.name}[{index}]" for index in self.index] or [self.name]
-        yield from zip(at, self.texts, self.sure, strict=True)
+        return tuple(zip(at, self.texts, self.sure, strict=True))
 
     def _repr_html_(self) -> str:
         """For a notebook: a table of its cells."""
@@ -120,10 +141,17 @@ class Loaded(Mapping[str, Estimates]):
             np.array(printed or how.of(report.values.value[name])).reshape(shape),
             (u / how.scale).reshape(shape),
             tuple(index_text(cell.label) for cell in cells) if shape else (),
+            tuple(self._called(column, cell.label) for cell in cells) if shape else (),
             tuple(CODES[status] for status in report.values.status[name].tolist()),
             tuple(map(report.text, cells)),
             tuple(report.sure(name, each).text + behind(how.unit) if each > 0 else "" for each in u.tolist()),
         )
+
+    def _called(self, column: Column, index: tuple[int, ...]) -> str:
+        """A row by its number, with its name if it is one of the table of measurements."""
+        inputs = self._report.inputs
+        of_table = column.axis is not None and not column.axis.parents
+        return inputs.called(index[0]) if of_table else index_text(index)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._report.sheet.by_name)

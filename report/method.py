@@ -371,7 +371,8 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
         series.append(Series(across.name, column.name, column.meaning, style, colour))
     said, number = f"{up.meaning} over {across.meaning}", str(len(body.figures) + 1)
     chart = Chart(said, across.meaning, up.meaning, tuple(series), log, whole=True)
-    body.figures.append(FigureSpec(f"plot_{number}", number, caption or f"{said.capitalize()}.", chart=chart))
+    caption = caption or f"{said[:1].upper()}{said[1:]}."
+    body.figures.append(FigureSpec(f"plot_{number}", number, caption, chart=chart))
 
 
 def table(title: str, *columns: Any, note: str = "") -> None:

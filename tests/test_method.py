@@ -436,6 +436,12 @@ def test_a_folder_to_begin_with(
     assert found == pytest.approx(known, rel=2e-3 if name == "line" else 1e-5)
 
 
+def test_what_can_be_imported_is_listed_and_raised(tmp_path: Path) -> None:
+    assert {*loopsheet.__all__, "__version__"} <= {*dir(loopsheet)}
+    with pytest.raises(loopsheet.LoopsheetError, match="LS"):  # type: ignore[arg-type]
+        loopsheet.load(tmp_path)
+
+
 def test_a_report_is_loaded(tmp_path: Path) -> None:
     """Pairs and scalars, in the units that were typed, with texts for a notebook."""
     table = "test,v [m/s],e [1],x_p [um]\n1,2.200,0.5350,22.58\n2,3.100,0.5050,31.92\n3,4.300,0.4700,44.61\n"
@@ -452,6 +458,19 @@ def test_a_report_is_loaded(tmp_path: Path) -> None:
     assert float(mean_alpha) == pytest.approx(alpha.value.mean(), rel=1e-14)
     assert (mean_alpha.value.shape, mean_alpha.index) == ((), ())
     assert (found.title, found.headline[0]) == ("<Steel>", "alpha_eiv")
+    assert np.asarray(depth).tolist() == depth.value.tolist() == list(depth)
+    assert np.log(depth).tolist() == np.log(depth.value).tolist()
+    assert np.asarray(mean_alpha, dtype=np.float32).dtype == np.float32
+    assert (depth[0], depth[1:].tolist(), depth[-1]) == (22.58, [31.92, 44.61], 44.61)
+    assert f"{mean_alpha:.2f} {depth[0]:.1f}" == f"{float(mean_alpha):.2f} 22.6"
+    assert f"{mean_alpha}" == str(mean_alpha)
+    for wrong in (lambda: depth[3], lambda: mean_alpha[0]):
+        with pytest.raises(IndexError):
+            wrong()
+    with pytest.raises(TypeError):
+        list(mean_alpha)
+    assert repr(depth.rows).startswith("(('x_p[1]', '22.58 um', '0.0029 um'), ('x_p[2]', ")
+    assert (depth.names, alpha.names, mean_alpha.names) == (depth.index, alpha.index, ())
     assert "x_p" in found
     assert set(found) == set(sheet_names(tmp_path))
     shown = found._repr_html_()

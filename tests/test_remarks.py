@@ -7,6 +7,7 @@ import gas
 import openpyxl
 import pytest
 
+import loopsheet
 from loopsheet.report import build, stages
 from loopsheet.report.cli import main
 from loopsheet.report.document.material import Material
@@ -55,6 +56,17 @@ def test_rows_may_be_called_as_the_column_of_their_names(tmp_path: Path) -> None
     inputs = Study(gas.folder(tmp_path / "named", table=named)).inputs
     assert (inputs.tests, inputs.naming) == ((1, 2, 3), ("reading",))
     assert inputs.called(3) == "3 (R-3)"
+    loaded = loopsheet.load(tmp_path / "named")
+    assert loaded["T"].names == ("1 (R-1)", "2 (R-2)", "3 (R-3)")
+    unequal = named.replace("T [degC]", "T [degC],u(T) [degC]").replace("-3.2,", "-3.2,0.5,")
+    unequal = unequal.replace("20.0,", "20.0,0.1,").replace("21.5,", "21.5,0.1,").replace("30,,", "30,0.1,,")
+    toml = gas.TOML.replace('T = "u = 0.1 degC"\n', "")
+    code = gas.WORKBOOK.replace('"temperature", low', '"temperature of X", low')
+    code = code.replace('rows="readings"', 'rows="readings", headline="m"')
+    report = Study(gas.folder(tmp_path / "unequal", toml, unequal, code)).computed
+    (table_of_m,) = Tables(Material(report)).budget()
+    assert "Reading 3 (R-3) matters most" in str(table_of_m.legend)
+    assert report.workbook.figures[0].caption.startswith("Warmer over temperature of X.")
     with pytest.raises(InputError, match="'R-1'"):
         _ = Study(gas.folder(tmp_path / "mixed", table=table)).inputs
 

@@ -250,7 +250,7 @@ class Tables:
         )
         caption = Strong(("Where that comes from:",)), " ", Code(budget.cell)
         legend = f"The largest {len(seen)} of {len(budget.contributions)} sources."
-        legend += f" {most[0].capitalize()} matters most: {_percent(most[1])}." if most else ""
+        legend += f" {most[0][:1].upper()}{most[0][1:]} matters most: {_percent(most[1])}." if most else ""
         return (_table("budget", caption, made, [((), seen)], look="list", legend=(legend,)),)
 
     def _share(self, each: Contribution) -> Inlines:
