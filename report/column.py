@@ -37,6 +37,7 @@ __all__ = [
     "SheetError",
     "shown_as",
     "shown_in",
+    "written_in",
 ]
 
 
@@ -466,8 +467,14 @@ def shown_in(column: Column, columns: Mapping[str, Column]) -> ParsedUnit:
     columns : mapping of str to Column
         By name.
     """
-    like = shown_as(column, columns)
     try:
-        return parse_open(like.display or like.unit)
+        return parse_open(written_in(column, columns))
     except UnitError:
         return parse_open(column.unit)  # it is refused elsewhere
+
+
+def written_in(column: Column, columns: Mapping[str, Column]) -> str:
+    """The same as it is written, unread: a unit that is not common takes half a second."""
+    like = shown_as(column, columns)
+    own = "" if like.display.startswith("like ") else like.display
+    return own or like.unit

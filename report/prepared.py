@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from .column import Given, shown_in
+from .column import Given, written_in
 from .inputs.inputs import Inputs, check_cells
 
 if TYPE_CHECKING:
@@ -70,12 +70,12 @@ class Prepared:
             With every finding.
         """
         rows = {name: set(map(tuple, layout.labels.tolist())) for name, layout in self.layouts.items()}
-        columns, by_name = self.sheet.columns, self.sheet.by_name
+        by_name = self.sheet.by_name
         return check_cells(
             self.inputs,
             {
-                c.name: (shown_in(c, by_name).text, {()} if c.axis is None else rows[c.axis.name])
-                for c in columns
+                c.name: (written_in(c, by_name), {()} if c.axis is None else rows[c.axis.name])
+                for c in self.sheet.columns
             },
         )
 
