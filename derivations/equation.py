@@ -210,6 +210,9 @@ class Ledger:
     checks: tuple[Callable[[Ledger], Erratum | None], ...] = ()
     vocabulary: Vocabulary = NO_WORDS
     """What its symbols mean, how they are printed and where they are sampled."""
+    parts: tuple[tuple[Equation | Derivation, ...], ...] = ()
+    """Of models that exclude one another, each with what it rests on: what is to hold together. Left out, all
+    of it is."""
 
     def __post_init__(self) -> None:
         """No two equations with a number have the same."""

@@ -6,11 +6,11 @@ If none is found, as few statements as possible are named that do not hold toget
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
-from sympy import Expr, Integral, Rational
+from sympy import Add, Expr, Integer, Integral, Rational
 from sympy.core.function import AppliedUndef
 
 from .equation import Equation, Kind, Ledger, Step
@@ -75,6 +75,9 @@ def conflict(
     claims : frozenset of Equation
         Of these, what was proved without going to a limit.
     """
+    if ledger.parts:
+        parts = (replace(ledger, entries=entries, parts=()) for entries in ledger.parts)
+        return next(filter(None, (conflict(part, standing, claims) for part in parts)), None)
     everything, words = _statements(ledger, standing, claims), ledger.vocabulary
     # Claims for different domains need not hold at one point: each must with what holds everywhere.
     everywhere = [s for s in everything if is_assumed(s.source) or not s.conditions]
@@ -117,13 +120,34 @@ def _of_step(step: Step) -> Iterator[Statement]:
 
 
 def _statement(equation: Equation, laws: Mapping[Any, Expr], hints: tuple[Expr, ...]) -> Statement:
-    sides = [side.xreplace(laws) for side in equation.sides]
+    sides = [_summed(side.xreplace(laws)) for side in equation.sides]
     if equation.kind is Kind.LIMIT:
         sides = [sides[0], _NEARLY_ZERO]
     stated = [side for side in sides if not isinstance(side, Expr)]
     equal = [side for side in sides if isinstance(side, Expr) and not _is_unknown(side)]
     defined = () if equation.defines is None else (equation.defines,)
     return Statement(equation, tuple(equal), (*stated, *equation.conditions), (*defined, *hints, *equal[:1]))
+
+
+def _summed(side: Any) -> Any:
+    """A side with the integrals of powers in closed form: a search evaluates it some thousand times."""
+    closed = {each: _powers(each) for each in side.atoms(Integral) if not each.atoms(AppliedUndef)}
+    return side.xreplace({each: value for each, value in closed.items() if value is not None})
+
+
+def _powers(integral: Integral) -> Expr | None:
+    """The integral of a sum of powers of its variable from one end to another; None of anything else."""
+    if len(integral.limits) != 1 or len(integral.limits[0]) != 3:
+        return None
+    x, low, high = integral.limits[0]
+    found = Integer(0)
+    for term in Add.make_args(integral.function.expand()):
+        factor, powers = term.as_independent(x, as_Add=False)
+        base, exponent = powers.as_base_exp() if powers != 1 else (x, Integer(0))
+        if base != x or not exponent.is_number or exponent <= -1:
+            return None
+        found += factor * (high ** (exponent + 1) - low ** (exponent + 1)) / (exponent + 1)
+    return found
 
 
 def _is_unknown(side: Expr) -> bool:

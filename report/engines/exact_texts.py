@@ -13,6 +13,7 @@ from ..named import name_of
 from ..plan.domain import typed
 from ..plan.lowering import lowered_column
 from ..plan.nodes import Leaf, RootNode
+from ..plan.special import EXACT, in_elementary_terms
 from ..sheet import Axis, Column, Given, Iterated, Root, Sheet
 from .certified import certified, enclosing, slope
 from .mpmath_code import source_of
@@ -137,6 +138,7 @@ def _printed(
     expressions: tuple[Basic, ...], unknown: Symbol | None, modules: str
 ) -> tuple[tuple[Expr, ...], tuple[Any, ...], str]:
     """The cells and totals that expressions name, and their function; the same expressions come again."""
+    expressions = tuple(in_elementary_terms(expression, EXACT) for expression in expressions)
     totals = {total: Symbol(f"total_{n}") for n, total in enumerate(_sums(expressions))}
     outer = [expression.xreplace(totals) for expression in expressions]
     cells = sorted(set().union(*(e.atoms(Indexed) for e in outer)), key=str)

