@@ -20,7 +20,7 @@ from . import soft_impact_fit
 from .soft_impact_limits import apart, limits
 from .soft_impact_root import alpha_rule, two_tests
 
-__all__ = ["TESTS", "e", "sheet", "v", "x_p"]
+__all__ = ["TESTS", "beta", "e", "masses", "sheet", "v", "x_p"]
 
 # --- index sets ------------------------------------------------------------------------------------------
 
@@ -99,7 +99,7 @@ def sheet(given: frozenset[str]) -> Sheet:
         meaning="force of a generated point",
     )  # fmt: skip
     columns = (
-            v, e, x_p, beta, *_masses(given), points_per_pair,
+            v, e, x_p, beta, *masses(given), points_per_pair,
             alpha, *(on_pair | {"x_top": x_top}).values(),
             Column(
                 "alpha_mean", None, Formula(points.mean), meaning="mean exponent", latex=r"\bar{\alpha}",
@@ -115,7 +115,7 @@ def sheet(given: frozenset[str]) -> Sheet:
     return Sheet(columns).limited(limits(columns, where))
 
 
-def _masses(given: frozenset[str]) -> tuple[Column, ...]:
+def masses(given: frozenset[str]) -> tuple[Column, ...]:
     """The mass of the ball and the reduced mass, from what was given."""
     columns: list[Column] = []
     ball = _mass("ball_mass", Given("parameter"), "mass of the ball", "m_1")

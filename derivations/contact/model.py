@@ -1,0 +1,109 @@
+"""What a contact model is here: what it assumes, the equations by which it predicts a test, and its force.
+
+The ledger, the sheet, tables, charts and simulations of all models are made of this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from sympy import Expr, Rel, Symbol
+
+from ..equation import Derivation, Equation
+from ..vocabulary import Quantity
+
+__all__ = ["Constant", "ContactModel"]
+
+
+@dataclass(frozen=True)
+class Constant:
+    """The one number that a model takes from the tests.
+
+    Parameters
+    ----------
+    of_test : tuple of Equation
+        What it would be by one test alone: formulas; one that is solved for what it `defines` has that on
+        both sides, and is a root between 0 and 1.
+    mean, without : Equation
+        The geometric mean of these over all tests, and over all but one.
+    """
+
+    of_test: tuple[Equation, ...]
+    mean: Equation
+    without: Equation
+
+
+@dataclass(frozen=True)
+class ContactModel:
+    """A model of an impact.
+
+    Parameters
+    ----------
+    name : str
+        The last part of the names of its cells, ``johnson``.
+    title, mark : str
+        Author and what it is, ``Johnson, fully plastic``; the letters at its symbols.
+    assumes : str
+        In a sentence, what it takes for true.
+    source : str
+        Author, title, year.
+    quantities : tuple of Quantity
+        Its own symbols, called as their cells.
+    entries : tuple of Equation or Derivation
+        Its equations, in the order of a ledger.
+    cells : tuple of Equation
+        Those that tell a cell of all tests or of each, after the ones that they need.
+    predicts : mapping of str to Symbol
+        Its approach ``x_m``, force ``F_m``, duration ``t``, restitution ``e`` and imprint ``x_p``; what it
+        does not predict but is told is left out.
+    loading, unloading : Expr
+        The force up to the greatest approach, and from there; in terms of the approach x, of what is given
+        and of its cells.
+    constants : int
+        How many numbers it takes from the tests.
+    constant : Constant, optional
+        The only one of them.
+    left_out : mapping of Symbol to Symbol
+        What predicts a test that is left out, where its equations say so themselves.
+    needs : mapping of Symbol to (Rel, str)
+        Without what it says nothing of a test, and the sentence for that.
+    """
+
+    name: str
+    title: str
+    mark: str
+    assumes: str
+    source: str
+    quantities: tuple[Quantity, ...]
+    entries: tuple[Equation | Derivation, ...]
+    cells: tuple[Equation, ...]
+    predicts: Mapping[str, Symbol]
+    loading: Expr
+    unloading: Expr
+    constants: int = 0
+    constant: Constant | None = None
+    left_out: Mapping[Symbol, Symbol] = field(default_factory=dict)
+    needs: Mapping[Symbol, tuple[Rel, str]] = field(default_factory=dict)
+
+    def closed(self, of: Symbol) -> Expr:
+        """One of its cells in terms of what is given alone."""
+        found: Expr = of
+        for equation in reversed(self.cells):
+            found = found.xreplace({equation.sides[0]: equation.value})
+        return found
+
+    def hanging(self) -> tuple[Equation, ...]:
+        """Its cells that hang on its constant, and that restitution and imprint need."""
+        if self.constant is None:
+            return ()
+        wanted = {symbol for name, symbol in self.predicts.items() if name in ("e", "x_p")}
+        moved, found = {self.constant.mean.sides[0]}, []
+        for equation in self.cells:
+            if equation.value.free_symbols & moved:
+                moved.add(equation.sides[0])
+                found.append(equation)
+        for equation in reversed(found):
+            if equation.sides[0] in wanted:
+                wanted |= equation.value.free_symbols
+        return tuple(equation for equation in found if equation.sides[0] in wanted)
