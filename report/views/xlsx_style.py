@@ -15,7 +15,7 @@ LONGEST = 32_000
 """Characters of a cell; Excel takes 32 767."""
 _LINE = 15
 """Points that a line of text is high."""
-_MOST_DECIMALS = 9
+MOST_DECIMALS = 9
 _NOTHING = f"{1e-15:.15f}"
 """What is less is shown as 0 where nothing is expected. (Not every reader knows exponents there.)"""
 _INK, _PAPER, _PALE, _LINE_COLOUR = "#1F2A36", "#FFFFFF", "#EEF2F6", "#C9D3DD"
@@ -135,7 +135,7 @@ def number_format(figure: Numeral | None) -> str:
     """
     if figure is None:
         return "General"
-    if len(figure.fraction) > _MOST_DECIMALS and not int(figure.whole + figure.fraction):
+    if len(figure.fraction) > MOST_DECIMALS and not int(figure.whole + figure.fraction):
         return f"[>={_NOTHING}]0.0E+00;[<=-{_NOTHING}]-0.0E+00;0"
     point = f"0.{'0' * len(figure.fraction)}" if figure.fraction else "0"
     return point if figure.exponent is None else f"{point}E+00"
@@ -157,10 +157,10 @@ def open_format(decimals: int) -> str:
     >>> open_format(1), open_format(0)
     ('0.0########', 'General')
     """
-    shown = max(0, min(decimals, _MOST_DECIMALS))
+    shown = max(0, min(decimals, MOST_DECIMALS))
     if not shown:
         return "General"  # Excel would leave a decimal point behind a whole number
-    return f"0.{'0' * shown}{'#' * (_MOST_DECIMALS - shown)}"
+    return f"0.{'0' * shown}{'#' * (MOST_DECIMALS - shown)}"
 
 
 # --- text ------------------------------------------------------------------------------------------------

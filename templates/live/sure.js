@@ -112,7 +112,7 @@ const NORMAL = 1.959963984540054;
 const ENDED = {
   rectangular: [Math.sqrt(3), (x) => x], triangular: [Math.sqrt(6), (x) => 1 - (1 - x) ** 2], arcsine: [Math.SQRT2, (x) => 2 / Math.PI * Math.asin(x)],
 };
-const HALF = 600; // points of a distribution on either side
+const HALF = 4000; // points of a distribution on either side
 
 // Half of what holds 95 % of a sum of independent errors, in standard uncertainties. The distribution of the first, normal or
 // the largest that ends, is spread by one error after the other: evenly over a width, or over points that have weights.

@@ -149,6 +149,10 @@ class Live:
         found: list[str] = self.page.evaluate(_AROUND)
         return found
 
+    def around_to_first_order(self) -> list[str]:
+        """The same without expanded uncertainties: an edited page does not follow terms of second order."""
+        return [re.sub(r" ± .*?\(k = [\d.]+\)", "", text) for text in self.around()]
+
     def state(self) -> list[str]:
         """Every character of the report, and what stands in its inputs."""
         found: list[str] = self.page.evaluate(_STATE)
