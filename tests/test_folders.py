@@ -253,11 +253,21 @@ def test_an_output_that_somebody_changed_is_kept_and_told(gauge: Path, run: Run)
 
 
 def test_what_no_build_made_is_kept_as_well(gauge: Path, run: Run) -> None:
+    assert run("build", "gauge", "--to", "json")[0] == 0
+    (gauge / "out" / "report.tex").write_text("mine")
+    told = "report.tex was not as built: it is kept as report.edited.tex"
+    assert run("build", "gauge", "--to", "json,latex")[1].splitlines()[1] == told
+    assert (gauge / "out" / "report.edited.tex").read_text() == "mine"
+
+
+def test_nothing_is_built_among_the_files_of_others(gauge: Path, run: Run) -> None:
     (gauge / "site").mkdir()
     for name in ("values.json", "manifest.json"):
         (gauge / "site" / name).write_text('{"name": "my site"}')
-    assert run("build", "gauge", "--to", "json", "--out", "gauge/site")[1].count("it is kept as") == 2
-    for name in ("values.edited.json", "manifest.edited.json"):
+    code, _, told = run("build", "gauge", "--to", "json", "--out", "gauge/site")
+    assert (code, files(gauge)) == (2, ["site/manifest.json", "site/values.json"])
+    assert "what no build has written: manifest.json and values.json" in told
+    for name in ("values.json", "manifest.json"):
         assert (gauge / "site" / name).read_text() == '{"name": "my site"}'
 
 

@@ -90,7 +90,7 @@ SHEET = "Sheet((d, *given.values(), l))"
         (
             shows('prose="../own"'),
             '"../own"',
-            "there is no text '../own', which prose names; there is generic",
+            "there is no text '../own', which prose names; there is contact_models, ",
         ),
         (shows("prose=None"), "prose", "prose is no text in quotes"),
         (
