@@ -50,7 +50,7 @@ from sympy import (
 from .facts import Facts
 from .sums import in_terms
 
-__all__ = ["Solved", "definite", "is_root", "settle", "solve_for", "vanishes"]
+__all__ = ["Solved", "definite", "in_powers", "is_root", "settle", "solve_for", "vanishes"]
 
 NOTHING = Facts()
 
@@ -178,20 +178,20 @@ def settle(expression: Any, solution: Mapping[Expr, Expr], facts: Facts = NOTHIN
 
 @lru_cache(maxsize=64)
 def _integrate(integral: Integral) -> Expr:
-    """Integrate a sum of powers of linear functions; leave anything else to sympy."""
+    closed = in_powers(integral)
+    return integral.doit() if closed is None else closed
+
+
+def in_powers(integral: Integral) -> Expr | None:
+    """The integral of a sum of powers of linear functions from end to end; None of anything else."""
     if len(integral.limits) != 1 or len(integral.limits[0]) != 3:
-        return integral.doit()
+        return None
     variable, low, high = integral.limits[0]
-    total = Integer(0)
-    for term in Add.make_args(expand(integral.function)):
-        part = _integrated(term, variable, low, high)
-        if part is None:
-            return integral.doit()
-        total += part
-    return total
+    parts = [_of_power(term, variable, low, high) for term in Add.make_args(expand(integral.function))]
+    return None if None in parts else Add(*parts)
 
 
-def _integrated(term: Expr, variable: Expr, low: Expr, high: Expr) -> Expr | None:
+def _of_power(term: Expr, variable: Expr, low: Expr, high: Expr) -> Expr | None:
     """Integrate a factor times (a x + b)^p, p > -1, where a x + b is not negative from end to end."""
     outer, inner = term.as_independent(variable, as_Add=False)
     if inner == 1:

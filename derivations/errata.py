@@ -6,7 +6,7 @@ where the print is right. What an erratum says is put together from what was fou
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +17,7 @@ from .cells import Cells
 from .dimensions import Dimensions, dimension_of_unit, power, product
 from .equation import Equation, Erratum, Kind, Ledger
 from .evaluation import UNDEFINED, Tape, is_real
-from .proved import DIGITS, said
+from .proved import DIGITS, enumerated, said
 from .sampling import AGREES
 from .space import Space, short
 from .text import Wording
@@ -48,12 +48,6 @@ class Citation:
     where: str
     number: str
     quantity: Expr
-
-
-def _listed(names: Iterable[str]) -> str:
-    """Write names as a sentence does: a, b and c."""
-    *most, last = names
-    return f"{', '.join(most)} and {last}" if most else last
 
 
 def _values(
@@ -202,12 +196,12 @@ def check_determined(number: str, unknowns: tuple[Expr, ...]) -> Check:
         if not missing:
             return None
         meant = [line.label for line in lines if line.defines in missing]
-        repeats = f"prints {_listed(twice)} twice and " if twice else ""
-        advice = f"; what is meant is {_listed(meant)}" if meant else ""
+        repeats = f"prints {enumerated(twice)} twice and " if twice else ""
+        advice = f"; what is meant is {enumerated(meant)}" if meant else ""
         return Erratum(
             number,
             "determined",
-            f"{number} {repeats}does not give {_listed(map(text, missing))}{advice}.",
+            f"{number} {repeats}does not give {enumerated(map(text, missing))}{advice}.",
             f"left-hand sides as printed: {', '.join(map(text, left))}",
         )
 
@@ -235,13 +229,13 @@ def check_citation(citation: Citation) -> Check:
             for equation in ledger.equations()
             if equation.kind is Kind.CLAIM and not equation.own and _holds(equation, citation.quantity)
         ]
-        where = f"the claims that do are {_listed(holders)}" if holders else "no claim does"
+        where = f"the claims that do are {enumerated(holders)}" if holders else "no claim does"
         inside = sorted({text(s) for line in lines for side in line.sides for s in side.free_symbols})
         return Erratum(
             citation.where,
             "citation",
             f"{citation.where}: {citation.number} does not contain {text(citation.quantity)}; {where}.",
-            f"{citation.number} holds {_listed(inside)}" if inside else f"there is no {citation.number}",
+            f"{citation.number} holds {enumerated(inside)}" if inside else f"there is no {citation.number}",
         )
 
     return check
@@ -265,7 +259,7 @@ def check_whose(law: Equation, symbol: Symbol, where: str, said: str) -> Check:
             where,
             "attribution",
             f"The {where} attribute the exponent that is found to the {said} phase. It is {text(symbol)}, "
-            f"which stands only in the {_listed(holders)} branch of {law.label}.",
+            f"which stands only in the {enumerated(holders)} branch of {law.label}.",
             f"{said}: {text(laws[said])}",
         )
 
@@ -301,9 +295,9 @@ def check_units(law: Equation, printed: Mapping[Symbol, str | None]) -> Check:
         return Erratum(
             law.label,
             "unit",
-            f"By {law.label} {_listed(f'{text(s)} has the unit {unit}' for s, unit in units.items())}"
+            f"By {law.label} {enumerated(f'{text(s)} has the unit {unit}' for s, unit in units.items())}"
             + (", so that they are not of one kind" if len(set(units.values())) > 1 else "")
-            + f". The source prints {_listed(prints)}.",
+            + f". The source prints {enumerated(prints)}.",
             " and ".join(f"{text(q.symbol)} is in {q.unit}" for q in (of_force, of_approach)),
         )
 
@@ -340,13 +334,13 @@ def check_missing(where: str, formulas: tuple[Equation, ...], printed: tuple[Sym
             known.add(formula.members[0])
         if not needs:
             return None
-        by = _listed(f"{text(symbol)} by {_listed(labels)}" for symbol, labels in needs.items())
+        by = enumerated(f"{text(symbol)} by {enumerated(labels)}" for symbol, labels in needs.items())
         return Erratum(
             where,
             "missing",
             f"{where} cannot be computed from what is printed: it needs {by}, and the source gives no value "
             f"of {'it' if len(needs) == 1 else 'either' if len(needs) == 2 else 'any of them'}.",
-            f"printed are {_listed(map(text, printed))}",
+            f"printed are {enumerated(map(text, printed))}",
         )
 
     return check

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
 from .equation import Equation, Step
 
-__all__ = ["DIGITS", "IDENTITY", "Proof", "ProofStatus", "StepProof", "said"]
+__all__ = ["DIGITS", "IDENTITY", "Proof", "ProofStatus", "StepProof", "enumerated", "said"]
 
 DIGITS = 50
 """To how many an equation is evaluated."""
@@ -70,6 +70,16 @@ class Proof:
     """How the print differs from what was proved, or why an equation is refused."""
     rests_on: tuple[str, ...] = ()
     """The labels of what a claim finally rests on: definitions, assumptions and premises of its steps."""
+
+
+def enumerated(words: Iterable[str]) -> str:
+    """Words as a sentence has them.
+
+    >>> enumerated(["a"]), enumerated(["a", "b", "c"])
+    ('a', 'a, b and c')
+    """
+    *most, last = words
+    return f"{', '.join(most)} and {last}" if most else last
 
 
 def said(point: Mapping[str, str]) -> str:

@@ -10,12 +10,14 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
-from sympy import Add, Expr, Integer, Integral, Rational
+from sympy import Expr, Integral, Rational
 from sympy.core.function import AppliedUndef
 
+from .algebra import in_powers
 from .equation import Equation, Kind, Ledger, Step
 from .few_rows import Statement
 from .grounds import is_assumed
+from .proved import enumerated
 from .reductions import REDUCTIONS
 from .search import are_impossible, seek
 
@@ -54,8 +56,7 @@ class Contradiction:
                 if self.certain
                 else f"{nowhere} {self.culprit.label} holds"
             )
-        *most, last = dict.fromkeys(other.label for other in self.others)
-        others = f"{', '.join(most)} and {last}" if most else last
+        others = enumerated(dict.fromkeys(other.label for other in self.others))
         if self.certain:
             return f"{self.culprit.label} cannot hold together with {others}"
         return f"{nowhere} {self.culprit.label} holds together with {others}"
@@ -131,23 +132,8 @@ def _statement(equation: Equation, laws: Mapping[Any, Expr], hints: tuple[Expr, 
 
 def _summed(side: Any) -> Any:
     """A side with the integrals of powers in closed form: a search evaluates it some thousand times."""
-    closed = {each: _powers(each) for each in side.atoms(Integral) if not each.atoms(AppliedUndef)}
+    closed = {each: in_powers(each) for each in side.atoms(Integral) if not each.atoms(AppliedUndef)}
     return side.xreplace({each: value for each, value in closed.items() if value is not None})
-
-
-def _powers(integral: Integral) -> Expr | None:
-    """The integral of a sum of powers of its variable from one end to another; None of anything else."""
-    if len(integral.limits) != 1 or len(integral.limits[0]) != 3:
-        return None
-    x, low, high = integral.limits[0]
-    found = Integer(0)
-    for term in Add.make_args(integral.function.expand()):
-        factor, powers = term.as_independent(x, as_Add=False)
-        base, exponent = powers.as_base_exp() if powers != 1 else (x, Integer(0))
-        if base != x or not exponent.is_number or exponent <= -1:
-            return None
-        found += factor * (high ** (exponent + 1) - low ** (exponent + 1)) / (exponent + 1)
-    return found
 
 
 def _is_unknown(side: Expr) -> bool:

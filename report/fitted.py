@@ -22,7 +22,7 @@ from .charts import VERMILION, Chart, Series, drawn
 from .column import Column, Formula, Given, Iterated, SheetError
 from .named import name_of
 from .quantity import Bounds
-from .workbook import Curve, FigureSpec
+from .workbook import Curve, FigureSpec, sentence_case
 
 __all__ = ["DeclaredFit", "told_apart"]
 
@@ -217,7 +217,7 @@ class DeclaredFit:
         ):
             said = f"{up.meaning} over {over.meaning}{with_it}"
             chart = Chart(said, over.meaning, up.meaning, (points(up), *more), whole=True)
-            yield FigureSpec(f"plot_{n}", str(n), f"{said[:1].upper()}{said[1:]}.", chart=chart)
+            yield FigureSpec(f"plot_{n}", str(n), f"{sentence_case(said)}.", chart=chart)
 
 
 def told_apart(columns: Iterable[Column], fits: Sequence[DeclaredFit]) -> tuple[Column, ...]:

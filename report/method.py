@@ -32,7 +32,7 @@ from .method_body import ComputedLine, Declaration, FitLine, InputLine, MethodBo
 from .named import name_of
 from .quantity import Bounds, behind
 from .sheet import Sheet
-from .workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook, tables_of
+from .workbook import FigureSpec, Measured, Parameter, TableSpec, Workbook, sentence_case, tables_of
 
 __all__ = [
     "Method",
@@ -371,7 +371,7 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
         series.append(Series(across.name, column.name, column.meaning, style, colour))
     said, number = f"{up.meaning} over {across.meaning}", str(len(body.figures) + 1)
     chart = Chart(said, across.meaning, up.meaning, tuple(series), log, whole=True)
-    caption = caption or f"{said[:1].upper()}{said[1:]}."
+    caption = caption or f"{sentence_case(said)}."
     body.figures.append(FigureSpec(f"plot_{number}", number, caption, chart=chart))
 
 

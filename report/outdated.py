@@ -27,7 +27,8 @@ def outdated(inputs: Inputs) -> Iterator[Check]:
     others = {(folder / one.file).parent.parent for one in inputs.taken.values()} - {folder}
     for each in [*sorted(others), *([folder] if folder != PAPER else [])]:
         if is_report(each) and (names := _changed(each)):
-            said = f"{output(each).as_posix()} is older than what it was built from, {listing(names)}"
+            after = listing(names, last="and")
+            said = f"{output(each).as_posix()} is older than what it was built from, {after}"
             so = " and so are the numbers that are taken from it" if each in others else ""
             at, told = inputs.place, f"{said}{so and ',' + so}: build it again"
             yield Check("outputs", each.as_posix(), True, told, at, note="warning")

@@ -26,6 +26,7 @@ __all__ = [
     "SquareSum",
     "TableSpec",
     "Workbook",
+    "sentence_case",
     "tables_of",
 ]
 
@@ -109,6 +110,15 @@ def tables_of(sheet: Sheet, aside: Set[str]) -> Iterator[TableSpec]:
     scalars = tuple(c.name for c in shown if c.axis is None and c.name not in given)
     if scalars:
         yield TableSpec("scalars", "Results", scalars)
+
+
+def sentence_case(said: str) -> str:
+    """A caption with a capital at its beginning; all others stay.
+
+    >>> sentence_case("force by Johnson")
+    'Force by Johnson'
+    """
+    return said[:1].upper() + said[1:]
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from ...derivations.equation import Derivation, Equation, Step
 from ...derivations.proved import IDENTITY, Proof
-from ...derivations.unit_text import is_pure
 from ..cells.address import index_text
 from ..messages.errors import suggest
 from ..result import verdict_words as words
@@ -43,8 +42,8 @@ from .tree import (
     Refer,
     Strong,
     Table,
-    Unit,
     Value,
+    in_unit,
     joined,
 )  # fmt: skip
 from .written import gone
@@ -167,8 +166,7 @@ class Said:
         for one in self.report.comparisons:
             if (one.published.cell, one.published.index) == (cell, ()):
                 printed = one.published.printed
-                unit = () if is_pure(printed.unit) else ("\u00a0", Unit(printed.unit))
-                return Number(None, printed.text), *unit
+                return Number(None, printed.text), *in_unit(printed.unit)
         return ()
 
     def _numbered(self, label: str) -> Blocks:
@@ -221,14 +219,8 @@ class Said:
         for budget in self.material.budgets:
             if budget.name == name and budget.label == () and math.isfinite(budget.factor):
                 _, expanded = self.report.stated(name, budget.value, budget.expanded)
-                unit = self.report.shown[name].unit
-                behind = () if is_pure(unit) else ("\u00a0", Unit(unit))
-                return (
-                    "±\u00a0",
-                    Number(expanded),
-                    *behind,
-                    f" (k\u00a0=\u00a0{rounded(budget.factor, 3).text})",
-                )
+                factor = f" (k\u00a0=\u00a0{rounded(budget.factor, 3).text})"
+                return "±\u00a0", Number(expanded), *in_unit(self.report.shown[name].unit), factor
         return ()
 
     def oddities(self) -> Blocks:

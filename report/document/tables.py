@@ -22,7 +22,7 @@ from ..result.statements import of_column
 from ..result.uncertain import Budget, Conformity, Contribution, Decision
 from ..result.verdict import ALL, INPUT, UNREACHABLE, TableVerdict
 from ..sheet import Axis
-from ..workbook import TableSpec
+from ..workbook import TableSpec, sentence_case
 from .material import Material
 from .parts import MOST, Head, Pair, SourceGroup, described, slug, why_address
 from .refereed import GOOD, RefereedPair, shown_mismatch
@@ -43,6 +43,7 @@ from .tree import (
     Table,
     TableColumn,
     Unit,
+    in_unit,
     joined,
 )
 
@@ -89,11 +90,6 @@ def _table(
 def _whole(told: str) -> str:
     """A percentage that stays on its line."""
     return told.replace(" %", "\u00a0%")
-
-
-def _in(unit: str) -> Inlines:
-    """A unit behind a number."""
-    return () if is_pure(unit) else ("\u00a0", Unit(unit))
 
 
 def _run(said: Any) -> Any:
@@ -250,7 +246,7 @@ class Tables:
         )
         caption = Strong(("Where that comes from:",)), " ", Code(budget.cell)
         legend = f"The largest {len(seen)} of {len(budget.contributions)} sources."
-        legend += f" {most[0][:1].upper()}{most[0][1:]} matters most: {_percent(most[1])}." if most else ""
+        legend += f" {sentence_case(most[0])} matters most: {_percent(most[1])}." if most else ""
         return (_table("budget", caption, made, [((), seen)], look="list", legend=(legend,)),)
 
     def _share(self, each: Contribution) -> Inlines:
@@ -260,7 +256,7 @@ class Tables:
         if each.source.u is None:
             return ()
         name = each.source.moves[0][0]
-        return Number(self.report.sure(name, each.source.u)), *_in(self.report.shown[name].unit)
+        return Number(self.report.sure(name, each.source.u)), *in_unit(self.report.shown[name].unit)
 
     def conformity(self) -> Table:
         """The cells that have limits, and what the decision rule says of each."""
@@ -288,7 +284,7 @@ class Tables:
     def _tolerance(self, found: Conformity) -> Inlines:
         low, high = ("" if end is None else end.text for end in (found.limits.low, found.limits.high))
         units = {end.unit for end in (found.limits.low, found.limits.high) if end is not None}
-        return (str(found.limits),) if len(units) > 1 else (span(low, high), *_in(units.pop()))
+        return (str(found.limits),) if len(units) > 1 else (span(low, high), *in_unit(units.pop()))
 
     def _accepted(self, found: Conformity) -> Inlines:
         if math.isnan(found.guard):
@@ -296,12 +292,12 @@ class Tables:
         if not found.guard:
             return self._tolerance(found)
         within = accepted(self.report, found)
-        return (within, *_in(self._of(found.budget).unit)) if within else ("none",)
+        return (within, *in_unit(self._of(found.budget).unit)) if within else ("none",)
 
     def _guard(self, found: Conformity) -> Inlines:
         if not found.guard > 0:
             return ("not known",) if math.isnan(found.guard) else ("none",)
-        return Number(self.report.sure(found.budget.name, found.guard)), *_in(self._of(found.budget).unit)
+        return Number(self.report.sure(found.budget.name, found.guard)), *in_unit(self._of(found.budget).unit)
 
     def published_u(self) -> Table:
         """What is published of uncertainties, beside what is computed."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from ...derivations.equation import Equation
+from ...derivations.unit_text import is_pure
 from ..cells.address import index_text
 from ..result import numbers
 from ..workbook import FigureSpec
@@ -48,6 +49,7 @@ __all__ = [
     "TableColumn",
     "Unit",
     "Value",
+    "in_unit",
     "joined",
 ]  # fmt: skip
 
@@ -167,6 +169,11 @@ class Badge(Node):
 
 Inline = str | Strong | Code | Math | Number | Unit | Value | Count | Refer | Link | Hint | Badge | Bar
 Inlines = tuple[Inline, ...]
+
+
+def in_unit(unit: str) -> Inlines:
+    """A unit behind a number, on its line; nothing of a pure number."""
+    return () if is_pure(unit) else ("\u00a0", Unit(unit))
 
 
 def joined(parts: Iterable[Inlines], between: str, last: str = "") -> Inlines:

@@ -523,12 +523,12 @@ def close(word: str, known: Iterable[str]) -> str | None:
     return by_lower[found[0]] if found else None
 
 
-def listing(words: Iterable[str], most: int = 12) -> str:
+def listing(words: Iterable[str], most: int = 12, last: str = "or") -> str:
     """Return words for "allowed": ``a, b or c``; past `most` they are cut."""
     names = list(words)
     if len(names) > most:
         return ", ".join(names[:most]) + f" ... ({len(names)} in all)"
-    return " or ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
+    return f" {last} ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
 
 
 class Findings:

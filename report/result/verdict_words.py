@@ -6,10 +6,11 @@ is rounded to the nearest, what is certain is rounded outwards: no more is claim
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal, localcontext
 from fractions import Fraction
 
+from ...derivations.proved import enumerated
 from ..cells.address import address
 from ..inputs.published import PublishedValue
 from ..quantity import Printed, behind
@@ -49,7 +50,6 @@ __all__ = [
     "fit",
     "follows",
     "headline",
-    "joined",
     "lines",
     "mismatch",
     "name",
@@ -359,7 +359,7 @@ def amended(found: Referee) -> str:
     """What comes out with the known misprints put right; empty if none are known."""
     if found.amended is None:
         return ""
-    right = joined(
+    right = enumerated(
         f"{address(each.cell, each.index)} as {each.would_print}, "
         + ("as it is here" if each.would_print == each.printed else f"not {each.printed}")
         for each in found.errata
@@ -406,7 +406,9 @@ def fit(found: Fit, meaning: Callable[[str], str]) -> str:
     """
     printed = found.published.printed
     unit = behind(printed.unit)
-    offs = joined(f"{mismatch(off)} as the {meaning(name)} {name}" for name, off in found.mismatch.items())
+    offs = enumerated(
+        f"{mismatch(off)} as the {meaning(name)} {name}" for name, off in found.mismatch.items()
+    )
     return (
         f"{printed.text}{unit} is published as the {meaning(found.published.cell)}. "
         f"The worst mismatch is {offs}. {told(found, meaning)}"
@@ -421,13 +423,3 @@ def told(found: Fit, meaning: Callable[[str], str]) -> str:
     if len(good) == 1:
         return f"Only {good[0]} goes with what is published"
     return f"The digits do not tell {' from '.join(good)}"
-
-
-def joined(words: Iterable[str]) -> str:
-    """Words in a row.
-
-    >>> joined(["a"]), joined(["a", "b", "c"])
-    ('a', 'a, b and c')
-    """
-    *head, last = words
-    return f"{', '.join(head)} and {last}" if head else last

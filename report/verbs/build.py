@@ -36,7 +36,7 @@ def out_of(options: argparse.Namespace, folder: Path) -> Path:
     out = Path(options.out) if options.out else output(folder)
     found = strangers(out)
     if found and out.resolve() != folder.resolve():  # a folder may hold its own report
-        raise OutputError(diagnose("LS626", text=out.as_posix(), known=listing(found, most=3)))
+        raise OutputError(diagnose("LS626", text=out.as_posix(), known=listing(found, most=3, last="and")))
     return out
 
 

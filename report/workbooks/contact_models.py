@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..quantity import Bounds
-from ..workbook import FigureSpec, Parameter, TableSpec, Workbook
+from ..workbook import FigureSpec, Parameter, TableSpec, Workbook, sentence_case
 from . import soft_impact
 from .contact_models_charts import IMPRINTS, LOOPS, RESTITUTIONS, columns
 
@@ -133,7 +133,7 @@ WORKBOOK = Workbook(
         ),
         *(
             FigureSpec(
-                f"loops_{name}", str(number), f"L{chart.title[1:]}, one a test.", chart=chart,
+                f"loops_{name}", str(number), f"{sentence_case(chart.title)}, one a test.", chart=chart,
                 alt="Force over approach: loops that rise, and fall to an imprint.",
             )
             for number, (name, chart) in enumerate(LOOPS.items(), 3)

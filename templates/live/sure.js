@@ -35,7 +35,7 @@ class Sure {
       const rows = [...this.trace.sheet.value[one].keys()].map((row) => [one, other].map((name) => place(this.trace.address(name, row))));
       return rows.filter((both) => !both.includes(-1)).map((both) => [...both, r]);
     });
-    this.known = {};
+    [this.known, this.told] = [{}, {}];
   }
 
   // The sheet to both sides of where it is, along each error, and how far apart they are in its standard uncertainty.
@@ -72,9 +72,13 @@ class Sure {
 
   // Where the uncertainty of a cell comes from, the largest first, and its coverage factor.
   budget(name, row) {
+    return ((this.told[name] ??= [])[row] ??= this.sources(name, row));
+  }
+
+  sources(name, row) {
     const parts = this.parts(name, row), u = this.u(name, row), variances = this.variances(parts), least = 1e-12 * Math.max(...parts.map(Math.abs));
     const from = this.errors.map((error, n) => ({ ...error, part: parts[n], share: variances[n] / u ** 2 }));
-    const factor = this.factor(parts, this.freedom(parts, variances, u), u);
+    const factor = this.factor(parts, variances, this.freedom(parts, variances, u), u);
     return { u, factor, from: from.filter(({ part }) => Math.abs(part) > least).sort((a, b) => Math.abs(b.share) - Math.abs(a.share)) };
   }
 
@@ -93,11 +97,10 @@ class Sure {
   }
 
   // From the sum of the errors, where they are not all normal or t; as a rebuild tells it (uncertainty/convolution.py).
-  factor(parts, freedom, u) {
+  factor(parts, variances, freedom, u) {
     const { errors, pairs } = this, mixed = new Set(pairs.flatMap(([a, b]) => [a, b])), found = new Map();
     const moving = [...parts.keys()].filter((n) => parts[n]), ended = (n) => !mixed.has(n) && ENDED[errors[n].shape];
     if (!freedom || !moving.some(ended) || moving.some((n) => errors[n].dof && errors[n].shape !== "t")) return studentFactor(freedom);
-    const variances = this.variances(parts);
     for (const n of moving) {
       const { shape, dof, sample } = errors[n], own = ended(n) || (dof && (sample || !mixed.has(n)));
       const key = !own ? "normal" : dof && sample ? sample : n, one = found.get(key) ?? { shape: own ? shape : "normal", dof, variance: 0 };
@@ -129,10 +132,15 @@ function summedFactor(errors) {
     return x < 0 ? 1 - at(values, -x, beyond) : values[low] + (n - low) * (values[low + 1] - values[low]);
   };
   const evenly = (half) => {
-    let all = 0;
-    const whole = below.map((one, n) => (all += n ? step * (one + below[n - 1]) / 2 : 0));
-    const upTo = (x) => (x <= -reach ? 0 : x < 0 ? upTo(-x) + x : at(whole, x, () => all + x - reach)); // below is 1 less itself turned around
-    below = places.map((x) => (upTo(x + half) - upTo(x - half)) / (2 * half));
+    const whole = new Float64Array(2 * HALF + 1), own = new Float64Array(2 * HALF + 1), far = half / step;
+    for (let n = 1; n <= 2 * HALF; n++) whole[n] = whole[n - 1] + step * (below[n] + below[n - 1]) / 2;
+    const upTo = (n) => { // the integral up to a place between the points
+      if (n >= 2 * HALF) return whole[2 * HALF] + (n - 2 * HALF) * step;
+      const low = Math.floor(n);
+      return n < HALF ? (n <= 0 ? 0 : upTo(2 * HALF - n) + (n - HALF) * step) : whole[low] + (n - low) * (whole[low + 1] - whole[low]);
+    };
+    for (let n = HALF; n <= 2 * HALF; n++) own[2 * HALF - n] = 1 - (own[n] = (upTo(n + far) - upTo(n - far)) / (2 * half)); // turned around
+    below = own;
   };
   const over = (points, weigh) => {
     const weights = points.map(weigh), all = sum(weights), own = below, left = 1 - own[2 * HALF];
