@@ -30,7 +30,7 @@ from loopsheet.report.views.writer import TEMPLATES
 
 pytestmark = pytest.mark.usefixtures("keeping")
 
-SCRIPTS = ("numbers.js", "inputs.js", "trace.js", "nearby.js", "sure.js", "cells.js")
+SCRIPTS = ("numbers.js", "inputs.js", "trace.js", "nearby.js", "coverage.js", "sure.js", "cells.js")
 HARNESS = """
 const state = { tests: LIVE.tests, parameters: LIVE.parameters };
 for (const [name, label, text] of EDITS) {

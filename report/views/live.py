@@ -47,6 +47,7 @@ SCRIPTS = (
     "inputs.js",
     "trace.js",
     "nearby.js",
+    "coverage.js",
     "sure.js",
     "cells.js",
     "tables.js",

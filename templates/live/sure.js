@@ -110,76 +110,6 @@ class Sure {
   }
 }
 
-const NORMAL = 1.959963984540054;
-// Of errors that end: where, in standard uncertainties, and the share within a part of that.
-const ENDED = {
-  rectangular: [Math.sqrt(3), (x) => x], triangular: [Math.sqrt(6), (x) => 1 - (1 - x) ** 2], arcsine: [Math.SQRT2, (x) => 2 / Math.PI * Math.asin(x)],
-};
-const HALF = 4000; // points of a distribution on either side
-
-// Half of what holds 95 % of a sum of independent errors, in standard uncertainties. The distribution of the first, normal or
-// the largest that ends, is spread by one error after the other: evenly over a width, or over points that have weights.
-function summedFactor(errors) {
-  const order = ({ shape, dof, size }) => (ENDED[shape] ? 1 - size / 8 : dof ? 2 + 1 / dof : 0), [first, ...others] = errors.sort((a, b) => order(a) - order(b));
-  const ends = ({ shape, dof, size }) => size * (ENDED[shape]?.[0] ?? (dof ? 2 * studentFactor(dof) : 6)), heaviest = errors.at(-1).dof ?? Infinity;
-  const reach = sum(errors.map(ends)), step = reach / HALF, places = Array.from({ length: 2 * HALF + 1 }, (_, n) => (n - HALF) * step);
-  const share = ENDED[first.shape]?.[1] ?? ((x) => 2 * bell(6 * x));
-  let below = places.map((x) => (1 + Math.sign(x) * share(Math.min(1, Math.abs(x) / ends(first)))) / 2);
-  // Between the points in proportion; beyond them what is left falls as the tails of a t distribution do.
-  const at = (values, x, beyond) => {
-    const n = (Math.abs(x) + reach) / step, low = Math.floor(n);
-    if (n >= 2 * HALF) return beyond(x);
-    return x < 0 ? 1 - at(values, -x, beyond) : values[low] + (n - low) * (values[low + 1] - values[low]);
-  };
-  const evenly = (half) => {
-    const whole = new Float64Array(2 * HALF + 1), own = new Float64Array(2 * HALF + 1), far = half / step;
-    for (let n = 1; n <= 2 * HALF; n++) whole[n] = whole[n - 1] + step * (below[n] + below[n - 1]) / 2;
-    const upTo = (n) => { // the integral up to a place between the points
-      if (n >= 2 * HALF) return whole[2 * HALF] + (n - 2 * HALF) * step;
-      const low = Math.floor(n);
-      return n < HALF ? (n <= 0 ? 0 : upTo(2 * HALF - n) + (n - HALF) * step) : whole[low] + (n - low) * (whole[low + 1] - whole[low]);
-    };
-    for (let n = HALF; n <= 2 * HALF; n++) own[2 * HALF - n] = 1 - (own[n] = (upTo(n + far) - upTo(n - far)) / (2 * half)); // turned around
-    below = own;
-  };
-  const over = (points, weigh) => {
-    const weights = points.map(weigh), all = sum(weights), own = below, left = 1 - own[2 * HALF];
-    const beyond = (x) => (x < 0 ? left * (reach / -x) ** heaviest : 1 - left * (reach / x) ** heaviest);
-    below = places.map((x) => sum(points.map((point, n) => weights[n] * at(own, x - point, beyond))) / all);
-  };
-  const turns = (number) => Array.from({ length: number }, (_, n) => ((n + 0.5) / number - 0.5) * Math.PI);
-  for (const { shape, dof, size } of others.filter((one) => one.size > 0)) {
-    if (shape === "rectangular") evenly(Math.sqrt(3) * size);
-    else if (shape === "triangular") [1, 2].forEach(() => evenly(Math.sqrt(6) * size / 2));
-    else if (shape === "arcsine") over(turns(100).map((turn) => Math.SQRT2 * size * Math.sin(turn)), () => 1);
-    else over(turns(dof < 3 ? 2000 : 200).map((turn) => Math.sqrt(dof) * size * Math.tan(turn)), (t) => (1 + (t / size) ** 2 / dof) ** (-(dof - 1) / 2));
-  }
-  const within = (n) => below[HALF + n] - below[HALF - n];
-  let n = 1;
-  while (n < HALF && within(n) < 0.95) n++;
-  return step * (n - (within(n) - 0.95) / (within(n) - within(n - 1)));
-}
-
-// The share of a normal distribution between 0 and z standard deviations, by Simpson's rule.
-function bell(z) {
-  const parts = 64, at = (n) => Math.exp(-((n * z / parts) ** 2) / 2) * (n % parts ? 2 + 2 * (n % 2) : 1);
-  return z / parts / 3 / Math.sqrt(2 * Math.PI) * sum(Array.from({ length: parts + 1 }, (_, n) => at(n)));
-}
-
-// The same of a t distribution: with t = sqrt(freedom) tan(angle) it is an integral of a power of the cosine.
-function studentFactor(freedom) {
-  if (Number.isNaN(freedom)) return NaN;
-  if (freedom > 1000) return NORMAL * (1 + (NORMAL ** 2 + 1) / (4 * freedom));
-  const upTo = (angle) => {
-    let n = (freedom - 1) % 2, all = n ? Math.sin(angle) : angle;
-    for (n += 2; n < freedom; n += 2) all = (Math.cos(angle) ** (n - 1) * Math.sin(angle) + (n - 1) * all) / n;
-    return all;
-  };
-  let low = 0, high = Math.PI / 2;
-  for (const wanted = 0.95 * upTo(high); high - low > 1e-13; ) [low, high] = upTo((low + high) / 2) < wanted ? [(low + high) / 2, high] : [low, (low + high) / 2];
-  return Math.sqrt(freedom) * Math.tan(low);
-}
-
 // --- told ------------------------------------------------------------------------------------------------
 
 const percent = (share) => `${figureText(decimals(100 * share, 0))}\u00a0%`;
@@ -212,5 +142,4 @@ function writeUncertain(look) {
 }
 
 const ADDRESS = /^(\w+)(?:\[(.*)\])?$/;
-const sum = (numbers) => numbers.reduce((all, one) => all + one, 0);
 const axisNamed = (name) => PROGRAM.axes.find((one) => one.name === name);

@@ -1,0 +1,102 @@
+"""How far to both sides 95 % of a sum of errors are: in the page, beside the convolution of a build."""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from scipy.special import stdtrit
+
+from loopsheet.report.distribution import Shape
+from loopsheet.report.result.uncertain import ErrorSource
+from loopsheet.report.uncertainty.convolution import Convolved, convolved
+from loopsheet.report.views.writer import TEMPLATES
+
+CLOSE = 1e-4
+"""Of the probability: it moves no factor of three digits by a tenth of the last."""
+ENDED = (Shape.RECTANGULAR, Shape.TRIANGULAR, Shape.ARCSINE)
+
+Error = tuple[Shape, float, float]
+InNode = Callable[[str], list[float]]
+
+
+@pytest.fixture(scope="session")
+def in_node(require: Callable[..., str]) -> InNode:
+    """The numbers that a line of JavaScript makes of the functions of the page."""
+    functions = (TEMPLATES / "live" / "coverage.js").read_text(encoding="utf-8")
+
+    def run(line: str) -> list[float]:
+        script = f"{functions}\nconsole.log(JSON.stringify({line}));"
+        done = subprocess.run(
+            [require("node"), "-"], input=script, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
+        found: list[float] = json.loads(done.stdout)
+        return found
+
+    return run
+
+
+def page(errors: list[Error]) -> list[dict[str, object]]:
+    """Errors as the page has them, in standard uncertainties of their sum."""
+    u = math.hypot(*(size for _, size, _ in errors))
+    return [
+        {"shape": shape.value, "size": size / u, **({"dof": dof} if math.isfinite(dof) else {})}
+        for shape, size, dof in errors
+    ]
+
+
+def build(errors: list[Error]) -> Convolved:
+    sources = [ErrorSource("g", shape, dof, (), "", "", None) for shape, _, dof in errors]
+    sizes = np.array([size for _, size, _ in errors])
+    found = convolved(sources, sizes, math.hypot(*sizes))
+    assert found is not None
+    return found
+
+
+def sums(seed: int, number: int) -> list[list[Error]]:
+    """Sums of few and of many errors, alike and of very different sizes, one of them at least with ends."""
+    generator = np.random.default_rng(seed)
+    found = []
+    for many in generator.choice([1, 2, 3, 9], number):
+        own: list[Error] = []
+        for n in range(many):
+            shape = (
+                ENDED[generator.integers(3)]
+                if not n
+                else (*ENDED, Shape.NORMAL, Shape.STUDENT)[generator.integers(5)]
+            )
+            dof = float(generator.choice([1, 2, 3, 7, 30])) if shape is Shape.STUDENT else math.inf
+            own.append((shape, float(10 ** generator.uniform(-3, 0)), dof))
+        found.append(own)
+    return found
+
+
+def test_the_page_has_the_factors_of_a_build(in_node: InNode) -> None:
+    cases = sums(1, 150)
+    factors = in_node(f"{json.dumps([page(case) for case in cases])}.map(summedFactor)")
+    for case, factor in zip(cases, factors, strict=True):
+        law = build(case)
+        assert law.below(factor) - law.below(-factor) == pytest.approx(0.95, abs=CLOSE), case
+
+
+def test_errors_that_are_alone_have_the_factors_that_are_known(in_node: InNode) -> None:
+    alone = [page([(shape, 1.0, math.inf)]) for shape in (*ENDED, Shape.NORMAL)]
+    factors = in_node(f"{json.dumps(alone)}.map(summedFactor)")
+    known = [
+        0.95 * math.sqrt(3),
+        (1 - math.sqrt(0.05)) * math.sqrt(6),
+        math.sqrt(2) * math.sin(0.475 * math.pi),
+    ]
+    assert factors == pytest.approx([*known, 1.959963984540054], rel=3e-6)
+
+
+def test_factors_of_t_distributions(in_node: InNode) -> None:
+    freedom = [1, 2, 3, 4, 5, 10, 29, 100]
+    assert in_node(f"{freedom}.map(studentFactor)") == pytest.approx(
+        stdtrit(freedom, 0.975).tolist(), rel=1e-11
+    )
