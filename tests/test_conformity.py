@@ -310,6 +310,31 @@ def test_what_is_understood(tmp_path: Path, text: str, said: str) -> None:
     assert str(found) == said
 
 
+def test_limits_may_have_a_rule_of_their_own(tmp_path: Path) -> None:
+    lines = ['a = "<= 2"', 'b = "1 .. 2 um, guard = 0.2 um"']
+    lines += ['c = ">= 1,level=90 %"', 'd = "<= 2, guard = 0.5 U, level = 80 %"']
+    rule = '[limits.rule]\nguard = "U"\nlevel = "99 %"'
+    rules = [one.guard for one in read(tmp_path, "\n".join(["[limits]", *lines, rule])).limits]
+    assert [(float(one.times), one.level) for one in rules] == [(1, 0.99), (0, 0.99), (1, 0.9), (0.5, 0.8)]
+    assert [one.width and (one.width.text, one.width.unit) for one in rules] == [
+        None,
+        ("0.2", "um"),
+        None,
+        None,
+    ]
+
+
+def test_a_rule_of_its_own_decides(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The same limit of the same cell, with and without: what was accepted is not any more."""
+    lines = '[limits]\nalpha_mean = "<= 1.33{}"\n"x_p[1]" = "22 .. 24 um, guard = 0.2 um"\n'
+    simple, guarded = (
+        told(capsys, "alpha_mean", folder(tmp_path, lines.format(own)))
+        for own in ("", ", guard = U, level = 90 %")
+    )
+    assert "limits at most 1.33, no guard band\nalpha_mean conforms:" in simple
+    assert "U at 90 %), acceptance limits at most 1.276\nno decision on alpha_mean:" in guarded
+
+
 def test_a_unit_behind_the_second_number_is_that_of_both(tmp_path: Path) -> None:
     (found,) = read(tmp_path, '[limits]\nx = "1 .. 2 um"\n').limits
     assert found.ends == (1e-6, 2e-6)
@@ -331,6 +356,11 @@ def test_a_unit_behind_the_second_number_is_that_of_both(tmp_path: Path) -> None
         ('[limits.rule]\nguard = "-1"', "LS442", '"-1"'),
         ('[limits.rule]\nlevel = "0.5 %"', "LS442", '"0.5 %"'),
         ('[limits.rule]\nlevl = "95 %"', "LS203", "levl"),
+        ('alpha_mean = "<= 2, guard = 1 um"', "LS422", '"<= 2, guard = 1 um"'),
+        ('alpha_mean = "<= 2, guard = 2 furlung"', "LS442", "2 furlung"),
+        ('alpha_mean = "<= 2, gard = U"', "LS442", "gard"),
+        ('alpha_mean = "<= 2, guard = U, 3"', "LS442", "U, 3"),
+        ('alpha_mean = "1,25 .. 1,35"', "LS441", "1,35"),
         ('alpha_mean = "<= 2"\n[limits.rule]\nguard = "1 um"', "LS422", '"1 um"'),
     ],
 )

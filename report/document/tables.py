@@ -8,6 +8,7 @@ from functools import cached_property
 from itertools import groupby, islice
 from typing import Any, NamedTuple
 
+from ...derivations.proved import enumerated
 from ...derivations.unit_text import is_pure
 from ..cells.address import index_text
 from ..inputs.measurements import LeftOut
@@ -274,10 +275,11 @@ class Tables:
             _Made("specific risk", lambda found: _whole(risk(found)), "words", 0.14),
         )
         every = self.report.uncertain().conformities
-        rule = every[0].limits.guard
+        rules = [found.limits.guard for found in every]
         drawn = "acceptance limits are the limits, drawn in by the guard band"
-        told = "simple acceptance, without a guard band" if not rule.times and rule.width is None else drawn
-        of_share = f", a share of U for {100 * rule.level:.12g}\u00a0%" if rule.times else ""
+        told = drawn if any(rule.draws_in for rule in rules) else "simple acceptance, without a guard band"
+        levels = dict.fromkeys(f"{100 * rule.level:.12g}" for rule in rules if rule.times)
+        of_share = f", a share of U for {enumerated(levels)}\u00a0%" if levels else ""
         caption = (Strong(("Conformity with limits.",)), f" Decision rule (JCGM 106): {told}{of_share}")
         return _table("conformity", caption, made, [((), every)], row, look="list", wide=True)
 

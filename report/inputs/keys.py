@@ -87,7 +87,10 @@ TABLES: dict[tuple[str, ...], dict[str, Key]] = {
         ANY: Key('"0.3"', 'Of two columns or two parameters: `"v, e"`.'),
     },
     ("limits",): {
-        ANY: Key('"1.25 .. 1.35"', "Of a cell: also `<= 1.35`, `>= 1.25`, `22 .. 24 um`."),
+        ANY: Key(
+            '"1.25 .. 1.35"',
+            "Of a cell: also `<= 1.35`, `>= 1.25`, `22 .. 24 um`, `<= 2 mm, guard = 0.1 mm`.",
+        ),
         "rule": Key("[limits.rule]", "The decision rule (JCGM 106); simple acceptance, without it."),
     },
     ("limits", "rule"): {

@@ -3,6 +3,7 @@
 [limits]
 alpha_mean = "1.25 .. 1.35"              # or "<= 1.35", ">= 1.25"; with a unit where the cell has one
 "x_p[1]" = "22 .. 24 um"
+"x_p[2]" = "22 .. 24 um, guard = 0.2 um" # a rule of its own
 
 [limits.rule]
 guard = "U"                              # or "0.83 U", "0.2 um"; without it 0, simple acceptance
@@ -21,6 +22,7 @@ from typing import TYPE_CHECKING
 from ...derivations.unit_text import UnitError, examples, is_pure, parse_open
 from ..cells.address import address, named
 from ..distribution import LEVEL
+from ..messages.errors import listing
 from ..quantity import Bounds, behind, span
 from .expected import check_expected
 from .keys import fixed
@@ -39,6 +41,8 @@ SECTION, RULE = "limits", "rule"
 EXAMPLE = "1.25 .. 1.35"
 _BOTH = re.compile(r"(?P<low>.+?)\s*\.\.\s*(?P<high>.+)")
 _ONE = re.compile(r"(?P<sign><=|>=|≤|≥)\s*(?P<number>.+)")
+_OWN = re.compile(r",\s*(?P<key>[A-Za-z]\w*)\s*=\s*(?P<text>.*?)\s*(?=,\s*[A-Za-z]\w*\s*=|$)")
+"""Behind limits, a part of a rule; a comma that no key follows belongs to what is before it."""
 _SHARE = re.compile(r"(?:(?P<times>[0-9.]+)\s*)?U")
 _LEVELS = (Fraction(1, 100), Fraction(999_999, 1_000_000))
 
@@ -63,6 +67,11 @@ class Guard:
     width: Printed | None = None
     level: float = LEVEL
     at: Location | None = None
+
+    @property
+    def draws_in(self) -> bool:
+        """Whether acceptance is not simple."""
+        return bool(self.times) or self.width is not None
 
 
 @dataclass(frozen=True)
@@ -120,12 +129,27 @@ def _limits(tables: TomlTables, written: Collection[str], guard: Guard, ruled: b
         if text is None:
             continue
         try:
-            low, high = _ends(text)
+            low, high = _ends(_OWN.sub("", text))
+            rule = _own_rule(guard, text, tables.toml.value(SECTION, cell))
         except StatementError as error:
             at = tables.toml.value(SECTION, cell, start=error.start, length=max(len(error.text), 1))
             tables.findings.add(error.code, at, text=error.text, suggestion=error.suggestion)
         else:
-            yield Limits(cell, low, high, guard, tables.toml.key(SECTION, cell))
+            yield Limits(cell, low, high, rule, tables.toml.key(SECTION, cell))
+
+
+def _own_rule(rule: Guard, text: str, at: Location) -> Guard:
+    """A rule with what is written behind limits in its place."""
+    for one in _OWN.finditer(text):
+        if one["key"] not in (known := fixed(SECTION, RULE)):
+            raise StatementError(
+                "LS442", one["key"], one.start("key"), f"the parts of a rule are {listing(known)}"
+            )
+        try:
+            rule = _with(rule, one["key"], one["text"], at)
+        except StatementError as error:
+            raise StatementError(error.code, one["text"], one.start("text"), error.suggestion) from None
+    return rule
 
 
 def _ends(text: str) -> tuple[Printed | None, Printed | None]:
@@ -169,10 +193,14 @@ def _rule(tables: TomlTables) -> Guard:
             continue
         at = tables.toml.value(*path, key)
         try:
-            found = _guard(found, text, at) if key == "guard" else replace(found, level=_level(text))
+            found = _with(found, key, text, at)
         except StatementError as error:
             tables.findings.add(error.code, at, text=text, suggestion=error.suggestion)
     return found
+
+
+def _with(rule: Guard, key: str, text: str, at: Location) -> Guard:
+    return _guard(rule, text, at) if key == "guard" else replace(rule, level=_level(text))
 
 
 def _guard(rule: Guard, text: str, at: Location) -> Guard:
@@ -181,9 +209,9 @@ def _guard(rule: Guard, text: str, at: Location) -> Guard:
         width = _width(text)
         if width.value < 0:
             raise StatementError("LS442", text, 0, "a guard band is 0 or more wide")
-        return replace(rule, width=width if width.value else None, at=at)
+        return replace(rule, times=Fraction(0), width=width if width.value else None, at=at)
     times = _number(share["times"] or "1", 0, "LS442").value
-    return replace(rule, times=times, at=at)
+    return replace(rule, times=times, width=None, at=at)
 
 
 def _width(text: str) -> Printed:

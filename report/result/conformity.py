@@ -66,7 +66,7 @@ def _chance(found: Conformity, probability: float, other: float) -> str:
 def _rule(report: Report, found: Conformity) -> str:
     """The guard band and what it leaves."""
     guard, name = found.limits.guard, found.budget.name
-    if not guard.times and guard.width is None:
+    if not guard.draws_in:
         return ", no guard band"
     if math.isnan(found.guard):
         return ", guard band not known"
