@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from sympy import Expr
 
 __all__ = [
-    "BARS", "BLUE", "INK", "STYLES", "VERMILION", "Chart", "Drawn", "Series", "copied", "drawn", "shade",
-    "with_copies",
+    "BARS", "BLUE", "INK", "MOST_DOTS", "STYLES", "VERMILION", "Chart", "Drawn", "Series", "copied", "drawn",
+    "shade", "with_copies",
 ]  # fmt: skip
 
 INK, VERMILION, BLUE = "#1a1a1a", "#d55e00", "#0072b2"
@@ -21,6 +21,8 @@ INK, VERMILION, BLUE = "#1a1a1a", "#d55e00", "#0072b2"
 BARS = "bars: standard uncertainty"
 """What the legend says of them."""
 STYLES = ("points", "line", "level")
+MOST_DOTS = 500
+"""Points of a series that are drawn; more are thinned: they would blacken the paper and bloat the file."""
 _SHADES = ((68, 1, 84), (70, 50, 127), (54, 92, 141), (39, 127, 142), (31, 161, 135))
 
 
@@ -59,6 +61,11 @@ class Series:
     named: bool = False
     value: str = ""
     bars: bool = False
+
+    @property
+    def is_cloud(self) -> bool:
+        """Whether it is points that nobody tells apart."""
+        return self.style == "points" and not (self.named or self.bars)
 
 
 @dataclass(frozen=True)
@@ -101,10 +108,13 @@ class Drawn:
         Formulas as the sheet's.
     given : mapping of str to int
         Values of the given columns among them: how often an axis that only charts have repeats its parent.
+    thinned : tuple of str
+        The columns that are of clouds alone, of which a worksheet has no more cells than are drawn.
     """
 
     columns: tuple[Column, ...] = ()
     given: Mapping[str, int] = field(default_factory=dict)
+    thinned: tuple[str, ...] = ()
 
 
 def drawn(name: str, axis: Axis, value: Expr, unit: str = "1", meaning: str = "", **more: Any) -> Column:
@@ -126,14 +136,18 @@ def with_copies(own: Drawn, sheet: Sheet, charts: Iterable[Chart]) -> Drawn:
     """The same with copies of what charts show of the sheet, for what would draw a cell in error as zero."""
     columns = {column.name: column for column in (*sheet.columns, *own.columns)}
     found: dict[str, Column] = {}
+    whole: set[Axis] = set()
     for series in (series for chart in charts for series in chart.series):
         axis = columns[series.x].axis
         assert axis is not None
+        if not (series.is_cloud and {series.x, series.y} <= sheet.by_name.keys()):
+            whole.add(axis)
         for column in (sheet[name] for name in (series.x, series.y) if name in sheet):
             value = column[axis.index] if column.axis else column.symbol
             name, meaning = copied(column, axis), f"{column.name}, for the chart"
             found[name] = drawn(name, axis, value, column.unit, meaning, display=f"like {column.name}")
-    return Drawn((*own.columns, *found.values()), own.given)
+    thinned = tuple(name for name, column in found.items() if column.axis not in whole)
+    return Drawn((*own.columns, *found.values()), own.given, thinned)
 
 
 def shade(part: float) -> str:

@@ -110,7 +110,8 @@ def drawn_of(
         whole = Sheet((*sheet.columns, *own.columns))
         axes = [axis for axis in whole.axes if axis not in sheet.axes]
         columns = tuple(_column(whole, column, {}, None) for column in own.columns)
-        return {"sheet": as_data(_ToldSheet(tuple(map(_axis, axes)), columns)), "given": dict(own.given)}
+        whole_sheet = as_data(_ToldSheet(tuple(map(_axis, axes)), columns))
+        return {"sheet": whole_sheet, "given": dict(own.given), "thinned": list(own.thinned)}
 
     if not any(map(is_partly, sheet.columns)):
         return declared()
@@ -118,7 +119,7 @@ def drawn_of(
     columns = _Known(
         of_data(data["sheet"], _ToldSheet), lambda: {c.name: c for c in declared().columns}, sheet.axes
     ).columns()
-    return Drawn(columns, data["given"])
+    return Drawn(columns, data["given"], tuple(data["thinned"]))
 
 
 def sheet_of(workbook: Workbook, given: frozenset[str], check: Callable[[Sheet], None]) -> Sheet:

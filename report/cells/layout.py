@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..sheet import Axis, Column, CountedAxis, PairAxis, RepeatAxis, Sheet
 
-__all__ = ["Layout", "Precedent", "how_large", "lay_out", "precedents"]
+__all__ = ["Layout", "Precedent", "evenly", "how_large", "lay_out", "precedents"]
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,17 @@ class Layout:
     rows: Mapping[str, NDArray[np.intp]]
     ordinals: Mapping[str, NDArray[np.float64]]
     labels: NDArray[np.int64]
+
+
+def evenly(size: int, most: int) -> NDArray[np.intp]:
+    """At most so many of the rows, evenly from the first to the last.
+
+    Not every n-th: in step with the rows of a pair, that would always take the same ones.
+
+    >>> evenly(5, 9).tolist(), evenly(9, 5).tolist()
+    ([0, 1, 2, 3, 4], [0, 2, 4, 6, 8])
+    """
+    return np.linspace(0, size - 1, min(size, most)).round().astype(np.intp)
 
 
 def lay_out(

@@ -12,7 +12,7 @@ from .material import Material
 from .notation import fragments
 from .tree import Math, Refer
 
-__all__ = ["PREFIXES", "Letters", "Scale", "Words", "plain", "plain_unit", "unit_text"]
+__all__ = ["PREFIXES", "Letters", "Scale", "Words", "plain", "plain_unit", "thinned", "unit_text"]
 
 Letters = tuple[tuple[str, str], ...]
 """Pieces of a text: upright (``""``) or a symbol's, on the line (``i``), below or above it (``_``, ``^``)."""
@@ -64,6 +64,15 @@ def plain_unit(unit: str) -> str:
     ('µm/(L min)', '')
     """
     return "" if is_pure(unit) else micro(unit)
+
+
+def thinned(there: int, drawn: int) -> str:
+    """What the legend says behind points, if not all that are there are drawn.
+
+    >>> thinned(39000, 500), thinned(500, 500)
+    (', one in 78 drawn', '')
+    """
+    return f", one in {round(there / drawn)} drawn" if drawn < there else ""
 
 
 def plain(letters: Letters) -> str:

@@ -7,7 +7,7 @@ the other on the worksheet ``report``; the cells on the way to a scalar root hav
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, get_args
@@ -15,6 +15,7 @@ from typing import Any, get_args
 from ...derivations.unit_text import ParsedUnit, UnitError, parse_open, parse_unit
 from ..cells.grid import CHECKED, FIRST_ROW, SCALARS, STEPS, CellBlock, FilledDown, Place, as_issued, checked
 from ..cells.layout import Layout
+from ..charts import MOST_DOTS
 from ..column import shown_as
 from ..plan.kept import as_data
 from ..plan.lowering import lowered
@@ -67,6 +68,7 @@ class Assembly:
         units: Mapping[str, str],
         first: Sequence[str],
         worded: int,
+        thinned: Collection[str],
     ) -> None:
         self.sheet, self.judged, self.whole, self.layouts, self.counts = sheet, judged, whole, layouts, counts
         self.units, self.first = units, first
@@ -74,6 +76,7 @@ class Assembly:
         self.rooms = {axis.name: _Room(self.names[axis.name], layouts[axis.name].size) for axis in whole.axes}
         self.places: dict[str, Place] = {}
         self.notes: dict[str, Place] = {}
+        self.thinned = thinned
         self.worded, self.words = worded, dict[str, tuple[Place, ...]]()
         self.indices: dict[str, tuple[Place, ...]] = {}
         self.plan = ordered(lowered(whole))
@@ -166,7 +169,8 @@ class Assembly:
     def put(self, column: Column, name: str) -> None:
         """The next free column of its worksheet."""
         assert column.axis is not None
-        self.places[name] = self.rooms[column.axis.name].next(*self.size(column))
+        place = self.rooms[column.axis.name].next(*self.size(column))
+        self.places[name] = replace(place, rows=min(place.rows, MOST_DOTS)) if name in self.thinned else place
 
     def put_scalars(self) -> None:
         """The result, what is given, and the rest, each group under a title."""

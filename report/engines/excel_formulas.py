@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sympy import And, Expr, Float, Rational, Rel, Symbol
 
 from ..cells.grid import FilledDown, Place, as_issued, checked
-from ..cells.layout import Layout
+from ..cells.layout import Layout, evenly
 from ..cells.values import CODES, Status
 from ..named import within
 from ..plan.nodes import Leaf, Map, Plan, RootNode
@@ -188,8 +188,9 @@ class _Writing:
         size = self.place.rows
         if not self.open:
             return (FilledDown(size, f"={template}"),)
-        every = np.arange(size)
-        rows = np.array([every if which is None else which for _, which in self.open])
+        # Of a cloud that is thinned, not every row of the axis has a cell.
+        every = evenly(self.layouts[self.axis.name].size, size) if self.axis else np.arange(size)
+        rows = np.array([every if which is None else which[every] for _, which in self.open])
         steps = np.diff(rows)
         # Excel fills no formula down by itself in which a row of another worksheet moves.
         near = np.array([place.worksheet == self.here for place, _ in self.open])

@@ -65,6 +65,7 @@ def grid(
     """
     check_rows(values.layouts)
     drawn = with_passes(drawn, sheet)
+    thinned = drawn.thinned if drawn else ()
     every = values if drawn is None else extend(values, drawn.columns, drawn.given)
     whole, layouts = every.sheet, every.layouts
     counts = {axis.repeats: every.scalar(axis.repeats) for axis in whole.axes if axis.repeats}
@@ -74,12 +75,15 @@ def grid(
     def make() -> dict[str, Any]:
         from .excel_assembly import Assembly
 
-        return Assembly(worksheets, sheet, values.sheet, whole, layouts, counts, units, first, worded).told()
+        return Assembly(
+            worksheets, sheet, values.sheet, whole, layouts, counts, units, first, worded, thinned
+        ).told()
 
     own = [layouts[axis.name].labels.tolist() for axis in whole.axes if axis.is_given]
     words = [(column.meaning, column.unit, column.display, column.source) for column in whole.columns]
     names = [list(each.by_name) for each in (sheet, values.sheet)]
-    hangs_on = repr((names, own, sorted(counts.items()), words, sorted(units.items()), list(first), worded))
+    sizes = sorted(counts.items()), sorted(units.items()), list(first), worded, thinned
+    hangs_on = repr((names, own, words, sizes))
     told = of_sheet(whole, "formulas of the workbook", [hangs_on], make)
     axes = dict(zip(worksheets.values(), whole.axes, strict=True))
     blocks = filled(of_data(told["blocks"], tuple[CellBlock, ...]), told["roots"], every)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cells.grid import CellBlock, FilledDown, Place
-from ..cells.layout import precedents
+from ..cells.layout import evenly, precedents
 from ..cells.values import CODES, Status, Values, inherited, rows_kept
 from .kernels import Array
 from .numpy import Program, parts
@@ -48,7 +48,8 @@ def filled(
         else:
             shown = found[name] if what.endswith("cell") else _cells(values, name, block.place)
         if what == "drawn":
-            shown = tuple(None if isinstance(value, str) else value for value in shown)
+            some = (shown[row] for row in evenly(len(shown), block.place.rows).tolist())
+            shown = tuple(None if isinstance(value, str) else value for value in some)
         elif what == "carried":
             axis, index = more
             shown = tuple(shown[row] for row in values.layouts[axis].rows[index].tolist())

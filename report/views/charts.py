@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cells.layout import evenly
 from ..cells.values import Status
-from ..charts import BARS, VERMILION, Chart, Series, shade
-from ..document.charted import PREFIXES, Letters, Words
+from ..charts import BARS, MOST_DOTS, VERMILION, Chart, Series, shade
+from ..document.charted import PREFIXES, Letters, Words, thinned
 from ..result.result import Report
 from . import drawing
 from .drawing import Array, Labels, Place
@@ -45,8 +46,6 @@ AROUND: tuple[Place, ...] = (
 )
 """Where the name of a point may stand; it takes the first that is free."""
 
-MOST_DOTS = 500
-"""More are thinned: they would blacken the paper and bloat the file."""
 MOST_NAMES, SOME_NAMES = 21, 12
 """All of up to 21 points are named; of more the outermost, so that a name stays at its dot; of lines some."""
 ROOM = 0.25
@@ -273,9 +272,9 @@ class _Picture:
         outermost = np.argsort(-np.abs(at[1] - np.median(at[1])), kind="stable")
         inside = self.frame.holds(at)
         within, beyond = np.flatnonzero(inside), outermost[~inside[outermost]][:SOME_NAMES]
-        shown = within[drawing.evenly(len(within), MOST_DOTS)]
+        shown = within[evenly(len(within), MOST_DOTS)]
         size = 4.5 if total <= MOST_NAMES else 2.6
-        more = f", one in {round(len(within) / len(shown))} drawn" if len(shown) < len(within) else ""
+        more = thinned(len(within), len(shown))
         if series.named:
             named = outermost[: None if total <= MOST_NAMES else SOME_NAMES]
             shown = np.union1d(shown, named[inside[named]])
@@ -331,16 +330,16 @@ class _Picture:
             at = np.hstack([trace.at for trace in own])
             if len(own) > 1:
                 at = at[:, np.argsort(at[0], kind="stable")]
-            self.line(at[:, drawing.evenly(at.shape[1], CORNERS)], series.colour, 1.1)
+            self.line(at[:, evenly(at.shape[1], CORNERS)], series.colour, 1.1)
             self.key(series, len(own), color=series.colour, lw=1.1)
             return
         corners, width = max(FEWEST, CORNERS // len(own)), 1.4 if len(own) <= SOME_NAMES else 0.8
-        ways = [(t.names[0], t.at[:, drawing.evenly(t.at.shape[1], corners)]) for t in own]
+        ways = [(t.names[0], t.at[:, evenly(t.at.shape[1], corners)]) for t in own]
         ways.sort(key=lambda way: (float(way[1][1, -1]), way[0]))
         colours = [shade(n / max(1, len(ways) - 1)) for n in range(len(ways))]
         for (_, at), colour in zip(ways, colours, strict=True):
             self.line(at, colour, width)
-        for n in drawing.evenly(len(ways), SOME_NAMES)[::-1]:
+        for n in evenly(len(ways), SOME_NAMES)[::-1]:
             self.names.append((ways[n][0], [(ways[n][1][:, -1], BESIDE_END)], {"color": colours[n]}))
         self.key(series, len(own), color=colours[len(colours) // 2], lw=1.4)
 

@@ -102,17 +102,6 @@ def empty(axes: Axes, sentence: str) -> None:
     axes.text(0.5, 0.5, sentence, ha="center", va="center", transform=axes.transAxes, color=GREY)
 
 
-def evenly(size: int, most: int) -> NDArray[np.intp]:
-    """At most so many of the rows, evenly from the first to the last.
-
-    Not every n-th: in step with the rows of a pair, that would always take the same ones.
-
-    >>> evenly(5, 9).tolist(), evenly(9, 5).tolist()
-    ([0, 1, 2, 3, 4], [0, 2, 4, 6, 8])
-    """
-    return np.linspace(0, size - 1, min(size, most)).round().astype(np.intp)
-
-
 def dots(axes: Axes, x: Array, y: Array, size: float, colour: str) -> None:
     """Round dots as one path: as markers they would take four times the bytes.
 

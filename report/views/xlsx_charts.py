@@ -11,7 +11,7 @@ import numpy as np
 from ..cells.address import index_text
 from ..cells.grid import CellBlock, Grid, Place
 from ..charts import BARS, Series, copied, shade
-from ..document.charted import Words, plain
+from ..document.charted import Words, plain, thinned
 from ..quantity import behind
 from ..result.result import Report
 from ..workbook import FigureSpec
@@ -127,7 +127,9 @@ def _series(words: Words, grid: Grid, series: Series) -> Iterator[dict[str, Any]
         for name, own in zip(names, (series.x, series.y), strict=True)
     )
     if axis is of or series.style == "points":
-        yield _one(plain(words.label(series, f"the {of.name}")), series, series.colour, x, y, 0, x.place.rows)
+        label = plain(words.label(series, f"the {of.name}"))
+        label += thinned(values.layouts[axis.name].size, x.place.rows)
+        yield _one(label, series, series.colour, x, y, 0, x.place.rows)
         return
     parents = values.layouts[of.name].labels.tolist()
     each = x.place.rows // max(1, len(parents))

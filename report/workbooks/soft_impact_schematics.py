@@ -14,6 +14,7 @@ import numpy as np
 
 from ...derivations import soft_impact as model
 from ...derivations.rebuilt import evaluated
+from ..cells.layout import evenly
 from ..engines.numpy_code import kernel
 from ..result.result import Report
 from ..views import drawing
@@ -132,7 +133,7 @@ def draw_hysteresis(_: Report) -> Figure:
     up, down, loading, unloading = hysteresis()
     x_p, x_m = float(down.x[0]), float(down.x[-1])
     figure, axes = _schematic(8, x_p, x_m, 1.3 * x_m, 1.08 * float(loading.y.max()))
-    some = drawing.evenly(len(up.x), MOST_CORNERS)
+    some = evenly(len(up.x), MOST_CORNERS)
     plastic = np.append(up.x[some], down.x[some][::-1]), np.append(up.y[some], down.y[some][::-1])
     axes.fill(*plastic, color=PALE, lw=0)
     # With and without friction the abscissae are the same.

@@ -19,6 +19,7 @@ from uncertain_data import MISFITS, lost_to_differences
 
 from loopsheet.report import stages
 from loopsheet.report.cells.grid import Grid, checked
+from loopsheet.report.cells.layout import evenly
 from loopsheet.report.cells.values import CODES, Status, Values
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
@@ -269,6 +270,9 @@ def compare(
         if not known.size:
             # A count that is refused leaves no rows; those of the workbook say so.
             known, codes = np.full(place.rows, np.nan), np.full(place.rows, Status.INPUT)
+        elif drawn:  # of a cloud, as many as a chart shows
+            some = evenly(known.size, place.rows)
+            known, codes = known[some], codes[some]
         scale = 1e-6 * np.nanmax(np.abs(known), initial=0.0) if np.isfinite(known).any() else 0.0
         # A logarithm near zero has no relative precision of its own; its column has.
         if not column.positive:
