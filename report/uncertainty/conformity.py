@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from ..distribution import DIVISORS, SHARES, Shape
 from ..inputs.limits import Limits
-from ..laws import Law
+from ..laws import Array, Law
 from ..result.uncertain import Budget, Conformity, Decision
 
-__all__ = ["beyond", "conformity"]
+__all__ = ["beyond", "beyond_each", "conformity"]
 
 
 def beyond(z: float, shape: Shape, dof: float, law: Law | None = None) -> float:
@@ -30,18 +32,23 @@ def beyond(z: float, shape: Shape, dof: float, law: Law | None = None) -> float:
     >>> beyond(math.sqrt(3) / 2, Shape.RECTANGULAR, math.inf), round(beyond(1.4, Shape.NORMAL, math.inf), 4)
     (0.25, 0.0808)
     """
-    if math.isinf(z):
-        return 0.0 if z > 0 else 1.0  # beyond no limit lies nothing, whatever draws leave open
+    return float(beyond_each(np.array([z]), shape, dof, law)[0])
+
+
+def beyond_each(z: Array, shape: Shape, dof: float, law: Law | None = None) -> Array:
+    """The same of many numbers: one by one they take four times as long."""
     if law is not None:
-        return law.above(z)
+        # Beyond no limit lies nothing, whatever draws leave open.
+        return np.array([float(each < 0) if math.isinf(each) else law.above(each) for each in z.tolist()])
     if shape in SHARES:
-        share = SHARES[shape](min(abs(z) / DIVISORS[shape], 1.0))
-        return (1 - share) / 2 if z > 0 else (1 + share) / 2
+        inside = np.minimum(np.abs(z) / DIVISORS[shape], 1.0)
+        share = np.array([SHARES[shape](each) for each in inside.tolist()])
+        return np.where(z > 0, 1 - share, 1 + share) / 2
     if shape is Shape.NORMAL:
-        return math.erfc(z / math.sqrt(2)) / 2
+        return np.array([math.erfc(each) / 2 for each in (z / math.sqrt(2)).tolist()])
     from scipy.special import stdtr  # a quarter of a second, for those who have degrees of freedom
 
-    return float(stdtr(dof, -z))
+    return np.asarray(stdtr(dof, -z))
 
 
 def conformity(budget: Budget, limits: Limits) -> Conformity:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..distribution import DIVISORS, PARTS, Shape
 from ..laws import Law, Samples
 from ..result.uncertain import ErrorSource
-from .conformity import beyond
+from .conformity import beyond_each
 
 __all__ = ["Convolved", "convolved"]
 
@@ -79,15 +79,9 @@ class _Part:
     def shares(self, side: int) -> Array:
         """How much is in the bin around 0 and in so many to either side; the last hold what is beyond."""
         z = (np.arange(-side, side, dtype=np.float64) + 0.5) / (FINE * abs(self.size))
-        found = -np.diff(np.concatenate([[1.0], self._above(z), [0.0]]))
+        above = beyond_each(z, self.shape, self.dof, self.law)
+        found = -np.diff(np.concatenate([[1.0], above, [0.0]]))
         return found if self.size > 0 else found[::-1]
-
-    def _above(self, z: Array) -> Array:
-        if self.shape is Shape.STUDENT:  # of which there are many bins
-            from scipy.special import stdtr
-
-            return np.asarray(stdtr(self.dof, -z))
-        return np.array([beyond(each, self.shape, self.dof, self.law) for each in z.tolist()])
 
 
 @dataclass(frozen=True)
