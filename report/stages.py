@@ -134,6 +134,10 @@ def evaluated(made: Prepared, ledger: Callable[[], Ledger], step: Step) -> Repor
     from .judge.oddities import oddities
 
     report = _evaluated(made, ledger, step)
+    if report.inputs.cards.codes:
+        from .cards import asked_for
+
+        report = replace(report, cards=asked_for(report))
     return replace(report, oddities=(*oddities(report), *_claims(report)))
 
 

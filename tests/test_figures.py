@@ -1,6 +1,7 @@
 """The drawings: the same bytes everywhere, nothing clipped or overlapping, small, and true to the report."""
 
 import hashlib
+import json
 import os
 import re
 import subprocess
@@ -22,12 +23,13 @@ from matplotlib.patches import PathPatch
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
+from loopsheet.report.impacts.codes import CODES
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.views import figures
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
-CAMPAIGNS = ("paper", "2", "3", "10", "40", "in error", "no pair", "falling", "equal")
+CAMPAIGNS = ("paper", "2", "3", "10", "40", "in error", "no pair", "falling", "equal", "cards")
 DRAWINGS = tuple(figures.drawings(WORKBOOK))
 
 TOML = """
@@ -38,6 +40,10 @@ ball_diameter = "12.7 mm"
 ball_density = "7800 kg/m^3"
 [measurements]
 file = "measurements.csv"
+"""
+CARDS = f"""
+[cards]
+codes = {json.dumps([*CODES])}
 """
 
 
@@ -51,6 +57,8 @@ def rows_of(campaign: str) -> list[tuple[float, float, float]]:
         (4.993, 0.453, 51.03),
     ]
     match campaign:
+        case "cards":
+            return table_1
         case "in error":  # the second imprint is shallower than the first, the last is missing its root too
             return [(2.334, 0.53, 30.0), *table_1[1:4], (4.993, 0.453, 45.0)]
         case "no pair":
@@ -81,7 +89,8 @@ def report_of(report: Report, tmp_path_factory: pytest.TempPathFactory) -> Calla
             f"{n},{v:.6g},{e:.4g},{x * scale:.6g}" for n, (v, e, x) in enumerate(rows_of(campaign), start=1)
         ]
         (folder / "measurements.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
-        (folder / "report.toml").write_text(TOML, encoding="utf-8")
+        toml = TOML + CARDS * (campaign == "cards")
+        (folder / "report.toml").write_text(toml, encoding="utf-8")
         return Study(folder).computed
 
     return report_of
@@ -166,6 +175,7 @@ def test_every_figure_of_the_workbook_has_its_drawing() -> None:
 
 DIGEST = """
 import hashlib
+import json
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.study import Study
 from loopsheet.report.views import figures
@@ -285,6 +295,9 @@ def test_what_is_left_out_of_the_picture_is_told(report_of: Callable[..., Report
         ("no pair", "loops", "Nothing to draw"),
         ("no pair", "alpha_pairs", "Nothing to draw"),
         ("paper", "referee", "No reachable interval"),
+        ("paper", "cards_returned", "No card to draw"),
+        ("paper", "cards_restitutions", "No card to draw"),
+        ("paper", "cards_imprints", "No card to draw"),
     ],
 )
 def test_nothing_to_draw_is_said(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from slipped_campaigns import PAPER, Slip, write
 
-from loopsheet.report.document import narrative
+from loopsheet.report.document import cards, narrative
 from loopsheet.report.document.material import Material
 from loopsheet.report.document.narrative import NarrativeError, narratives, sections
 from loopsheet.report.document.said import SAID, Said
@@ -238,7 +238,7 @@ def test_a_shipped_narrative_names_tables_figures_and_symbols_of_its_workbook(na
     text = "".join(line.text for line in narrative._lines(workbook.prose))
     assert set(re.findall(r"\{table\}`([^`]*)`", text)) <= {spec.name for spec in workbook.tables}
     assert set(re.findall(r"\{fig\}`([^`]*)`", text)) <= {
-        "referee",
+        *("referee", cards.RETURNED, cards.RESTITUTIONS, cards.IMPRINTS),
         *(spec.name for spec in workbook.figures),
     }
     assert set(re.findall(r"\{sym\}`([^`]*)`", text)) <= set(workbook.ledger().vocabulary) | {

@@ -16,7 +16,8 @@ from matplotlib.text import Text
 
 from loopsheet.report import stages
 from loopsheet.report.document.material import Material
-from loopsheet.report.document.refereed import FIGURE, RefereedPair, figure
+from loopsheet.report.document.pictures import figures as pictures
+from loopsheet.report.document.refereed import FIGURE, RefereedPair
 from loopsheet.report.document.said import Said
 from loopsheet.report.result.numbers import decimals
 from loopsheet.report.result.result import Report
@@ -256,7 +257,7 @@ def test_what_comes_out_exactly_needs_few_words(tmp_path: Path) -> None:
 def test_without_published_values_there_is_no_chapter(tmp_path: Path) -> None:
     report = campaign(tmp_path, [])
     assert not Material(report).refereed
-    assert figure(report) is None
+    assert FIGURE not in [spec.name for spec in pictures(report)]
     found = sections_of(report)
     assert "referee" not in found
     assert "referee" not in latex.render(report, [])
@@ -310,7 +311,7 @@ def test_nothing_can_be_asked_for_where_no_cell_has_a_value(paper: Report) -> No
     asked = tuple(replace(c, refereed=verdict) for c in paper.comparisons)
     report = replace(paper, comparisons=asked, referee=Referee((verdict,) * len(asked)))
     found = sections_of(report)
-    assert figure(report) is None
+    assert FIGURE not in [spec.name for spec in pictures(report)]
     assert {row[-1] for row in rows_of(found["refereed-values"])[1:] if len(row) == 8} == {"no value"}
     assert "What would explain" not in text_of(found["referee"])
 
@@ -411,7 +412,7 @@ def words(report: Report) -> list[str]:
 
 def test_what_is_out_of_reach_is_said_in_words(paper: Report) -> None:
     assert words(paper).count("unreachable") == 2
-    spec = figure(paper)
+    spec = next(spec for spec in pictures(paper) if spec.name == FIGURE)
     assert spec is not None
     assert "12 published values" in spec.alt
     assert "2 lie outside theirs" in spec.alt

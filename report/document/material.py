@@ -22,7 +22,8 @@ from ..sheet import Column, Given, Root
 from ..workbook import FigureSpec, TableSpec, tables_of
 from .names import latex_names, name_latex
 from .parts import MARK, MOST, Head, Item, Pair, Remark, SourceGroup, Written, slug
-from .refereed import RefereedPair, figures
+from .pictures import figures
+from .refereed import RefereedPair
 from .rich import Sentences
 from .tree import Badge
 from .written import written
@@ -124,7 +125,7 @@ class Material:
 
     @cached_property
     def figures(self) -> tuple[FigureSpec, ...]:
-        """The workbook's figures, and the referee's."""
+        """The workbook's figures, and those that are of no workbook."""
         return figures(self.report)
 
     # --- equations

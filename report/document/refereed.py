@@ -12,7 +12,7 @@ from ..result.verdict import EXACT, REACHABLE, UNREACHABLE, Verdict
 from ..workbook import FigureSpec
 from .parts import Head, Pair
 
-__all__ = ["FIGURE", "GOOD", "RefereedPair", "figure", "figures", "shown_mismatch"]
+__all__ = ["FIGURE", "GOOD", "RefereedPair", "figures", "shown_mismatch"]
 
 GOOD = (EXACT, REACHABLE)
 """Verdicts on what comes out of what is printed."""
@@ -21,21 +21,19 @@ FIGURE = "referee"
 """The name of the picture, of its drawing and of the chapter."""
 
 
-def figure(report: Report) -> FigureSpec | None:
-    """The picture of the published values on what is reachable; None where there is none to draw."""
+def figures(report: Report) -> tuple[FigureSpec, ...]:
+    """The picture of the published values on what is reachable, without its number, if there is one."""
     verdicts = [c.refereed for c in report.comparisons if c.refereed is not None]
     drawn = [verdict for verdict in verdicts if verdict.low is not None]
     if not drawn:
-        return None
-    taken = {spec.number for spec in report.workbook.figures}
-    number = next(f"L{n}" for n in range(1, len(taken) + 2) if f"L{n}" not in taken)
+        return ()
     out = sum(verdict.verdict == UNREACHABLE for verdict in drawn)
     said = {0: "none lies outside its bar", 1: "one lies outside its bar"}.get(
         out, f"{out} lie outside theirs"
     )
-    return FigureSpec(
+    drawn_so = FigureSpec(
         FIGURE,
-        number,
+        "",
         "Published values on what the printed inputs can yield. Each row is measured from its own published "
         "value, in units of its last digit; the scale is even near zero and shrinks as a logarithm far "
         "from it. The bar is what inputs that print as given were seen to yield, the grey band what prints "
@@ -45,12 +43,7 @@ def figure(report: Report) -> FigureSpec | None:
         f"the printed inputs can yield, a ring for the recomputed value, and a band at zero for what "
         f"prints as published. Of the published values {said}.",
     )
-
-
-def figures(report: Report) -> tuple[FigureSpec, ...]:
-    """All figures of a report: its workbook's, and the referee's if it found something to draw."""
-    own = figure(report)
-    return report.workbook.figures if own is None else (*report.workbook.figures, own)
+    return (drawn_so,)
 
 
 @dataclass(frozen=True)

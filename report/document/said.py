@@ -19,6 +19,7 @@ from ..result.numbers import probability, rounded
 from ..result.statements import statements
 from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
 from ..workbook import FigureSpec
+from . import cards
 from .material import Material
 from .parts import Item, SourceGroup
 from .refereed import GOOD
@@ -436,6 +437,7 @@ SAID: dict[str, Callable[[Said], Answer]] = {
     "engines": lambda s: _listed(map(_agreement, s.report.engines)),
     "other_engines": lambda s: len(s.report.engines) > 1,
     "files": lambda s: joined(((Code(name),) for name in s.report.inputs.files), ", "),
+    "cards": lambda s: cards.blocks(s.report.cards()),
     "untold": lambda s: joined(((name,) for name in s.material.untold), " and "),
     "exactly": lambda s: s.report.exactly is not None,
     "versions": Said.versions,

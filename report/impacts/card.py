@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from scipy.optimize import brentq
@@ -10,13 +11,13 @@ from sympy import Expr, Symbol
 
 from ...derivations.text import text
 from ...derivations.vocabulary import NO_WORDS
-from ..result.card import Behaviour, Card, CardRow, TypedValue
+from ..result.card import Behaviour, Card, CardRow, Prescribed, TypedValue
 from .code import E, R, SimulationCode, alpha, depth, nu
 from .drops import Drop, Drops
 from .law import m_red, v_0
 from .simulation import Impact, simulate
 
-__all__ = ["Unreachable", "card"]
+__all__ = ["PRESCRIBED", "Unreachable", "card"]
 
 CLOSE = 1e-11
 """How near to the wanted depth the search for the stiffness ends, over it."""
@@ -25,6 +26,10 @@ _STIFFNESSES = -60.0, 100.0
 """Between which stiffnesses one is sought: their logarithms, in SI."""
 _STEP = 6.0
 """The factor by which a damping is made stronger until the restitution is passed."""
+
+
+PRESCRIBED = tuple(n / 20 for n in range(1, 20))
+"""The restitutions of which a card tells what comes back."""
 
 
 class Unreachable(Exception):
@@ -67,10 +72,9 @@ def card(
     rows = []
     for test in drops.tests:
         again = simulate(code.law, constants, drops.mass, test.speed)
-        typed = None
-        if code.takes_e:
-            typed = simulate(code.law, {**constants, code.damping: test.e}, drops.mass, test.speed).e
-        rows.append(CardRow(test.speed, test.e, again.e, typed))
+        typed = _returned(code, constants, drops.mass, test.speed, test.e) if code.takes_e else None
+        rows.append(CardRow(test.speed, test.e, again.e, typed, test.x_p, again.x_p))
+    prescribed = PRESCRIBED if code.takes_e else ()
     values = tuple(
         TypedValue(
             one.word,
@@ -96,8 +100,18 @@ def card(
         wanted=Behaviour(drop.e, drop.x_p, drop.x_m),
         returned=Behaviour(found.e, found.x_p, found.x_m, found.F_m, found.duration),
         rows=tuple(rows),
+        prescribed=tuple(
+            Prescribed(e, _returned(code, constants, drops.mass, drop.speed, e)) for e in prescribed
+        ),
         notes=(*solver.notes, *(() if imprint else ("it leaves no imprint",)), *code.notes),
     )
+
+
+def _returned(
+    code: SimulationCode, constants: Mapping[Symbol, float], mass: float, speed: float, typed: float
+) -> float:
+    """What comes back of a restitution that is typed in; NaN where the bodies do not part."""
+    return simulate(code.law, {**constants, code.damping: typed}, mass, speed).e
 
 
 def _formula(code: SimulationCode) -> str:

@@ -23,6 +23,7 @@ from ..messages.errors import (
     suggest,
 )
 from ..quantity import there
+from .cards import AskedCards, read_cards
 from .draws import read_draws
 from .expected import EXAMPLE, Expectation, check_expected
 from .limits import Limits, check_limits, read_limits
@@ -115,6 +116,8 @@ class Inputs:
         The columns of words that come along; nothing is computed from them.
     texts : mapping of int to mapping of str to str
         The row of each test as it stands, by column; that of one that is left out stands with it.
+    cards : AskedCards
+        For which simulation codes the report tells what to type into them.
     """
 
     folder: Path
@@ -140,6 +143,7 @@ class Inputs:
     heads: Mapping[str, str] = field(default_factory=dict)
     texts: Mapping[int, Mapping[str, str]] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+    cards: AskedCards = field(default_factory=AskedCards)
 
     @property
     def about_source(self) -> bool:
@@ -324,6 +328,7 @@ class _Reader:
         computable = not self.findings.found
         published = self.published()
         expected, limits = self.expected(), read_limits(self.tables)
+        cards = read_cards(self.tables)
         errata = self.errata(measurements) if measurements is not None else {}
         if not computable:
             self.findings.check()
@@ -352,6 +357,7 @@ class _Reader:
             heads=measurements.heads,
             texts=measurements.texts,
             remarks=measurements.remarks,
+            cards=cards,
         )
         if self.findings.found:
             self.findings.found.extend(self.more(inputs))

@@ -48,6 +48,7 @@ TABLES: dict[tuple[str, ...], dict[str, Key]] = {
         "limits": Key("[limits]", "Where cells have to lie."),
         "expected": Key("[expected]", "What is odd and as it should be."),
         "published": Key("[published]", "Values to compare with."),
+        "cards": Key("[cards]", "A chapter of what to type into simulation codes."),
     },
     ("parameters",): {
         ANY: Key(
@@ -115,6 +116,15 @@ TABLES: dict[tuple[str, ...], dict[str, Key]] = {
     },
     ("published", "errata"): {
         ANY: Key('"29.8"', 'What a measured cell, `"x_p[2]"`, would have to be printed as.'),
+    },
+    ("cards",): {
+        "codes": Key(
+            '["lammps", "mujoco"]', "The codes, as `loopsheet card --for list` calls them.", required=True
+        ),
+        "speed": Key('"3 m/s"', "The impact speed that they are for; the test in the middle, without it."),
+        "E": Key('"210 GPa"', "Young's modulus of both bodies, if the stiffness shall be Hertz's."),
+        "nu": Key('"0.3"', "Poisson's ratio of both bodies; 0.3 without it."),
+        "R": Key('"6.35 mm"', "The effective radius of the contact; the ball's, without it."),
     },
 }
 """The keys of each table of report.toml, by its place."""

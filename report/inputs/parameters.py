@@ -45,6 +45,7 @@ def read_parameters(
     declared: Iterable[Parameter],
     findings: Findings,
     said: Conventions,
+    section: str = "parameters",
 ) -> dict[str, Printed]:
     """Read the parameters that were given, and fill in the defaults of the others.
 
@@ -53,19 +54,21 @@ def read_parameters(
     toml : TomlFile
         The file, for places.
     written : mapping of str to object
-        The section ``[parameters]``, without unknown names.
+        The section, without unknown names.
     declared : iterable of Parameter
         What the workbook wants.
     findings : Findings
         Where findings go.
     said : Conventions
         What the folder says of all uncertainties.
+    section : str
+        Where they stand.
     """
     printed: dict[str, Printed] = {}
     for parameter in declared:
         number = None
         if parameter.name in written:
-            number = _Reader(toml, parameter, findings, said).read(written[parameter.name])
+            number = _Reader(toml, parameter, findings, said, section).read(written[parameter.name])
         elif parameter.default is not None:
             number = _OfDefault(toml, parameter, findings, said).read(parameter.default)
         if number is not None:
@@ -86,11 +89,18 @@ def wrong_type(toml: TomlFile, findings: Findings, path: tuple[str, ...], wanted
 class _Reader:
     """Reads one parameter."""
 
-    def __init__(self, toml: TomlFile, parameter: Parameter, findings: Findings, said: Conventions) -> None:
+    def __init__(
+        self,
+        toml: TomlFile,
+        parameter: Parameter,
+        findings: Findings,
+        said: Conventions,
+        section: str = "parameters",
+    ) -> None:
         self.toml, self.said = toml, said
         self.parameter = parameter
         self.findings = findings
-        self.path: tuple[str, ...] = ("parameters", parameter.name)
+        self.path: tuple[str, ...] = (section, parameter.name)
         self.expected = parse_unit(parameter.unit)
         self.suffix = behind(parameter.unit)
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from ..messages.diagnostics import Check
 
-__all__ = ["Behaviour", "Card", "CardRow", "TypedValue"]
+__all__ = ["Behaviour", "Card", "CardRow", "Cards", "NoCard", "Point", "Prescribed", "TypedValue"]
 
 
 class TypedValue(NamedTuple):
@@ -35,12 +36,24 @@ class Behaviour(NamedTuple):
 
 
 class CardRow(NamedTuple):
-    """One measured speed, in m/s: restitution as measured, by the card, and if it is typed in as measured."""
+    """One measured speed, in m/s: restitution as measured, by the card, and if it is typed in as measured.
+
+    Then the imprint in m as measured, NaN where it was not, and by the card.
+    """
 
     speed: float
     measured: float
     by_card: float
     typed: float | None
+    imprint: float
+    imprint_by_card: float
+
+
+class Prescribed(NamedTuple):
+    """A restitution that is typed in, or put into a formula, and the one that is returned."""
+
+    typed: float
+    returned: float
 
 
 @dataclass(frozen=True)
@@ -66,6 +79,8 @@ class Card:
         What was measured at that speed (of other speeds: between neighbours), its approach by the identified
         law; and what the formula returns with what is typed.
     rows : tuple of CardRow
+    prescribed : tuple of Prescribed
+        What it returns for restitutions from near 0 to near 1; empty if none is typed in.
     notes : tuple of str
     oddities : tuple of Check
         What is told of the data that it was made from.
@@ -84,6 +99,7 @@ class Card:
     wanted: Behaviour
     returned: Behaviour
     rows: tuple[CardRow, ...]
+    prescribed: tuple[Prescribed, ...]
     notes: tuple[str, ...]
     oddities: tuple[Check, ...] = ()
 
@@ -91,3 +107,55 @@ class Card:
     def takes_e(self) -> bool:
         """Whether the code wants a restitution."""
         return any(row.typed is not None for row in self.rows)
+
+    @property
+    def leaves_imprint(self) -> bool:
+        """Whether its contact is left with an imprint."""
+        return self.returned.imprint > 0
+
+    @property
+    def furthest(self) -> CardRow:
+        """The measured speed at which its restitution is furthest from the measured one."""
+        return max(self.rows, key=lambda row: abs(row.by_card - row.measured))
+
+
+class Point(NamedTuple):
+    """A measured impact in SI, with standard uncertainties: speed, restitution, imprint; NaN is not known."""
+
+    speed: float
+    u_speed: float
+    e: float
+    u_e: float
+    imprint: float
+    u_imprint: float
+
+
+class NoCard(NamedTuple):
+    """A code that cannot return what was measured, and why."""
+
+    name: str
+    title: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Cards:
+    """The cards of a report.
+
+    Parameters
+    ----------
+    made : tuple of Card
+    measured : tuple of Point
+        The impacts that they are held to.
+    refused : tuple of NoCard
+    laws : mapping of str to tuple of Prescribed
+        What damping numbers return, by their author.
+    notes : tuple of str
+        What is told of all of them.
+    """
+
+    made: tuple[Card, ...] = ()
+    measured: tuple[Point, ...] = ()
+    refused: tuple[NoCard, ...] = ()
+    laws: Mapping[str, tuple[Prescribed, ...]] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()

@@ -17,6 +17,7 @@ from ..quantity import Printed, behind
 from ..sheet import Column, Given, Iterated, Sheet
 from ..workbook import Workbook
 from .agreement import Agreement
+from .card import Cards
 from .numbers import Numeral, last_place, order, read, shown, stated, uncertainty
 from .uncertain import Uncertainties
 from .verdict import (
@@ -192,6 +193,8 @@ class Report:
         What the referee found; empty if it was not asked.
     versions : mapping of str to str
         What computed it: this program and its libraries.
+    cards : callable
+        Makes the cards for simulation codes that the folder asks for.
     """
 
     title: str
@@ -213,6 +216,7 @@ class Report:
     referee: Referee = field(default_factory=Referee)
     versions: Mapping[str, str] = field(default_factory=dict)
     comparisons_u: tuple[Comparison, ...] = ()
+    cards: Callable[[], Cards] = Cards
     _figures: dict[str, tuple[Numeral | None, ...]] = field(default_factory=dict, init=False, compare=False)
 
     @property

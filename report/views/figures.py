@@ -7,11 +7,12 @@ from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
+from ..document import cards
+from ..document.pictures import figures as of
 from ..document.refereed import FIGURE
-from ..document.refereed import figures as of
 from ..result.result import Report
 from ..workbook import Workbook
-from . import charts, drawing, reach
+from . import card_pictures, charts, drawing, reach
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,15 +21,21 @@ __all__ = ["draw", "drawings", "files", "of", "pdf", "svg"]
 
 
 def drawings(workbook: Workbook) -> Mapping[str, Callable[[Report], Figure]]:
-    """Every drawing by its name in a FigureSpec: the workbook's charts and drawings, and the referee's."""
+    """Every drawing by its name in a FigureSpec: of the workbook, and those that are of none."""
     own = {} if workbook.drawings is None else workbook.drawings()
     return {**own, **_of_data(workbook)}
 
 
 def _of_data(workbook: Workbook) -> dict[str, Callable[[Report], Figure]]:
     """Those that are no code of the workbook's."""
+    drawn: dict[str, Callable[[Report], Figure]]
     drawn = {f.drawing: partial(charts.draw, chart=f.chart) for f in workbook.figures if f.chart}
-    return {**drawn, FIGURE: reach.draw}
+    drawn |= {FIGURE: reach.draw, cards.RETURNED: card_pictures.draw_returned}
+    drawn |= {
+        cards.RESTITUTIONS: card_pictures.draw_restitutions,
+        cards.IMPRINTS: card_pictures.draw_imprints,
+    }
+    return drawn
 
 
 def draw(report: Report, name: str) -> Figure:

@@ -19,6 +19,7 @@ from ..machine.staging import put
 from ..result.result import Report
 from .issued import Issued
 from .xlsx_budget import write_budgets
+from .xlsx_cards import write_cards
 from .xlsx_charts import charted, write_charts
 from .xlsx_columns import ColumnwiseSheet
 from .xlsx_inputs import GivenCells
@@ -31,7 +32,8 @@ __all__ = ["render", "write"]
 
 _CREATED = datetime(2000, 1, 1)
 """No clock: the same bytes for the same report."""
-_FIGURES, _PUBLISHED, _EQUATIONS, _UNCERTAINTY = "figures", "published", "equations", "uncertainty"
+_FIGURES, _PUBLISHED, _UNCERTAINTY = "figures", "published", "uncertainty"
+_CARDS, _EQUATIONS = "cards", "equations"
 
 
 def write(made: Issued, stage: Path) -> None:
@@ -69,6 +71,7 @@ def _write(book: Any, report: Report, grid: Grid) -> None:
     names += [STEPS] if grid.on(STEPS) else []
     names += [_PUBLISHED] if report.comparisons else []
     names += [_UNCERTAINTY] if any(budget.u > 0 for budget in report.uncertain().budgets) else []
+    names += [_CARDS] if report.cards().made else []
     sheets = {name: book.add_worksheet(name, ColumnwiseSheet) for name in [*names, _EQUATIONS]}
     write_report(sheets[SCALARS], style, report, grid, inputs)
     for name in grid.axes:
@@ -79,6 +82,8 @@ def _write(book: Any, report: Report, grid: Grid) -> None:
         write_published(sheets[_PUBLISHED], style, report, grid)
     if _UNCERTAINTY in sheets:
         write_budgets(sheets[_UNCERTAINTY], style, report, grid)
+    if _CARDS in sheets:
+        write_cards(sheets[_CARDS], style, report.cards())
     write_equations(sheets[_EQUATIONS], style, report)
     if _FIGURES in sheets:
         write_charts(book, sheets[_FIGURES], style, report, grid)

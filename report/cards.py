@@ -1,0 +1,290 @@
+"""What a report says to simulation codes: its cards, for whoever asks for them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from .machine.kept import kept
+from .messages.errors import Findings, listing, suggest
+from .result.card import Card, Cards, NoCard, Point, Prescribed
+
+if TYPE_CHECKING:
+    from sympy import Symbol
+
+    from .impacts.code import SimulationCode
+    from .impacts.drops import Drop, Drops
+    from .result.result import Report
+
+__all__ = ["Asked", "NoImpacts", "NotTogether", "asked_for", "card", "curve", "drop_at", "drops_of", "taken"]
+
+POISSON = 0.3
+"""Poisson's ratio of most metals, where none is given."""
+_CURVES = (("alpha_eiv", "C_eiv"), ("alpha_log", "C_log"), ("alpha_lin", "C_lin"))
+"""Cells of the identified loading curve, the best first."""
+
+
+class NoImpacts(Exception):
+    """A report has no impacts that a simulation could be held to; the message says what it lacks."""
+
+
+class NotTogether(Exception):
+    """What is asked of cards does not go with the codes or the drops.
+
+    Parameters
+    ----------
+    reason, known : str
+        What is wrong, and what to do.
+    option : str
+        Of which option it is told.
+    """
+
+    def __init__(self, reason: str, known: str, option: str) -> None:
+        super().__init__(reason)
+        self.reason, self.known, self.option = reason, known, option
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of cards besides their codes, in SI; None where nothing is.
+
+    Parameters
+    ----------
+    prefix : str
+        What stands before the name of an option where it was asked.
+    speed, E, nu, R : float or None
+        The impact speed, Young's modulus and Poisson's ratio of both bodies, the effective radius.
+    """
+
+    prefix: str = ""
+    speed: float | None = None
+    E: float | None = None
+    nu: float | None = None
+    R: float | None = None
+
+    def symbols(self, code: SimulationCode) -> frozenset[Symbol]:
+        """Which of modulus, Poisson's ratio and radius a code has to know."""
+        return code.asks(self.E is not None)
+
+    def check(self, codes: Sequence[SimulationCode], drops: Drops) -> None:
+        """Raise :class:`NotTogether` for what says nothing to any of the codes, and for what one lacks."""
+        from .impacts.code import R, nu
+
+        names, dash = listing([code.name for code in codes], most=20), self.prefix
+        if self.E is not None and all(code.by_hertz is None for code in codes):
+            reason = f"{dash}E says nothing to {names}: its stiffness is not Hertz's"
+            raise NotTogether(reason, f"leave {dash}E out", "E")
+        for option, symbol in (("nu", nu), ("R", R)):
+            unasked = all(symbol not in self.symbols(code) for code in codes)
+            if getattr(self, option) is not None and unasked:
+                raise NotTogether(
+                    f"{dash}{option} says nothing to {names} here", f"leave {dash}{option} out", option
+                )
+        lacking = [code.name for code in codes if R in self.symbols(code)]
+        if lacking and self.R is None and not math.isfinite(drops.radius):
+            reason = f"{lacking[0]} wants the radius of the ball, which the folder does not say"
+            raise NotTogether(reason, f"give {dash}R", "R")
+
+
+def drops_of(report: Report) -> Drops:
+    """What a report says of impacts.
+
+    Raises
+    ------
+    NoImpacts
+    """
+    from .impacts.drops import Drops
+
+    wanted = {"v": "m/s", "e": "1", "m_red": "kg"}
+    units = {column.name: column.unit for column in report.sheet.columns}
+    lacking = [f"{name} in {unit}" for name, unit in wanted.items() if units.get(name) != unit]
+    v = _column(report, "v")
+    _, alpha, C = curve(report)
+    drops = Drops(
+        _number(report, "m_red"),
+        v,
+        _column(report, "e"),
+        _column(report, "x_p") or (math.nan,) * len(v),
+        alpha,
+        C,
+        _number(report, "beta"),
+        _number(report, "ball_diameter") / 2,
+    )
+    if lacking:
+        raise NoImpacts(f"it has no {' and no '.join(lacking)}")
+    if not drops.mass > 0:
+        raise NoImpacts("m_red has no value")
+    if not drops.tests:
+        raise NoImpacts("no test has a speed and a restitution between 0 and 1")
+    return drops
+
+
+def curve(report: Report) -> tuple[str, float, float]:
+    """Which loading curve is taken, and its two numbers; NaN where there is none."""
+    curves = ((a, _number(report, a), _number(report, c)) for a, c in _CURVES)
+    return next((one for one in curves if math.isfinite(sum(one[1:]))), ("", math.nan, math.nan))
+
+
+def taken(report: Report, drops: Drops) -> tuple[str, ...]:
+    """Which tests are in no card, and which curve is, if not the best."""
+    inputs = report.inputs
+    found = [
+        f"{inputs.workbook.row} {inputs.called(inputs.tests[row])} is left out here: {why}"
+        for row, why in drops.aside
+    ]
+    better = [name for name, _ in _CURVES if name in report.sheet]
+    name = curve(report)[0]
+    if name in better[1:]:
+        found.append(f"the loading curve is that of {name}: {better[0]} has no value")
+    return tuple(found)
+
+
+def drop_at(drops: Drops, asked: Asked) -> Drop:
+    """The impact that is asked for, without a speed that in the middle.
+
+    Raises
+    ------
+    NotTogether
+    """
+    if asked.speed is None:
+        return drops.middle
+    drop = drops.at(asked.speed)
+    if drop is None:
+        ends = f"{drops.tests[0].speed:g} to {drops.tests[-1].speed:g} m/s"
+        reason = f"{asked.prefix}speed {asked.speed:g} m/s is not among the measured speeds, {ends}"
+        raise NotTogether(reason, "nothing is extrapolated", "speed")
+    return drop
+
+
+def card(code: SimulationCode, drops: Drops, drop: Drop, of: str, asked: Asked) -> Card:
+    """A card, which tells what was taken though nobody said it.
+
+    Raises
+    ------
+    Unreachable
+        The code cannot return what was measured.
+    """
+    from .impacts.card import card as made
+
+    radius = drops.radius if asked.R is None else asked.R
+    poisson = POISSON if asked.nu is None else asked.nu
+    found = made(code, drops, drop, of, asked.E, poisson, radius)
+    return replace(found, notes=(*found.notes, *_assumed(code, asked, radius)))
+
+
+def _assumed(code: SimulationCode, asked: Asked, radius: float) -> Iterator[str]:
+    """What was taken though nobody said it."""
+    from .impacts.code import R, nu
+
+    if R in asked.symbols(code) and asked.R is None:
+        yield f"the effective radius is that of the ball, {radius:g} m: the target is flat"
+    if nu in asked.symbols(code) and asked.nu is None:
+        yield f"Poisson's ratio was not given: {POISSON:g}"
+
+
+# --- what a folder asks for ------------------------------------------------------------------------------
+
+
+def asked_for(report: Report) -> Callable[[], Cards]:
+    """What makes the cards that a folder asks for in [cards].
+
+    Raises
+    ------
+    InputError
+        What is asked for cannot be, with its place.
+    """
+    from .impacts.codes import CODES
+
+    said, findings = report.inputs.cards, Findings()
+    for name, at in said.codes.items():
+        if name not in CODES:
+            known = {"known": listing(CODES, most=20), "suggestion": suggest(name, CODES)}
+            findings.add("LS604", at, kind="code", text=name, **known)
+    findings.check()
+    codes = [CODES[name] for name in said.codes]
+    asked = Asked("", **{name: float(printed.value) for name, printed in said.numbers.items()})
+    try:
+        drops = drops_of(report)
+        asked.check(codes, drops)
+        drop = drop_at(drops, asked)
+    except NoImpacts as error:
+        findings.add("LS624", said.at, text=f"the report '{report.title}'", reason=error)
+    except NotTogether as error:
+        findings.add(
+            "LS614", said.places.get(error.option) or said.at, reason=error.reason, known=error.known
+        )
+    findings.check()
+
+    @cache
+    def made() -> Cards:
+        notes = taken(report, drops)
+        every = [_kept(code, drops, drop, report.title, asked) for code in codes]
+        cards = tuple(each for each in every if isinstance(each, Card))
+        refused = tuple(each for each in every if isinstance(each, NoCard))
+        return Cards(cards, _measured(report, drops), refused, _laws(), notes)
+
+    return made
+
+
+def _measured(report: Report, drops: Drops) -> tuple[Point, ...]:
+    """What was measured of each impact that is in the cards."""
+    known = report.uncertain().u
+    aside = {row for row, _ in drops.aside}
+    columns = []
+    for name, values in (("v", drops.v), ("e", drops.e), ("x_p", drops.x_p)):
+        columns += [values, known[name].tolist() if name in known else [math.nan] * len(values)]
+    rows = zip(*columns, strict=True)
+    return tuple(Point(*row) for number, row in enumerate(rows) if number not in aside)
+
+
+def _kept(code: SimulationCode, drops: Drops, drop: Drop, of: str, asked: Asked) -> Card | NoCard:
+    """A card, made now or before, or why there is none."""
+    from msgspec import convert, to_builtins
+
+    from .impacts.card import Unreachable
+
+    def make() -> Any:
+        try:
+            return {"card": to_builtins(card(code, drops, drop, of, asked))}
+        except Unreachable as error:
+            return {"refused": to_builtins(NoCard(code.name, code.title, str(error)))}
+
+    found = kept("a card", [code.name, of, repr(drops), repr(drop), repr(asked)], make)
+    if "card" in found:
+        return convert(found["card"], Card)
+    return convert(found["refused"], NoCard)
+
+
+@cache
+def _laws() -> dict[str, tuple[Prescribed, ...]]:
+    """What damping numbers return for a prescribed restitution, by author."""
+    from ..derivations.contact.damping import MEMBERS
+    from .impacts.card import PRESCRIBED
+    from .impacts.damping import number_by, returned
+
+    return {
+        MEMBERS[author].title: tuple(
+            Prescribed(e, returned(number_by(author, e, _EXPONENT))) for e in PRESCRIBED
+        )
+        for author in MEMBERS
+    }
+
+
+_EXPONENT = 1.5
+"""Hertz's: the only one that a damping number hangs on is that by Flores."""
+
+
+# --- the report --------------------------------------------------------------------------------------------
+
+
+def _column(report: Report, name: str) -> tuple[float, ...]:
+    found = report.values.value
+    return tuple(map(float, found[name])) if name in report.sheet and name in found else ()
+
+
+def _number(report: Report, name: str) -> float:
+    values = _column(report, name)
+    return values[0] if len(values) == 1 else math.nan
