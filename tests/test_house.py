@@ -495,7 +495,7 @@ def test_locks_agree() -> None:
     for one, other in combinations(beside, 2):
         assert all(other[name].split()[0] == pin.split()[0] for name, pin in one.items() if name in other)
     assert runtime.keys() >= RUNTIME | {"setuptools", "wheel"}
-    for name in ("test", "docs", "bench", "crate"):
+    for name in ("test", "docs", "bench", "crate", "codes"):
         assert found[name].keys() >= set(PYPROJECT["dependency-groups"][name])
 
 

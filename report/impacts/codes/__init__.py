@@ -1,6 +1,6 @@
 """The simulation codes that a card is made for: each is one module with a CODE, and its line here."""
 
-from . import adams, chrono, drake, exudyn, exudyn_damped, lammps, liggghts, mujoco, simbody, yade
+from . import adams, chrono, drake, exudyn, exudyn_damped, lammps, liggghts, mujoco, recurdyn, simbody, yade
 
 CODES = {
     code.name: code
@@ -13,6 +13,7 @@ CODES = {
         lammps.CODE,
         liggghts.CODE,
         mujoco.CODE,
+        recurdyn.CODE,
         simbody.CODE,
         yade.CODE,
     )

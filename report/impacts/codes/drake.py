@@ -14,7 +14,7 @@ with evaluate(False):
 CODE = SimulationCode(
     name="drake",
     title="Drake, compliant point contact",
-    version="commit 0465a03",
+    version="commit 0465a03; run in 1.51.1",
     sources=("github.com/RobotLocomotion/drake multibody/plant/contact_model_doxygen.h, Modeling of Forces",),
     law=ForceLaw("point contact", LAW, where=IN_SERIES),
     typed=(

@@ -6,7 +6,7 @@ from ..law import ForceLaw
 CODE = SimulationCode(
     name="lammps",
     title="LAMMPS, granular hertz/material, damping coeff_restitution, limit_damping",
-    version="commits 07b704c and 14dc2fb",
+    version="commits 07b704c and 14dc2fb; run in 22 Jul 2025",
     sources=(
         "github.com/lammps/lammps src/GRANULAR/gran_sub_mod_damping.cpp, GranSubModDampingCoeffRestitution",
         "github.com/lammps/lammps src/GRANULAR/granular_model.cpp, calculate_forces",
