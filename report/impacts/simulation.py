@@ -140,11 +140,12 @@ class _Course:
         self.pieces: list[tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]] = []
         self.peak = 0.0
         self.greatest = math.nan
-        self.least = 0.0
+        self.imprint = self.least = 0.0
 
     def force(self, approach: float, rate: float) -> float:
         """The force of the law, over its unit; it may be negative."""
-        depth, greatest = self.depth * max(approach, self.least), self.depth * self.greatest
+        # No step goes below the imprint, by rounding neither: a power of less than nothing is no number.
+        depth, greatest = max(self.depth * approach, self.imprint), self.depth * self.greatest
         law = self.forces.loading if math.isnan(greatest) else self.forces.unloading
         return law(depth, self.speed * rate, greatest) / self.unit
 
@@ -158,7 +159,8 @@ class _Course:
         self._go(self._turns, peak=True)
         self.greatest = float(self.state[0])
         compression = self.t
-        self.least = self.forces.imprint(self.depth * self.greatest) / self.depth
+        self.imprint = self.forces.imprint(self.depth * self.greatest)
+        self.least = self.imprint / self.depth
         if not 0 <= self.least < self.greatest:
             raise _Stopped("the bodies would part at a depth that is not below the greatest approach")
         self.peak = max(self.peak, self.acting(self.greatest, 0.0))
