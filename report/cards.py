@@ -19,7 +19,18 @@ if TYPE_CHECKING:
     from .impacts.drops import Drop, Drops
     from .result.result import Report
 
-__all__ = ["Asked", "NoImpacts", "NotTogether", "asked_for", "card", "curve", "drop_at", "drops_of", "taken"]
+__all__ = [
+    "Asked",
+    "NoImpacts",
+    "NotTogether",
+    "asked_for",
+    "card",
+    "curve",
+    "drop_at",
+    "drops_of",
+    "swept",
+    "taken",
+]
 
 POISSON = 0.3
 """Poisson's ratio of most metals, where none is given."""
@@ -68,6 +79,14 @@ class Asked:
     def symbols(self, code: SimulationCode) -> frozenset[Symbol]:
         """Which of modulus, Poisson's ratio and radius a code has to know."""
         return code.asks(self.E is not None)
+
+    def bodies(self, drops: Drops) -> tuple[float | None, float, float]:
+        """Modulus, Poisson's ratio and radius that are taken."""
+        return (
+            self.E,
+            POISSON if self.nu is None else self.nu,
+            drops.radius if self.R is None else self.R,
+        )
 
     def check(self, codes: Sequence[SimulationCode], drops: Drops) -> None:
         """Raise :class:`NotTogether` for what says nothing to any of the codes, and for what one lacks."""
@@ -169,10 +188,46 @@ def card(code: SimulationCode, drops: Drops, drop: Drop, of: str, asked: Asked) 
     """
     from .impacts.card import card as made
 
-    radius = drops.radius if asked.R is None else asked.R
-    poisson = POISSON if asked.nu is None else asked.nu
-    found = made(code, drops, drop, of, asked.E, poisson, radius)
-    return replace(found, notes=(*found.notes, *_assumed(code, asked, radius)))
+    bodies = asked.bodies(drops)
+    found = made(code, drops, drop, of, *bodies)
+    return replace(found, notes=(*found.notes, *_assumed(code, asked, bodies[-1])))
+
+
+def swept(
+    code: SimulationCode | None,
+    drops: Drops,
+    drop: Drop,
+    asked: Asked,
+    impacts: int,
+    step: Callable[[str], None],
+) -> str:
+    """Many impacts, evenly from the slowest to the fastest measured speed, as CSV.
+
+    Parameters
+    ----------
+    code : SimulationCode or None
+        Whose card they follow; None: the identified law.
+    drops, drop, asked
+        As for :func:`card`.
+    impacts : int
+    step : callable
+        Told how many are done.
+
+    Raises
+    ------
+    Unreachable
+        The code cannot return what was measured.
+    """
+    import numpy as np
+
+    from .impacts.card import constants_of
+    from .impacts.sweep import as_csv, sweep
+
+    law, constants = drops.law(), {}
+    if code is not None:
+        law, constants = code.law, constants_of(code, drops, drop, *asked.bodies(drops))
+    speeds = np.linspace(drops.tests[0].speed, drops.tests[-1].speed, impacts).tolist()
+    return as_csv(speeds, sweep(law, constants, drops.mass, speeds, step))
 
 
 def _assumed(code: SimulationCode, asked: Asked, radius: float) -> Iterator[str]:

@@ -18,9 +18,10 @@ from loopsheet.report.impacts.card import Unreachable, card
 from loopsheet.report.impacts.code import SimulationCode
 from loopsheet.report.impacts.codes import CODES
 from loopsheet.report.impacts.drops import Drops
-from loopsheet.report.impacts.law import ForceLaw, x
+from loopsheet.report.impacts.law import ForceLaw, rate, x
 from loopsheet.report.impacts.simulation import simulate
 from loopsheet.report.impacts.source import SOURCES
+from loopsheet.report.impacts.sweep import as_csv, sweep
 from loopsheet.report.result.card import Card
 
 STEEL = Drops(
@@ -213,6 +214,34 @@ def test_the_card_of_the_paper_for_programs(capsys: pytest.CaptureFixture[str]) 
     assert told["typed"][1]["value"] * 4.993 == pytest.approx(wanted(0.453), rel=1e-8)
 
 
+def test_a_sweep_tells_every_impact(capsys: pytest.CaptureFixture[str]) -> None:
+    """The measured ends of the identified law come back; of a card the speed that it is for."""
+    assert main(["card", "paper", "--for", "table", "--sweep", "5"]) == 0
+    head, *lines = capsys.readouterr().out.splitlines()
+    rows = [[float(cell or "nan") for cell in line.split(",")] for line in lines]
+    assert head.startswith("v [m/s],e [1],x_m [m],F_m [N],x_p [m],duration [s]")
+    assert [row[0] for row in rows] == pytest.approx([2.334, 2.99875, 3.6635, 4.32825, 4.993])
+    assert (rows[0][1], rows[-1][1]) == pytest.approx((0.53, 0.453), abs=1e-9)
+    for speed, e, *_, loss, failure in rows:
+        assert loss == pytest.approx((1 - e**2) * STEEL.mass * speed**2 / 2, rel=1e-9)
+        assert math.isnan(failure)
+    assert main(["card", "paper", "--for", "simbody", "--sweep", "3", "--speed", "3.6635 m/s"]) == 0
+    _, slow, middle, fast = capsys.readouterr().out.splitlines()
+    drop = STEEL.at(3.6635)
+    assert drop is not None
+    assert float(middle.split(",")[1]) == pytest.approx(drop.e, abs=1e-8)
+    assert float(slow.split(",")[1]) > drop.e > float(fast.split(",")[1])
+
+
+def test_an_impact_that_there_is_not_is_a_line_of_a_sweep() -> None:
+    law = ForceLaw("a dashpot", x + 100.0 * rate, pulls=True)
+    said: list[str] = []
+    found = sweep(law, {}, 1.0, [1.0, 2.0], said.append)
+    assert said == ["simulating 0 of 2 impacts", "simulating 1 of 2 impacts"]
+    (_, first, _) = as_csv([1.0, 2.0], found).splitlines()
+    assert first == '1.0,,,,,,,,"the bodies do not part: the damping is as strong as the spring"'
+
+
 def test_the_list_of_codes_needs_no_folder(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["card", "--for", "list"]) == 0
     told = capsys.readouterr().out
@@ -233,6 +262,8 @@ def test_the_list_of_codes_needs_no_folder(capsys: pytest.CaptureFixture[str]) -
             ["--for", "drake", "--speed", "9"],
             "LS614]: --speed 9 m/s is not among the measured speeds, 2.334 to 4.993",
         ),
+        (["--for", "c", "--sweep", "3"], "LS614]: --sweep says nothing to --for c"),
+        (["--for", "drake", "--sweep", "3", "--format", "json"], "LS614]: --format json says nothing to"),
         (["--for", "drake", "--speed", "3 mm"], "error[LS"),
         (["--for", "chrono", "--nu", "0.5"], "error[LS"),
         (["--for", "chrono", "--R", "-1 mm"], "error[LS"),

@@ -17,7 +17,7 @@ from .drops import Drop, Drops
 from .law import m_red, v_0
 from .simulation import Impact, simulate
 
-__all__ = ["PRESCRIBED", "Unreachable", "card"]
+__all__ = ["PRESCRIBED", "Unreachable", "card", "constants_of"]
 
 CLOSE = 1e-11
 """How near to the wanted depth the search for the stiffness ends, over it."""
@@ -105,6 +105,13 @@ def card(
         ),
         notes=(*solver.notes, *(() if imprint else ("it leaves no imprint",)), *code.notes),
     )
+
+
+def constants_of(
+    code: SimulationCode, drops: Drops, drop: Drop, modulus: float | None, poisson: float, radius: float
+) -> dict[Symbol, float]:
+    """The constants of the law with which it returns what was measured, in SI; as for :func:`card`."""
+    return _Solver(code, drops, drop, modulus, poisson, radius).solved()[0]
 
 
 def _returned(

@@ -7,7 +7,7 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from .common import FINDINGS, OK, Progress, folder_argument, format_argument, keeping_arguments, told
+from .common import FINDINGS, OK, Progress, count, folder_argument, format_argument, keeping_arguments, told
 
 if TYPE_CHECKING:
     from ..impacts.drops import Drops
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 HELP = "tell what to type into a simulation code, so that its contact returns what was measured"
 
+MOST = 100_000
+"""Impacts of a sweep: a quarter of an hour."""
 _NUMBERS = {"speed": "m/s", "E": "GPa", "nu": "1", "R": "m"}
 """The options that are numbers, and the unit of one that names none."""
 
@@ -38,8 +40,18 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--nu", metavar="NU", help=said)
     said = "effective radius of the contact, such as '6.35 mm' (default: that of the ball)"
     parser.add_argument("--R", metavar="R", help=said)
+    said = "instead of the card, N impacts under it from the slowest to the fastest measured speed, as CSV"
+    parser.add_argument("--sweep", metavar="N", type=_impacts, help=said)
     format_argument(parser, "text", "markdown", "json")
     keeping_arguments(parser)
+
+
+def _impacts(text: str) -> int:
+    """Read how many impacts there shall be, for argparse."""
+    number = count(text)
+    if not 2 <= number <= MOST:
+        raise argparse.ArgumentTypeError(f"not from 2 to {MOST} impacts: '{text}'")
+    return number
 
 
 def run(options: argparse.Namespace) -> int:
@@ -62,7 +74,7 @@ def run(options: argparse.Namespace) -> int:
         raise UsageError(diagnose("LS604", kind="code", text=options.code, known=allowed, suggestion=hint))
     with Progress(sys.stderr) as progress:
         study = Study(report_folder(options.folder), step=progress)
-        names = ("code", "speed", "E", "nu", "R", "format")
+        names = ("code", "speed", "E", "nu", "R", "format", "sweep")
         parts = [f"{name} {getattr(options, name)!r}" for name in names]
         # What is found names its place, and so the folder as it is written here.
         made, found = study.kept("card", lambda: _told(study, options), *parts, str(study.folder))
@@ -79,7 +91,7 @@ def _told(study: Study, options: argparse.Namespace) -> tuple[str, list[str]]:
 
 
 def _made(study: Study, report: Report, options: argparse.Namespace) -> str:
-    from ..cards import Asked, NoImpacts, NotTogether, card, drop_at, drops_of, taken
+    from ..cards import Asked, NoImpacts, NotTogether, card, drop_at, drops_of, swept, taken
     from ..impacts.card import Unreachable
     from ..impacts.codes import CODES
     from ..impacts.source import SOURCES
@@ -94,13 +106,17 @@ def _made(study: Study, report: Report, options: argparse.Namespace) -> str:
         raise UsageError(diagnose("LS624", text=title, reason=error)) from error
     left_out = taken(report, drops)
     if options.code in SOURCES:
-        return _law(drops, options, [*lines(report.oddities), *left_out])
+        return _law(study, drops, options, [*lines(report.oddities), *left_out])
     code = CODES[options.code]
+    if options.sweep is not None and options.format != "text":
+        raise _wrong(f"--format {options.format} says nothing to --sweep", "leave --format out")
     try:
         asked = Asked("--", **{name: _read(options, name) for name in _NUMBERS})
         asked.check([code], drops)
         drop = drop_at(drops, asked)
         study.step("solving for the parameters")
+        if options.sweep is not None:
+            return swept(code, drops, drop, asked, options.sweep, study.step)
         made = card(code, drops, drop, report.title, asked)
     except NotTogether as error:
         raise _wrong(error.reason, error.known) from error
@@ -109,15 +125,16 @@ def _made(study: Study, report: Report, options: argparse.Namespace) -> str:
     return FORMATS[options.format](replace(made, notes=(*made.notes, *left_out), oddities=report.oddities))
 
 
-def _law(drops: Drops, options: argparse.Namespace, remarks: list[str]) -> str:
+def _law(study: Study, drops: Drops, options: argparse.Namespace, remarks: list[str]) -> str:
     """The identified law itself."""
-    from ..cards import Asked, NotTogether, drop_at
+    from ..cards import Asked, NotTogether, drop_at, swept
     from ..impacts.source import SOURCES
     from ..messages.errors import UsageError, diagnose
 
     names = [name for name in ("E", "nu", "R") if getattr(options, name) is not None]
     names += ["speed"] if options.speed is not None and options.code != "table" else []
     names += ["format"] if options.format != "text" else []
+    names += ["sweep"] if options.sweep is not None and options.code != "table" else []
     if names:
         raise _wrong(f"--{names[0]} says nothing to --for {options.code}", f"leave --{names[0]} out")
     if not drops.has_curve:
@@ -126,6 +143,8 @@ def _law(drops: Drops, options: argparse.Namespace, remarks: list[str]) -> str:
         drop = drop_at(drops, Asked("--", _read(options, "speed")))
     except NotTogether as error:
         raise _wrong(error.reason, error.known) from error
+    if options.sweep is not None:
+        return swept(None, drops, drop, Asked(), options.sweep, study.step)
     return SOURCES[options.code].of(drops, drop, remarks)
 
 
