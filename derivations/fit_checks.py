@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sympy import Expr, diff, log, sqrt
+from sympy import Expr, Rational, diff, log, sqrt
 from sympy.core.parameters import evaluate
 
 from . import global_fit as fit
@@ -19,6 +19,7 @@ from .equation import Derivation, Equation, Kind
 from .symbols import VOCABULARY, k
 
 __all__ = [
+    "FREE",
     "LEDGER",
     "deviation",
     "leverage",
@@ -41,6 +42,8 @@ XM, XP, W, D, R, LAM, H, Z, A_K, G, T, GAMMA = (
 ALPHA, F_0, x_0, S_DD, S_DX, S_XX, Delta = VOCABULARY.plain("alpha F_0 x_0 S_DD S_DX S_XX Delta")
 S_TT, S_TD, S_TX, Q, tau, u_tau, X2, phi = VOCABULARY.plain("S_TT S_TD S_TX Q tau u_tau dchi2 phi")
 _A = ALPHA + 1
+FREE = Rational(1, 2**10)
+"""What a leverage leaves of 1 is more than rounding from here on: the other tests alone tell a curve."""
 
 with evaluate(False):
     leverage = Equation(

@@ -51,9 +51,11 @@ def refuse_what_is_missing(sheet: Sheet, inputs: Inputs) -> None:
         for c in sheet.columns
         if isinstance(c.rule, Given) and not inputs.printed(c.rule.u_of or c.name)
     ]
+    known = inputs.workbook.example_parameters
+    examples = {c.name: known.get(c.name, f"1.0 {c.unit}") for c in missing}
     found = [
-        diagnose("LS204", place, text=c.name, table="[parameters]", example=f'{c.name} = "1.0 {c.unit}"')
-        for c in missing
+        diagnose("LS204", place, text=name, table="[parameters]", example=f'{name} = "{example}"')
+        for name, example in examples.items()
     ]
     if found:
         raise InputError(*found)

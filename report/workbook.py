@@ -88,6 +88,8 @@ class TableSpec:
     note: str = ""
     number: str = ""
     """Its number; that of the source's table, where it corresponds to one."""
+    words: tuple[tuple[str, ...], ...] = ()
+    """Of a table without columns: what stands above these, and its rows, the same for all data."""
 
 
 def tables_of(sheet: Sheet, aside: Set[str]) -> Iterator[TableSpec]:
@@ -155,11 +157,18 @@ class SquareSum:
         The rows that it sums over.
     fitted : int
         How many numbers were fitted to them.
+    each : int
+        How many squares a row has.
+    asked : bool
+        Whether data are odd if chance does not make it so: not where models are compared of which one holds
+        at most.
     """
 
     name: str
     axis: str
     fitted: int
+    each: int = 1
+    asked: bool = True
 
 
 @dataclass(frozen=True)
@@ -273,6 +282,8 @@ class Workbook:
         Takes the sheet; returns the columns that only the charts of its figures ask for.
     prose : str
         Name of the narrative under templates/prose.
+    told : mapping of str to str
+        Lines of that narrative that the workbook makes itself, by the name under which it asks for them.
     """
 
     name: str
@@ -299,6 +310,7 @@ class Workbook:
     tables: tuple[TableSpec, ...] = ()
     figures: tuple[FigureSpec, ...] = ()
     prose: str = "generic"
+    told: Mapping[str, str] = field(default_factory=dict)
     published_as: Mapping[str, str] = field(default_factory=dict)
     """Titles of the published tables, by their ``source`` in published.csv."""
     example: tuple[tuple[str, ...], ...] = ()

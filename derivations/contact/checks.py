@@ -8,19 +8,21 @@ of an indentation, P = k d^n; the rest is this project's own.
 
 from __future__ import annotations
 
-from sympy import Rational, Symbol, log, pi, simplify, sqrt
+from sympy import Integer, Rational, Symbol, log, pi, simplify, sqrt
 from sympy.core.parameters import evaluate
 
+from .. import power_law_fit as line
 from .. import soft_impact as paper
 from ..equation import Derivation, Equation, Kind
 from ..global_fit import n_tests, over_tests
 from ..symbols import VOCABULARY as PAPER
-from ..symbols import k
+from ..symbols import k, q
 from ..vocabulary import Quantity, Vocabulary
 from . import hertz, lankarani_1994, power_law
+from .one_constant import COMES_BACK
 from .quantities import SHARED
 
-__all__ = ["CELLS", "ENTRIES", "OWN"]
+__all__ = ["CELLS", "ENTRIES", "NEEDS", "OWN"]
 
 OWN = (
     Quantity("ln_v", "logarithm of the speed over the mean speed", "1", r"\ln(v'%s/v_0)", (-1.0, 1.0), False),
@@ -38,8 +40,8 @@ OWN = (
     Quantity("deceleration_power", "greatest deceleration by law (3)", "m/s^2", r"a_{m,(3)%s}", (1e4, 1e6)),
 )  # fmt: skip
 _WORDS = Vocabulary(*SHARED.values(), *lankarani_1994.OWN, *power_law.OWN, *OWN)
-v, e, x_p, m_red, R = SHARED.plain("v e x_p m_red R_b")
-v_0 = PAPER["v_0"].symbol
+e, x_p, R = SHARED.plain("e x_p R_b")
+v_0, v, m_1 = PAPER.plain("v_0 v m_1")
 x_m, peak, predicted = _WORDS.plain("x_m_power F_m_power x_p_power")
 ln_v, ln_e, mean_v, mean_e, b, alpha_e = _WORDS.plain("ln_v ln_e mean_ln_v mean_ln_e e_slope alpha_by_e")
 recovery, a, asked, pressure, n, over, deceleration = _WORDS.plain(
@@ -52,21 +54,18 @@ def _define(number: str, of: Symbol, value: object, because: str = "definition",
     return Equation(number, (of, value), because, Kind.DEFINITION, _WORDS[of.name].meaning, part, defines=of)
 
 
+# The straight line through the logarithms is that of the log-log fit, here of restitution over speed.
+_tests = {
+    q: k, line.size: n_tests, line.X[q]: LV[k], line.Y[q]: LE[k], line.x[q]: v, line.x_ref: v_0,
+    line.F[q]: e, line.F_ref: Integer(1), line.Xmean: mean_v, line.Ymean: mean_e, line.b: b,
+}  # fmt: skip
+LINE = tuple(each.at(_tests) for each in (line.log_x, line.log_F, line.mean_X, line.mean_Y, line.alpha_log))
+
 # By (L132) the recovery is as the force over the radius of the contact, which is as the root of the approach.
 _by_depth = Symbol("A_e", positive=True) * paper.x_m_of_test.value ** ((paper.alpha - Rational(3, 2)) / 2)
 _steepness = simplify(v * log(_by_depth).diff(v)).xreplace({paper.alpha: alpha_e})
 
 with evaluate(False):
-    of_speed = _define("(L176)", ln_v, log(v / v_0), part="a")
-    of_restitution = _define("(L176)", ln_e, log(e), part="b")
-    mean_of_speed = _define("(L177)", mean_v, over_tests(LV[k]) / n_tests, part="a")
-    mean_of_restitution = _define("(L177)", mean_e, over_tests(LE[k]) / n_tests, part="b")
-    slope = _define(
-        "(L178)",
-        b,
-        over_tests((LV[k] - mean_v) * (LE[k] - mean_e)) / over_tests((LV[k] - mean_v) ** 2),
-        "straight line through the logarithms, least squares",
-    )
     steepness = Equation(
         "",
         (b, _steepness),
@@ -86,16 +85,16 @@ with evaluate(False):
     mean_pressure = _define("(L182)", pressure, peak / (pi * a**2))
     meyer = _define("(L183)", n, 2 * paper.alpha, "the area of the contact is as the approach")
     beside_lankarani = _define("(L184)", over, x_p / _WORDS["x_p_lankarani"].symbol)
-    decelerates = _define("(L185)", deceleration, peak / m_red)
+    decelerates = _define("(L185)", deceleration, peak / m_1)
 
 required = hertz.recovery.at({hertz.delta: asked, hertz.F_m: peak, hertz.a_u: a})
 
 ENTRIES: tuple[Equation | Derivation, ...] = (
-    of_speed,
-    of_restitution,
-    mean_of_speed,
-    mean_of_restitution,
-    slope,
+    line.log_x,
+    line.log_F,
+    line.mean_X,
+    line.mean_Y,
+    line.LOG_FIT[0],
     Derivation.of(by_restitution, (steepness,), (alpha_e,), "Solve for the exponent."),
     recovered,
     crater,
@@ -105,6 +104,13 @@ ENTRIES: tuple[Equation | Derivation, ...] = (
     decelerates,
 )
 CELLS = (
-    of_speed, of_restitution, mean_of_speed, mean_of_restitution, slope, by_restitution,
-    recovered, crater, required, mean_pressure, meyer, beside_lankarani, decelerates,
+    *LINE, by_restitution, recovered, crater, required, mean_pressure, meyer, beside_lankarani, decelerates,
 )  # fmt: skip
+NEEDS = {
+    ln_e: COMES_BACK,
+    b: (
+        over_tests((LV[k] - mean_v) ** 2) > Rational(1, 2**40),
+        "all tests are at one speed, which tells nothing of how the restitution goes with it",
+    ),
+}
+"""Without what the cells say nothing, and the sentence for that."""

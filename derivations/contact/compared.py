@@ -1,15 +1,16 @@
 """How far a model misses the tests: what it predicts of each, beside what was measured.
 
 A model with a constant is asked for each test with the constant of all others: it is not to win by
-construction. Its sum of squares is the least over the true speeds, and over the true restitutions where it
-is told these, along its tangents.
+construction. Its sum of squares takes the constant of all tests, and is the least over the true speeds, and
+over the true restitutions where it is told these, along its tangents.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from string import ascii_lowercase
 
-from sympy import Add, Expr, Matrix, Symbol, diff, sqrt
+from sympy import Expr, Matrix, Symbol, sqrt
 
 from ..equation import Equation, Kind
 from ..global_fit import n_tests, over_tests
@@ -33,7 +34,7 @@ class Compared:
     Parameters
     ----------
     quantities : tuple of Quantity
-        What it misses of each test, the root of the mean square of that; slopes, and the sum of squares.
+        What it misses of each test, the root of the mean square of each kind; slopes, and the sum of squares.
     equations : tuple of Equation
         One for each.
     without : mapping of Symbol to Symbol
@@ -54,7 +55,7 @@ def compared(model: ContactModel, number: str) -> Compared:
     number : str
         Of its equations, which get letters.
     """
-    letters, made = iter("abcdefgh"), dict[Quantity, Equation]()
+    letters, made = iter(ascii_lowercase), dict[Quantity, Equation]()
     mark = rf"\mathrm{{{model.mark}}}"
 
     def tell(
@@ -84,14 +85,19 @@ def compared(model: ContactModel, number: str) -> Compared:
         )
         for name, symbol in told.items()
     ]
-    mean_square = over_tests(Add(*(miss[k] ** 2 for miss in misses))) / (len(misses) * n_tests)
-    tell("miss", sqrt(mean_square), "misses, root of the mean square", rf"\epsilon_{{{mark}%s}}", least=1e-4)
+    for name, miss in zip(told, misses, strict=True):
+        tell(
+            f"rms_{name}",
+            sqrt(over_tests(miss[k] ** 2) / n_tests),
+            f"root of the mean square of what the {_WORDS[name]} is off by",
+            rf"\bar{{\epsilon}}_{{{name[0]},{mark}%s}}",
+        )
     if not model.left_out:
         given = [name for name in _WORDS if name not in told]
         slopes = Matrix(len(told), len(given), lambda _row, _column: 0).as_mutable()
         for row, (name, symbol) in enumerate(told.items()):
             for column, by in enumerate(given):
-                slope = diff(model.closed(symbol), PAPER[by].symbol)
+                slope = model.slope(symbol, PAPER[by].symbol)
                 if slope != 0:
                     meaning = f"change of the {_WORDS[name]} with the {_WORDS[by]}"
                     latex = rf"\partial {name[0]}/\partial {by[0]}_{{{mark}%s}}"

@@ -15,7 +15,18 @@ from ..vocabulary import Quantity, Vocabulary
 from .model import ContactModel
 from .quantities import SHARED
 
-__all__ = ["CONTACT", "HERTZ", "half", "modulus", "radius", "recovery", "returned_work", "stiffness"]
+__all__ = [
+    "CONTACT",
+    "HERTZ",
+    "duration",
+    "half",
+    "modulus",
+    "radius",
+    "recovery",
+    "returned_work",
+    "stiffness",
+    "unloads",
+]
 
 OWN = (
     Quantity("x_m_hertz", "maximum approach by Hertz", "m", r"x_{m,\mathrm{H}%s}", (1e-5, 1e-4)),
@@ -40,6 +51,24 @@ def lasts(exponent: Expr) -> Expr:
     """
     power = exponent + 1
     return beta(1 / power, half) / power
+
+
+def duration(x_m: Expr, x_p: Expr, e: Expr, compression: Expr = hertz, restitution: Expr = hertz) -> Expr:
+    """How long a contact lasts under two powers of the approach: the way of each branch over its rate.
+
+    Parameters
+    ----------
+    x_m, x_p, e : Expr
+        Maximum approach, imprint, coefficient of restitution.
+    compression, restitution : Expr
+        The exponents of both branches.
+    """
+    return x_m / v * lasts(compression) + (x_m - x_p) / (e * v) * lasts(restitution)
+
+
+def unloads(peak: Expr, x_m: Expr, x_p: Expr) -> Expr:
+    """The force while an elastic contact unloads from its greatest one to an imprint."""
+    return peak * ((x - x_p) / (x_m - x_p)) ** hertz
 
 
 with evaluate(False):

@@ -12,10 +12,10 @@ from ..equation import Derivation, Equation, Kind
 from ..vocabulary import Quantity, Vocabulary
 from . import hertz
 from .model import ContactModel
-from .one_constant import taken
+from .one_constant import COMES_BACK, taken
 from .quantities import SHARED
 
-__all__ = ["FIRST_YIELD", "JOHNSON", "YIELD", "YIELD_WORDS"]
+__all__ = ["FIRST_YIELD", "JOHNSON", "SLOW", "YIELD", "YIELD_WORDS"]
 
 YIELD_WORDS = (
     Quantity("sigma_Y", "yield strength of the target", "Pa", "Y%s", (1e8, 2e9)),
@@ -27,6 +27,7 @@ YIELD_WORDS = (
     Quantity("x_Y", "approach at first yield", "m", "x_{Y%s}", (1e-9, 1e-5)),
     Quantity("a_Y", "radius of the contact at first yield", "m", "a_{Y%s}", (1e-6, 1e-4)),
     Quantity("v_Y", "impact speed of first yield", "m/s", "v_{Y%s}", (1e-4, 1.0)),
+    Quantity("v_over_Y", "impact speed, over that of first yield", "1", "v/v_{Y%s}", (1.0, 1e3)),
 )
 OWN = (
     Quantity("a_p", "radius of a plastic contact", "m", "a_{p%s}", (1e-4, 1e-3)),
@@ -44,7 +45,7 @@ OWN = (
 _WORDS = Vocabulary(*SHARED.values(), *YIELD_WORDS, *OWN)
 v, e, m_red, x = SHARED.plain("v e m_red x")
 E_star, R, K, a, p_0, any_delta, F_m, nu = SHARED.plain("E_star R_b K a_c p_0 delta F_m nu_2")
-Y, zeta, s_0, p_Y, x_Y, v_Y = _WORDS.plain("sigma_Y zeta_Y s_0 p_Y x_Y v_Y")
+Y, zeta, s_0, p_Y, x_Y, v_Y, faster = _WORDS.plain("sigma_Y zeta_Y s_0 p_Y x_Y v_Y v_over_Y")
 a_Y, a_p, delta, F, alone, p_d, x_m, peak, e_J, x_p, t = _WORDS.plain(
     "a_Y a_p delta_johnson F_johnson p_d_alone p_d x_m_johnson F_m_johnson e_johnson x_p_johnson t_johnson"
 )
@@ -94,6 +95,15 @@ with evaluate(False):
         "(L127) at that approach",
         title="impact speed of first yield",
         defines=v_Y,
+    )
+
+    beyond = Equation(
+        "(L171)",
+        (faster, v / v_Y),
+        "definition",
+        Kind.DEFINITION,
+        "impact speed over that of first yield",
+        defines=faster,
     )
 
     # --- fully plastic -------------------------------------------------------------------------------------
@@ -151,7 +161,7 @@ with evaluate(False):
     )
     lasting = Equation(
         "(L150)",
-        (t, x_m / v * hertz.lasts(Integer(1)) + (x_m - x_p) / (e_J * v) * hertz.lasts(hertz.hertz)),
+        (t, hertz.duration(x_m, x_p, e_J, Integer(1))),
         "the way of each branch divided by its rate, summed (DLMF 5.12.1)",
         Kind.DEFINITION,
         "duration of a fully plastic impact",
@@ -174,10 +184,13 @@ _recovers = hertz.recovery.at({F_m: peak, hertz.a_u: a_p, any_delta: delta})
 CONSTANT, _entries = taken(
     (by_restitution.at({p_d: alone, e_J: e}),),
     _WORDS["p_d"], _WORDS["p_d_alone"], _WORDS["p_d_without"], E_star, ("(L148)", "(L149)"),
+    COMES_BACK,
 )  # fmt: skip
 
-FIRST_YIELD = (deepest, pressure_at_yield, approach_at_yield, speed_at_yield)
-"""What tells at which speed the target begins to yield."""
+FIRST_YIELD = (deepest, pressure_at_yield, approach_at_yield, speed_at_yield, beyond)
+"""What tells at which speed the target begins to yield, and how much faster a test is."""
+SLOW = {faster: (faster > 1, "slower than first yield: such an impact is elastic and leaves no imprint")}
+"""What is expected of tests that leave an imprint."""
 YIELD: tuple[Equation | Derivation, ...] = (
     difference,
     deepest,
@@ -194,6 +207,7 @@ YIELD: tuple[Equation | Derivation, ...] = (
         (v_Y,),
         "Solve for the speed.",
     ),
+    beyond,
 )
 
 JOHNSON = ContactModel(
@@ -234,8 +248,9 @@ JOHNSON = ContactModel(
     cells=(approach, greatest, restitution, imprint, lasting),
     predicts={"x_m": x_m, "F_m": peak, "t": t, "e": e_J, "x_p": x_p},
     loading=law.value,
-    unloading=peak * ((x - x_p) / (x_m - x_p)) ** hertz.hertz,
+    unloading=hertz.unloads(peak, x_m, x_p),
     constants=1,
     constant=CONSTANT,
     needs={x_p: (Rational(5, 4) * e_J**2 < 1, "5 e^2/4 is not below 1: the recovery is the whole approach")},
+    expects={e_J: (e_J <= 1, "e > 1: an elastic recovery of this pressure gives back more than there was")},
 )  # fmt: skip

@@ -15,6 +15,7 @@ from ..symbols import k
 from ..vocabulary import Quantity, Vocabulary
 from . import hertz
 from .model import ContactModel
+from .one_constant import LOSES
 from .quantities import SHARED
 
 __all__ = ["LANKARANI_1994"]
@@ -25,11 +26,10 @@ OWN = (
     ),
 )  # fmt: skip
 _WORDS = Vocabulary(*SHARED.values(), *hertz.OWN, *OWN)
-e, x = SHARED.plain("e x")
+(e,) = SHARED.plain("e")
 x_m, peak, x_p = _WORDS.plain("x_m_hertz F_m_hertz x_p_lankarani")
 
 with evaluate(False):
-    _back = peak * ((x - x_p) / (x_m - x_p)) ** hertz.hertz
     imprint = Equation(
         "(L134)",
         (x_p, x_m * (1 - e**2)),
@@ -70,6 +70,7 @@ LANKARANI_1994 = ContactModel(
     ),
     cells=(hertz.approach, hertz.greatest, imprint),
     predicts={"x_p": x_p},
+    needs={x_p: LOSES},
     loading=hertz.HERTZ.loading,
-    unloading=_back,
+    unloading=hertz.unloads(peak, x_m, x_p),
 )

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from sympy import Expr, Rel, Symbol
+from sympy import Add, Expr, Piecewise, Rel, Symbol, diff
 
 from ..equation import Derivation, Equation
 from ..vocabulary import Quantity
@@ -27,11 +27,14 @@ class Constant:
         both sides, and is a root between 0 and 1.
     mean, without : Equation
         The geometric mean of these over all tests, and over all but one.
+    needs : tuple of (Rel, str)
+        Without what a test tells nothing of it, and the sentences for that.
     """
 
     of_test: tuple[Equation, ...]
     mean: Equation
     without: Equation
+    needs: tuple[tuple[Rel, str], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,8 @@ class ContactModel:
         What predicts a test that is left out, where its equations say so themselves.
     needs : mapping of Symbol to (Rel, str)
         Without what it says nothing of a test, and the sentence for that.
+    expects : mapping of Symbol to (Rel, str)
+        What it expects of a cell that has a value all the same, and what is odd where that does not hold.
     """
 
     name: str
@@ -85,13 +90,36 @@ class ContactModel:
     constant: Constant | None = None
     left_out: Mapping[Symbol, Symbol] = field(default_factory=dict)
     needs: Mapping[Symbol, tuple[Rel, str]] = field(default_factory=dict)
+    expects: Mapping[Symbol, tuple[Rel, str]] = field(default_factory=dict)
 
-    def closed(self, of: Symbol) -> Expr:
-        """One of its cells in terms of what is given alone."""
-        found: Expr = of
-        for equation in reversed(self.cells):
-            found = found.xreplace({equation.sides[0]: equation.value})
-        return found
+    @property
+    def told(self) -> bool:
+        """Whether it is told the restitution of a test, which it does not predict."""
+        return "e" not in self.predicts
+
+    def varies(self, name: str) -> bool:
+        """Whether it predicts something that is not one number for all impacts."""
+        told = {equation.sides[0]: equation for equation in self.cells}
+        own = told.get(self.predicts.get(name))
+        return own is not None and bool(own.value.free_symbols)
+
+    def slope(self, of: Symbol, by: Symbol) -> Expr:
+        """How one of its cells changes with what was measured, in terms of its cells.
+
+        Those that tell cases tell the same ones, in the same order.
+        """
+        known: dict[Expr, Expr] = {}
+
+        def along(value: Expr, case: int | None = None) -> Expr:
+            through = (diff(value, cell) * _case(slope, case) for cell, slope in known.items())
+            return Add(diff(value, by), *through)
+
+        for equation in self.cells:
+            value = equation.value
+            cases = enumerate(value.args) if isinstance(value, Piecewise) else ()
+            told = [(along(each.expr, case), each.cond) for case, each in cases]
+            known[equation.sides[0]] = Piecewise(*told) if told else along(value)
+        return known[of]
 
     def hanging(self) -> tuple[Equation, ...]:
         """Its cells that hang on its constant, and that restitution and imprint need."""
@@ -107,3 +135,8 @@ class ContactModel:
             if equation.sides[0] in wanted:
                 wanted |= equation.value.free_symbols
         return tuple(equation for equation in found if equation.sides[0] in wanted)
+
+
+def _case(of: Expr, case: int | None) -> Expr:
+    """What is said for one of the cases, where cases are told apart."""
+    return of if case is None or not isinstance(of, Piecewise) else of.args[case].expr

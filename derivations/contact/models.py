@@ -21,8 +21,8 @@ from .thornton import THORNTON
 __all__ = ["BESIDE", "LEDGER", "MODELS"]
 
 MODELS = (HERTZ, LANKARANI_1994, JOHNSON, THORNTON, POWER_LAW)
-BESIDE = {model.name: compared(model, f"(L{number})") for number, model in enumerate(MODELS, 171)}
-"""Each beside the tests."""
+BESIDE = {model.name: compared(model, f"(L{number})") for number, model in enumerate(MODELS, 191)}
+"""Each beside the tests; nothing is numbered after these, so that there may be more."""
 
 _PREMISES = [
     "(1)",

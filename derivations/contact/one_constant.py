@@ -1,20 +1,30 @@
 """How the one number of a model is taken from the tests: the geometric mean of what each would need.
 
-A test that is left out leaves the mean of the others, exactly: nothing is fitted again.
+A test that is left out leaves the mean of the others, exactly: nothing is fitted again. A test that tells
+nothing of it is in no mean.
 """
 
 from __future__ import annotations
 
-from sympy import Expr, exp, log
+from sympy import Expr, Rational, Rel, exp, log
 from sympy.core.parameters import evaluate
 
-from ..equation import Derivation, Equation, Kind
+from ..equation import Equation, Kind
 from ..global_fit import n_tests, over_tests
 from ..symbols import k
 from ..vocabulary import Quantity
 from .model import Constant
+from .quantities import SHARED
 
-__all__ = ["taken"]
+__all__ = ["COMES_BACK", "LOSES", "taken"]
+
+_e = SHARED["e"].symbol
+COMES_BACK = (
+    _e > Rational(1, 2**30),
+    "e = 0: nothing comes back, which tells nothing of an elastic recovery",
+)
+LOSES = (_e < 1, "e = 1: nothing is lost, which tells nothing of yield")
+"""What a test must have for some conclusions, and why."""
 
 
 def taken(
@@ -24,8 +34,9 @@ def taken(
     without: Quantity,
     scale: Expr,
     numbers: tuple[str, str],
-) -> tuple[Constant, tuple[Equation | Derivation, ...]]:
-    """The mean over the tests and over all but one, and how the second follows from the first.
+    *needs: tuple[Rel, str],
+) -> tuple[Constant, tuple[Equation, ...]]:
+    """The mean over the tests, and over all but one.
 
     Parameters
     ----------
@@ -37,6 +48,8 @@ def taken(
         Of the same dimension: of pure numbers alone there are logarithms.
     numbers : tuple of str
         Of both equations.
+    *needs : tuple of (Rel, str)
+        Without what a test tells nothing of it.
     """
     with evaluate(False):
         over_all = Equation(
@@ -47,22 +60,15 @@ def taken(
             mean.meaning,
             defines=mean.symbol,
         )
-        others = Equation(
-            "",
-            (
-                log(without.symbol / scale) * (n_tests - 1),
-                n_tests * log(mean.symbol / scale) - log(alone.symbol / scale),
-            ),
-            "the logarithm of the test is missing in the sum, and one test in the number of tests",
-            Kind.DEFINITION,
-            f"logarithms of the others: {without.meaning}",
-        )
         left = Equation(
             numbers[1],
-            (without.symbol, mean.symbol * (mean.symbol / alone.symbol) ** (1 / (n_tests - 1))),
+            (
+                without.symbol,
+                scale * exp((over_tests(log(alone[k] / scale)) - log(alone.symbol / scale)) / (n_tests - 1)),
+            ),
             "the geometric mean of the others",
-            title=without.meaning,
+            Kind.DEFINITION,
+            without.meaning,
             defines=without.symbol,
         )
-    step = Derivation.of(left, (others,), (without.symbol,), "Solve for the mean of the others.")
-    return Constant(of_test, over_all, left), (over_all, step)
+    return Constant(of_test, over_all, left, needs), (over_all, left)

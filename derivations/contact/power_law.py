@@ -6,11 +6,12 @@ from sympy.core.parameters import evaluate
 
 from .. import soft_impact as paper
 from ..equation import Derivation, Equation, Kind, Step
+from ..fit_checks import FREE
 from ..soft_impact import XM, XP, E
 from ..symbols import VOCABULARY as PAPER
 from ..symbols import k
 from ..vocabulary import Quantity, Vocabulary
-from .hertz import lasts
+from .hertz import duration
 from .model import ContactModel
 from .quantities import SHARED
 
@@ -30,7 +31,7 @@ OWN = (
     ),
 )
 _WORDS = Vocabulary(*SHARED.values(), *OWN)
-v, e, x, beta = SHARED.plain("v e x beta")
+e, beta = SHARED.plain("e beta")
 x_m, peak, x_p, t = _WORDS.plain("x_m_power F_m_power x_p_power t_power")
 R, H, OBSERVED, WITHOUT = PAPER["R"], PAPER["h"], PAPER["x_obs"], _WORDS["x_p_power_without"]
 
@@ -44,7 +45,7 @@ with evaluate(False):
     )
     lasting = Equation(
         "(L162)",
-        (t, x_m / v * lasts(paper.alpha) + (x_m - x_p) / (e * v) * lasts(beta)),
+        (t, duration(x_m, x_p, e, paper.alpha, beta)),
         "the way of each branch divided by its rate, summed (DLMF 5.12.1)",
         Kind.DEFINITION,
         "duration of the contact by law (3)",
@@ -72,6 +73,7 @@ POWER_LAW = ContactModel(
     quantities=OWN,
     constants=2,
     left_out={x_p: WITHOUT.symbol},
+    needs={WITHOUT.symbol: (1 - H.symbol > FREE, "needs three tests: the others alone tell no curve")},
     entries=(
         Derivation(
             (

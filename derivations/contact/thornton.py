@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sympy import Integral, Piecewise, Rational, pi, sqrt
+from sympy import Expr, Integer, Integral, Piecewise, Rational, Rel, pi, sqrt
 from sympy.core.parameters import evaluate
 
 from ..equation import Derivation, Equation, Kind, Step
 from ..vocabulary import Quantity, Vocabulary
 from . import hertz, johnson
 from .model import ContactModel
-from .one_constant import taken
+from .one_constant import COMES_BACK, LOSES, taken
 from .quantities import SHARED
 
 __all__ = ["THORNTON", "share"]
@@ -42,7 +42,7 @@ OWN = (
     Quantity("x_m_thornton", "maximum approach by Thornton", "m", r"x_{m,\mathrm{T}%s}", (1e-5, 1e-4)),
     Quantity("F_m_thornton", "greatest force by Thornton", "N", r"F_{m,\mathrm{T}%s}", (100.0, 1e4)),
     Quantity("e_thornton", "restitution by Thornton", "1", r"e_{\mathrm{T}%s}", (0.05, 0.99)),
-    Quantity("x_p_thornton", "imprint by Thornton", "m", r"x_{p,\mathrm{T}%s}", (1e-6, 1e-4)),
+    Quantity("x_p_thornton", "imprint by Thornton", "m", r"x_{p,\mathrm{T}%s}", (1e-6, 1e-4), positive=False),
 )
 _WORDS = Vocabulary(*SHARED.values(), *hertz.OWN, *johnson.YIELD_WORDS, *OWN)
 v, e, m_red, x = SHARED.plain("v e m_red x")
@@ -87,7 +87,6 @@ with evaluate(False):
         (x_m, x_y / 3 + sqrt(m_red * v**2 / (pi * R * p_y) - Rational(4, 45) * x_y**2)),
         "all kinetic energy has become work",
         title="maximum approach by Thornton",
-        defines=x_m,
         conditions=(x_m > x_y,),
     )
     greatest = Equation(
@@ -95,21 +94,18 @@ with evaluate(False):
         (peak, pi * R * p_y * (x_m - x_y / 3)),
         "(L152) there",
         title="greatest force by Thornton",
-        defines=peak,
     )
     restitution = Equation(
         "(L155)",
         (e_T, sqrt(3 * peak**2 / (5 * E_star * m_red * v**2 * sqrt(R * x_m)))),
         "the work of the elastic recovery (L132)",
         title="restitution by Thornton",
-        defines=e_T,
     )
     imprint = Equation(
         "(L156)",
         (x_p, x_m - 3 * peak / (4 * E_star * sqrt(R * x_m))),
         "the approach less the elastic recovery",
         title="imprint by Thornton",
-        defines=x_p,
     )
     ratio = Equation(
         "",
@@ -155,12 +151,27 @@ with evaluate(False):
         defines=p_y,
     )
 
+    def _by_cases(part: str, beyond: Equation, elastic: Expr, faster: Rel = x_m > x_y) -> Equation:
+        """What holds at every speed: of an impact that is slower than the limit, Hertz's."""
+        of, value = beyond.members
+        because = "where the pressure stays below the limit, the impact is elastic"
+        cases = Piecewise((value, faster), (elastic, True))
+        return Equation("(L164)", (of, cases), because, Kind.ASSUMPTION, beyond.title, part, defines=of)
+
+    CASES = (
+        _by_cases("a", approach, hertz.approach.members[-1], v > V_y),
+        _by_cases("b", greatest, hertz.force.at({x: x_m}).members[-1]),
+        _by_cases("c", restitution, Integer(1)),
+        _by_cases("d", imprint, Integer(0)),
+    )
+
 _unloads = hertz.returned_work.at({F_m: peak, e: e_T, any_delta: delta})
 _recovers = hertz.recovery.at({F_m: peak, hertz.a_u: a, any_delta: delta})
 _reaches = hertz.contact.at({x: x_m, any_a: a})
 CONSTANT, _entries = taken(
     (replace(published.at({e_T: e}), defines=share), by_share.at({p_y: alone})),
     _WORDS["p_y"], _WORDS["p_y_alone"], _WORDS["p_y_without"], E_star, ("(L159)", "(L160)"),
+    COMES_BACK, LOSES,
 )  # fmt: skip
 
 THORNTON = ContactModel(
@@ -224,13 +235,14 @@ THORNTON = ContactModel(
             (share, V_y, x_y),
             "Solve both for the pressure.",
         ),
+        *CASES,
         *_entries,
     ),
-    cells=(cut_off, speed, approach, greatest, restitution, imprint),
+    cells=(cut_off, speed, *CASES),
     predicts={"x_m": x_m, "F_m": peak, "e": e_T, "x_p": x_p},
     loading=Piecewise((hertz.force.value, x < x_y), (beyond.value.xreplace({F_y: force_there.value}), True)),
-    unloading=peak * ((x - x_p) / (x_m - x_p)) ** hertz.hertz,
+    unloading=hertz.unloads(peak, x_m, x_p),
     constants=1,
     constant=CONSTANT,
-    needs={x_m: (v > V_y, "slower than where the pressure is cut off: the impact is elastic")},
+    expects={p_y: (p_y >= p_Y, "below the pressure of first yield: the cut would come before the yield")},
 )

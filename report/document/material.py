@@ -111,7 +111,7 @@ class Material:
         own, workbook = 0, self.report.workbook
         for spec in workbook.tables or tables_of(self.report.sheet, workbook.aside):
             names = tuple(name for name in spec.columns if name in self.report.sheet)
-            if names:
+            if names or spec.words:
                 own += not spec.number
                 numbered.append(replace(spec, columns=names, number=spec.number or str(own)))
         return tuple(numbered)

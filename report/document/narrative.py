@@ -7,7 +7,8 @@ links to chapters (``[text](#name)``) they have
   that is alone in its paragraph is shown there: a table, a figure, an equation;
 - conditions: lines between ``:::{if} {role}`argument` `` and ``:::`` are there if all roles named stand for
   something, those behind ``:::{else}`` if not. They may lie inside a paragraph: each line holds sentences;
-- ``:::{include} NAME``: the lines of parts/NAME.md.
+- ``:::{include} NAME``: the lines of parts/NAME.md;
+- ``:::{told} NAME``: what the workbook itself has to say there, which may be nothing.
 
 A line that begins with a comma, a semicolon or a full stop goes on with the word before it. In the place of a
 line that shows a cell without a value stands which of its cells have none, and why: such lines are whole
@@ -112,14 +113,18 @@ class _Reader:
             if word.startswith(":::{if} "):
                 holds = all(holds for holds, _ in open_ones) and self._hold(word, line.place)
                 open_ones.append((holds, line))
-            elif word and not open_ones:
+            elif word in (":::{else}", ":::") and not open_ones:
                 raise NarrativeError(f"{line.place}: nothing is open that {word} could belong to")
             elif word == ":::{else}":
                 open_ones[-1] = (not open_ones[-1][0], line)
             elif word == ":::":
                 open_ones.pop()
+            elif word.startswith(":::{told} "):
+                told = self.said.report.workbook.told.get(word.removeprefix(":::{told} "), "")
+                if all(holds for holds, _ in open_ones):
+                    yield from self._kept([Line(text, line.place) for text in told.splitlines()])
             elif word:
-                known = ":::{if}, :::{else}, :::{include} and :::"
+                known = ":::{if}, :::{else}, :::{include}, :::{told} and :::"
                 raise NarrativeError(f"{line.place}: unknown line {word}; there are {known}")
             elif all(holds for holds, _ in open_ones):
                 yield self._valued(line)

@@ -419,6 +419,7 @@ SAID: dict[str, Callable[[Said], Answer]] = {
     "uncertain": lambda s: (s.tables.uncertain(),) if s.material.budgets else (),
     "budget": lambda s: s.tables.budget(),
     "conformity": lambda s: (s.tables.conformity(),) if s.report.inputs.limits else (),
+    "squares": lambda s: (s.tables.squares(),) if s.report.workbook.squares else (),
     "published_u": lambda s: (s.tables.published_u(),) if s.report.comparisons_u else (),
     "asked_why": lambda s: s.referee.asked_why,
     "possible": lambda s: s.referee.joint is not None and s.referee.joint.verdict in GOOD,

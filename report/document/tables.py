@@ -15,15 +15,16 @@ from ..inputs.measurements import LeftOut
 from ..inputs.published import PublishedValue
 from ..quantity import span
 from ..result import verdict_words as words
+from ..result.chi_square import freedom, number, tail, tied
 from ..result.conformity import accepted, conforming, risk
-from ..result.numbers import Numeral, decimals, read, rounded, table_format
+from ..result.numbers import Numeral, decimals, probability, read, rounded, table_format
 from ..result.result import Comparison
 from ..result.shares import SEEN, foremost
 from ..result.statements import of_column
 from ..result.uncertain import Budget, Conformity, Contribution, Decision
 from ..result.verdict import ALL, INPUT, UNREACHABLE, TableVerdict
 from ..sheet import Axis
-from ..workbook import TableSpec, sentence_case
+from ..workbook import SquareSum, TableSpec, sentence_case
 from .material import Material
 from .parts import MOST, Head, Pair, SourceGroup, described, slug, why_address
 from .refereed import GOOD, RefereedPair, shown_mismatch
@@ -127,10 +128,47 @@ class Tables:
     def data(self) -> Mapping[str, Table]:
         """The workbook's tables by their names; without any, one for the scalars and one for each axis."""
         return {
-            spec.name: self._scalars(spec) if axis is None else self._rows(spec, axis)
-            for spec in self.material.specs
-            for axis in [self.report.sheet[spec.columns[0]].axis]
+            spec.name: self._words(spec) if spec.words else self._cells(spec) for spec in self.material.specs
         }
+
+    def _cells(self, spec: TableSpec) -> Table:
+        axis = self.report.sheet[spec.columns[0]].axis
+        return self._scalars(spec) if axis is None else self._rows(spec, axis)
+
+    def _words(self, spec: TableSpec) -> Table:
+        heads, *rows = spec.words
+        longest = [max(len(row[n]) for row in spec.words) for n in range(len(heads))]
+        shares = [round(length / sum(longest), 2) for length in longest]
+        made = [
+            _Made(head, lambda row, n=n: row[n], "words", share)  # type: ignore[misc]
+            for n, (head, share) in enumerate(zip(heads, shares, strict=True))
+        ]
+        title = self.rich(spec.title)
+        return _table(spec.name, title, made, [((), rows)], number=spec.number, look="list", wide=True)
+
+    def squares(self) -> Table:
+        """How likely each sum of squares of the workbook is, if chance alone made it."""
+
+        def likely(each: SquareSum) -> Inlines:
+            value, dof = self.report.values.scalar(each.name), freedom(each, self.report)
+            known = dof > 0 and value == value and not tied(self.report)
+            return self.rich(probability(tail(value, dof))) if known else ()
+
+        def head(each: SquareSum) -> Head:
+            return self.material.head(self.report.sheet[each.name])
+
+        made = (
+            _Made("sum of squares", lambda each: self._meaning(head(each)), "words", 0.42),
+            _Made("symbol", lambda each: Math(head(each).latex), "symbol"),
+            _Made("value", lambda each: self.material.item(each.name), "number"),
+            _Made("squares", lambda each: str(number(each, self.report)), "number"),
+            _Made("taken", lambda each: str(each.fitted), "number", tip="numbers that were taken from them"),
+            _Made("freedom", lambda each: str(freedom(each, self.report)), "number"),
+            _Made("probability", likely, "number", tip="of a sum that is as large, or larger"),
+        )
+        title = "Sums of squares, and how likely chance alone makes them so large"
+        there = [each for each in self.report.workbook.squares if each.name in self.report.sheet]
+        return _table("chances", self.rich(title), made, [((), there)], look="list", wide=True)
 
     def _scalars(self, spec: TableSpec) -> Table:
         made = (

@@ -57,7 +57,10 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
         DATA: [CELLS, ROWS, RESULT],
         LIMIT: list(map(_name, margins(sheet))),
         UNCERTAINTY: _stated(sheet, inputs),
-        SQUARES: [*(each.name for each in workbook.squares), *(each.name for each in workbook.curves)],
+        SQUARES: [
+            *(each.name for each in workbook.squares if each.asked),
+            *(each.name for each in workbook.curves),
+        ],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
         CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
         CLAIM: [claim.label for claim in workbook.claims],
@@ -123,7 +126,7 @@ class _Oddities:
         yield self.of_result()
         yield from map(self.of_limit, self.report.marks.margins)
         yield from map(self.of_uncertainty, _stated(self.sheet, self.inputs))
-        yield from map(self.of_squares, self.report.workbook.squares)
+        yield from (self.of_squares(each) for each in self.report.workbook.squares if each.asked)
         yield from map(self.of_curve, self.report.workbook.curves)
         yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
         yield from (self.of_constants(*each) for each in _adjusted(self.sheet, self.inputs))
@@ -221,9 +224,12 @@ class _Oddities:
             cell
             for name in headline
             for cell in self.values.cells(name)
-            if cell.status is not Status.OK and not self.follows(cell, _no_value(cell))
+            if cell.status is not Status.OK
+            and not self.report.marks.is_faultless(cell.culprit or cell)
+            and not self.follows(cell, _no_value(cell))
         ]
-        said = "the result has a value" + (" where one is expected" if self.failed else "")
+        lacks = any(cell.status is not Status.OK for name in headline for cell in self.values.cells(name))
+        said = "the result has a value" + (" where one is expected" if lacks or self.failed else "")
         if missing:
             causes = dict.fromkeys((cell.culprit or cell).address for cell in missing)
             has = "has" if len(missing) == 1 else "have"

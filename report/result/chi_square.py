@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from ..workbook import SquareSum
     from .result import Report
 
-__all__ = ["RARE", "SIGNIFICANT", "freedom", "head", "largest", "tail", "tied"]
+__all__ = ["RARE", "SIGNIFICANT", "freedom", "head", "largest", "number", "tail", "tied"]
 
 RARE = 0.01
 """A sum of squares that is as large, or as small, less often than this is not taken for chance."""
@@ -28,7 +28,12 @@ def tied(report: Report) -> bool:
 
 def freedom(squares: SquareSum, report: Report) -> int:
     """The degrees of freedom of a sum of squares: rows without a value do not count."""
-    return report.values.rows_summed(squares.name, squares.axis) - squares.fitted
+    return number(squares, report) - squares.fitted
+
+
+def number(squares: SquareSum, report: Report) -> int:
+    """How many squares there are in a sum."""
+    return squares.each * report.values.rows_summed(squares.name, squares.axis)
 
 
 def tail(chi2: float, dof: int, known_by: float = math.inf) -> float:

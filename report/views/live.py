@@ -120,7 +120,7 @@ def data(report: Report, document: Material) -> str:
         "rows": next(([axis.name, axis.row] for axis in sheet.axes if axis.is_given), ["rows", "row"]),
         "headline": [name for name in report.workbook.headline if name in sheet],
         "figures": drawn(report),
-        "squares": {one.name: [one.axis, one.fitted] for one in report.workbook.squares},
+        "squares": {one.name: [one.axis, one.fitted] for one in report.workbook.squares if one.asked},
         "chances": [RARE, LEAST],
         "findings": {"unexpected": UNEXPECTED, "otherwise": OTHERWISE},
         "published": [

@@ -1,15 +1,22 @@
-"""The workbook of the contact models: what each says of the tests of a folder, beside what was measured."""
+"""The workbook of the contact models: what each says of the tests of a folder, beside what was measured.
+
+All that is shown of a model is made of its declaration in derivations/contact/.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from ...derivations.contact.models import LEDGER, MODELS
 from ..quantity import Bounds
-from ..workbook import FigureSpec, Parameter, TableSpec, Workbook, sentence_case
+from ..workbook import FigureSpec, Parameter, SquareSum, TableSpec, Workbook, sentence_case
 from . import soft_impact
-from .contact_models_charts import IMPRINTS, LOOPS, RESTITUTIONS, columns
+from .contact_models_charts import columns, over_speed
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from ...derivations.contact.model import ContactModel
     from ...derivations.equation import Ledger
     from ..sheet import Sheet
 
@@ -17,6 +24,9 @@ __all__ = ["WORKBOOK"]
 
 _POSITIVE = Bounds(low=0, low_open=True)
 _POISSON = Bounds(low=0, high=0.5)
+_TOLD = {"x_m": "approach", "F_m": "greatest force", "t": "duration", "e": "restitution", "x_p": "imprint"}
+"""What models predict."""
+_NUMBERS = ("no number", "one number", "two numbers", "three numbers")
 
 PARAMETERS = (
     *(each for each in soft_impact.PARAMETERS if each.name != "points_per_pair"),
@@ -24,7 +34,9 @@ PARAMETERS = (
     Parameter("nu_1", "1", "Poisson's ratio of the ball", _POISSON),
     Parameter("E_2", "Pa", "Young's modulus of the target", _POSITIVE),
     Parameter("nu_2", "1", "Poisson's ratio of the target", _POISSON),
-    Parameter("sigma_Y", "Pa", "yield strength of the target", _POSITIVE),
+    Parameter(
+        "sigma_Y", "Pa", "yield strength of the target; left out, nothing is told of first yield", _POSITIVE
+    ),
 )
 
 
@@ -39,48 +51,147 @@ def _bodies_given(given: frozenset[str]) -> str | None:
     return None
 
 
-def _ledger() -> Ledger:
-    from ...derivations.contact.models import LEDGER
-
-    return LEDGER
-
-
 def _sheet(given: frozenset[str]) -> Sheet:
     from .contact_models_sheet import sheet
 
     return sheet(given)
 
 
-_BY_ALL = ("power", "johnson", "thornton", "lankarani", "hertz")
-_TABLES = {
-    "misses": ("What each model misses, root of the mean square over all tests", "miss_{}", _BY_ALL),
-    "restitutions": ("Restitution by the models that predict it", "e_{}", ("johnson", "thornton")),
-    "restitutions_missed": (
-        "What the restitution is too large by, each test predicted by the others",
-        "miss_e_{}",
-        ("johnson", "thornton"),
-    ),
-    "imprints": ("Imprint by the models", "x_p_{}", ("power", "johnson", "thornton", "lankarani")),
-    "imprints_missed": (
-        "What the imprint is too large by, each test predicted by the others", "miss_x_p_{}", _BY_ALL,
-    ),
-    "squares": (
-        "Sums of squares over the variances", "chi2_{}", ("eiv", "johnson", "thornton", "lankarani", "hertz"),
-    ),
-    "approaches": ("Maximum approach by the models", "x_m_{}", ("power", "johnson", "thornton", "hertz")),
-    "forces": ("Greatest force by the models", "F_m_{}", ("power", "johnson", "thornton", "hertz")),
-    "durations": ("Duration of the contact by the models", "t_{}", ("power", "johnson", "hertz")),
-}  # fmt: skip
-"""Tables by the models: title, what their cells are called, and whose."""
+def _ledger() -> Ledger:
+    return LEDGER
 
 
-def _tables(*names: str) -> tuple[TableSpec, ...]:
-    found = []
-    for name in names:
-        title, cells, models = _TABLES[name]
-        measured = {"restitutions": ("e",), "imprints": ("x_p",)}.get(name, ())
-        found.append(TableSpec(name, title, (*measured, *map(cells.format, models))))
-    return tuple(found)
+def _drawings() -> dict[str, Callable[[Any], Any]]:
+    from .contact_models_drawings import draw_loops
+
+    return {"loops": draw_loops}
+
+
+# --- tables -------------------------------------------------------------------------------------------------
+
+
+def _of_all(cells: str, predicted: str = "", varies: bool = False) -> tuple[str, ...]:
+    """The cells of all models that predict something, if it is not one number for all tests."""
+    return tuple(
+        cells.format(model.name)
+        for model in MODELS
+        if not predicted or (model.varies(predicted) if varies else predicted in model.predicts)
+    )
+
+
+_CONSTANTS = tuple(model.constant for model in MODELS if model.constant)
+_MEANS = tuple(constant.mean.sides[0].name for constant in _CONSTANTS)
+_MISSED = "What the {} is too large by, each test predicted by the others"
+
+
+def _numbers(model: ContactModel) -> str:
+    """How many numbers it takes from the tests, in words."""
+    return _NUMBERS[model.constants] if model.constants < len(_NUMBERS) else f"{model.constants} numbers"
+
+
+def _tables() -> Iterator[TableSpec]:
+    yield TableSpec(
+        "misses",
+        "What each model misses, root of the mean square over the tests that all of them predict",
+        (*_of_all("rms_x_p_{}", "x_p"), *_of_all("rms_e_{}", "e")),
+    )
+    yield TableSpec("measured", "Impact parameters, as measured", ("v", "e", "x_p"))
+    yield TableSpec(
+        "given",
+        "Ball, target and settings",
+        (
+            *("ball_diameter", "ball_density", "ball_mass", "target_mass", "m_red", "beta"),
+            *("E_1", "nu_1", "E_2", "nu_2", "sigma_Y", "E_star", "R_b", "K"),
+        ),
+    )
+    yield TableSpec("yielding", "First yield", ("zeta_Y", "p_Y", "x_Y", "v_Y"))
+    yield TableSpec("beyond", "Impact speeds beside that of first yield", ("v_over_Y",))
+    yield TableSpec(
+        "models",
+        "What each model takes for true, and from the tests",
+        (),
+        words=(
+            ("model", "takes for true", "from the tests", "source"),
+            *((model.title, model.assumes, _taken(model), model.source) for model in MODELS),
+        ),
+    )
+    yield TableSpec("taken", "What is taken from the tests", (*_MEANS, "V_y", "alpha_eiv", "C_eiv"))
+    yield TableSpec(
+        "constants",
+        "Constants by each test alone, and by all others",
+        tuple(
+            each.sides[0].name if each.defines is None else each.defines.name
+            for constant in _CONSTANTS
+            for each in (constant.of_test[-1], constant.without)
+        ),
+    )
+    yield TableSpec("restitutions", "Restitution by the models", ("e", *_of_all("e_{}", "e", varies=True)))
+    yield TableSpec("restitutions_missed", _MISSED.format("restitution"), _of_all("miss_e_{}", "e"))
+    yield TableSpec("imprints", "Imprint by the models", ("x_p", *_of_all("x_p_{}", "x_p", varies=True)))
+    yield TableSpec("imprints_missed", _MISSED.format("imprint"), _of_all("miss_x_p_{}", "x_p"))
+    yield TableSpec("approaches", "Maximum approach by the models", _of_all("x_m_{}", "x_m"))
+    yield TableSpec("forces", "Greatest force by the models", _of_all("F_m_{}", "F_m"))
+    yield TableSpec("durations", "Duration of the contact by the models", _of_all("t_{}", "t"))
+    yield TableSpec("exponents", "Exponents", ("e_slope", "alpha_by_e", "alpha_eiv", "meyer_n"))
+    yield TableSpec(
+        "checks",
+        "What law (3) says besides",
+        ("recovery_power", "a_crater", "recovery_asked", "pressure_power", "deceleration_power"),
+    )
+    yield TableSpec("lankarani", "Imprints beside Lankarani’s", ("x_p", "x_p_lankarani", "over_lankarani"))
+
+
+def _taken(model: ContactModel) -> str:
+    told = "; each restitution is told" if model.told else ""
+    return f"{_numbers(model)}{told}"
+
+
+# --- what the narrative says of each model ------------------------------------------------------------------
+
+
+def _result(model: ContactModel) -> str:
+    """What it takes from the tests, and how far it misses them: a sentence a line."""
+    taken = f"**{sentence_case(model.title)}** takes {_numbers(model)} from the tests"
+    if model.constant:
+        name, meaning = (
+            model.constant.mean.sides[0].name,
+            LEDGER.vocabulary[model.constant.mean.sides[0].name].meaning,
+        )
+        taken += f", the {meaning} {{sym}}`{name}` = {{cell}}`{name}`"
+    taken += ", and is told each restitution" if model.told else ""
+    missed = " and ".join(
+        f"the {_TOLD[name]}s by {{cell}}`rms_{name}_{model.name}`"
+        for name in ("x_p", "e")
+        if name in model.predicts
+    )
+    over = f"over {{count}}`rms_x_p_{model.name} tests` of {{count}}`tests` tests"
+    return f"{taken}: it misses {missed}, {over}."
+
+
+def _equations(model: ContactModel) -> str:
+    """What it assumes, and the numbers of the equations by which it predicts."""
+    of = {each.defines or each.sides[0]: each.label for each in model.cells}
+    told = [f"{_TOLD[name]} {{eq}}`{of[symbol]}`" for name, symbol in model.predicts.items() if symbol in of]
+    said = f"**{sentence_case(model.title)}**: {model.assumes}. It says {_listed(told)}."
+    if constant := model.constant:
+        alone = _listed([f"{{eq}}`{each.label}`" for each in constant.of_test])
+        said += f" Each test tells its constant {alone}; all of them {{eq}}`{constant.mean.label}`"
+        said += f", all others {{eq}}`{constant.without.label}`."
+    for symbol in model.left_out.values():
+        said += f" By all other tests it is {{eq}}`{of[symbol]}`."
+    return said
+
+
+def _listed(texts: list[str]) -> str:
+    return " and ".join((", ".join(texts[:-1]), texts[-1])) if len(texts) > 1 else texts[0]
+
+
+def _squares() -> Iterator[SquareSum]:
+    """The sums of squares; of a model that says itself what is without a test, that of the fit."""
+    for model in MODELS:
+        name = "chi2_eiv" if model.left_out else f"chi2_{model.name}"
+        each = sum(name in model.predicts for name in ("e", "x_p"))
+        yield SquareSum(name, axis="tests", fitted=model.constants, each=each, asked=False)
 
 
 WORKBOOK = Workbook(
@@ -92,54 +203,41 @@ WORKBOOK = Workbook(
     parameters=PARAMETERS,
     check_parameters=_bodies_given,
     sheet=_sheet,
-    headline=("miss_power", "miss_johnson", "miss_thornton", "miss_lankarani", "p_d", "p_y", "alpha_eiv"),
-    prose="contact_models",
-    tables=(
-        *_tables("misses"),
-        TableSpec("measured", "Impact parameters, as measured", ("v", "e", "x_p")),
-        TableSpec(
-            "given",
-            "Ball, target and settings",
-            (
-                *("ball_diameter", "ball_density", "ball_mass", "target_mass", "m_red", "beta"),
-                *("E_1", "nu_1", "E_2", "nu_2", "sigma_Y", "E_star", "R_b", "K"),
-            ),
-        ),
-        TableSpec("yielding", "First yield", ("zeta_Y", "p_Y", "x_Y", "v_Y")),
-        TableSpec("taken", "What is taken from the tests", ("p_d", "p_y", "V_y", "alpha_eiv", "C_eiv")),
-        TableSpec(
-            "constants",
-            "Constants by each test alone, and by all others",
-            ("p_d_alone", "p_d_without", "p_y_alone", "p_y_without"),
-        ),
-        *_tables("restitutions", "restitutions_missed", "imprints", "imprints_missed", "squares"),
-        *_tables("approaches", "forces", "durations"),
-        TableSpec(
-            "checks",
-            "What law (3) says besides",
-            ("recovery_power", "a_crater", "recovery_asked", "pressure_power", "deceleration_power"),
-        ),
-        TableSpec("exponents", "Exponents", ("e_slope", "alpha_by_e", "alpha_eiv", "meyer_n")),
-        TableSpec("lankarani", "Imprints beside Lankarani’s", ("x_p", "x_p_lankarani", "over_lankarani")),
+    squares=tuple(_squares()),
+    headline=(
+        *_of_all("rms_x_p_{}", "x_p", varies=True),
+        *_of_all("rms_e_{}", "e", varies=True),
+        *(*_MEANS, "alpha_eiv"),
     ),
+    prose="contact_models",
+    told={
+        "results": "\n".join(map(_result, MODELS)),
+        "equations": "\n\n".join(map(_equations, MODELS)),
+    },
+    tables=tuple(_tables()),
     figures=(
         FigureSpec(
-            "imprints", "1", "Imprint over speed: as measured, and by each model.", chart=IMPRINTS,
-            alt="Five marks rise with the speed; one line runs through them, three others beside them.",
+            "imprints", "1", "Imprint over speed: as measured, and by each model.",
+            chart=over_speed("x_p", "imprint over speed", "imprint depth"),
+            alt="Marks of the tests, and a line for each model.",
         ),
         FigureSpec(
             "restitutions", "2", "Restitution over speed: as measured, and by the models that predict it.",
-            chart=RESTITUTIONS, alt="Five marks fall with the speed, two lines fall less steeply.",
+            chart=over_speed("e", "restitution over speed", "coefficient of restitution"),
+            alt="Marks of the tests, and a line for each model that predicts the restitution.",
         ),
-        *(
-            FigureSpec(
-                f"loops_{name}", str(number), f"{sentence_case(chart.title)}, one a test.", chart=chart,
-                alt="Force over approach: loops that rise, and fall to an imprint.",
-            )
-            for number, (name, chart) in enumerate(LOOPS.items(), 3)
+        FigureSpec(
+            "loops", "3", "Force over approach by all models, a panel for each test.",
+            alt="Panels with the same axes: in each a loop for every model, up to its greatest force.",
         ),
     ),
     drawn=columns,
+    drawings=_drawings,
+    example=soft_impact.WORKBOOK.example,
+    example_parameters={
+        "ball_diameter": "12.7 mm", "ball_density": "7800 kg/m^3", "beta": "1.5",
+        "E_1": "210 GPa", "nu_1": "0.30", "E_2": "210 GPa", "nu_2": "0.30",
+    },
 )  # fmt: skip
 
 sheet = WORKBOOK.sheet

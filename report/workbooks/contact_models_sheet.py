@@ -6,27 +6,34 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from sympy import Expr, Rational, Symbol
+from sympy import Expr, Indexed, Rational, Rel, Symbol
 
 from ...derivations.contact import checks, hertz, johnson
 from ...derivations.contact.model import ContactModel
 from ...derivations.contact.models import BESIDE, LEDGER, MODELS
 from ...derivations.equation import Equation
+from ...derivations.global_fit import n_tests
 from ...derivations.symbols import k
 from ..charts import Drawn, drawn
-from ..sheet import Column, Formula, Given, RepeatAxis, Root, Sheet
+from ..named import name_of
+from ..sheet import Column, Formula, Given, Limit, RepeatAxis, Root, Sheet
 from . import soft_impact_fit
 from .soft_impact_sheet import TESTS, beta, e, masses, v, x_p
 
-__all__ = ["BODIES", "branches", "sheet"]
+__all__ = ["branches", "sheet"]
 
-BODIES = ("E_1", "nu_1", "E_2", "nu_2", "sigma_Y")
+_BODIES = ("E_1", "nu_1", "E_2", "nu_2")
 """What is given of both bodies besides their masses."""
+_YIELD = "sigma_Y"
+"""Only first yield asks for it."""
 _SHOWN = {"m": "like x_p", "Pa": "GPa", "s": "us"}
-_MISS = "miss"
-CALLED = {
+_PERCENT = ("miss_", "rms_")
+_AVERAGES = ("rms_", "chi2_")
+"""What compares models, which is to be over the same tests of all."""
+_OTHERS = (n_tests > 1, "needs two tests: there are no others")
+_CALLED = {
     "alpha": "alpha_eiv", "C": "C_eiv", "x_obs": "x_p", "R": "R_eiv", "h": "leverage", "d": "ball_diameter",
-    "u_v": "u_v", "u_e": "u_e", "u_x": "u_x_p",
+    "u_v": "u_v", "u_e": "u_e", "u_x": "u_x_p", "m_1": "ball_mass",
 }  # fmt: skip
 """What quantities of the derivations are called in the sheet, where their names differ."""
 
@@ -37,7 +44,8 @@ def sheet(given: frozenset[str]) -> Sheet:
     Parameters
     ----------
     given : frozenset of str
-        Names of parameters: they decide between the mass and the density, a free and a fixed target.
+        Names of parameters: they decide between the mass and the density, a free and a fixed target, and
+        whether first yield is told.
     """
     laid = _Laid()
     fitted = soft_impact_fit.columns(TESTS, (v, e, x_p))
@@ -47,18 +55,33 @@ def sheet(given: frozenset[str]) -> Sheet:
             laid.add(column)
     if "ball_diameter" not in laid.columns:
         laid.add(Column("ball_diameter", None, Given("parameter"), "m", "diameter of the ball", "d%s", "mm"))
-    # The models speak of a test as it was measured, and of the curve of law (3) as the one that was fitted.
-    for quantity, name in CALLED.items():
-        laid.call(quantity, name)
-    for name in BODIES:
+    laid.call_all()
+    for name in _BODIES:
         laid.give(name)
-    for equation in (hertz.modulus, hertz.radius, hertz.stiffness, *johnson.FIRST_YIELD):
+    for equation in (hertz.modulus, hertz.radius, hertz.stiffness):
         laid.tell(equation)
+    if _YIELD in given:
+        laid.give(_YIELD)
+        for equation in johnson.FIRST_YIELD:
+            laid.tell(equation, expects=johnson.SLOW)
     for model in MODELS:
         laid.tell_model(model)
+    # What is taken together comes last: of every model over the tests that all of them predict.
+    alike = tuple(c for c in laid.columns.values() if c.name.startswith("miss_") and not c.spare)
+    for model in MODELS:
+        for equation in _parts(model)[1]:
+            laid.tell(equation, alongside=alike)
     for equation in checks.CELLS:
-        laid.tell(equation)
+        laid.tell(equation, checks.NEEDS)
     return Sheet(tuple(laid.columns.values()))
+
+
+def _parts(model: ContactModel) -> tuple[list[Equation], list[Equation]]:
+    """Of what is told of a model beside the tests: of each test, and of all together."""
+    found: tuple[list[Equation], list[Equation]] = [], []
+    for equation in BESIDE[model.name].equations:
+        found[equation.sides[0].name.startswith(_AVERAGES)].append(equation)
+    return found
 
 
 class _Laid:
@@ -67,6 +90,15 @@ class _Laid:
     def __init__(self) -> None:
         self.columns: dict[str, Column] = {}
         self.where: dict[Expr, Expr] = {}
+
+    @classmethod
+    def of(cls, sheet: Sheet) -> _Laid:
+        """The columns of a sheet."""
+        laid = cls()
+        for column in sheet.columns:
+            laid.add(column)
+        laid.call_all()
+        return laid
 
     def add(self, column: Column) -> None:
         """A column; a quantity of its name is meant by it."""
@@ -79,6 +111,11 @@ class _Laid:
         own, cell = LEDGER.vocabulary[quantity], self.columns[name].cell
         self.where |= {own.symbol: cell, own[k]: cell}
 
+    def call_all(self) -> None:
+        """Models speak of a test as it was measured, and of the curve of law (3) as fitted."""
+        for quantity, name in _CALLED.items():
+            self.call(quantity, name)
+
     def give(self, name: str) -> None:
         """What is given of a body."""
         own = LEDGER.vocabulary[name]
@@ -87,89 +124,95 @@ class _Laid:
 
     def tell_model(self, model: ContactModel) -> None:
         """The cells of a model, those without a test, and what stands beside the measured ones."""
-        beside = BESIDE[model.name]
         if constant := model.constant:
-            for equation in (*constant.of_test, constant.mean, constant.without):
-                self.tell(equation)
+            for equation in constant.of_test:
+                self.tell(equation, dict.fromkeys((_defined(equation),), constant.needs))
+            self.tell(constant.mean, expects=model.expects)
+            self.tell(constant.without, {constant.without.sides[0]: _OTHERS})
         for equation in model.cells:
-            self.tell(equation, model.needs)
+            own = _defined(equation) in model.left_out.values()
+            self.tell(equation, model.needs, expects=model.expects, spare=own)
+        without = BESIDE[model.name].without
         for equation in model.hanging():
-            self.tell(equation, model.needs, beside.without)
-        for equation in beside.equations:
-            self.tell(equation)
+            self.tell(equation, model.needs, without)
+        for equation in _parts(model)[0]:
+            self.tell(equation, spare=bool(model.left_out))
 
     def tell(
         self,
         equation: Equation,
         needs: Mapping[Any, Any] | None = None,
         without: Mapping[Symbol, Symbol] | None = None,
+        expects: Mapping[Any, tuple[Rel, str]] | None = None,
+        **more: Any,
     ) -> None:
         """A column by the equation that defines it; one that has it on both sides is solved for it."""
-        symbol = equation.sides[0] if equation.defines is None else equation.defines
+        symbol = _defined(equation)
         called = without or {}
         own, new = LEDGER.vocabulary[symbol.name], called.get(symbol, symbol)
         if new.name in self.columns:
             return
         where = self.where | {old: self.where[name] for old, name in called.items() if name in self.where}
         named = set[Any]().union(*(side.xreplace(where).free_symbols for side in equation.sides))
-        axis = TESTS if k in named else None
         blank = Column(
-            new.name, axis, Given(), own.unit, own.meaning, own.latex, positive=own.positive,
-            display="%" if new.name.startswith(_MISS) else _SHOWN.get(own.unit, ""),
+            new.name, TESTS if k in named else None, Given(), own.unit, own.meaning, own.latex,
+            positive=own.positive, display="%" if new.name.startswith(_PERCENT) else _SHOWN.get(own.unit, ""),
+            **more,
         )  # fmt: skip
-        if equation.sides[0] == symbol and not equation.sides[-1].has(symbol):
-            where |= {symbol: blank.cell}
-            asked = [needs[symbol]] if needs and symbol in needs else []
-            requires = tuple((condition.xreplace(where), says) for condition, says in asked)
-            column = replace(blank, rule=Formula(equation.at(where)), requires=requires)
+        own_where = where | {symbol: blank.cell, own[k]: blank.cell}
+        asked = (needs or {}).get(symbol, ())
+        asked = (asked,) if asked and isinstance(asked[0], Rel) else asked
+        requires = tuple((condition.xreplace(own_where), says) for condition, says in asked)
+        limits = tuple(self.limits((expects or {}).get(symbol), own_where))
+        if equation.sides[0] in (symbol, own[k]) and not equation.sides[-1].has(symbol):
+            rule: Formula | Root = Formula(equation.at(own_where))
         else:
             low, high = map(Rational, map(str, own.span))
             said = equation.at({old: cell for old, cell in where.items() if old != symbol})
             rule = Root(said, said, symbol, symbol, low, high, (low + high) / 2, steps=8)
-            column = replace(blank, rule=rule)
+        column = replace(blank, rule=rule, requires=requires, limits=limits)
         self.columns[new.name] = column
         self.where |= {new: column.cell}
         if new == symbol:
             self.where |= {own[k]: column.cell}
 
+    def limits(self, expected: tuple[Rel, str] | None, where: Mapping[Expr, Expr]) -> list[Limit]:
+        """Where a cell is expected, if all that this names is in the sheet."""
+        if expected is None or not expected[0].free_symbols <= where.keys():
+            return []
+        return [Limit(expected[0].xreplace(where), expected[1])]
 
-def branches(sheet: Sheet, names: tuple[str, ...], points: int) -> Drawn:
-    """The columns of charts: approach and force of both branches of each test, by some models.
+
+def _defined(equation: Equation) -> Symbol:
+    """What an equation is a column of; of a test it may say so itself."""
+    of = equation.sides[0] if equation.defines is None else equation.defines
+    return LEDGER.vocabulary[name_of(of)].symbol if isinstance(of, Indexed) else of
+
+
+def branches(sheet: Sheet, points: int) -> Drawn:
+    """The columns of charts: approach and force of both branches of each test, by every model.
 
     Parameters
     ----------
     sheet : Sheet
-    names : tuple of str
-        Of the models.
     points : int
         Of each branch.
     """
     row, step, size = (Symbol(name, integer=True, positive=True) for name in ("l", "m", "n_loops"))
     axis = RepeatAxis("loops", row, size, of=TESTS, step=step, count="loop_points")
     count = Column(axis.count, None, Given("chart"), meaning="points of each branch", exact=True)
-    share, found = (step - 1) / (count.symbol - 1), [count]
-    where: dict[Expr, Expr] = {
-        LEDGER.vocabulary[c.name].symbol: c.cell for c in sheet.columns if c.name in LEDGER.vocabulary
-    } | {LEDGER.vocabulary[q].symbol: sheet[name].cell for q, name in CALLED.items()}
-    for model in (model for model in MODELS if model.name in names):
+    share, found, where = (step - 1) / (count.symbol - 1), [count], _Laid.of(sheet).where
+    for model in MODELS:
         x_m = where[model.predicts.get("x_m", hertz.x_m)]
         x_p = where[model.predicts["x_p"]]
-        closed = ((x_m > x_p, "a loop is drawn where the imprint is shallower than the approach"),)
         ways = {
             "loading": (x_m * share, model.loading),
             "unloading": (x_p + (x_m - x_p) * share, model.unloading),
         }
+        closed = ((x_m > x_p, "a loop is drawn where the imprint is shallower than the approach"),)
         for way, (at, law) in ways.items():
-            meaning = f"while {way}, {model.title}"
-            x = drawn(
-                f"{way}_x_{model.name}",
-                axis,
-                at,
-                "m",
-                f"approach {meaning}",
-                display="like x_p",
-                requires=closed,
-            )
+            meaning, more = f"while {way}, {model.title}", {"requires": closed, "display": "like x_p"}
+            x = drawn(f"{way}_x_{model.name}", axis, at, "m", f"approach {meaning}", **more)
             force = law.xreplace(where | {hertz.x: x[row]})
             found += [
                 x,

@@ -88,8 +88,8 @@ def columns(tests: Axis, measured: tuple[Column, Column, Column]) -> tuple[Colum
         made("R_B", fit.birge, (fit.n_tests > 2, _TWO), spare=True),
         made("u_B", fit.by_scatter, is_u=True),
         made("h", checks.leverage),
-        made("z_R", checks.deviation, (1 - checks.H[k] > _FREE, _ALONE), spare=True),
-        made("alpha_k", checks.without, (1 - checks.H[k] > _FREE, _ALONE), spare=True),
+        made("z_R", checks.deviation, (1 - checks.H[k] > checks.FREE, _ALONE), spare=True),
+        made("alpha_k", checks.without, (1 - checks.H[k] > checks.FREE, _ALONE), spare=True),
         made("G", checks.trend_of_approach, display="like x_p"),
         made("T", checks.trend_of_depth, display="like x_p"),
         made("S_TT", checks.squares_T),
@@ -140,8 +140,8 @@ def _making(tests: Axis, measured: tuple[Column, ...]) -> Callable[..., Column]:
 
 _LEAST = Rational(1, 2**30)
 """What is left of a difference, as a part of what it was made of, is more than rounding from here on."""
-_FREE, _LEFT = Rational(1, 2**10), Rational(1, 2**20)
-"""The same of a leverage and of a trend, which are differences of what was made of such differences."""
+_LEFT = Rational(1, 2**20)
+"""The same of a trend, which is a difference of what was made of such differences."""
 _ALONE = "the other tests alone tell no curve"
 _TWO = "two tests lie on one curve, so that nothing is left over"
 _BENT = "tests at two speeds tell no trend"
