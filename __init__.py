@@ -10,6 +10,7 @@ __all__ = [
     "count",
     "fit",
     "given",
+    "groups",
     "let",
     "load",
     "mean",

@@ -42,7 +42,7 @@ from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import BooleanFunction
 
 from .equation import Equation
-from .reductions import OrderStatistic
+from .reductions import OrderStatistic, taken_of
 from .text import text
 from .unit_text import UnitError, coherent, parse_open
 from .vocabulary import Vocabulary
@@ -197,7 +197,7 @@ class Dimensions:
                 self.of(expression.args[0])
                 return PURE
             case Sum() | OrderStatistic():
-                return self.of(expression.function)
+                return self.of(taken_of(expression))
             case Integral():
                 total = self.of(expression.function)
                 for variable, *ends in expression.limits:

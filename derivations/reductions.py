@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from sympy import Sum
+from sympy import Expr, Function, Mul, Sum
 from sympy.concrete.expr_with_limits import ExprWithLimits
 
-__all__ = ["REDUCTIONS", "Greatest", "Least", "Median", "OrderStatistic"]
+__all__ = ["REDUCTIONS", "Greatest", "Least", "Median", "Member", "OrderStatistic", "member_of", "taken_of"]
 
 
 class OrderStatistic(ExprWithLimits):  # type: ignore[misc] # sympy has no types
@@ -67,5 +67,40 @@ class Least(OrderStatistic):
     word = "min"
 
 
+class Member(Function):  # type: ignore[misc] # sympy has no types
+    """One where a row belongs to a group, nought elsewhere: a factor that leaves a sum the group's own terms.
+
+    Parameters
+    ----------
+    row, group : Symbol
+        Their running numbers.
+    """
+
+    nargs = 2
+    is_real = True
+    is_nonnegative = True
+
+
 REDUCTIONS = (Sum, Median, Greatest, Least)
 """What a rule may take over the rows of an index set."""
+
+
+def member_of(total: ExprWithLimits) -> Member | None:
+    """The factor of something that is taken over rows which says of which group these are; None if of all."""
+    factors = Mul.make_args(total.function)
+    return next((each for each in factors if isinstance(each, Member)), None)
+
+
+def taken_of(total: ExprWithLimits) -> Expr:
+    """The terms of something that is taken over rows, without the factor that says of which group.
+
+    >>> from sympy import IndexedBase, Symbol
+    >>> k, g, n = (Symbol(name, integer=True) for name in ("k", "g", "n"))
+    >>> taken_of(Sum(2 * IndexedBase("L")[k] * Member(k, g), (k, 1, n)))
+    2*L[k]
+    """
+    factors = Mul.make_args(total.function)
+    if member_of(total) is None:
+        return total.function
+    rest = [each for each in factors if not isinstance(each, Member)]
+    return Mul(*rest)

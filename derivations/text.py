@@ -30,7 +30,7 @@ from sympy import (
 from sympy.core.function import Application
 
 from .equation import Equation
-from .reductions import OrderStatistic
+from .reductions import OrderStatistic, member_of, taken_of
 from .vocabulary import Vocabulary, subscripted
 
 __all__ = ["Wording", "text", "text_of_equation"]
@@ -106,11 +106,13 @@ class Wording:
                 ), _SUM
             case Integral() | Sum() | OrderStatistic():
                 name = {Integral: "int", Sum: "sum"}.get(type(expression)) or expression.word
-                ends = (
+                ends = [
                     f"{self.text(variable)} = {self.text(low)}..{self.text(high)}"
                     for variable, low, high in expression.limits
-                )
-                return f"{name}({self.text(expression.function)}, {', '.join(ends)})", _ATOM
+                ]
+                if (member := member_of(expression)) is not None:
+                    ends = [" in ".join(map(self.text, member.args))]
+                return f"{name}({self.text(taken_of(expression))}, {', '.join(ends)})", _ATOM
             case And():
                 return self._chain(expression), _SUM
             case Or():

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from .content import content
 
 if TYPE_CHECKING:
-    from sympy import Symbol
+    from sympy import Expr, Symbol
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["Axis", "CountedAxis", "PairAxis", "RepeatAxis"]
+__all__ = ["Axis", "CountedAxis", "GroupAxis", "MemberAxis", "PairAxis", "RepeatAxis"]
 
 
 @dataclass(frozen=True)
@@ -245,3 +245,82 @@ class CountedAxis(Axis):
     def described(self) -> str:
         """How many."""
         return f"{self.number} rows, whatever the data"
+
+
+@dataclass(frozen=True)
+class MemberAxis(Axis):
+    """Another axis' rows once more, those of one group beside one another: what a group takes sums over.
+
+    Parameters
+    ----------
+    of : Axis
+        Whose rows are grouped.
+    group : Symbol
+        The index of the groups, in whose formulas alone such sums stand.
+    by : str
+        The column of words that says of each row to which group it belongs.
+    """
+
+    of: Axis
+    group: Symbol
+    by: str
+    _WORDS = (*Axis._WORDS, "group_name", "by")
+
+    @property
+    def maps(self) -> dict[Symbol, Axis]:
+        """The row's own number and that of the row that it repeats; its group is known to the sheet."""
+        return {self.index: self, self.of.index: self.of}
+
+    @cached_property
+    def group_name(self) -> str:
+        """What the index of the groups is called."""
+        return str(self.group.name)
+
+    @cached_property
+    def member(self) -> Expr:
+        """One where a row belongs to a group, nought elsewhere."""
+        from ..derivations.reductions import Member
+
+        return Member(self.of.index, self.group)
+
+    @property
+    def named(self) -> dict[str, Axis]:
+        """The same as what it maps, by what the indices are called."""
+        return {self.index_name: self, **self.of.named}
+
+    @property
+    def parents(self) -> tuple[Axis, ...]:
+        """The axis that is grouped."""
+        return (self.of,)
+
+    @property
+    def parts(self) -> tuple[tuple[str, str], ...]:
+        """The number of the group, and of the row."""
+        return ((self.by, "number"), *self.of.parts)
+
+    @property
+    def described(self) -> str:
+        """In which order."""
+        return f"the {self.of.name} of each {self.by}, one {self.by} after the other"
+
+
+@dataclass(frozen=True)
+class GroupAxis(Axis):
+    """Groups of another axis' rows, one for each word of a column, in the order in which these appear."""
+
+    members: MemberAxis
+
+    @property
+    def row(self) -> str:
+        """What its rows are called: as the column of words."""
+        return self.members.by
+
+    @property
+    def parents(self) -> tuple[Axis, ...]:
+        """The rows in groups."""
+        return (self.members,)
+
+    @property
+    def described(self) -> str:
+        """What makes a group."""
+        return f"one row for each {self.row} of the {self.members.of.name}"

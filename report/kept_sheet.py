@@ -13,7 +13,7 @@ from typing import Any
 
 from ..derivations.equation import Equation, Ledger
 from ..derivations.vocabulary import Vocabulary
-from .axis import Axis, CountedAxis, PairAxis, RepeatAxis
+from .axis import Axis, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis
 from .cells.marks import margins
 from .charts import Drawn
 from .column import Column, Formula, Given, Iterated, Limit, Mentioned, Root, Rule
@@ -31,7 +31,7 @@ from .workbook import Workbook
 
 __all__ = ["drawn_of", "ledger_of", "of_shipped", "sheet_of"]
 
-_KINDS = {kind.__name__: kind for kind in (Axis, CountedAxis, PairAxis, RepeatAxis)}
+_KINDS = {kind.__name__: kind for kind in (Axis, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis)}
 
 
 @dataclass(frozen=True)

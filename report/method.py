@@ -20,7 +20,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextvars import ContextVar
 from typing import Any
 
-from sympy import Expr, Symbol, false, sympify, true
+from sympy import Expr, false, sympify, true
 
 from ..derivations.equation import Ledger
 from ..derivations.reductions import Median
@@ -41,6 +41,7 @@ __all__ = [
     "count",
     "fit",
     "given",
+    "groups",
     "let",
     "mean",
     "measured",
@@ -269,14 +270,22 @@ def fit(observed: Any, model: Any, *, u: Any = None, label: str = "", figures: b
     return _said(FitLine(observed, exact(model), u, label, figures))
 
 
-def total(formula: Any) -> Expr:
-    """The sum over all rows; in the body of a method it may be written ``sum`` as well."""
-    return _body().total(formula)
+def total(formula: Any, *, of: Any = None) -> Expr:
+    """The sum over all rows; in the body of a method it may be written ``sum`` as well.
+
+    Parameters
+    ----------
+    formula : Expr
+        Of a row, of a pair, or of a group.
+    of : optional
+        What :func:`groups` returned: the sum over the rows of each group, so that there is one for each.
+    """
+    return _body().total(formula, of=of)
 
 
-def mean(formula: Any) -> Expr:
-    """The mean over all rows, or over all pairs."""
-    return _body().mean(formula)
+def mean(formula: Any, *, of: Any = None) -> Expr:
+    """The mean over all rows, or over all pairs, or over the rows of each group; as :func:`total`."""
+    return _body().mean(formula, of)
 
 
 def median(formula: Any) -> Expr:
@@ -288,9 +297,42 @@ def median(formula: Any) -> Expr:
     return _body().ordered(Median, formula)
 
 
-def count(formula: Any = 0) -> Symbol:
-    """How many rows the sums beside it run over; of a formula, in how many rows, or pairs, it has a value."""
-    return _body().number(formula)
+def count(formula: Any = 0, *, of: Any = None) -> Expr:
+    """How many rows the sums beside it run over; of a formula, in how many rows, or pairs, it has a value.
+
+    Parameters
+    ----------
+    formula : Expr, optional
+    of : optional
+        As for :func:`total`.
+    """
+    return _body().number(formula, of)
+
+
+def groups(by: str, *, rows: str = "", index: str = "g", size: str = "groups", example: str = "") -> Any:
+    """Take the rows that have one word in a column as a group: ``specimen = groups("specimen")``.
+
+    With ``of=specimen`` a sum, a mean or a count runs over the rows of each group. What is computed of it has
+    a value for each group, in the order in which their words first appear, and its mean, its sum or a fit
+    runs over the groups.
+
+    Parameters
+    ----------
+    by : str
+        The column of words.
+    rows : str
+        What the groups are called, ``specimens``; the column with an s, without.
+    index, size : str
+        What the running number of a group is called in formulas, and how many there are.
+    example : str
+        What `loopsheet new` writes in the column, with spaces between.
+
+    Raises
+    ------
+    SheetError
+        A name is taken, or no name.
+    """
+    return _body().grouped(by, rows or f"{by}s", index, size, example)
 
 
 def pairs(
@@ -517,7 +559,8 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
     columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
     rows = zip(*(body.examples.get(one.name, "").split() for one in columns_of), strict=False)
-    head = (body.axis.row, *(f"{one.name} [{one.unit}]" for one in columns_of))
+    belonging = tuple(axis.members.by for axis in body.groups)
+    head = (body.axis.row, *belonging, *(f"{one.name} [{one.unit}]" for one in columns_of))
     return Workbook(
         name=re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower(),
         title=title,
@@ -535,7 +578,8 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
         tables=(*body.tables, *tables_of(sheet, in_tables)) if body.tables else (),
         figures=tuple(body.figures),
         drawn=(lambda sheet: curves) if curves.columns else None,
-        example=(head, *((str(place), *row) for place, row in enumerate(rows, start=1)))
+        groups=belonging,
+        example=(head, *((str(place), *body.words(place), *row) for place, row in enumerate(rows, start=1)))
         if columns_of
         else (),
         example_parameters={

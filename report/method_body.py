@@ -14,7 +14,7 @@ from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, Ne
 
 from ..derivations.equation import Derivation, Equation, Kind, Ledger
 from ..derivations.grounds import says
-from ..derivations.reductions import REDUCTIONS, Greatest, Least, OrderStatistic
+from ..derivations.reductions import REDUCTIONS, Greatest, Least, Member, OrderStatistic
 from ..derivations.unit_text import (
     ParsedUnit,
     UnitError,
@@ -22,12 +22,13 @@ from ..derivations.unit_text import (
     of_differences,
     parse_open,
 )
-from .axis import Axis, PairAxis
+from .axis import Axis, GroupAxis, MemberAxis, PairAxis
 from .cells.units import named_unit_of, unit_of
 from .column import Column, Formula, Given, Root, SheetError, shown_in
 from .differences import is_difference
 from .fitted import DeclaredFit, told_apart
-from .named import name_of, references
+from .messages.errors import listing
+from .named import name_of, references, summed_over
 from .quantity import Bounds
 from .sheet import Sheet
 from .workbook import Claimed, Curve, FigureSpec, Measured, Parameter, TableSpec
@@ -51,6 +52,7 @@ FUNCTIONS = (
 """Besides powers; as sympy calls them."""
 _EXTREMES = {"max": (Max, Greatest), "min": (Min, Least)}
 """By their names in a body: of several formulas, and over the rows of one."""
+_NO_ALGEBRA = "{what} is taken over the rows of each group, of which no proof is known: claim it without"
 
 
 @dataclass(frozen=True)
@@ -148,7 +150,7 @@ def exact(formula: Any) -> Expr:
     ):
         raise SheetError(f"{formula} is no formula of real numbers")
     for part in formula.atoms(Function):
-        if part.func.__name__ not in FUNCTIONS:
+        if part.func.__name__ not in FUNCTIONS and not isinstance(part, Member):
             known = ", ".join(sorted(FUNCTIONS))
             raise SheetError(f"{part.func} is none of the functions that every engine has: {known}")
     typed = {}
@@ -183,7 +185,8 @@ class MethodBody(dict[str, Any]):
     def __init__(self, rows: str, index: str, size: str) -> None:
         super().__init__()
         self.axis = Axis(rows, *_numbers(index, size))
-        self.axes = [self.axis]  # and the pairs of its rows
+        self.axes = [self.axis]  # and the pairs of its rows, and groups of them
+        self.groups: list[GroupAxis] = []
         self.columns: dict[str, Column] = {}
         self.inputs: list[Measured | Parameter] = []
         self.entries: list[Equation | Derivation] = []
@@ -209,8 +212,14 @@ class MethodBody(dict[str, Any]):
             return partial(self._extreme, *_EXTREMES[name])
         raise KeyError(name)
 
-    def _extreme(self, of_several: type[Expr], over_rows: type[OrderStatistic], *formulas: Any) -> Expr:
+    def _extreme(
+        self, of_several: type[Expr], over_rows: type[OrderStatistic], *formulas: Any, of: Any = None
+    ) -> Expr:
         """Of several formulas or of a list, of what is in it; of one formula, over all rows or pairs."""
+        if of is not None:
+            raise SheetError(
+                f"{over_rows.word}() is taken over all rows: of={of!s} is for sums, means and counts"
+            )
         if len(formulas) != 1:
             return of_several(*map(exact, formulas))
         (one,) = formulas
@@ -226,8 +235,10 @@ class MethodBody(dict[str, Any]):
             raise SheetError(f"{taken.word}() is of a column, not of {cell}: let(...) that be one first")
         return taken(cell, (over.index, 1, over.size))
 
-    def total(self, formula: Any, *more: Any) -> Expr:
-        """The sum over all rows; of a list, of what is in it."""
+    def total(self, formula: Any, *more: Any, of: Any = None) -> Expr:
+        """The sum over all rows, or over those of each group; of a list, of what is in it."""
+        if of is not None and not more:
+            return self._of_groups(formula, of)
         if more:
             raise SheetError("sum(...) is of one formula, over the rows, or of a list, sum([a, b])")
         if isinstance(formula, Iterable):
@@ -237,13 +248,17 @@ class MethodBody(dict[str, Any]):
             formula = self._of_rows(formula, over)
         return Sum(formula, (over.index, 1, over.size))
 
-    def mean(self, formula: Any) -> Expr:
+    def mean(self, formula: Any, of: Any = None) -> Expr:
         """The sum by the number of the rows that it runs over."""
+        if of is not None:
+            return self._of_groups(formula, of) / self._of_groups(1, of)
         return self.total(formula) / (self.axis_of(formula) or self.axis).size
 
-    def number(self, formula: Any) -> Symbol:
+    def number(self, formula: Any, of: Any = None) -> Expr:
         """How many rows there are, where it stands; of a formula, in how many rows it has a value."""
         over = self.axis_of(formula)
+        if of is not None:
+            return self._number_of_groups(formula, of)
         if over is None:
             return self.axis.size
         is_cell = isinstance(formula, Indexed) and formula.indices == (over.index,)
@@ -253,6 +268,57 @@ class MethodBody(dict[str, Any]):
             column = self._aside(name, f"{over.name} with a value", over.size)
             self.columns[name] = replace(column, alongside=(self.columns[cell.base.name],))
         return self.columns[name].symbol
+
+    def grouped(self, by: str, name: str, index: str, size: str, example: str) -> GroupAxis:
+        """The groups of the rows that have one word in a column."""
+        if len({index, size}) < 2 or not all(each.isidentifier() for each in (by, name, index, size)):
+            raise SheetError(f"groups('{by}') needs names: letters, digits and _ make a name", by)
+        if by in (self.axis.row, self.axis.name) or name in [axis.name for axis in self.axes]:
+            raise SheetError(
+                f"{by} or {name} are rows already: rows='readings' behind (Method says what the table's are",
+                by,
+            )
+        number, many = _numbers(index, size)
+        row, own = _numbers(f"{self.axis.index_name}_of_{by}", f"{self.axis.size_name}_of_{by}")
+        members = MemberAxis(f"{self.axis.name}_by_{by}", row, own, of=self.axis, group=number, by=by)
+        self.groups.append(GroupAxis(name, number, many, members))
+        self.axes.append(self.groups[-1])
+        self.examples |= {by: example} if example else {}
+        self._refuse_name_of_rows()
+        return self.groups[-1]
+
+    def words(self, place: int) -> Iterator[str]:
+        """What the example of a table has in its columns of words, in a row from 1."""
+        for axis in self.groups:
+            said = self.examples.get(axis.members.by, "").split()
+            yield said[place - 1] if place <= len(said) else f"S{(place + 1) // 2}"
+
+    def _of_groups(self, formula: Any, of: Any) -> Sum:
+        """The sum over the rows of each group."""
+        if of not in self.groups:
+            raise SheetError(f"of={of} is none of what groups() returned")
+        formula = exact(formula)
+        if formula.has(Member):
+            raise SheetError(f"{formula} is taken over the rows of each group: let(...) that be one first")
+        rows = self._rows_of(formula)
+        if not set(rows) <= {self.axis, of}:
+            raise SheetError(
+                f"{formula} names {listing([axis.name for axis in rows])}, not the rows of a {of.row}"
+            )
+        return Sum(formula * of.members.member, (self.axis.index, 1, self.axis.size))
+
+    def _number_of_groups(self, formula: Any, of: Any) -> Expr:
+        """How many rows each group has; of a formula, in how many of them it has a value."""
+        found = self._of_groups(1, of)
+        if self.axis_of(formula) is None:
+            return found
+        is_cell = isinstance(formula, Indexed) and formula.indices == (self.axis.index,)
+        cell = formula if is_cell else self._of_rows(formula, self.axis)
+        name = f"count_of_{cell.base.name}_by_{of.row}"
+        if name not in self.columns:
+            column = self._aside(name, f"{self.axis.name} with a value", found)
+            self.columns[name] = replace(column, alongside=(self.columns[cell.base.name],))
+        return self.columns[name].cell
 
     def _of_rows(self, formula: Any, over: Axis) -> Indexed:
         """A formula for rows, or pairs of them, as a column of its own."""
@@ -269,19 +335,31 @@ class MethodBody(dict[str, Any]):
 
     def axis_of(self, *formulas: Any) -> Axis | None:
         """The rows that formulas have a value for each of; None for a single number."""
-        sums = {axis.index: axis for axis in self.axes}
-        cells = (cell for formula in formulas for cell in references(sympify(formula), sums))
-        named = {cell.index for cell in cells if cell.over is None}
-        found = [axis for axis in self.axes if not named.isdisjoint(axis.named)]
-        if len(found) > 1:
+        found = self._rows_of(*formulas)
+        if len(found) > 1 and not self.groups:
             raise SheetError(
                 "one formula names a row and a pair of rows: say first(...) or second(...) of which"
             )
+        if len(found) > 1:
+            told = listing([axis.name for axis in found])
+            raise SheetError(
+                f"one formula names {told}: take a mean or sum over the rows of each group, of=..., or say "
+                "first(...) or second(...) of a pair"
+            )
         return found[0] if found else None
+
+    def _rows_of(self, *formulas: Any) -> list[Axis]:
+        """All rows that formulas name."""
+        every = [sympify(formula) for formula in formulas]
+        sums = summed_over([*self.axes, *(axis.members for axis in self.groups)])
+        cells = (cell for formula in every for cell in references(formula, sums))
+        named = {cell.index for cell in cells if cell.over is None}
+        named |= {str(told.args[1]) for formula in every for told in formula.atoms(Member)}
+        return [axis for axis in self.axes if not named.isdisjoint(axis.named)]
 
     def paired(self, index: str, size: str, members: Sequence[str]) -> tuple[Callable[[Any], Expr], ...]:
         """Every pair of rows, and what takes a formula for the rows at its first and at its second member."""
-        if len(self.axes) > 1:
+        if any(isinstance(axis, PairAxis) for axis in self.axes):
             raise SheetError("pairs() is asked for twice: what it returned before is good for all formulas")
         number, many, first, second = _numbers(index, size, *members)
         self.axes.append(PairAxis("pairs", number, many, of=self.axis, first=first, second=second))
@@ -304,6 +382,8 @@ class MethodBody(dict[str, Any]):
         sheet = Sheet(tuple(self.columns.values()))
         below = {c.name: {c.name, *(each.name for each in sheet.ancestors(c))} for c in sheet.columns}
         over = {c.name: {*sheet.summed_axes(c), *sheet.algebra.counted(c)} for c in sheet.columns}
+        for axes in over.values():
+            axes |= {axis.of for axis in axes if isinstance(axis, MemberAxis)}
         sums = {name for name, axes in over.items() if axes}
         rows = [c for c in sheet.columns if c.axis and not sums & below[c.name]]
 
@@ -351,7 +431,10 @@ class MethodBody(dict[str, Any]):
             self.axis.index_name: (f"the {self.axis.row}'s number", "index='...' behind (Method"),
             self.axis.size_name: (f"the number of {self.axis.name}", "size='...' behind (Method"),
         }
-        for pairs in self.axes[1:]:
+        for groups in self.groups:
+            words[groups.index_name] = f"the {groups.row}'s number", "index='...' in groups()"
+            words[groups.size_name] = f"the number of {groups.name}", "size='...' in groups()"
+        for pairs in (axis for axis in self.axes if isinstance(axis, PairAxis)):
             words |= dict.fromkeys(pairs.named, ("the number of one of two", "members='...' in pairs()"))
             words[pairs.index_name] = "the pair's number", "index='...' in pairs()"
             words[pairs.size_name] = "the number of pairs", "size='...' in pairs()"
@@ -443,6 +526,8 @@ class MethodBody(dict[str, Any]):
         self, left: Expr, right: Expr, meaning: str, because: str, from_: Sequence[Any] | None, label: str
     ) -> None:
         """Put a claim into the ledger, with what it is to be derived from."""
+        if any(side.has(Member) for side in (left, right)):
+            raise SheetError(_NO_ALGEBRA.format(what=f"'{meaning}'"))
         found = self._premises((left, right) if from_ is None else from_, meaning, everything=from_ is None)
         row = Symbol("i", integer=True, positive=True)
         members = tuple(_typed(side).subs(self.axis.index, row) for side in (left, right))
@@ -464,6 +549,9 @@ class MethodBody(dict[str, Any]):
             self.columns, Column(meaning, self.axis_of(left, right), Formula(zero))
         )  # as long as both have one unit
         self.claims.append(Claimed(equation.label, meaning, self.axis_of(left, right), left, right))
+        for premise, unknown in found:
+            if any(member.has(Member) for member in premise.members):
+                raise SheetError(_NO_ALGEBRA.format(what=f"{unknown}, on which '{meaning}' rests,"))
         premises, unknowns = zip(*found, strict=True) if found else ((), ())
         self.entries.append(Derivation.of(equation, premises, unknowns, "Put in what the quantities are."))
 

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import cached_property
 
 from sympy import And, Basic, Eq, Expr, Indexed, Rational, Symbol, floor
 from sympy.logic.boolalg import Boolean
 
-from ..derivations.reductions import REDUCTIONS, OrderStatistic
-from .axis import Axis
+from ..derivations.reductions import REDUCTIONS, OrderStatistic, member_of, taken_of
+from .axis import Axis, GroupAxis, MemberAxis
 from .column import Column, Iterated, Reference, Root, SheetError
 from .messages.errors import close
 from .quantity import Bounds
 
-__all__ = ["Named", "name_of", "references", "within"]
+__all__ = ["Named", "name_of", "references", "summed_over", "within"]
 
 
 class Named:
@@ -37,21 +37,32 @@ class Named:
         return {axis.size: axis for axis in self.axes}
 
     @cached_property
-    def indices(self) -> dict[Symbol, Axis]:
-        """The axis that a sum over a running number runs over."""
-        return {axis.index: axis for axis in self.axes}
+    def indices(self) -> dict[Expr, Axis]:
+        """The axis that a sum over a running number runs over, or one with a factor that tells groups."""
+        return summed_over(self.axes)
+
+    def over(self, total: Basic) -> Axis:
+        """The axis that something is taken over."""
+        return _over(total, self.indices)
+
+    def maps(self, axis: Axis) -> dict[Symbol, Axis]:
+        """For every index that may be used in a formula on an axis, the axis whose rows it names."""
+        groups = (each for each in self.axes if isinstance(each, GroupAxis) and each.members == axis)
+        return axis.maps | {each.index: each for each in groups}
 
     def summed(self, column: Column) -> tuple[Axis, ...]:
         """The axes that its rule takes something over, or counts rows of that it looks at."""
-        over = {
-            total.limits[0][0] for expression in column.expressions for total in expression.atoms(*REDUCTIONS)
-        }
-        over |= {other.axis.index for other in column.alongside if other.axis in self.counted(column)}
-        return tuple(axis for axis in self.axes if axis.index in over)
+        over = {self.over(total) for each in column.expressions for total in each.atoms(*REDUCTIONS)}
+        over |= {other.axis for other in column.alongside if other.axis in self.counted(column)}
+        return tuple(axis for axis in self.axes if axis in over)
+
+    def beside(self, column: Column, other: Column) -> Axis | None:
+        """The axis along which the sums of a column look at another, if they do."""
+        return next((axis for axis in self.summed(column) if other.axis in (axis, *_grouped(axis))), None)
 
     def counted(self, column: Column) -> tuple[Axis, ...]:
         """The axes whose number of rows its rule names."""
-        named = set[Basic]().union(*(expression.free_symbols for expression in column.expressions))
+        named = set[Basic]().union(*map(_counting, column.expressions))
         return tuple(axis for axis in self.axes if axis.size in named)
 
     def of(self, column: Column) -> Iterator[Reference]:
@@ -66,16 +77,14 @@ class Named:
                 elif name_of(reference.cell) in self.by_name:
                     yield Reference(reference.cell)  # a scalar is the same inside and outside of sums
         for other in column.alongside:
-            assert other.axis is not None
-            yield Reference(other.cell, self.indices[other.axis.index])
+            yield Reference(other.cell, self.beside(column, other))
 
     def check(self, column: Column) -> None:
         """Every symbol is a column, a size, or a running number that means something on this axis."""
         for expression in column.expressions:
             self._check_scope(column, expression, column.axis)
         for other in column.alongside:
-            there = self._find(column, other.name).axis
-            if there is None or there not in self.summed(column):
+            if self.beside(column, self._find(column, other.name)) is None:
                 raise SheetError(
                     f"{column.name}: its sums run over no rows of {other.name}, which they shall look at",
                     column.name,
@@ -120,8 +129,9 @@ class Named:
     def _check_scope(self, column: Column, expression: Basic, axis: Axis | None) -> None:
         if isinstance(expression, REDUCTIONS):
             limits = expression.limits
-            over = self.indices.get(limits[0][0])
-            if over is None or len(limits) != 1 or limits[0][1:] != (1, over.size):
+            over = self.over(expression) if limits[0][0] in self.indices else None
+            whole = over.of if isinstance(over, MemberAxis) else over
+            if over is None or whole is None or len(limits) != 1 or limits[0][1:] != (1, whole.size):
                 known = ", ".join(f"({a.index}, 1, {a.size})" for a in self.axes) or "none"
                 shown = ", ".join(map(str, limits))
                 raise SheetError(
@@ -137,7 +147,7 @@ class Named:
                 )
             if taken and isinstance(column.rule, Root):
                 raise SheetError(f"{taken} in a root has to be a column of its own", column.name)
-            self._check_scope(column, expression.function, over)
+            self._check_scope(column, taken_of(expression), over)
         elif isinstance(expression, Indexed):
             self._check_cell(column, expression, axis)
         elif isinstance(expression, Symbol):
@@ -159,7 +169,7 @@ class Named:
 
     def _check_cell(self, column: Column, cell: Indexed, axis: Axis | None) -> None:
         other = self._find(column, name_of(cell))
-        maps = {} if axis is None else axis.maps
+        maps = {} if axis is None else self.maps(axis)
         where = maps.get(cell.indices[0])
         if where is None or other.axis != where or len(cell.indices) != 1:
             place = "a scalar" if other.axis is None else f"on {other.axis.name}"
@@ -202,27 +212,47 @@ def within(value: Expr, bounds: Bounds) -> Boolean:
     return And(*tests)
 
 
-def references(
-    expression: Basic, sums: Mapping[Symbol, Axis], over: Axis | None = None
-) -> Iterator[Reference]:
+def references(expression: Basic, sums: Mapping[Expr, Axis], over: Axis | None = None) -> Iterator[Reference]:
     """Everything that an expression names, in the order it stands there; the same may come twice.
 
     Parameters
     ----------
     expression : Basic
-    sums : mapping of Symbol to Axis
-        The axis that a sum over a running number runs over.
+    sums : mapping of Expr to Axis
+        From :func:`summed_over`.
     over : Axis or None
         The axis of the sum that the expression stands in.
     """
     if isinstance(expression, REDUCTIONS):
-        index = expression.limits[0][0]
-        yield from references(expression.function, sums, sums[index])
+        yield from references(taken_of(expression), sums, _over(expression, sums))
     elif isinstance(expression, (Indexed, Symbol)):
         yield Reference(expression, over)
     else:
         for argument in expression.args:
             yield from references(argument, sums, over)
+
+
+def summed_over(axes: Iterable[Axis]) -> dict[Expr, Axis]:
+    """The axis that a sum over a running number runs over, or one with a factor that tells groups."""
+    return {each.member if isinstance(each, MemberAxis) else each.index: each for each in axes}
+
+
+def _over(total: Basic, sums: Mapping[Expr, Axis]) -> Axis:
+    """The axis that something is taken over."""
+    return sums[member_of(total) or total.limits[0][0]]
+
+
+def _counting(expression: Basic) -> set[Basic]:
+    """The symbols that an expression names, but where its sums end."""
+    if isinstance(expression, REDUCTIONS):
+        return _counting(taken_of(expression))
+    found: set[Basic] = expression.free_symbols
+    return set().union(*map(_counting, expression.args)) if expression.has(*REDUCTIONS) else found
+
+
+def _grouped(axis: Axis) -> tuple[Axis, ...]:
+    """The axis whose rows an axis has in groups."""
+    return (axis.of,) if isinstance(axis, MemberAxis) else ()
 
 
 def name_of(cell: Expr) -> str:

@@ -8,6 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from .axis import MemberAxis
 from .column import Given, written_in
 from .inputs.inputs import Inputs, check_cells
 
@@ -46,8 +47,13 @@ class Prepared:
 
     @property
     def labels(self) -> dict[str, tuple[int, ...]]:
-        """Row numbers of the axes that come with the data."""
-        return {axis.name: self.inputs.tests for axis in self.sheet.axes if axis.is_given}
+        """Row numbers of the axes that come with the data, and of the group of each row."""
+        found = {axis.name: self.inputs.tests for axis in self.sheet.axes if axis.is_given}
+        for axis in self.sheet.axes:
+            if isinstance(axis, MemberAxis):
+                number = self.inputs.groups(axis.by)
+                found[axis.name] = tuple(number[test] for test in self.inputs.tests)
+        return found
 
     @cached_property
     def layouts(self) -> dict[str, Layout]:

@@ -12,7 +12,7 @@ from functools import cached_property
 from keyword import iskeyword
 from typing import TYPE_CHECKING, Any
 
-from .axis import Axis, CountedAxis, PairAxis, RepeatAxis
+from .axis import Axis, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis
 from .column import Column, Formula, Given, Iterated, Limit, Reference, Root, Rule, SheetError
 from .partly import partly
 from .quantity import Bounds
@@ -30,9 +30,11 @@ __all__ = [
     "CycleError",
     "Formula",
     "Given",
+    "GroupAxis",
     "Iterated",
     "Limit",
     "Loop",
+    "MemberAxis",
     "PairAxis",
     "Reference",
     "RepeatAxis",

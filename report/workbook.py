@@ -296,6 +296,8 @@ class Workbook:
     check_parameters: Callable[[frozenset[str]], str | None] = lambda given: None
     headline: tuple[str, ...] = ()
     row: str = "test"
+    groups: tuple[str, ...] = ()
+    """The columns of words that say which rows belong together."""
     squares: tuple[SquareSum, ...] = ()
     """The sums of squares to be no larger and no smaller than chance makes them."""
     curves: tuple[Curve, ...] = ()

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..sheet import Axis, Column, CountedAxis, PairAxis, RepeatAxis, Sheet
+from ..sheet import Axis, Column, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis, Sheet
 
 __all__ = ["Layout", "Precedent", "evenly", "how_large", "lay_out", "precedents"]
 
@@ -34,6 +35,20 @@ class Layout:
     rows: Mapping[str, NDArray[np.intp]]
     ordinals: Mapping[str, NDArray[np.float64]]
     labels: NDArray[np.int64]
+    starts: NDArray[np.intp] | None = None
+    """Of rows in groups, the first of each group."""
+
+    @cached_property
+    def groups(self) -> list[slice]:
+        """Of rows in groups, those of each."""
+        assert self.starts is not None
+        ends = [*self.starts.tolist(), self.size]
+        return [slice(*each) for each in pairwise(ends)]
+
+    @cached_property
+    def lasts(self) -> NDArray[np.intp]:
+        """Of rows in groups, the last of each."""
+        return np.array([rows.stop - 1 for rows in self.groups], dtype=np.intp)
 
 
 def evenly(size: int, most: int) -> NDArray[np.intp]:
@@ -56,7 +71,7 @@ def lay_out(
     ----------
     sheet : Sheet
     labels : mapping of axis name to sequence of int
-        The rows' numbers of the axes that come with the data.
+        The rows' numbers of the axes that come with the data; of rows in groups, that of each row's group.
     counts : mapping of column name to int
         Values of the scalars that say how often an axis repeats another; 0 where that is not known.
 
@@ -73,6 +88,11 @@ def lay_out(
             layouts[axis.name] = _repeats(axis, layouts[axis.of.name], counts[axis.count])
         elif isinstance(axis, CountedAxis):
             layouts[axis.name] = _counted(axis)
+        elif isinstance(axis, MemberAxis):
+            layouts[axis.name] = _members(axis, layouts[axis.of.name], labels[axis.name])
+        elif isinstance(axis, GroupAxis):
+            members = layouts[axis.members.name]
+            layouts[axis.name] = _given(axis, members.labels[members.starts, 0].tolist())
         else:
             layouts[axis.name] = _given(axis, labels[axis.name])
     return layouts
@@ -122,6 +142,16 @@ def _counted(axis: CountedAxis) -> Layout:
     return Layout(axis.number, {axis.index_name: step - 1}, ordinals, step.reshape(-1, 1))
 
 
+def _members(axis: MemberAxis, parent: Layout, groups: Sequence[int]) -> Layout:
+    numbers = np.asarray(groups, dtype=np.int64)
+    own = np.argsort(numbers, kind="stable")
+    _, starts, group = np.unique(numbers[own], return_index=True, return_inverse=True)
+    rows = {index: named[own] for index, named in parent.rows.items()}
+    rows |= {axis.index_name: np.arange(own.size), axis.group_name: group}
+    labels = np.hstack([numbers[own].reshape(-1, 1), parent.labels[own]])
+    return Layout(own.size, rows, {}, labels, starts)
+
+
 @dataclass(frozen=True)
 class Precedent:
     """A cell that a rule names, with the rows it stands for.
@@ -140,6 +170,14 @@ class Precedent:
     column: Column
     over: Axis | None
     rows: NDArray[np.intp] | None
+    starts: NDArray[np.intp] | None = None
+    """Where it is summed over a group, the first of the rows of each, on the axis that it is summed over."""
+
+    def summed(self, row: int) -> slice:
+        """The rows that the sum of a row runs over, on the axis that it is summed over."""
+        if self.starts is None:
+            return slice(None)
+        return slice(*[*self.starts[row : row + 2].tolist(), None][:2])  # the last group has no end
 
     def row(self, row: int) -> int:
         """The row that a row names."""
@@ -155,7 +193,12 @@ class Precedent:
 def precedents(sheet: Sheet, layouts: Mapping[str, Layout], column: Column) -> tuple[Precedent, ...]:
     """Everything that a column's rule names; columns declared first come first."""
     return tuple(
-        Precedent(sheet[r.name], r.over, rows_of(r.index, r.over or column.axis, layouts))
+        Precedent(
+            sheet[r.name],
+            r.over,
+            rows_of(r.index, r.over or column.axis, layouts),
+            layouts[r.over.name].starts if r.over else None,
+        )
         for r in sheet.named(column)
     )
 

@@ -52,8 +52,8 @@ def _named_by(precedent: Precedent, row: int, values: Values) -> tuple[int, ...]
     """The rows that a row names: one, or all that a sum runs over."""
     if precedent.over is None or precedent.column.axis is None:
         return (precedent.row(row),)
-    size = values.layouts[precedent.over.name].size
-    return tuple(range(size)) if precedent.rows is None else tuple(precedent.rows.tolist())
+    rows = np.arange(values.layouts[precedent.over.name].size) if precedent.rows is None else precedent.rows
+    return tuple(rows[precedent.summed(row)].tolist())
 
 
 def dependents_of(values: Values, column: Column, row: int) -> tuple[Group, ...]:
@@ -75,5 +75,6 @@ def _naming(precedent: Precedent, row: int, other: Column, values: Values) -> se
     if precedent.column.axis is None:
         return every
     if precedent.over is not None:
-        return every if row in _named_by(precedent, 0, values) else set()
+        same = precedent.starts is None  # then all rows name the same
+        return {each for each in every if row in _named_by(precedent, 0 if same else each, values)}
     return {row} if precedent.rows is None else set(np.flatnonzero(precedent.rows == row).tolist())

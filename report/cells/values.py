@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..quantity import Bounds, behind
-from ..sheet import Column, Formula, Iterated, Root, Sheet
+from ..sheet import Column, Formula, Iterated, MemberAxis, Root, Sheet
 from .address import address
 from .layout import Layout, Precedent, precedents
 
@@ -121,8 +121,13 @@ def inherited(
         if precedent.over is not None:
             mask = kept[precedent.over.name]
             # Its first row tells why: some cell of it is in error.
-            first = theirs[..., :1] if mask.shape[-1] else np.full((*mask.shape[:-1], 1), Status.DOMAIN)
-            theirs = np.where(mask.any(axis=-1, keepdims=True), Status.OK, first)
+            if precedent.starts is not None:
+                some: Any = np.logical_or.reduceat(mask, precedent.starts, axis=-1)
+                first = theirs.take(precedent.starts, axis=-1)
+            else:
+                some = mask.any(axis=-1, keepdims=True)
+                first = theirs[..., :1] if mask.shape[-1] else np.full((*mask.shape[:-1], 1), Status.DOMAIN)
+            theirs = np.where(some, Status.OK, first)
         found = np.where(found == Status.OK, theirs, found).astype(np.uint8)
     return found
 
@@ -198,7 +203,12 @@ class Values:
     def given_labels(self) -> dict[str, list[int]]:
         """Row numbers of the axes that come with the data, by the name of the axis."""
         axes = (axis for axis in self.sheet.axes if axis.is_given)
-        return {axis.name: self.layouts[axis.name].labels[:, 0].tolist() for axis in axes}
+        found = {axis.name: self.layouts[axis.name].labels[:, 0].tolist() for axis in axes}
+        for axis in self.sheet.axes:
+            if isinstance(axis, MemberAxis):
+                layout = self.layouts[axis.name]
+                found[axis.name] = layout.labels[np.argsort(layout.rows[axis.of.index_name]), 0].tolist()
+        return found
 
     def labels(self, column: Column) -> list[tuple[int, ...]]:
         """How the rows of a column are called; one empty label for a scalar."""
@@ -236,6 +246,11 @@ class Values:
         """One cell by its label."""
         column = self.sheet[name]
         return self._cell(column, self.row(column, label), label)
+
+    def rows_of_group(self, name: str, axis: MemberAxis, row: int) -> int:
+        """Over how many rows of its group a cell sums: those without a value do not count."""
+        where, (_, kept) = self.layouts[axis.name].groups[row], self._named(self.sheet[name])
+        return int(kept[axis.name][where].sum()) if axis.name in kept else where.stop - where.start
 
     def rows_summed(self, name: str, axis: str) -> int:
         """Over how many rows of an axis a column sums: those without a value do not count."""
@@ -331,9 +346,10 @@ class Values:
             other, over = precedent.column, precedent.over
             if failed and other.name in loop:
                 continue
-            if over is not None and (kept[over.name].any() or not kept[over.name].size):
-                continue  # a sum is in error only if no row of its axis has a value
-            its_row = precedent.row(0 if over is not None else row)
+            summed = precedent.summed(row)
+            if over is not None and (kept[over.name][summed].any() or not kept[over.name].size):
+                continue  # a sum is in error only if no row of those that it runs over has a value
+            its_row = precedent.row(summed.start or 0 if over is not None else row)
             if self.status[other.name][its_row] == status:
                 yield other, its_row
 

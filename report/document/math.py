@@ -17,7 +17,7 @@ from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 from sympy.printing.latex import LatexPrinter
 
-from ...derivations.reductions import OrderStatistic
+from ...derivations.reductions import OrderStatistic, member_of, taken_of
 from ..named import name_of
 from .names import Terms, join, name_latex
 
@@ -243,7 +243,10 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
         text = ""
         for index, low, high in expr.limits:
             text += rf"\sum_{{{self._print(index)}={self._print(low)}}}^{{{self._print(high)}}} "
-        return text + self._body(expr.function)
+        if (member := member_of(expr)) is not None:
+            row, group = map(self._print, member.args)
+            text = rf"\sum_{{{row} \in {group}}} "
+        return text + self._body(taken_of(expr))
 
     def _print_OrderStatistic(self, expr: OrderStatistic) -> str:
         runs = ", ".join(

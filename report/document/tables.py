@@ -23,7 +23,7 @@ from ..result.shares import SEEN, foremost
 from ..result.statements import of_column
 from ..result.uncertain import Budget, Conformity, Contribution, Decision
 from ..result.verdict import ALL, INPUT, UNREACHABLE, TableVerdict
-from ..sheet import Axis
+from ..sheet import Axis, GroupAxis
 from ..workbook import SquareSum, TableSpec, sentence_case
 from .material import Material
 from .parts import MOST, Head, Pair, SourceGroup, described, slug, why_address
@@ -194,9 +194,13 @@ class Tables:
         rows = islice(zip(labels, *columns, strict=True), most)
         inputs, measured = self.report.inputs, any(head.given for head in heads) and axis.is_given
         words = () if not axis.is_given else inputs.remarks if measured else inputs.naming
+        names: Mapping[int, Mapping[str, str]] = inputs.rows
+        if isinstance(axis, GroupAxis):
+            words = (axis.row,)
+            names = {n: {axis.row: word} for n, word in enumerate(inputs.words(axis.row), start=1)}
 
         def row(label: tuple[int, ...], items: Iterable[Entry], state: str = "") -> Row:
-            told = (_run(inputs.rows[label[0]][name]) for name in words)
+            told = (_run(names[label[0]][name]) for name in words)
             return Row(((_dashed(label),), *told, *items), state)
 
         shown = [row(label, items) for label, *items in rows]

@@ -497,7 +497,7 @@ class _Scope:
         sums = self._totals(texts)
 
         def run(row: int, *at: Any) -> Sequence[Any]:
-            computed: Sequence[Any] = function(*(read(row) for read in readers), *sums(*at), *at)
+            computed: Sequence[Any] = function(*(read(row) for read in readers), *sums(row, *at), *at)
             return computed
 
         return run
@@ -507,23 +507,31 @@ class _Scope:
         take = texts["words"]
         passes = []
         for told in texts["passes"]:
-            rows = self.kept.get(told["axis"], range(self._size(told["axis"])))
+            rows = self._summed(told["axis"])
             passes.append((told["which"], self._many(told["terms"], told["axis"]), rows, told["moving"]))
-        fixed: dict[int, list[Any]] = {}
+        fixed: dict[tuple[int, int], list[Any]] = {}
 
-        def run(*at: Any) -> list[Any]:
+        def run(row: int, *at: Any) -> list[Any]:
             found: list[Any] = [None] * len(take)
             for number, (mine, terms, rows, moving) in enumerate(passes):
-                sums = fixed.get(number)
+                which = row if len(rows) > 1 else 0  # the only rows there are, or those of a group
+                sums = fixed.get((number, which))
                 if sums is None:
-                    sums = self._taken([take[n] for n in mine], terms, rows, at)
+                    sums = self._taken([take[n] for n in mine], terms, rows[which], at)
                     if not moving:
-                        fixed[number] = sums
+                        fixed[number, which] = sums
                 for n, total in zip(mine, sums or [mpmath.mpf(0)] * len(mine), strict=True):
                     found[n] = total
             return found
 
         return run
+
+    def _summed(self, axis: str) -> Sequence[Sequence[int]]:
+        """The rows of an axis that sums run over, those of each group by themselves if it has groups."""
+        layout, kept = self.engine.layouts[axis], self.kept.get(axis, range(self._size(axis)))
+        if layout.starts is None:
+            return [kept]
+        return [[row for row in kept if each.start <= row < each.stop] for each in layout.groups]
 
     def _taken(
         self, words: Sequence[Word], terms: Callable[..., Any], rows: Sequence[int], at: Sequence[Any]

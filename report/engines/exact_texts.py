@@ -8,7 +8,7 @@ from typing import Any
 
 from sympy import Basic, Expr, Indexed, Symbol
 
-from ...derivations.reductions import REDUCTIONS, OrderStatistic
+from ...derivations.reductions import REDUCTIONS, OrderStatistic, taken_of
 from ..named import name_of
 from ..plan.domain import typed
 from ..plan.lowering import lowered_column
@@ -74,10 +74,10 @@ class _Rule:
                 mine = [
                     n
                     for n, total in enumerate(totals)
-                    if total.limits[0][0] == over.index and total.has(unknown or Symbol("")) is moving
+                    if self.sheet.algebra.over(total) == over and total.has(unknown or Symbol("")) is moving
                 ]
                 if mine:
-                    terms = self.many(tuple(totals[n].function for n in mine), over, unknown, modules)
+                    terms = self.many(tuple(taken_of(totals[n]) for n in mine), over, unknown, modules)
                     passes.append({"axis": over.name, "moving": moving, "which": mine, "terms": terms})
         return {
             "cells": [self.cell(cell, axis) for cell in cells],

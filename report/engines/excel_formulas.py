@@ -7,7 +7,7 @@ by row: printing is slow, and a report may have a hundred thousand points.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -22,7 +22,7 @@ from ..named import within
 from ..plan.nodes import Leaf, Map, Plan, RootNode
 from ..plan.order import Word
 from ..quantity import Bounds
-from ..sheet import Axis, Column, Given, Iterated, Reference, RepeatAxis, Sheet
+from ..sheet import Axis, Column, Given, Iterated, MemberAxis, Reference, RepeatAxis, Sheet
 from .excel import ExcelPrinter, IfError
 from .excel_loops import PASSES, pass_name
 from .excel_roots import Auxiliary, Unrolled
@@ -153,7 +153,9 @@ class Formulas:
     def kept(self, column: Column) -> dict[str, str]:
         """For each axis that a column sums over, the formula that counts the rows with values."""
         writing = _Writing(self, column, column.name)
-        return {axis.name: f"={writing.number_kept(axis.name)}" for axis in self.sheet.summed_axes(column)}
+        # Of groups there is a number for each, which stands in no single cell.
+        axes = (axis for axis in self.sheet.summed_axes(column) if not isinstance(axis, MemberAxis))
+        return {axis.name: f"={writing.number_kept(axis.name)}" for axis in axes}
 
 
 def guard(bounds: Bounds) -> str:
@@ -239,7 +241,7 @@ class _Writing:
         if leaf.axis is None:
             return place.cell(0, self.here)
         if rows:
-            return place.range(self.here)
+            return self.stretch(place, leaf.axis.name)
         named = None if self.repeated(leaf) else leaf.index
         return self.fill(place, self.layouts[leaf.axis.name].rows.get(named or ""))
 
@@ -256,7 +258,16 @@ class _Writing:
 
     def numbers(self, axis: str) -> str:
         """The range of numbers that name an axis' rows."""
-        return self.places.indices[axis][0].range(self.here)
+        return self.stretch(self.places.indices[axis][0], axis)
+
+    def stretch(self, place: Place, axis: str) -> str:
+        """The range of all rows of an axis that a sum runs over; of the rows of a group, with open ends."""
+        layout = self.layouts[axis]
+        if layout.starts is None:
+            return place.range(self.here)
+        # Behind its first cell, a range does not name its worksheet again.
+        last = self.fill(replace(place, worksheet=self.here), layout.lasts)
+        return f"{self.fill(place, layout.starts)}:{last}"
 
     # --- sums
 
@@ -298,7 +309,9 @@ class _Writing:
                 holds = f"ISNUMBER({address})"
             else:
                 # Its first row tells why: if no row has values, some cell of it is in error.
-                address = self.place_of(leaf).cell(0, self.here)
+                starts = self.layouts[over.name].starts
+                place = self.place_of(leaf)
+                address = place.cell(0, self.here) if starts is None else self.fill(place, starts)
                 holds = f"OR({self.number_kept(over.name)}>0,ISNUMBER({address}))"
             code = _CODE[Status.INPUT] if given else address
             if groups and groups[-1][1] == code:

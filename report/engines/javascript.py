@@ -20,7 +20,7 @@ from sympy.printing.jscode import JavascriptCodePrinter
 from ..plan.lowering import lowered
 from ..plan.nodes import GivenNode, Leaf, LoopNode, Map, Plan, RootNode, RowOrder, RowSum, Total
 from ..plan.nodes import Node as PlanNode
-from ..sheet import Axis, Column, CountedAxis, PairAxis, RepeatAxis, Sheet
+from ..sheet import Axis, Column, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis, Sheet
 from .certified import certified, slope, typed_form
 from .javascript_intervals import enclose, needed
 
@@ -85,6 +85,8 @@ class _Scope:
         self.head: list[str] = []
         self.totals: dict[Expr, Symbol] = {}
         """What is taken over rows, by itself and by the symbols of the plan."""
+        self.of_groups: set[Symbol] = set()
+        """Those that have a number for each group."""
         self.numbers = count()
 
     # --- what symbols stand for
@@ -97,7 +99,7 @@ class _Scope:
         if leaf is None:
             return symbol
         if leaf.kind == "total":
-            return self.totals[symbol]
+            return self.taken(symbol, row)
         text = {"cells": self.cells, "ordinal": self.ordinal}.get(leaf.kind, self.size)(leaf, row)
         return Symbol(text, **symbol.assumptions0)
 
@@ -130,7 +132,7 @@ class _Scope:
         if isinstance(expression, (RowSum, RowOrder)):
             own = expression.xreplace({s: self.own(s) for s in expression.free_symbols})
             if own in self.totals or isinstance(expression, RowOrder):
-                return self.totals[own]
+                return self.taken(own, row)
             assert moving is not None
             if expression not in moving:
                 moving[expression] = self.new("S")
@@ -140,6 +142,11 @@ class _Scope:
         if not expression.args:
             return expression
         return expression.func(*(self.plain(argument, row, moving) for argument in expression.args))
+
+    def taken(self, total: Expr, row: str) -> Symbol:
+        """What something taken over rows is called: where it is taken over each group, that of a row."""
+        name = self.totals[total]
+        return Symbol(f"{name}[{row}]", **name.assumptions0) if name in self.of_groups else name
 
     def own(self, symbol: Symbol) -> Symbol:
         """The plan's symbol, if nothing more is assumed of this one than of that."""
@@ -175,6 +182,8 @@ class _Scope:
         lines: list[str] = []
         for axis in dict.fromkeys(total.args[1].name for total in sums):
             mine = [total for total in sums if total.args[1].name == axis]
+            grouped = isinstance(self.plan.axes[axis], MemberAxis)
+            self.of_groups |= {sums[total] for total in mine} if grouped else set()
             inner: dict[Expr, Symbol] = {}
             terms = [self.plain(total.args[0], "q", inner) for total in mine]
             lines += self.passes(inner)
@@ -182,14 +191,14 @@ class _Scope:
             parts = [f"s_{n}" for n in range(len(mine))]
             lines += [
                 f"      const [{', '.join(sums[total].name for total in mine)}] = "
-                f"total(k.{axis}, {len(mine)}, (q, end, kept) => {{",
+                f"{'totals' if grouped else 'total'}(k.{axis}, {len(mine)}, (q, end, kept) => {{",
                 f"        let {', '.join(f'{part} = 0' for part in parts)};",
                 "        for (; q < end; q++) if (kept[q]) {",
                 *common,
                 *(f"          {part} += {text};" for part, text in zip(parts, texts, strict=True)),
                 "        }",
                 f"        return [{', '.join(parts)}];",
-                "      });",
+                f"      }}, a.{axis}.starts);" if grouped else "      });",
             ]
         return lines
 
@@ -282,6 +291,10 @@ def _axis(axis: Axis) -> str:
         return f'{json.dumps(entry)[:-1]}, "chosen": ({axis.first}, {axis.second}) => {chosen}}}'
     if isinstance(axis, RepeatAxis):
         entry |= {"kind": "repeat", "of": axis.of.name, "step": str(axis.step), "count": axis.count}
+    if isinstance(axis, MemberAxis):
+        entry |= {"kind": "members", "of": axis.of.name, "group": axis.group_name}
+    if isinstance(axis, GroupAxis):
+        entry |= {"kind": "groups", "of": axis.members.name}
     if isinstance(axis, CountedAxis):
         entry |= {"kind": "counted", "step": str(axis.step), "number": axis.number}
     return json.dumps(entry)

@@ -24,7 +24,7 @@ from ..sheet import Column, Loop, Sheet
 from .kernels import SAME, Array, Function, Kernel, compiled
 from .numpy_loop import LoopProgram, Settling
 from .numpy_root import RootProgram
-from .numpy_rows import Kept, chosen
+from .numpy_rows import Kept, chosen, in_groups
 
 __all__ = ["Laid", "Program", "evaluate", "extend", "parts"]
 
@@ -235,7 +235,11 @@ class Laid:
             if any(each.over is not None and not layouts[each.over.name].size for each in named)
         }
         """The columns that sum over no rows at all."""
-        self.every = {name: Kept(np.ones(own.size, dtype=bool)) for name, own in layouts.items()}
+        self.every = {name: self.kept(name, np.ones(own.size, dtype=bool)) for name, own in layouts.items()}
+
+    def kept(self, axis: str, mask: NDArray[np.bool_]) -> Any:
+        """Some rows of an axis, those of each group by themselves if it has groups."""
+        return in_groups(Kept(mask), self.layouts[axis])
 
     def shapes(self, data: Mapping[str, Array]) -> dict[str, tuple[int, ...]]:
         """The shape of every column: a batch has what rests on one."""
@@ -294,12 +298,12 @@ class _Run:
 
     def size(self, axis: str) -> Array:
         """How many rows an axis has."""
-        return self.laid.every[axis].number
+        return np.array([self.laid.layouts[axis].size], dtype=np.float64)
 
-    def kept(self, name: str, axis: str) -> Kept:
+    def kept(self, name: str, axis: str) -> Any:
         """The rows of an axis over which the sums of a column run."""
         mask = self._masks(name).get(axis)
-        return self.laid.every[axis] if mask is None else Kept(mask)
+        return self.laid.every[axis] if mask is None else self.laid.kept(axis, mask)
 
     def _odd(self, name: str) -> bool:
         """Whether a column may inherit an error."""

@@ -23,7 +23,7 @@ from .intervals import Intervals
 from .kernels import SAME, Array
 from .numpy import Laid, Program
 from .numpy_root import RootProgram
-from .numpy_rows import Kept
+from .numpy_rows import Kept, in_groups
 from .numpy_steps import RootRows
 
 __all__ = ["BESIDE", "Beside"]
@@ -154,11 +154,12 @@ class _Rows:
 
     def size(self, axis: str) -> Array:
         """How many rows an axis has."""
-        return self.laid.every[axis].number
+        return np.array([self.laid.layouts[axis].size], dtype=np.float64)
 
-    def kept(self, _: str, axis: str) -> Kept:
+    def kept(self, _: str, axis: str) -> Any:
         """All rows of an axis."""
-        return _Every(self.laid.every[axis].mask)
+        layout = self.laid.layouts[axis]
+        return in_groups(_Every(np.ones(layout.size, dtype=bool)), layout)
 
     def given(self, name: str, value: Array, _: Any = True) -> Array:
         """The data of a column: what is outside the box is not known."""

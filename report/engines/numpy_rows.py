@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields
 from functools import cached_property, reduce
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cells.layout import Layout
 from ..plan.order import Word, places
 from .intervals import Intervals
 
-__all__ = ["Kept", "KeptBetween", "KeptIntervals", "chosen"]
+__all__ = ["InGroups", "Kept", "KeptBetween", "KeptIntervals", "chosen", "in_groups"]
 
 
 def chosen(conditions: Sequence[Any], values: Sequence[Any], default: Any) -> Any:
@@ -149,3 +150,60 @@ class KeptBetween:
     def wide(self) -> NDArray[np.intp]:
         """The parts that are no points."""
         return np.flatnonzero(self.low != self.high)
+
+
+@dataclass(frozen=True)
+class InGroups:
+    """Rows of which those of a group stand beside one another: what is taken of each group (..., groups).
+
+    Parameters
+    ----------
+    groups : tuple of Kept or KeptIntervals
+        The rows of each.
+    where : tuple of slice
+        Where these stand.
+    size : int
+        How many rows there are.
+    """
+
+    groups: tuple[Kept | KeptIntervals, ...]
+    where: tuple[slice, ...]
+    size: int
+
+    def total(self, terms: Any) -> Any:
+        """The sums of the kept rows."""
+        return _joined([own.total(some) for own, some in self._each(terms)])
+
+    def ordered(self, terms: Any, word: Word) -> Any:
+        """What is taken of the kept rows by their order."""
+        return _joined([own.ordered(some, word) for own, some in self._each(terms)])
+
+    @property
+    def number(self) -> Any:
+        """How many rows are kept."""
+        return _joined([own.number for own in self.groups])
+
+    def _each(self, terms: Any) -> Iterator[tuple[Kept | KeptIntervals, Any]]:
+        has_rows = np.shape(terms)[-1:] == (self.size,)
+        for own, where in zip(self.groups, self.where, strict=True):
+            yield own, terms[..., where] if has_rows else terms
+
+
+def _joined(parts: Sequence[Any]) -> Any:
+    """Numbers, or intervals, beside one another."""
+    if not isinstance(parts[0], Intervals):
+        return np.concatenate(np.broadcast_arrays(*parts), axis=-1)
+    return Intervals(_joined([part.low for part in parts]), _joined([part.high for part in parts]))
+
+
+def in_groups(kept: Kept | KeptIntervals, layout: Layout) -> Any:
+    """What takes something of rows, or of the rows of each group, if they stand in groups."""
+    if layout.starts is None:
+        return kept
+    masks: list[Any] = [getattr(kept, each.name) for each in fields(kept)]
+
+    def part(where: slice) -> Kept | KeptIntervals:
+        own: list[Any] = [each if each is None else each[..., where] for each in masks]
+        return type(kept)(*own)
+
+    return InGroups(tuple(map(part, layout.groups)), tuple(layout.groups), layout.size)

@@ -131,6 +131,7 @@ def read_measurements(
     findings: Findings,
     elsewhere: Collection[str] = (),
     called: str = "test",
+    groups: Collection[str] = (),
 ) -> Measurements | None:
     """Read the table of the tests; None, with findings, if something is wrong with it.
 
@@ -149,6 +150,8 @@ def read_measurements(
         The columns that are taken from other reports: they must not stand here.
     called : str
         What else the column of the tests' numbers may be called. Without it, rows are numbered as they stand.
+    groups : collection of str
+        The columns of words that say which rows belong together.
     """
     before = len(findings.found)
     columns = {column.name: column for column in measured or () if column.name not in elsewhere}
@@ -175,8 +178,9 @@ def read_measurements(
         if "test" not in names:  # rows are numbered as they stand
             del required["test"]
             optional += {"test": None} if has_names else {"test": None, called: None}
-        known = [*([] if has_names else [called]), *required, *optional, *elsewhere]
-        remarks = tuple(_remarks(table, heads, names, known))
+        known = [*([] if has_names else [called]), *required, *optional, *elsewhere, *groups]
+        remarks = tuple(_remarks(table, heads, names, known, groups))
+        required |= {name: name for name in groups}
         places = match_columns(table, names, required, [*optional, *remarks], findings, {"test": called})
     tests = tuple(range(1, len(table.rows) + 1))
     if "test" in places:
@@ -189,6 +193,8 @@ def read_measurements(
         at = table.end_of_header() if table.total == 0 else _last(table)
         findings.add("LS310", at, count=count)
     used = [row for place, row in enumerate(table.rows) if place not in gone]
+    for name in (name for name in groups if name in places):
+        _check_words(table, [row.fields[places[name]] for row in table.rows], name, findings)
     values: dict[str, tuple[Printed | None, ...]] = {}
     units: dict[str, str] = {}
     of_u: dict[str, ParsedUnit | None] = {}
@@ -270,11 +276,31 @@ def _refuse_nothing(
             findings.add("LS403", at, name="the row", allowed=allowed, suggestion=_GAP)
 
 
+def _check_words(table: CsvTable, fields: Sequence[Field], name: str, findings: Findings) -> None:
+    """Refuse a row of which no word says to which others it belongs."""
+    for each in fields:
+        if not each.text:
+            hint = f"write which {name} the row belongs to"
+            findings.add("LS403", table.at(each), name=name, allowed="a word", suggestion=hint)
+    if fields and all(is_number(each.text) for each in fields if each.text):
+        findings.add("LS318", table.at(fields[0]), name=name, text=fields[0].text)
+
+
 def _remarks(
-    table: CsvTable, heads: Sequence[ColumnHead | None], names: Sequence[str], known: Collection[str]
+    table: CsvTable,
+    heads: Sequence[ColumnHead | None],
+    names: Sequence[str],
+    known: Collection[str],
+    groups: Collection[str],
 ) -> Iterator[str]:
-    """The columns of words that nothing is computed from: without a unit, and no misspelt name of another."""
+    """The columns of words, by which rows belong together or that only come along.
+
+    The latter have no unit and no misspelt name of another.
+    """
     for place, head in enumerate(heads):
+        if names[place] in groups:
+            yield names[place]
+            continue
         if head is None or head.unit is not None or not names[place] or close(names[place], known):
             continue
         if _EXCLUDING.fullmatch(names[place]):

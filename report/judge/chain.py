@@ -179,6 +179,14 @@ class Chain:
         """How many rows its slopes have."""
         return self.size(node) if node.over is None else self.layouts[node.over].size
 
+    def totals(self, node: Local) -> Numbered:
+        """For each row that a total runs over, the row of the total: of the only one, or of a group's."""
+        own = np.zeros(self.terms(node), dtype=np.intp)
+        if node.axis is not None and node.over is not None:
+            for group, rows in enumerate(self.layouts[node.over].groups):
+                own[rows] = group
+        return own
+
     def named(self, node: Local, slope: Slope) -> Numbered:
         """The row of what a slope is by, for each row of the slope."""
         number = self.terms(node)
@@ -211,7 +219,7 @@ class Chain:
             every = []
             for slope in node.slopes:
                 theirs = self._theirs(node, slope)
-                rows = np.zeros_like(theirs.rows) if node.over else theirs.rows
+                rows = theirs.rows if node.over is None else self.totals(node)[theirs.rows]
                 every.append((rows, theirs.by, width + theirs.rows, theirs.entries))
                 slopes.append((node, slope, slice(width, width + self.terms(node))))
                 width += self.terms(node)

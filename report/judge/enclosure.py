@@ -23,7 +23,7 @@ from ..engines.intervals import Intervals, whole
 from ..engines.numpy import Program
 from ..engines.numpy_enclosed import EnclosedRows
 from ..engines.numpy_root import RootProgram
-from ..engines.numpy_rows import KeptIntervals
+from ..engines.numpy_rows import KeptIntervals, in_groups
 from ..plan.order import places
 from ..plan.slopes import Local, Slope
 from ..sheet import Column, Reference, Sheet
@@ -73,13 +73,15 @@ class _Rows:
         """How many rows an axis has."""
         return Intervals.of(self.layouts[axis].size)
 
-    def kept(self, name: str, axis: str) -> KeptIntervals:
+    def kept(self, name: str, axis: str) -> Any:
         """The rows of an axis over which the sums of a column run."""
         sure = np.ones(self.layouts[axis].size, dtype=bool)
         for reference in self.sheet.named(self.sheet[name]):
             if reference.over is not None and reference.over.name == axis:
                 sure = sure & self.known(reference, self.sheet[name])
-        return KeptIntervals(np.ones(self.layouts[axis].size, dtype=bool), sure)
+        return in_groups(
+            KeptIntervals(np.ones(self.layouts[axis].size, dtype=bool), sure), self.layouts[axis]
+        )
 
     def known(self, reference: Reference, column: Column) -> Mask:
         """Which of the cells that a column names are sure to have a value."""

@@ -217,6 +217,12 @@ CATALOGUE: dict[str, Entry] = {
         "one of both",
         "{suggestion}",
     ),
+    "LS318": Entry(
+        "groups without words",
+        "{name} has numbers alone, such as '{text}'",
+        "words, the same for all rows that belong together",
+        "put a letter before each number: S{text}",
+    ),
     "LS401": Entry(
         "not a number",
         "{name} is not a number: '{text}'",

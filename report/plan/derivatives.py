@@ -51,7 +51,7 @@ from sympy import (
 )
 from sympy.core.function import ArgumentIndexError
 
-from ..axis import Axis
+from ..axis import Axis, MemberAxis
 from ..column import Column
 from ..sheet import Sheet
 from .lowering import RESERVED, lowered
@@ -169,7 +169,7 @@ class _Making:
     ) -> Local:
         """A node, and the parts of its numbers; its own rounding only if it is asked for."""
         name = column.name if total is None else total.symbol.name
-        over, axis = (None, column.axis) if total is None else (total.over, None)
+        over, axis = (None, column.axis) if total is None else (total.over, total.axis)
         held = self.part(f"{name}_rounding", column, axis, own()) if self.roundings else ""
         found = tuple(
             self.slope(by, self.part(f"{name}_slope_{n}", column, over or axis, slope))
@@ -183,7 +183,7 @@ class _Making:
         """The part that holds the derivative by what a symbol stands for."""
         leaf = self.leaves[by]
         if leaf.kind == "total":
-            return Slope(by.name, None, None, value)
+            return Slope(by.name, leaf.axis and leaf.axis.name, None, value)
         return Slope(leaf.name, leaf.axis and leaf.axis.name, leaf.index, value)
 
     def slopes(self, expression: Expr) -> dict[Symbol, Expr]:
@@ -218,7 +218,8 @@ class _Making:
         key = column.name, over, terms
         if key not in self.sums:
             wanted = f"{column.name}_more_{len(self.sums)}"
-            self.sums[key] = self.symbol(wanted, Leaf("total", wanted))
+            rows = column.axis if isinstance(over, MemberAxis) else None
+            self.sums[key] = self.symbol(wanted, Leaf("total", wanted, rows))
             self.nodes.append(Total(column, self.sums[key], over, terms, terms))
         return self.sums[key]
 

@@ -10,9 +10,9 @@ from sympy import Expr, Indexed, Symbol, beta, false
 from sympy.core.symbol import Str
 
 from ...derivations.rebuilt import rebuilt
-from ...derivations.reductions import REDUCTIONS, OrderStatistic
+from ...derivations.reductions import REDUCTIONS, OrderStatistic, taken_of
 from ..named import name_of
-from ..sheet import Axis, Column, Formula, Given, Iterated, Root, Sheet
+from ..sheet import Axis, Column, Formula, Given, Iterated, MemberAxis, Root, Sheet
 from .domain import defined, is_positive, positive, typed_symbols
 from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Plan, RootNode, RowOrder, RowSum, Total
 from .special import in_elementary_terms
@@ -129,7 +129,7 @@ class Lowering:
         if expression == unknown:
             return expression
         if isinstance(expression, REDUCTIONS):
-            over = self.sheet.algebra.indices[expression.limits[0][0]]
+            over = self.sheet.algebra.over(expression)
             name = Symbol(over.name)
             if isinstance(expression, OrderStatistic):
                 found = RowOrder(
@@ -137,10 +137,11 @@ class Lowering:
                 )
                 self._written[found] = expression
                 return found
-            number, terms = expression.function.as_coeff_Mul()
+            number, terms = taken_of(expression).as_coeff_Mul()
             found = RowSum(self.plain(terms, column, over, unknown), name)
             more, alone = found.as_coeff_Mul()
-            self._written[alone] = expression.func(terms / more, *expression.limits)
+            own = expression.function / number / more
+            self._written[alone] = expression.func(own, *expression.limits)
             return number * found
         if isinstance(expression, (Indexed, Symbol)):
             return self.leaf(expression, column, axis)
@@ -240,8 +241,9 @@ class Lowering:
         total = known.get((over, terms, word))
         if total is None:
             number = self._totals[column.name] = self._totals.get(column.name, 0) + 1
+            rows = column.axis if isinstance(over, MemberAxis) else None
             symbol = self.symbol(
-                Leaf("total", f"{column.name}.{number}"), _REAL, f"{column.name}_{word}_{number}"
+                Leaf("total", f"{column.name}.{number}", rows), _REAL, f"{column.name}_{word}_{number}"
             )
             total = Total(column, symbol, over, terms, self._written[expression], word)
             nodes.append(total)

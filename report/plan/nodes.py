@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Literal
 from sympy import Basic, Expr, Integer, Symbol, diff, false, true
 from sympy.logic.boolalg import Boolean
 
-from ..axis import Axis
+from ..axis import Axis, MemberAxis
 from ..column import Column
 from .order import Word
 
@@ -46,7 +46,8 @@ class Leaf:
     name : str
         Of the column, the total or the part.
     axis : Axis or None
-        On whose rows it is read, or whose rows are counted; None for one number.
+        On whose rows it is read, or whose rows are counted; None for one number. A total over the rows of a
+        group has a number for each group.
     index : str or None
         For cells, the index that names them from there; None if they stand on the same rows. For an ordinal,
         the running number.
@@ -187,6 +188,11 @@ class Total:
     terms: Expr
     written: Expr
     word: Word = "sum"
+
+    @property
+    def axis(self) -> Axis | None:
+        """On whose rows it has numbers: groups if it is taken over the rows of each."""
+        return self.column.axis if isinstance(self.over, MemberAxis) else None
 
 
 @dataclass(frozen=True)

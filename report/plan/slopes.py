@@ -43,7 +43,7 @@ class Local:
     name : str
         Of the column; for a total, of its symbol.
     axis : str or None
-        None for a scalar and for every total.
+        None for a scalar, and for a total that is no group's.
     over : str or None
         The axis that a total runs over.
     of : str

@@ -14,7 +14,7 @@ from ..cells.trace import Group, dependents_of, precedents_of
 from ..cells.values import Cell, Status
 from ..quantity import behind
 from ..result.result import Report
-from ..sheet import Column, Formula, Given, Iterated, Root
+from ..sheet import Axis, Column, Formula, Given, Iterated, MemberAxis, Root
 from ..workbook import Curve
 
 __all__ = ["equations_of", "why"]
@@ -155,7 +155,7 @@ def _equation(report: Report, column: Column, row: int, cell: Cell) -> Iterator[
     if cell.value is None:
         return
     if any(member.has(*REDUCTIONS) for member in equation.members):
-        sizes = [f"{report.values.rows_summed(column.name, a.name)} {a.name}" for a in summed]
+        sizes = [_over(report, column, row, axis) for axis in summed]
         if sizes:
             yield _line("", f"over {', '.join(sizes)}")
     else:
@@ -165,6 +165,13 @@ def _equation(report: Report, column: Column, row: int, cell: Cell) -> Iterator[
         if isinstance(column.rule, Formula):
             numbers = [cell.address, numbers[-1], _number(cell.value)]
         yield _line("in SI", " = ".join(numbers))
+
+
+def _over(report: Report, column: Column, row: int, axis: Axis) -> str:
+    """Over how many rows of an axis a cell sums; it may be those of its group."""
+    if isinstance(axis, MemberAxis):
+        return f"{report.values.rows_of_group(column.name, axis, row)} {axis.of.name}"
+    return f"{report.values.rows_summed(column.name, axis.name)} {axis.name}"
 
 
 # --- fits ------------------------------------------------------------------------------------------------

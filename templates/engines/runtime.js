@@ -10,7 +10,7 @@ const SMALLEST = 2 ** -1022; // the least positive number with all its digits
 // The rows of an index set, and for each index that formulas use the rows that it names.
 function layOut(axis, layouts, labels, data) {
   const rows = {}, ordinals = {}, parent = layouts[axis.of];
-  let size, label;
+  let size, label, starts;
   if (axis.kind === "pairs") {
     const first = (rows[axis.first] = []), second = (rows[axis.second] = []);
     for (let i = 0; i < parent.size; i++) {
@@ -29,6 +29,17 @@ function layOut(axis, layouts, labels, data) {
       for (let row = 0, of = 0; of < parent.size; of++) every.fill(named[of], row, (row += count));
     }
     label = (row) => [...parent.labels[Math.floor(row / count)], step[row]];
+  } else if (axis.kind === "members") {
+    // The rows of a group stand beside one another.
+    const group = labels[axis.name], own = Array.from(group, (_, row) => row).sort((a, b) => group[a] - group[b]);
+    for (const index of Object.keys(parent.rows)) rows[index] = own.map((row) => parent.rows[index][row]);
+    size = own.length;
+    starts = [...own.keys(), size].filter((row) => group[own[row]] !== group[own[row - 1]]);
+    rows[axis.group] = own.map((_, row) => starts.findLastIndex((start) => start <= row));
+    label = (row) => [group[own[row]], ...parent.labels[own[row]]];
+  } else if (axis.kind === "groups") {
+    size = parent.starts.length - 1;
+    label = (row) => [parent.labels[parent.starts[row]][0]];
   } else if (axis.kind === "counted") {
     const step = (ordinals[axis.step] = new Float64Array((size = axis.number)).map((_, row) => row + 1));
     label = (row) => [step[row]];
@@ -38,15 +49,15 @@ function layOut(axis, layouts, labels, data) {
   }
   const own = (rows[axis.index] = new Int32Array(size).map((_, row) => row));
   let named; // What rows are called is asked for seldom, and of the largest set hardly ever.
-  return { size, rows, ordinals, get labels() { return (named ??= Array.from(own, label)); } };
+  return { size, rows, ordinals, starts, get labels() { return (named ??= Array.from(own, label)); } };
 }
 
 // Sums of several terms over the rows that are kept. Of a few rows `terms` adds them as they come, then every
 // addition is compensated (Neumaier): no engine may lose digits to the order of its additions.
-function total(kept, count, terms) {
+function total(kept, count, terms, first = 0, end = kept.length) {
   const sum = new Float64Array(count), lost = new Float64Array(count);
-  for (let row = 0; row < kept.length; row += BLOCK) {
-    const part = terms(row, Math.min(row + BLOCK, kept.length), kept);
+  for (let row = first; row < end; row += BLOCK) {
+    const part = terms(row, Math.min(row + BLOCK, end), kept);
     for (let n = 0; n < count; n++) {
       const term = part[n], before = sum[n], after = before + term;
       lost[n] += Math.abs(before) >= Math.abs(term) ? before - after + term : term - after + before;
@@ -54,6 +65,12 @@ function total(kept, count, terms) {
     }
   }
   return sum.map((all, n) => (Number.isFinite(lost[n]) ? all + lost[n] : all));
+}
+
+// The same over the rows of each group: for each of the terms an array of sums.
+function totals(kept, count, terms, starts) {
+  const every = starts.slice(1).map((end, group) => total(kept, count, terms, starts[group], end));
+  return Array.from(new Float64Array(count), (_, n) => every.map((sums) => sums[n]));
 }
 
 // The middle of the terms of the rows that are kept; of an even number, the mean of the two there.
@@ -129,7 +146,7 @@ function evaluateSheet(program, labels, inputs) {
       const lost = leaveOut(keep[summed], doubtful, summed, layouts, status);
       if (lost) note("counted", summed, (sizes[summed] -= lost));
     }
-    for (let row = 0; doubtful.length && row < size; row++) codes[row] = inherited(doubtful, axis, row, layouts, status, sizes);
+    for (let row = 0; doubtful.length && row < size; row++) codes[row] = inherited(doubtful, axis, row, layouts, status, sizes, keep);
     if (what === "errors") {
       faulty[name] = codes.some(Boolean);
       return [[], codes];
@@ -204,12 +221,17 @@ function leaveOut(keep, doubtful, axis, layouts, status) {
   return lost;
 }
 
+// Where the rows that a sum runs over begin and end: all of them, or those of a group.
+function summed({ starts, size }, row) {
+  return starts ? starts.slice(row, row + 2) : [0, size];
+}
+
 // The first error among the precedents; a sum has one only if none of its rows has a value.
-function inherited(doubtful, axis, row, layouts, status, sizes) {
+function inherited(doubtful, axis, row, layouts, status, sizes, keep) {
   for (const [name, index, over] of doubtful) {
-    const own = over === null, codes = status[name];
-    if (!own && sizes[over] > 0) continue;
-    const place = index === null ? 0 : layouts[over ?? axis].rows[index][own ? row : 0];
+    const own = over === null, codes = status[name], [first, end] = own ? [row] : summed(layouts[over], row);
+    if (!own && sizes[over] > 0 && keep[over].subarray(first, end).some(Boolean)) continue;
+    const place = index === null ? 0 : layouts[over ?? axis].rows[index][first];
     const code = own || layouts[over].size > 0 ? codes[place] : STATUS.DOMAIN;
     if (code !== STATUS.OK) return code;
   }

@@ -40,7 +40,7 @@ function fillBar(look, name, row, index) {
   fillSure(look, name, row);
   fillDraws(look);
   if (column.given) fillLine("bar-source", `given, ${here.axis === null ? "in report.toml" : `in ${LIVE.file}, ${ROW} ${index}`}`);
-  else fillLine("bar-source", ...sourceLine(column), ...publishedMath(column, name));
+  else fillLine("bar-source", ...sourceLine(column), ...publishedMath(column, name, row));
   if (column.put && trace.isOk(name, row)) fillLine("bar-put", ...putIn(look, name, row));
   const others = (groups) => groups.filter((one) => one.name !== name); // what is iterated names itself
   fillCells(look, "bar-precedents", "rests on", others(trace.precedents(name, row)));
@@ -96,18 +96,22 @@ function sourceLine(column) {
 }
 
 // The equation as the report prints it: a copy from its place there.
-function publishedMath(column, name) {
+function publishedMath(column, name, row) {
   const [label] = equationsOf(column), found = label && CLAIMS[label].querySelector("div > math");
   if (!found) return [];
   const copy = found.cloneNode(true);
-  const rows = LIVE.columns[name].put ? "" : summedRows(name);
+  const rows = LIVE.columns[name].put ? "" : summedRows(name, row);
   return [make("span", { class: "math" }, copy), rows];
 }
 
-// Over how many rows a sum runs: its terms are too many to be put in.
-function summedRows(name) {
-  const { look } = page, column = look.trace.declared[name], counted = look.trace.sheet.counted[name] ?? {};
-  return column.sums.map((axis) => ` over ${counted[axis] ?? look.trace.sheet.layouts[axis].size}\u00a0${axis}`).join(",");
+// Over how many rows a sum runs, all or those of a group: its terms are too many to be put in.
+function summedRows(name, row) {
+  const { declared, sheet } = page.look.trace;
+  return declared[name].sums.map((axis) => {
+    const { of, kind } = PROGRAM.axes.find((one) => one.name === axis), kept = sheet.kept[name].keep[axis];
+    const number = kept.slice(...summed(sheet.layouts[axis], row)).filter(Boolean).length;
+    return ` over ${number}\u00a0${kind === "members" ? of : axis}`;
+  }).join(",");
 }
 
 // The equation with the values put in, in SI.

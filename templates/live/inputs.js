@@ -119,10 +119,13 @@ function differences(state, issued) {
 // --- the sheet of a state --------------------------------------------------------------------------------
 
 // Reads the inputs and computes every column: what evaluateSheet returns, with what it was given and why inputs were
-// refused.
-function computeSheet(program, columns, state) {
+// refused. Where rows stand in groups, the number of each test's is told.
+function computeSheet(program, columns, state, groups) {
   const tests = usedTests(state), labels = {}, data = {}, refused = {};
-  for (const axis of program.axes) if (axis.kind === "given") labels[axis.name] = tests.map((test) => test.label);
+  for (const { name, kind } of program.axes) {
+    if (kind === "given") labels[name] = tests.map((test) => test.label);
+    if (kind === "members") labels[name] = tests.map((test) => groups[name][test.label]);
+  }
   for (const { name, axis, kind } of program.columns) {
     if (kind !== "given" || program.constants[name]) continue;
     const { of } = columns[name];

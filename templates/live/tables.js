@@ -1,3 +1,6 @@
+// Of rows in groups, to which a new one belongs is told by no cell of the page.
+const ADDED_ELSEWHERE = `A further ${ROW} is added in the table of measurements, with the word of its group; then build again.`;
+
 // The tables whose rows come and go with the tests, and the cells that stand elsewhere.
 
 // A table of one index set: a row for each of its rows, and for the tests also for those that are left out.
@@ -21,7 +24,9 @@ class Table {
     this.editable = true;
     this.element.tHead.rows[0].append(make("td", { class: "tools" }));
     for (const row of this.body.rows) this.addTools(row);
-    const add = make("button", { type: "button", id: "live-add" }, `Add ${/^[aeiou]/i.test(ROW) ? "an" : "a"} ${ROW}`);
+    const add = LIVE.groups
+      ? make("span", { class: "says" }, ADDED_ELSEWHERE)
+      : make("button", { type: "button", id: "live-add" }, `Add ${/^[aeiou]/i.test(ROW) ? "an" : "a"} ${ROW}`);
     this.element.closest(".scroll").after(make("p", { class: "add" }, add));
   }
 
@@ -42,10 +47,17 @@ class Table {
     row.append(make("td", { class: "tools" }, why, remove));
   }
 
+  // What stands beside a row in a column of words: beside a group, what stands beside its tests.
+  word(index, name) {
+    const { kind, of } = PROGRAM.axes.find((axis) => axis.name === this.axis);
+    const its = kind === "groups" && Object.entries(LIVE.groups[of]).find(([, number]) => String(number) === index);
+    return wordOf(its ? its[0] : index, name);
+  }
+
   newRow(index) {
     const text = index.replaceAll("-", "–");
     const row = make("tr", { "data-label": index }, make("th", { scope: "row" }, text));
-    for (const head of this.words) row.append(make("td", { class: head.className }, wordOf(index, head.textContent)));
+    for (const head of this.words) row.append(make("td", { class: head.className }, this.word(index, head.textContent)));
     for (const { name, identified } of this.columns) {
       const data = { id: identified ? cellId("cell", name, index) : null, "data-cell": name, "data-index": index };
       if (!LIVE.columns[name].given) {

@@ -57,7 +57,8 @@ class Trace {
     const column = this.declared[name];
     return column.refs.map(([other, index, over]) => {
       const named = index === null ? [0] : this.sheet.layouts[over ?? column.axis].rows[index];
-      return { name: other, over, rows: index === null || over !== null ? Array.from(named) : [named[row]] };
+      const many = index !== null && over !== null, [first, end] = many ? summed(this.sheet.layouts[over], row) : [0];
+      return { name: other, over, rows: many ? Array.from(named).slice(first, end) : [named[index === null ? 0 : row]] };
     });
   }
 
@@ -70,7 +71,8 @@ class Trace {
         if (other !== name) continue;
         const own = over === null && index !== null, all = this.size(column.name);
         const named = index === null ? null : this.sheet.layouts[over ?? column.axis].rows[index];
-        if (!own) for (let n = 0; n < all && (named === null || named.includes(row)); n++) rows.add(n);
+        const names = (n) => named === null || named.slice(...summed(this.sheet.layouts[over], n)).includes(row);
+        if (!own) for (let n = 0; n < all && (names(n) || this.sheet.layouts[over]?.starts); n++) names(n) && rows.add(n);
         else for (let n = 0; n < all; n++) if (named[n] === row) rows.add(n);
       }
       if (rows.size) found.push({ name: column.name, rows: [...rows].sort((a, b) => a - b) });
@@ -102,7 +104,8 @@ class Trace {
     const every = this.precedents(name, row).sort((a, b) => inside(a.name) - inside(b.name));
     return every.filter(({ name: other, rows, over }) => {
       // A sum is in error only if no row has a value.
-      if (over !== null && (this.sheet.counted[name]?.[over] ?? this.sheet.layouts[over].size) > 0) return false;
+      const [first, end] = over === null ? [] : summed(this.sheet.layouts[over], row);
+      if (over !== null && this.sheet.kept[name].keep[over].subarray(first, end).some(Boolean)) return false;
       return rows.length && !this.isOk(other, rows[0]) && !(failed && inside(other));
     });
   }
