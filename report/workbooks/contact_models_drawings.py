@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...derivations.contact.models import MODELS
+from ..cells.layout import evenly
 from ..cells.values import Status
 from ..document.charted import unit_text
 from ..result.result import Plotted, Report
@@ -29,7 +30,7 @@ def draw_loops(report: Report) -> Figure:
 
     plotted = report.plotted()
     layout = plotted.values.layouts["loops"]
-    tests = drawing.evenly(report.values.layouts["tests"].size, _MOST)
+    tests = evenly(report.values.layouts["tests"].size, _MOST)
     rows = -(-len(tests) // _IN_A_ROW)
     figure, first = drawing.page(1.5 + 4.2 * rows)
     first.remove()
