@@ -67,21 +67,24 @@ def shipped(config: pytest.Config) -> Path:
     """What is kept of these sources, by all workers and runs; the larger shipped folders, to begin with."""
     place = config.cache.mkdir("loopsheet")
     of_these = hashlib.sha256(json.dumps(sources(), sort_keys=True).encode()).hexdigest()[:16]
+    found, examples = place / of_these, place / f"{of_these}.examples"
     with (place / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        if not (place / of_these).exists():
+        if not found.exists():
             for older in filter(Path.is_dir, place.iterdir()):
                 shutil.rmtree(older)
-            with TemporaryDirectory(dir=place) as made:
-                Path(made, "kept").mkdir(mode=0o700)
-                # Where one file is run, after an edit, its tests ask for less.
-                for example in ("soft_steel", "worked_example") if hasattr(config, "workerinput") else ():
+                place.joinpath(f"{older.name}.examples").unlink(missing_ok=True)
+            found.mkdir(mode=0o700)
+        # Where one file is run, after an edit, its tests ask for less.
+        if hasattr(config, "workerinput") and not examples.exists():
+            for example in ("soft_steel", "worked_example"):
+                with TemporaryDirectory() as made:
                     copied = shutil.copytree(PAPER.parent / example, Path(made, example))
                     command = [sys.executable, "-m", "loopsheet", "build", str(copied)]
-                    environment = {**os.environ, SETTING: str(Path(made, "kept"))}
+                    environment = {**os.environ, SETTING: str(found)}
                     subprocess.run(command, env=environment, capture_output=True, check=False)
-                Path(made, "kept").rename(place / of_these)
-    return place / of_these
+            examples.touch()
+    return found
 
 
 @pytest.fixture(scope="session", autouse=True)
