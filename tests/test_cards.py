@@ -4,7 +4,10 @@ import html
 import io
 import json
 import re
+import shutil
+import subprocess
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -100,6 +103,20 @@ def test_every_view_has_the_numbers_that_the_command_prints(
             assert ["source: " + source] in book
 
 
+def test_the_article_compiles_without_overfull_boxes(tmp_path: Path, require: Callable[..., str]) -> None:
+    pdflatex = require("pdflatex")
+    toml = f"{TOML}[cards]\ncodes = {json.dumps([*CODES])}\n"
+    folder = folder_of(tmp_path / "own", toml)
+    assert main(["build", str(folder), "--to", "latex"]) == 0
+    for _ in range(3):
+        subprocess.run(
+            [pdflatex, "-no-shell-escape", "-interaction=nonstopmode", "report.tex"],
+            cwd=folder / "out", capture_output=True, check=False, timeout=120,
+        )  # fmt: skip
+    log = (folder / "out" / "report.log").read_text(encoding="latin-1")
+    assert not re.search(r"^!|Overfull|undefined|multiply defined|Missing character", log, re.MULTILINE)
+
+
 def test_without_the_section_nothing_is_there(report: Report, issued: Path) -> None:
     assert report.cards() == Cards()
     assert "id=cards" not in (issued / "out" / "report.html").read_text(encoding="utf-8")
@@ -181,8 +198,6 @@ def test_a_radius_that_nobody_knows_is_asked_for(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_impacts_has_no_cards(tmp_path: Path) -> None:
-    import shutil
-
     folder = tmp_path / "kepler"
     shutil.copytree(Path(__file__).parent.parent / "data" / "kepler", folder)
     with (folder / "report.toml").open("a", encoding="utf-8") as toml:

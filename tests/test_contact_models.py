@@ -10,6 +10,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from contact_laws import law_of
 from scipy.optimize import brentq
 from sympy import Expr, Rational, Symbol, beta, lambdify
 
@@ -22,7 +23,6 @@ from loopsheet.derivations.contact.models import LEDGER, MODELS
 from loopsheet.derivations.equation import Derivation
 from loopsheet.derivations.proof import check_step, prove
 from loopsheet.derivations.proved import ProofStatus
-from loopsheet.report.impacts.models import law_of
 from loopsheet.report.impacts.simulation import simulate
 from loopsheet.report.plan.special import EXACT, in_elementary_terms
 

@@ -16,7 +16,7 @@ RETURNED, RESTITUTIONS, IMPRINTS = "cards_returned", "cards_restitutions", "card
 WORDS = "in words"
 _CODES = {"parameter", "value"}
 """Columns of what is typed."""
-_SHARES = {words.TYPED[-1]: 0.4, WORDS: 0.78}
+_SHARES = {words.TYPED[-1]: 0.26, WORDS: 0.78}
 """Of the line, for columns of words."""
 
 
@@ -28,7 +28,7 @@ def blocks(cards: Cards) -> Blocks:
     speed = cards.made[0].speed
     return (
         _overview(cards.made, (Strong(("Cards",)), f" for impacts at {speed:.4g} m/s")),
-        _grouped("cards-typed", (Strong(("What to type in.",)),), cards.made, _typed),
+        _grouped("cards-typed", (Strong(("What to type in",)),), cards.made, _typed),
         _grouped(
             "cards-returned",
             (Strong(("What each returns",)), " at the measured speeds"),
@@ -45,19 +45,14 @@ def blocks(cards: Cards) -> Blocks:
 
 def _overview(cards: Iterable[Card], caption: Inlines) -> Table:
     """A row a code."""
-    heads = ("code", "version", "imprint", "greatest force", "contact time", "misses e by at most")
-    kinds = ("words", "words", *["left"] * 4)
-    shares = (0.24, 0.2, 0, 0, 0, 0)
+    heads = ("code", "imprint", "greatest force", "contact time", "misses e by at most")
     rows = []
     for card in cards:
         told = {row[0]: row[-1] for row in words.returned(card)}
-        cells = (card.title, card.version, told["imprint"], told["greatest force"], told["contact time"])
-        rows.append(Row(tuple((cell,) for cell in (*cells, words.misses(card)))))
-    columns = tuple(
-        TableColumn((head,), kind, share=share)
-        for head, kind, share in zip(heads, kinds, shares, strict=True)
-    )
-    return Table("cards-overview", caption, columns, (Rows(tuple(rows)),), look="list", wide=True)
+        cells = (told["imprint"], told["greatest force"], told["contact time"], words.misses(card))
+        rows.append(Row(((Code(card.name),), *((cell,) for cell in cells))))
+    columns = tuple(TableColumn((head,)) for head in heads)
+    return Table("cards-overview", caption, columns, (Rows(tuple(rows)),), look="list", whole=True)
 
 
 def _typed(card: Card) -> list[list[str]]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from sympy import Expr, Integer, Symbol
 
-from ...derivations.contact import hertz
-from ...derivations.contact.model import ContactModel
-from .law import ForceLaw, m_red, v_0, x, x_max
+from loopsheet.derivations.contact import hertz
+from loopsheet.derivations.contact.model import ContactModel
+from loopsheet.report.impacts.law import ForceLaw, m_red, v_0, x, x_max
 
 __all__ = ["law_of"]
 
