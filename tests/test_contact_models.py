@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
+from html import unescape
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import mpmath
@@ -12,6 +21,7 @@ import numpy as np
 import pytest
 from contact_laws import law_of
 from scipy.optimize import brentq
+from scipy.stats import chi2
 from sympy import Expr, Rational, Symbol, beta, lambdify
 
 import loopsheet
@@ -23,8 +33,12 @@ from loopsheet.derivations.contact.models import LEDGER, MODELS
 from loopsheet.derivations.equation import Derivation
 from loopsheet.derivations.proof import check_step, prove
 from loopsheet.derivations.proved import ProofStatus
+from loopsheet.report import build
 from loopsheet.report.impacts.simulation import simulate
 from loopsheet.report.plan.special import EXACT, in_elementary_terms
+from loopsheet.report.result import chi_square
+from loopsheet.report.study import Study
+from loopsheet.report.workbooks.contact_models import WORKBOOK
 
 SHIPPED = Path(loopsheet.__file__).parent / "data" / "contact_models"
 
@@ -128,6 +142,284 @@ def test_sums_of_squares_are_those_of_a_search_for_the_true_speeds(report: Any) 
         covariance = np.diag([u_e[k] ** 2, u_x[k] ** 2]) + u_v[k] ** 2 * np.outer(slopes[:, k], slopes[:, k])
         total += off[:, k] @ np.linalg.solve(covariance, off[:, k])
     assert float(report["chi2_johnson"].value) == pytest.approx(total, rel=1e-9)
+
+
+# --- few, slow and elastic tests, and what is left out ------------------------------------------------------
+
+
+def changed(place: Path, tests: str = "", leave: str = "", **parameters: str) -> Study:
+    """The shipped folder with other tests and parameters, or without one."""
+    text = (SHIPPED / "report.toml").read_text(encoding="utf-8")
+    lines = [line for line in text.splitlines() if not leave or not line.startswith(leave)]
+    for name, value in parameters.items():
+        lines = [line for line in lines if not line.startswith(f"{name} ")]
+        lines.insert(
+            lines.index(next(line for line in lines if line.startswith("[parameters]"))) + 1,
+            f'{name} = "{value}"',
+        )
+    (place / "report.toml").write_text("\n".join(lines), encoding="utf-8")
+    rows = [f"{n},{row}" for n, row in enumerate(tests.split("; "), 1)] if tests else []
+    own = "\n".join(("test,v [m/s],e [1],x_p [um]", *rows, ""))
+    (place / "measurements.csv").write_text(
+        own if rows else (SHIPPED / "measurements.csv").read_text(encoding="utf-8"), encoding="utf-8"
+    )
+    return Study(place)
+
+
+ALL = ("2.334,0.530,23.5", "2.940,0.512,29.7", "4.089,0.479,41.6", "4.504,0.467,45.97", "4.993,0.453,51.03")
+
+
+def test_two_tests_tell_no_curve_without_one_of_them(tmp_path: Path) -> None:
+    """Their leverages are 1: what is left over is 0/0, whatever rounding makes of it."""
+    report = changed(tmp_path, "; ".join(ALL[:2])).proved
+    cell = report.values.cell("rms_x_p_power")
+    assert cell.reason == (
+        "#DOMAIN! rms_x_p_power needs x_p_power_without[1]: outside the domain of (L163): "
+        "needs three tests: the others alone tell no curve"
+    )
+    assert [found for engine in report.engines for found in engine.findings] == []
+    assert [check.message for check in report.oddities if not check.passed] == []
+    assert report.values.rows_summed("rms_x_p_johnson", "tests") == 2
+
+
+def test_all_models_are_asked_for_the_same_tests(tmp_path: Path) -> None:
+    """Of a test without loss Thornton has no pressure; no other model may count it for itself."""
+    elastic = (ALL[0], "2.940,1.000,29.7", *ALL[2:])
+    values = changed(tmp_path, "; ".join(elastic)).computed.values
+    names = [
+        name for name in values.sheet.by_name if name.startswith(("rms_", "chi2_")) and name != "chi2_eiv"
+    ]
+    assert len(names) == 12
+    assert {values.rows_summed(name, "tests") for name in names} == {4}
+    assert values.cell("r_Y_alone", (2,)).reason.endswith(
+        "e = 1: nothing is lost, which tells nothing of yield"
+    )
+    # And the mean over the others is over those that tell a pressure.
+    alone, without = values.value["p_y_alone"], values.value["p_y_without"]
+    others = np.array([alone[row] for row in (2, 3, 4)])
+    assert without[0] == pytest.approx(np.exp(np.log(others).mean()), rel=1e-13)
+
+
+def test_below_its_limit_thornton_s_impact_is_hertz_s(tmp_path: Path) -> None:
+    values = changed(
+        tmp_path, "; ".join(("0.05,0.999,0.01", "2.940,0.512,29.7", "4.089,0.479,41.6"))
+    ).computed.values
+    v, V_y = values.value["v"], float(values.value["V_y"][0])
+    assert v[0] < V_y < v[1]
+    for name in ("x_m", "F_m", "e", "x_p"):
+        own, elastic = values.value[f"{name}_thornton"], values.value[f"{name}_hertz"]
+        assert own[0] == pytest.approx(elastic[0], rel=1e-12), name
+    assert values.value["e_thornton"][0] == 1
+    assert values.value["x_p_thornton"][0] == 0
+    assert values.value["d_e_v_thornton"][0] == 0
+    # On both sides of the limit the impact is the same.
+    model, where = thornton.THORNTON, numbers("steel")
+    limit = closed(model, thornton.V_y, where)
+    for symbol, near in ((thornton.e_T, 1e-9), (thornton.x_m, 1e-9), (thornton.peak, 1e-9)):
+        below, above = (
+            closed(model, symbol, where | {hertz.v: limit * (1 + step)}) for step in (-1e-12, 1e-12)
+        )
+        assert below == pytest.approx(above, rel=near)
+
+
+def test_slopes_of_a_model_are_those_of_its_cells() -> None:
+    """Along the cells, with their cases; here as differences."""
+    for case in ("steel", "polymer"):
+        where = numbers(case)
+        for model in MODELS:
+            for symbol in model.predicts.values():
+                if model.left_out:
+                    continue
+                slope = model.slope(symbol, hertz.v)
+                for equation in (*reversed(model.cells), hertz.stiffness, hertz.radius, hertz.modulus):
+                    slope = slope.xreplace({equation.sides[0]: equation.value})
+                speed, step = where[hertz.v], 1e-6
+                ends = (closed(model, symbol, where | {hertz.v: speed * (1 + s)}) for s in (-step, step))
+                below, above = ends
+                found = float(slope.subs(where).evalf(30))
+                assert found == pytest.approx((above - below) / (2 * step * speed), rel=1e-7, abs=1e-15)
+
+
+def test_a_restitution_above_one_has_a_mark(tmp_path: Path) -> None:
+    report = changed(tmp_path, "0.1,0.9,1.0; 1.0,0.9,10; 10,0.9,100").computed
+    assert report.values.value["e_johnson"][0] > 1
+    assert [bool(mark) for mark in report.marks.of("e_johnson")] == [True, False, False]
+    assert report.values.cell("x_p_johnson", (1,)).reason.endswith("the recovery is the whole approach")
+
+
+def test_tests_slower_than_first_yield_have_a_mark(tmp_path: Path) -> None:
+    report = changed(tmp_path, sigma_Y="400 GPa").computed
+    assert all(mark.startswith("slower than first yield") for mark in report.marks.of("v_over_Y"))
+    assert report.marks.of("p_y")[0].startswith("below the pressure of first yield")
+    (tmp_path / "sound").mkdir()
+    sound = changed(tmp_path / "sound").computed
+    assert [mark for name in ("v_over_Y", "p_y", "e_johnson") for mark in sound.marks.of(name) if mark] == []
+
+
+def test_the_yield_strength_may_be_left_out(tmp_path: Path) -> None:
+    study = changed(tmp_path, leave="sigma_Y")
+    assert {"v_Y", "v_over_Y", "sigma_Y"}.isdisjoint(study.computed.sheet.by_name)
+    build.build(study, tmp_path / "out", ("html",))
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "Where yield begins" not in page
+    assert "Where yield begins" in shipped_page()
+
+
+def test_a_parameter_that_is_missing_is_asked_for_with_an_example(tmp_path: Path) -> None:
+    with pytest.raises(loopsheet.LoopsheetError, match=r'write E_1 = "210 GPa"'):
+        _ = changed(tmp_path, leave="E_1").computed
+
+
+def test_the_deceleration_is_that_of_the_ball(tmp_path: Path) -> None:
+    values = changed(tmp_path, target_mass="20 g").computed.values
+    mass, force = float(values.value["ball_mass"][0]), values.value["F_m_power"]
+    assert mass > 1.3 * float(values.value["m_red"][0])
+    assert values.value["deceleration_power"] == pytest.approx(force / mass, rel=1e-14)
+
+
+# --- what is shown of the models ----------------------------------------------------------------------------
+
+
+@cache
+def shipped_page() -> str:
+    with TemporaryDirectory() as place:
+        build.build(Study(SHIPPED), Path(place), ("html",))
+        page = (Path(place) / "report.html").read_text(encoding="utf-8")
+    return re.sub(r"<script(?: [^>]*)?>.*?</script>", "", page, flags=re.DOTALL)
+
+
+def words_of(page: str) -> str:
+    return re.sub(r"\s+", " ", re.sub("<[^>]*>", " ", unescape(page)))
+
+
+def test_a_table_says_what_each_model_assumes_and_takes() -> None:
+    said = words_of(shipped_page())
+    for model in MODELS:
+        assert model.assumes in said
+        assert model.source in said
+    assert "two numbers; each restitution is told" in said
+    assert WORKBOOK.told["results"].count("no number") == 2
+
+
+def test_sums_of_squares_have_their_number_and_a_probability(report: Any) -> None:
+    """Two squares of each test, less the constant; as scipy has the distribution."""
+    table = next(
+        each for each in re.findall(r"<table.*?</table>", shipped_page(), re.DOTALL) if "probability" in each
+    )
+    rows = [
+        re.findall(r"<td[^>]*>([^<]*)", row) for row in re.findall(r"<tr.*?(?=<tr|</tbody)", table, re.DOTALL)
+    ]
+    found = {tuple(row[-4:]) for row in rows if row}
+    rare = "below 1\u00a0×\u00a010⁻¹⁵"
+    assert {row[:3] for row in found} == {
+        ("10", "0", "10"),
+        ("5", "0", "5"),
+        ("10", "1", "9"),
+        ("5", "2", "3"),
+    }
+    assert {row[3] for row in found} == {rare, "6\u00a0×\u00a010⁻¹²"}
+    square = {each.name: each for each in WORKBOOK.squares}["chi2_johnson"]
+    assert chi_square.freedom(square, Study(SHIPPED).computed) == 9
+    assert chi_square.tail(14.0, 9) == pytest.approx(chi2.sf(14.0, 9), rel=1e-12)
+
+
+def test_tables_are_numbered_as_they_come() -> None:
+    numbers_of = [
+        int(n)
+        for n in re.findall(r"<caption[^>]*>(?:<[^>]*>)*Table[\s\u00a0](?:<[^>]*>)*(\d+)", shipped_page())
+    ]
+    assert len(numbers_of) > 15
+    assert numbers_of == sorted(numbers_of)
+
+
+TOY = '''\
+"""A toy: what is lost is lost from the approach."""
+
+from __future__ import annotations
+
+from sympy.core.parameters import evaluate
+
+from ..equation import Equation, Kind
+from ..vocabulary import Quantity, Vocabulary
+from . import hertz
+from .model import ContactModel
+from .quantities import SHARED
+
+OWN = (Quantity("x_p_toy", "imprint by the toy", "m", r"x_{p,\\mathrm{toy}%s}", (1e-6, 1e-4)),)
+_WORDS = Vocabulary(*SHARED.values(), *hertz.OWN, *OWN)
+(e,) = SHARED.plain("e")
+x_m, peak, x_p = _WORDS.plain("x_m_hertz F_m_hertz x_p_toy")
+
+with evaluate(False):
+    value = x_m * (1 - e)
+    imprint = Equation("(L401)", (x_p, value), "a toy says so", Kind.ASSUMPTION, "a toy", defines=x_p)
+
+TOY = ContactModel(
+    name="toy",
+    title="a toy of the tests",
+    mark="toy",
+    assumes="what is lost is lost from the approach",
+    source="nobody, nowhere",
+    quantities=OWN,
+    entries=(imprint,),
+    cells=(hertz.approach, hertz.greatest, imprint),
+    predicts={"x_p": x_p},
+    loading=hertz.HERTZ.loading,
+    unloading=hertz.unloads(peak, x_m, x_p),
+)
+'''
+SIMULATED = """\
+from loopsheet.derivations.contact import hertz
+from loopsheet.derivations.contact.toy import TOY
+from loopsheet.report import build
+from loopsheet.report.impacts.models import law_of
+from loopsheet.report.impacts.simulation import simulate
+law = law_of(TOY)
+given = {hertz.E_1: 2e11, hertz.E_2: 2e11, hertz.nu_1: .3, hertz.nu_2: .3, hertz.d: .01, hertz.e: .6}
+found = simulate(law, {symbol: given[symbol] for symbol in law.constants}, .01, 3.0)
+print(round(found.x_p / found.x_m, 9))
+"""
+
+
+def test_a_model_is_one_file_and_one_line(tmp_path: Path) -> None:
+    """Added to a copy of the sources, it is in the algebra, the sheet, tables, pictures and sentences."""
+    root = tmp_path / "loopsheet"
+    left = shutil.ignore_patterns(".*", "tests", "out", "docs", "requirements", "benchmarks", "__pycache__")
+    shutil.copytree(Path(loopsheet.__file__).parent, root, ignore=left)
+    (root / "derivations" / "contact" / "toy.py").write_text(TOY, encoding="utf-8")
+    models = root / "derivations" / "contact" / "models.py"
+    text = models.read_text(encoding="utf-8").replace(", POWER_LAW)\n", ", POWER_LAW, TOY)\n", 1)
+    models.write_text(
+        text.replace("from .thornton", "from .toy import TOY\nfrom .thornton"), encoding="utf-8"
+    )
+
+    def run(*words: str) -> str:
+        own = {**os.environ, "PYTHONPATH": str(tmp_path), "LOOPSHEET_CACHE": ""}
+        done = subprocess.run(
+            [sys.executable, *words], cwd=tmp_path, env=own, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    assert "x_p_toy = x_m_hertz*(1 - e)" in run(
+        "-m", "loopsheet", "prove", "(L401)", "loopsheet/data/contact_models"
+    )
+    run("-m", "loopsheet", "build", "loopsheet/data/contact_models", "--out", "out", "--to", "html,xlsx,json")
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    page = re.sub(r"<script(?: [^>]*)?>.*?</script>", "", page, flags=re.DOTALL)
+    for name in ("x_p_toy", "miss_x_p_toy", "rms_x_p_toy", "chi2_toy"):
+        assert re.search(rf'data-cell="?{name}\b', page), name
+    said = words_of(page)
+    assert (
+        "A toy of the tests : with no number from the tests and each restitution it misses the imprints by"
+        in said
+    )
+    assert "nobody, nowhere" in said
+    pictures = re.findall(r"<svg role=img.*?</svg>", page, re.DOTALL)
+    assert ["a toy of the tests" in words_of(picture) for picture in pictures] == [True, False, True]
+    cells = json.loads((tmp_path / "out" / "values.json").read_text(encoding="utf-8"))["cells"]
+    assert cells["x_p_toy"]["value"][0] == pytest.approx(cells["x_m_hertz"]["value"][0] * 0.47, rel=1e-14)
+    assert float(run("-c", SIMULATED)) == pytest.approx(0.4, abs=1e-8)
 
 
 # --- closed forms beside simulated impacts ------------------------------------------------------------------

@@ -16,6 +16,7 @@ from sympy import (
     Sum,
     Symbol,
     besselj,
+    beta,
     exp,
     log,
     pi,
@@ -117,6 +118,12 @@ def test_printed(expression: Expr, latex: str) -> None:
 def test_what_sympy_has_ordered_begins_with_a_positive_term_and_is_one_fraction() -> None:
     assert MathPrinter().doprint(a - x) == "a - x"
     assert MathPrinter().doprint(pi * a / (b * c)) == r"\frac{\pi a}{b c}"
+
+
+def test_what_stands_in_euler_s_beta_function_is_set_too() -> None:
+    """sympy writes it as text: ``alpha``."""
+    alpha = VOCABULARY["alpha"].symbol
+    assert PRINTER.doprint(beta(1 / (alpha + 1), Rational(1, 2))) == r"\operatorname{B}(1/(1 + \alpha), 1/2)"
 
 
 def test_half_an_equation_is_worse_than_none() -> None:

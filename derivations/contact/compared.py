@@ -89,7 +89,7 @@ def compared(model: ContactModel, number: str) -> Compared:
         tell(
             f"rms_{name}",
             sqrt(over_tests(miss[k] ** 2) / n_tests),
-            f"root of the mean square of what the {_WORDS[name]} is off by",
+            f"root-mean-square miss of the {_WORDS[name]}",
             rf"\bar{{\epsilon}}_{{{name[0]},{mark}%s}}",
         )
     if not model.left_out:

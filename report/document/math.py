@@ -223,6 +223,10 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
     def _print_log(self, expr: Expr, exp: str | None = None) -> str:
         return self._call(r"\ln", self._print(expr.args[0]), exp)
 
+    def _print_beta(self, expr: Expr, exp: str | None = None) -> str:
+        # sympy's own writes what stands in it as text, not as LaTeX
+        return self._call(r"\operatorname{B}", ", ".join(map(self._inline, expr.args)), exp)
+
     def _call(self, function: str, inside: str, exp: str | None) -> str:
         text = function + self._bracket(inside)
         return text if exp is None else f"{self._bracket(text)}^{{{exp}}}"

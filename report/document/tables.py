@@ -163,7 +163,7 @@ class Tables:
             _Made("value", lambda each: self.material.item(each.name), "number"),
             _Made("squares", lambda each: str(number(each, self.report)), "number"),
             _Made("taken", lambda each: str(each.fitted), "number", tip="numbers that were taken from them"),
-            _Made("freedom", lambda each: str(freedom(each, self.report)), "number"),
+            _Made("degrees of freedom", lambda each: str(freedom(each, self.report)), "number"),
             _Made("probability", likely, "number", tip="of a sum that is as large, or larger"),
         )
         title = "Sums of squares, and how likely chance alone makes them so large"

@@ -112,7 +112,7 @@ def _tables() -> Iterator[TableSpec]:
         (),
         words=(
             ("model", "takes for true", "from the tests", "source"),
-            *((model.title, model.assumes, _taken(model), model.source) for model in MODELS),
+            *((sentence_case(model.title), model.assumes, _taken(model), model.source) for model in MODELS),
         ),
     )
     yield TableSpec("taken", "What is taken from the tests", (*_MEANS, "V_y", "alpha_eiv", "C_eiv"))
@@ -151,34 +151,31 @@ def _taken(model: ContactModel) -> str:
 
 def _result(model: ContactModel) -> str:
     """What it takes from the tests, and how far it misses them: a sentence a line."""
-    taken = f"**{sentence_case(model.title)}** takes {_numbers(model)} from the tests"
+    with_what = f"**{sentence_case(model.title)}**: with {_numbers(model)} from the tests"
     if model.constant:
-        name, meaning = (
-            model.constant.mean.sides[0].name,
-            LEDGER.vocabulary[model.constant.mean.sides[0].name].meaning,
-        )
-        taken += f", the {meaning} {{sym}}`{name}` = {{cell}}`{name}`"
-    taken += ", and is told each restitution" if model.told else ""
+        own = LEDGER.vocabulary[model.constant.mean.sides[0].name]
+        with_what += f", the {own.meaning} {{sym}}`{own.name}` = {{cell}}`{own.name}`"
+    with_what += " and each restitution" if model.told else ""
     missed = " and ".join(
         f"the {_TOLD[name]}s by {{cell}}`rms_{name}_{model.name}`"
         for name in ("x_p", "e")
         if name in model.predicts
     )
     over = f"over {{count}}`rms_x_p_{model.name} tests` of {{count}}`tests` tests"
-    return f"{taken}: it misses {missed}, {over}."
+    return f"{with_what} it misses {missed}, {over}."
 
 
 def _equations(model: ContactModel) -> str:
     """What it assumes, and the numbers of the equations by which it predicts."""
     of = {each.defines or each.sides[0]: each.label for each in model.cells}
     told = [f"{_TOLD[name]} {{eq}}`{of[symbol]}`" for name, symbol in model.predicts.items() if symbol in of]
-    said = f"**{sentence_case(model.title)}**: {model.assumes}. It says {_listed(told)}."
+    said = f"**{sentence_case(model.title)}**: {model.assumes}. Equations: {_listed(told)}."
     if constant := model.constant:
         alone = _listed([f"{{eq}}`{each.label}`" for each in constant.of_test])
-        said += f" Each test tells its constant {alone}; all of them {{eq}}`{constant.mean.label}`"
-        said += f", all others {{eq}}`{constant.without.label}`."
+        said += f" Its constant: of each test {alone}, of all {{eq}}`{constant.mean.label}`"
+        said += f", of all others {{eq}}`{constant.without.label}`."
     for symbol in model.left_out.values():
-        said += f" By all other tests it is {{eq}}`{of[symbol]}`."
+        said += f" By all other tests: {{eq}}`{of[symbol]}`."
     return said
 
 
