@@ -18,7 +18,7 @@ from sympy.logic.boolalg import Boolean
 from .cells import running
 from .equation import Equation
 from .evaluation import NotEvaluable, Tape
-from .reductions import OrderStatistic
+from .reductions import Member, OrderStatistic
 from .sums import in_terms
 
 __all__ = ["FewRows", "Statement"]
@@ -134,6 +134,7 @@ def _chosen(sizes: set[Any], statements: Sequence[Statement], least: int) -> dic
     said = [statement for statement in statements if statement.symbols and statement.symbols <= sizes]
     every = {condition for statement in statements for condition in statement.conditions}
     more = [condition for condition in every if condition.free_symbols and condition.free_symbols <= sizes]
+    more += _in_groups([part for statement in statements for part in statement.parts])
     choices = product(range(max(_FEWEST, least), _MOST + 1), repeat=len(ordered))
     agreed: list[dict[Any, int]] = []
     for counts in islice(sorted(choices, key=max), _CHOICES) if ordered else ():
@@ -147,6 +148,14 @@ def _chosen(sizes: set[Any], statements: Sequence[Statement], least: int) -> dic
             if all(condition.subs(where) == true for condition in more):
                 return where
     return agreed[0] if agreed else {}
+
+
+def _in_groups(parts: Iterable[Any]) -> list[Boolean]:
+    """That there are more rows than groups of them, for some group has several."""
+    parts = list(parts)
+    ends = {index: end for index, _, end in running(parts)}
+    told = {member.args for part in parts for member in part.atoms(Member)}
+    return [ends[group] < ends[row] for row, group in sorted(told, key=str) if {row, group} <= ends.keys()]
 
 
 def _is_evaluable(parts: Iterable[Any]) -> bool:

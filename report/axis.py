@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from .content import content
 
 if TYPE_CHECKING:
-    from sympy import Expr, Symbol
+    from sympy import Symbol
     from sympy.logic.boolalg import Boolean
 
 __all__ = ["Axis", "CountedAxis", "GroupAxis", "MemberAxis", "PairAxis", "RepeatAxis"]
@@ -275,13 +275,6 @@ class MemberAxis(Axis):
     def group_name(self) -> str:
         """What the index of the groups is called."""
         return str(self.group.name)
-
-    @cached_property
-    def member(self) -> Expr:
-        """One where a row belongs to a group, nought elsewhere."""
-        from ..derivations.reductions import Member
-
-        return Member(self.of.index, self.group)
 
     @property
     def named(self) -> dict[str, Axis]:

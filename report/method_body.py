@@ -28,7 +28,7 @@ from .column import Column, Formula, Given, Root, SheetError, shown_in
 from .differences import is_difference
 from .fitted import DeclaredFit, told_apart
 from .messages.errors import listing
-from .named import name_of, references, summed_over
+from .named import member, name_of, references, summed_over
 from .quantity import Bounds
 from .sheet import Sheet
 from .workbook import Claimed, Curve, FigureSpec, Measured, Parameter, TableSpec
@@ -305,7 +305,7 @@ class MethodBody(dict[str, Any]):
             raise SheetError(
                 f"{formula} names {listing([axis.name for axis in rows])}, not the rows of a {of.row}"
             )
-        return Sum(formula * of.members.member, (self.axis.index, 1, self.axis.size))
+        return Sum(formula * member(of.members), (self.axis.index, 1, self.axis.size))
 
     def _number_of_groups(self, formula: Any, of: Any) -> Expr:
         """How many rows each group has; of a formula, in how many of them it has a value."""
@@ -550,7 +550,7 @@ class MethodBody(dict[str, Any]):
         )  # as long as both have one unit
         self.claims.append(Claimed(equation.label, meaning, self.axis_of(left, right), left, right))
         for premise, unknown in found:
-            if any(member.has(Member) for member in premise.members):
+            if any(side.has(Member) for side in premise.members):
                 raise SheetError(_NO_ALGEBRA.format(what=f"{unknown}, on which '{meaning}' rests,"))
         premises, unknowns = zip(*found, strict=True) if found else ((), ())
         self.entries.append(Derivation.of(equation, premises, unknowns, "Put in what the quantities are."))

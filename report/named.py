@@ -8,13 +8,13 @@ from functools import cached_property
 from sympy import And, Basic, Eq, Expr, Indexed, Rational, Symbol, floor
 from sympy.logic.boolalg import Boolean
 
-from ..derivations.reductions import REDUCTIONS, OrderStatistic, member_of, taken_of
+from ..derivations.reductions import REDUCTIONS, Member, OrderStatistic, member_of, taken_of
 from .axis import Axis, GroupAxis, MemberAxis
 from .column import Column, Iterated, Reference, Root, SheetError
 from .messages.errors import close
 from .quantity import Bounds
 
-__all__ = ["Named", "name_of", "references", "summed_over", "within"]
+__all__ = ["Named", "member", "name_of", "references", "summed_over", "within"]
 
 
 class Named:
@@ -234,7 +234,12 @@ def references(expression: Basic, sums: Mapping[Expr, Axis], over: Axis | None =
 
 def summed_over(axes: Iterable[Axis]) -> dict[Expr, Axis]:
     """The axis that a sum over a running number runs over, or one with a factor that tells groups."""
-    return {each.member if isinstance(each, MemberAxis) else each.index: each for each in axes}
+    return {member(each) if isinstance(each, MemberAxis) else each.index: each for each in axes}
+
+
+def member(axis: MemberAxis) -> Member:
+    """One where a row belongs to a group, nought elsewhere."""
+    return Member(axis.of.index, axis.group)
 
 
 def _over(total: Basic, sums: Mapping[Expr, Axis]) -> Axis:

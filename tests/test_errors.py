@@ -10,6 +10,7 @@ import os
 import re
 from argparse import Namespace
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -137,6 +138,16 @@ def foreign_code() -> None:
     for name, text in {"report.toml": TOML, "measurements.csv": CSV, "published.csv": PUBLISHED}.items():
         Path(name).write_text(text)
     load(Path(), refuse)
+
+
+def grouped_by_numbers() -> None:
+    def in_groups(*_: object) -> Workbook:
+        return replace(WORKBOOK, groups=("place",))
+
+    table = re.sub(r"(?m)^(\d)", r"7,\1", CSV).replace("test,", "place,test,")
+    for name, text in {"report.toml": TOML, "measurements.csv": table, "published.csv": PUBLISHED}.items():
+        Path(name).write_text(text)
+    load(Path(), in_groups)
 
 
 def load_a_file() -> None:
@@ -293,6 +304,7 @@ CASES: dict[str, Callable[[], None]] = {
     "LS317": toml(
         "[published]", '[measurements.taken]\nx_p = { from = "values.json", cell = "x_p" }\n[published]'
     ),
+    "LS318": grouped_by_numbers,
     "LS401": csv("2.940", "2.9 40"),
     "LS402": csv("2.940", '"2,940"'),
     "LS403": csv("2,2.940", ",2.940"),

@@ -173,18 +173,6 @@ class Inputs:
         """The column of words that says which row is which: the first with a word for every test; or none."""
         return tuple(name for name in self.remarks if all(self.texts[test][name] for test in self.tests))[:1]
 
-    def words(self, column: str) -> list[str]:
-        """The words of a column in the order in which they first appear, in tests that are left out too."""
-        found = [self.texts[test][column] for test in self.tests]
-        for each in self.left_out:
-            found.insert(each.place, each.texts[column])
-        return list(dict.fromkeys(found))
-
-    def groups(self, column: str) -> dict[int, int]:
-        """The number of each test's word, from 1: whatever is left out, others keep theirs."""
-        number = {word: place for place, word in enumerate(self.words(column), start=1)}
-        return {test: number[row[column]] for test, row in self.rows.items()}
-
     def called(self, test: int) -> str:
         """A row in a sentence: its number, and its name if it has one, ``3 (S-17)``."""
         names = [self.rows[test][name] for name in self.naming]
@@ -480,9 +468,9 @@ class _Reader:
         )
         if source is None:
             return None
-        of = self.workbook.measured if self.workbook else None
-        row = self.workbook.row if self.workbook else "test"
-        groups = self.workbook.groups if self.workbook else ()
+        of, row, groups = None, "test", tuple[str, ...]()
+        if self.workbook:
+            of, row, groups = self.workbook.measured, self.workbook.row, self.workbook.groups
         found = read_measurements(source, of, modes, self.findings, wanted, row, groups)
         return found and self.take_columns(found, wanted)
 

@@ -9,6 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from ..inputs.groups import groups
 from ..quantity import Printed, behind
 from ..result.result import Report
 from ..sheet import MemberAxis
@@ -26,7 +27,7 @@ def given(report: Report) -> dict[str, Any]:
         "heads": inputs.heads or {"test": inputs.workbook.row},
         "texts": _texts(report, measured),
         "naming": [*inputs.naming],
-        **({"groups": groups} if (groups := _groups(report)) else {}),
+        **({"groups": own} if (own := _groups(report)) else {}),
         "toml": list(_toml(report)),
         **_files(report),
     }
@@ -35,7 +36,7 @@ def given(report: Report) -> dict[str, Any]:
 def _groups(report: Report) -> dict[str, dict[int, int]]:
     """For each axis of rows in groups, the number of every test's group."""
     axes = (axis for axis in report.sheet.axes if isinstance(axis, MemberAxis))
-    return {axis.name: report.inputs.groups(axis.by) for axis in axes}
+    return {axis.name: groups(report.inputs, axis.by) for axis in axes}
 
 
 def _tests(report: Report, measured: Mapping[str, tuple[Printed | None, ...]]) -> list[dict[str, Any]]:

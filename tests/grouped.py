@@ -1,0 +1,70 @@
+"""A one-way analysis of variance as a method of one's own, of NIST's data or of a few made-up readings."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+DATA: dict[str, dict[str, Any]] = tomllib.loads(
+    (Path(__file__).resolve().parent / "strd" / "variance.toml").read_text(encoding="utf-8")
+)
+METHOD = """
+from sympy import sqrt
+from loopsheet import Method, claim, count, fit, given, groups, let, mean, measured, median, pairs, table
+from loopsheet import total, unknown
+
+class Variance(Method, source="ISO 5725-2", headline="between within F R2 s apart"):
+    "One-way analysis of variance."
+    y = measured("mm", "reading")
+    instrument = groups("instrument")
+    many = let(count(y, of=instrument), "readings of an instrument")
+    level = let(mean(y, of=instrument), "mean of an instrument", like=y)
+    squares = let(sum((y - level) ** 2, of=instrument), "squares of an instrument", "mm^2")
+    scatter = let(sqrt(squares / (many - 1)), "scatter of an instrument", like=y)
+    all_y = let(mean(y), "mean of all", like=y)
+    between = let(sum(many * (level - all_y) ** 2), "squares between instruments", "mm^2")
+    within = let(sum(squares), "squares within instruments", "mm^2")
+    F = let(between / (count(level) - 1) / (within / (count(y) - count(level))), "F statistic")
+    R2 = let(between / (between + within), "share between instruments")
+    s = let(sqrt(within / (count(y) - count(level))), "scatter, pooled", like=y)
+    apart = let(max(level) - min(level), "range of the means", like=y)
+    middle = let(sum(many * level) / count(y) - all_y, "mean of means and mean", like=y)
+"""
+FEW = (
+    ("A", "1.50"),
+    ("B", "2.25"),
+    ("A", "1.75"),
+    ("A", "1.25"),
+    ("C", "3.50"),
+    ("B", "2.75"),
+    ("C", "3.25"),
+)
+
+
+def write(
+    path: Path,
+    rows: tuple[tuple[str, ...], ...] = FEW,
+    head: str = "instrument,y [mm]",
+    code: str = METHOD,
+    more: str = "",
+) -> Path:
+    """A folder of these readings, each a word and a number."""
+    path.mkdir(exist_ok=True)
+    (path / "workbook.py").write_text(code, encoding="utf-8")
+    text = "\n".join(",".join((str(n), *row)) for n, row in enumerate(rows, start=1))
+    (path / "measurements.csv").write_text(f"reading,{head}\n{text}\n", encoding="utf-8")
+    (path / "report.toml").write_text(
+        f'title = "Instruments"\nworkbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n{more}',
+        encoding="utf-8",
+    )
+    return path
+
+
+def certified(name: str, path: Path) -> Path:
+    """A folder of NIST's readings, the instruments taking turns."""
+    each = [own.split() for own in DATA[name]["readings"]]
+    rows = tuple(
+        (f"I{group}", y) for turn in zip(*each, strict=True) for group, y in enumerate(turn, start=1)
+    )
+    return write(path, rows)

@@ -1,0 +1,76 @@
+"""Rows in groups in the page: after an edit it is what a folder with the edit gives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import driving
+import grouped
+import pytest
+from driving import Live
+
+from loopsheet.report.build import build
+from loopsheet.report.study import Study
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    return grouped.write(tmp_path, tuple((*row, "") for row in grouped.FEW), "instrument,y [mm],left out")
+
+
+def opened(folder: Path, open_page: Callable[..., Live]) -> Live:
+    build(Study(folder), folder / "out", ("html",))
+    return open_page(folder / "out" / "report.html")
+
+
+def rebuilt(folder: Path, *edits: tuple[str, str]) -> object:
+    table = folder / "measurements.csv"
+    text = table.read_text(encoding="utf-8")
+    for old, new in edits:
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    table.write_text(text, encoding="utf-8")
+    return Study(folder).computed.values
+
+
+def test_an_edited_reading_moves_its_group(open_page: Callable[..., Live], folder: Path) -> None:
+    live = opened(folder, open_page)
+    issued = Study(folder).computed.values
+    live.type("y", 6, "2.85")
+    again = rebuilt(folder, ("6,B,2.75", "6,B,2.85"))
+    assert driving.differences(live.cells(), again) == []
+    assert driving.differences(live.cells(), issued) != []
+    live.page.locator('main [data-cell="level"][data-index="2"]').first.click()
+    beside = live.page.locator("#bar-precedents button").evaluate_all(
+        "all => all.map((one) => one.dataset.goto)"
+    )
+    assert beside == ["y[2]", "y[6]"]
+    assert "over 2\u00a0readings" in (live.page.locator("#bar-source").text_content() or "")
+
+
+def test_a_group_that_is_left_out_leaves_the_numbers_of_the_others(
+    open_page: Callable[..., Live], folder: Path
+) -> None:
+    live = opened(folder, open_page)
+    for reading in (1, 3, 4):
+        live.page.locator(f'input[data-use="{reading}"]').uncheck()
+    rows = ((f"{n},A,{y},", f"{n},A,{y},dropped") for n, y in ((1, "1.50"), (3, "1.75"), (4, "1.25")))
+    again = rebuilt(folder, *rows)
+    cells = [cell for cell in live.cells() if cell.name != "y"]
+    assert driving.differences(cells, again) == []
+    assert [cell.index for cell in cells if cell.name == "level"] == ["2", "3"]
+    build(Study(folder), folder / "out", ("html",))
+    back = open_page(folder / "out" / "report.html")
+    for reading in (1, 3, 4):
+        back.page.locator(f'input[data-use="{reading}"]').check()
+    whole = Study(grouped.write(folder.parent / "whole")).computed.values
+    assert driving.differences([cell for cell in back.cells() if cell.name != "y"], whole) == []
+    row = back.page.locator('main tr:has([data-cell="level"][data-index="1"])').first
+    assert (row.text_content() or "").startswith("1A")
+
+
+def test_no_row_is_added_whose_group_nobody_told(open_page: Callable[..., Live], folder: Path) -> None:
+    live = opened(folder, open_page)
+    assert live.page.locator("#live-add").count() == 0
+    assert "with the word of its group" in (live.page.locator("p.add").text_content() or "")

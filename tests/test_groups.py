@@ -1,0 +1,179 @@
+"""Rows in groups, by a column of words: an axis of its own, on which all else goes on."""
+
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import grouped
+import numpy as np
+import pytest
+
+import loopsheet
+from loopsheet.report import build, method
+from loopsheet.report.cli import main
+from loopsheet.report.column import SheetError
+from loopsheet.report.study import Study
+
+SIZE = {"between": 1e-6, "within": 1e-6, "s": 1e-3, "F": 1.0, "R2": 1.0}  # of mm in SI
+
+
+@pytest.mark.parametrize("name", grouped.DATA)
+def test_it_is_what_nist_certifies(name: str, tmp_path: Path) -> None:
+    values = Study(grouped.certified(name, tmp_path)).computed.values
+    found = {cell: values.scalar(cell) / size for cell, size in SIZE.items()}
+    assert found == pytest.approx({cell: grouped.DATA[name][cell] for cell in SIZE}, rel=2e-14)
+
+
+@pytest.mark.parametrize("name", grouped.DATA)
+def test_every_engine_computes_it(
+    name: str, tmp_path: Path, require: Callable[..., str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    require("node")
+    require("soffice")
+    assert main(["check", str(grouped.certified(name, tmp_path))]) == 0
+    told = capsys.readouterr().out
+    assert re.findall(r"engine +(\w+) .* at most [\d.]+ eps", told) == ["numpy", "JavaScript", "xlsx"]
+
+
+def test_a_group_is_a_row(tmp_path: Path) -> None:
+    report = Study(grouped.write(tmp_path)).report
+    values = report.values
+    assert values.labels(report.sheet["level"]) == [(1,), (2,), (3,)]
+    assert values.value["many"].tolist() == [3, 2, 2]
+    assert values.value["level"] == pytest.approx([1.5e-3, 2.5e-3, 3.375e-3], rel=1e-15)
+    assert values.value["scatter"] == pytest.approx(
+        1e-3 * np.array([0.25, 0.125**0.5, 0.03125**0.5]), rel=1e-15
+    )
+    assert report.sheet["level"].axis is not None
+    assert report.sheet["level"].axis.row == "instrument"
+
+
+def test_what_groups_share_is_one_error(tmp_path: Path) -> None:
+    stated = '[uncertainty]\ny = "u = 0.2 mm"\n'
+    sure = Study(grouped.write(tmp_path, more=stated)).computed.uncertain().u
+    assert sure["level"] == pytest.approx(0.2e-3 / np.sqrt([3, 2, 2]), rel=1e-14)
+    assert sure["apart"][0] == pytest.approx(0.2e-3 * np.sqrt(1 / 3 + 1 / 2), rel=1e-14)
+    assert sure["middle"][0] == pytest.approx(0, abs=1e-18)  # both rest on the same readings
+    level, all_y = np.array([1.5, 2.5, 3.375]), 16.25 / 7
+    by_reading = 2 * (np.repeat(level, [3, 2, 2]) - all_y)
+    assert sure["between"][0] == pytest.approx(0.2e-6 * np.sqrt((by_reading**2).sum()), rel=1e-12)
+
+
+def test_a_reading_that_is_missing_is_left_out(tmp_path: Path) -> None:
+    rows = tuple((word, "" if n == 2 else y) for n, (word, y) in enumerate(grouped.FEW))
+    code = grouped.METHOD.replace("    instrument =", '    x = measured("mm", "another")\n    instrument =')
+    folder = grouped.write(
+        tmp_path, tuple((*row, "1.0") for row in rows), "instrument,y [mm],x [mm]", code,
+        '[expected]\n"y[3]" = "not taken"\n',
+    )  # fmt: skip
+    report = Study(folder).report
+    assert report.values.value["many"].tolist() == [2, 2, 2]
+    assert report.values.value["level"] == pytest.approx([1.375e-3, 2.5e-3, 3.375e-3], rel=1e-15)
+    assert main(["check", str(folder)]) == 0
+
+
+def test_a_group_without_readings_has_no_value(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code = grouped.METHOD.replace("    instrument =", '    x = measured("mm", "another")\n    instrument =')
+    rows = tuple((word, "" if word == "B" else y, "1.0") for word, y in grouped.FEW)
+    folder = grouped.write(tmp_path, rows, "instrument,y [mm],x [mm]", code)
+    values = Study(folder).computed.values
+    assert values.cell("level", (2,)).reason == (
+        "#INPUT! level[2] needs y[2]: the datum is missing or invalid"
+    )
+    assert values.numbers("level")[0] == pytest.approx(1.5e-3)
+    assert values.scalar("within") == pytest.approx(0.15625e-6, rel=1e-14)
+    assert main(["check", str(folder)]) == 1
+    told = capsys.readouterr().out
+    assert re.findall(r"engine +(\w+) .* at most [\d.]+ eps", told) == ["numpy", "JavaScript", "xlsx"]
+
+
+def test_whatever_is_left_out_others_keep_their_number(tmp_path: Path) -> None:
+    rows = tuple((*row, "dropped" if row[0] == "A" else "") for row in grouped.FEW)
+    folder = grouped.write(tmp_path, rows, "instrument,y [mm],left out")
+    report = Study(folder).computed
+    assert report.values.labels(report.sheet["level"]) == [(2,), (3,)]
+    build.build(Study(folder), tmp_path / "out", ("html", "json", "latex"))
+    cells = json.loads((tmp_path / "out" / "values.json").read_text(encoding="utf-8"))["cells"]
+    assert (cells["level"]["axis"], cells["level"]["index"]) == ("instruments", [2, 3])
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    table = next(
+        each for each in re.findall(r"<table.*?</table>", page, re.DOTALL) if "data-cell=level" in each
+    )
+    assert re.findall(r"<th scope=row>(\d)<td[^>]*>(\w)", table) == [("2", "B"), ("3", "C")]
+
+
+def test_it_is_told_where_it_comes_from(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = grouped.write(tmp_path)
+    assert main(["why", "level[2]", str(folder)]) == 0
+    told = capsys.readouterr().out
+    assert "sum(y_k, k in g)" in told
+    assert "over 2 readings\n" in told
+    assert re.search(r"rests on +y\[2\] = 2.25 mm, y\[6\] = 2.75 mm\n", told)
+    assert main(["why", "y[5]", str(folder)]) == 0
+    assert "level[3]" in (told := capsys.readouterr().out)
+    assert "level[1]" not in told
+    assert main(["show", "level", str(folder)]) == 0
+    assert re.search(r"level\[2\] +B +2\.5", capsys.readouterr().out)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("reading,instrument", "reading,device"), ("LS301", "the column 'instrument' is missing", ":1:")),
+        (("reading,instrument", "reading,instrumnet"), ("LS303", "unknown column 'instrumnet'", ":1:9")),
+        (("1,A,1.50", "1,,1.50"), ("LS403", "instrument is empty", ":2:3")),
+    ],
+)
+def test_a_table_without_its_words_is_refused(
+    change: tuple[str, str], said: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = grouped.write(tmp_path)
+    table = folder / "measurements.csv"
+    before = table.read_text(encoding="utf-8")
+    assert change[0] in before
+    table.write_text(before.replace(*change), encoding="utf-8")
+    assert main(["check", str(folder)]) == 2
+    told = capsys.readouterr().err
+    assert [word for word in said if word not in told] == []
+
+
+def test_numbers_are_no_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = tuple(("123"["ABC".index(word)], y) for word, y in grouped.FEW)
+    assert main(["check", str(grouped.write(tmp_path, rows))]) == 2
+    told = capsys.readouterr().err
+    assert "LS318" in told
+    assert "measurements.csv:2:3" in told
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("z = let(y - level, 'both')", "one formula names readings or instruments: take a mean"),
+        ("z = let(mean(y - mean(y, of=instrument), of=instrument), 'nested')", "let(...) that be one first"),
+        ("z = let(mean(y, of='instrument'), 'text')", "of=instrument is none of what groups() returned"),
+        ("z = let(max(y, of=instrument), 'most')", "max() is taken over all rows"),
+        ("reading = groups('reading')", "rows already"),
+        ("again = groups('instrument')", "rows already"),
+        ("two = groups('a word')", "needs names"),
+        (
+            "g = given('m/s^2', 'free fall')",
+            "g is the instrument's number: call that otherwise, index='...' in groups()",
+        ),
+        ("claim(sum(many * level), sum(y), 'all')", "of which no proof is known"),
+    ],
+)
+def test_what_is_refused_of_groups(line: str, said: str) -> None:
+    with pytest.raises(SheetError, match=re.escape(said)):
+        exec(f"{grouped.METHOD}    {line}\n", {**vars(method), **vars(loopsheet)})
+
+
+def test_a_new_folder_has_its_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code = tmp_path / "workbook.py"
+    code.write_text(
+        grouped.METHOD.replace('"reading")', '"reading", example="1.1 1.2 1.3 1.5")'), encoding="utf-8"
+    )
+    assert main(["new", str(tmp_path / "made"), "--workbook", str(code)]) == 0
+    table = (tmp_path / "made" / "measurements.csv").read_text(encoding="utf-8")
+    assert table == "reading,instrument,y [mm]\n1,S1,1.1\n2,S1,1.2\n3,S2,1.3\n4,S2,1.5\n"
+    assert main(["show", "level", str(tmp_path / "made")]) == 0
