@@ -90,8 +90,7 @@ class Delivered:
                 ]
                 fixed = column.name in self.counts and cells[0] != block.values[0]
                 data[column.name] = np.array([np.nan if fixed else float(x) for x in numbers])
-        labels = {a.name: self.report.inputs.tests for a in self.whole.axes if not a.parents}
-        values = engine.evaluate(self.whole, labels, data, self.program)
+        values = engine.evaluate(self.whole, self.report.values.given_labels, data, self.program)
         changed = {name for (name, row), value in edits.items() if value != self.grid[name].values[row]}
         return self._as_counted(values, changed)
 
