@@ -2,6 +2,7 @@
 
 import json
 import re
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,6 +14,8 @@ import loopsheet
 from loopsheet.report import build, method
 from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
+from loopsheet.report.inputs.groups import groups
+from loopsheet.report.judge.sample import part
 from loopsheet.report.study import Study
 
 SIZE = {"between": 1e-6, "within": 1e-6, "s": 1e-3, "F": 1.0, "R2": 1.0}  # of mm in SI
@@ -177,3 +180,38 @@ def test_a_new_folder_has_its_words(tmp_path: Path, capsys: pytest.CaptureFixtur
     table = (tmp_path / "made" / "measurements.csv").read_text(encoding="utf-8")
     assert table == "reading,instrument,y [mm]\n1,S1,1.1\n2,S1,1.2\n3,S2,1.3\n4,S2,1.5\n"
     assert main(["show", "level", str(tmp_path / "made")]) == 0
+
+
+def test_other_words_are_another_workbook(tmp_path: Path) -> None:
+    """What is kept of a sheet hangs on which rows stand together."""
+    books = {}
+    for name, words in {"one": "AABB", "other": "ABBB"}.items():
+        folder = grouped.write(tmp_path / name, tuple(zip(words, ("1.1", "1.2", "1.4", "1.9"), strict=True)))
+        build.build(Study(folder), folder / "out", ("xlsx",))
+        with zipfile.ZipFile(folder / "out" / "report.xlsx") as archive:
+            books[name] = "".join(
+                archive.read(each).decode() for each in archive.namelist() if "/sheet" in each
+            )
+    assert books["one"].count("<f") == books["other"].count("<f")
+    assert re.findall("<f[^>]*>[^<]*", books["one"]) != re.findall("<f[^>]*>[^<]*", books["other"])
+
+
+def test_published_values_of_groups_are_refereed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = grouped.write(tmp_path, more='[published]\nfile = "published.csv"\n')
+    said = "source,cell,index,value,unit,expect,reason\n"
+    rows = "Table,level,1,1.50,mm,,\nTable,level,2,2.50,mm,,\nTable,scatter,1,0.25,mm,,\n"
+    (folder / "published.csv").write_text(said + rows, encoding="utf-8")
+    assert main(["check", str(folder)]) == 0
+    assert "3 values: 3 print the same" in capsys.readouterr().out
+    (folder / "published.csv").write_text(said + rows.replace("2.50", "2.61"), encoding="utf-8")
+    assert main(["check", str(folder)]) == 1
+    assert "level[2]" in capsys.readouterr().out
+
+
+def test_a_large_table_is_judged_by_some_of_its_rows(tmp_path: Path) -> None:
+    rng = np.random.default_rng(7)
+    rows = tuple((f"S{n % 40}", f"{y:.3f}") for n, y in enumerate(rng.normal(2, 0.1, 400)))
+    report = Study(grouped.write(tmp_path, rows)).computed
+    some = part(report.inputs, report.values, 300)
+    assert 4 < len(some.tests) < 400
+    assert set(groups(some, "instrument").items()) >= {(1, 1), (40, 40), (41, 1)}

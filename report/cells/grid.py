@@ -282,7 +282,7 @@ class Grid:
     notes : mapping of worksheet name to Place
         Free cells beside the given columns of an axis, for what is wrong with them.
     words : mapping of worksheet name to tuple of Place
-        Free columns beside the numbers of its rows, for what is said of them in words.
+        Free columns beside the numbers of its rows, for what is said of them in words; one beside groups.
     """
 
     blocks: tuple[CellBlock, ...]

@@ -22,7 +22,7 @@ from ..plan.lowering import lowered
 from ..plan.nodes import RootNode
 from ..plan.order import Word
 from ..quantity import Bounds
-from ..sheet import Column, Given, Sheet
+from ..sheet import Column, Given, GroupAxis, Sheet
 from .certified import certified
 from .excel import ordered
 from .excel_formulas import Formulas, Places, carried, guard
@@ -130,6 +130,8 @@ class Assembly:
             self.indices[axis.name] = tuple(room.next() for _ in range(parts))
             if axis.is_given:
                 self.words[room.worksheet] = tuple(room.next() for _ in range(self.worded))
+            elif isinstance(axis, GroupAxis):
+                self.words[room.worksheet] = (room.next(),)
         self.put_scalars()
         given = [c for c in self.whole.columns if c.axis is not None and isinstance(c.rule, Given)]
         for column in given:

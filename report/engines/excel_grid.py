@@ -12,7 +12,7 @@ from ..cells.layout import Layout
 from ..cells.values import Values
 from ..charts import Drawn
 from ..plan.kept import of_data, of_sheet
-from ..sheet import Axis, Sheet
+from ..sheet import Axis, MemberAxis, Sheet
 from .excel_loops import pass_columns, passes_of
 from .excel_values import filled
 from .numpy import extend
@@ -79,7 +79,11 @@ def grid(
             worksheets, sheet, values.sheet, whole, layouts, counts, units, first, worded, thinned
         ).told()
 
-    own = [layouts[axis.name].labels.tolist() for axis in whole.axes if axis.is_given]
+    own = [
+        layouts[axis.name].labels.tolist()
+        for axis in whole.axes
+        if axis.is_given or isinstance(axis, MemberAxis)
+    ]
     words = [(column.meaning, column.unit, column.display, column.source) for column in whole.columns]
     names = [list(each.by_name) for each in (sheet, values.sheet)]
     sizes = sorted(counts.items()), sorted(units.items()), list(first), worded, thinned

@@ -16,7 +16,7 @@ def words(inputs: Inputs, column: str) -> list[str]:
     column : str
         By which the workbook groups.
     """
-    found = [inputs.rows[test][column] for test in inputs.tests]
+    found = [row[column] for row in inputs.texts.values()]
     for each in inputs.left_out:
         found.insert(each.place, each.texts[column])
     return list(dict.fromkeys(found))

@@ -68,7 +68,7 @@ def _how_many(values: Values, tests: tuple[int, ...], most: int) -> int:
 
 def _size(values: Values, tests: tuple[int, ...]) -> int:
     sheet = values.sheet
-    labels = {axis.name: tests for axis in sheet.axes if axis.is_given}
+    labels = {name: own[: len(tests)] for name, own in values.given_labels.items()}
     repeats = [axis.count for axis in sheet.axes if isinstance(axis, RepeatAxis)]
     return how_large(sheet, lay_out(sheet, labels, {name: int(values.scalar(name)) for name in repeats}))
 

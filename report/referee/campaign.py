@@ -139,8 +139,8 @@ class Campaign:
 
     @cached_property
     def labels(self) -> dict[str, tuple[int, ...]]:
-        """Row numbers of the axes that come with the data."""
-        return {axis.name: self.inputs.tests for axis in self.sheet.axes if axis.is_given}
+        """Row numbers of the axes that come with the data, and of the group of each row."""
+        return {name: tuple(numbers) for name, numbers in self.values.given_labels.items()}
 
     def program(self, wanted: Collection[str], cut: tuple[str, ...] = ()) -> Program:
         """The program of some columns and what they rest on, where some others are given.

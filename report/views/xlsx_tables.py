@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..cells.grid import FIRST_ROW, STEPS, CellBlock, Grid, Place, letters
+from ..inputs.groups import words as words_of
 from ..result.result import Report
-from ..sheet import RepeatAxis
+from ..sheet import GroupAxis, RepeatAxis
 from .xlsx_inputs import GivenCells
 from .xlsx_marks import TITLE
 from .xlsx_style import Style, height, number_format, said, typical_format
@@ -85,8 +86,13 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
         inputs.write_told(sheet, style, given, grid.notes[name])
         below = inputs.write_left_out(sheet, style, given, grid.notes[name])
     words = grid.words.get(name, ())
-    for place, column in zip(words, report.inputs.remarks, strict=False):  # rows made of others have none
-        _write_words(sheet, style, report, place, column)
+    if isinstance(axis, GroupAxis):
+        words_in, numbers = words_of(report.inputs, axis.row), report.values.layouts[axis.name].labels[:, 0]
+        _write_words(sheet, style, words[0], axis.row, [words_in[number - 1] for number in numbers.tolist()])
+    else:  # rows made of others have none
+        for place, column in zip(words, report.inputs.remarks, strict=False):
+            texts = [report.inputs.texts[test][column] for test in report.inputs.tests]
+            _write_words(sheet, style, place, column, texts)
     for block in blocks:
         if block.place.row == FIRST_ROW:
             _write_header(sheet, style, report, block)
@@ -97,7 +103,10 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
     meanings = [(b.meaning, _SMALL * _width(b)) for b in blocks if b.place.row == FIRST_ROW]
     sheet.set_row(_MEANING, 0.82 * height(meanings, 2))
     sheet.set_row(_NAME, 20)
-    named = [report.inputs.remarks.index(column) + 1 for column in report.inputs.naming if words]
+    if isinstance(axis, GroupAxis):
+        named = [1]
+    else:
+        named = [report.inputs.remarks.index(column) + 1 for column in report.inputs.naming if words]
     indices = len([b for b in blocks if b.kind == "index"])
     sheet.freeze_panes(FIRST_ROW, indices + sum(named))
     last, size = max(b.place.column for b in blocks), max(b.place.rows for b in blocks)
@@ -143,9 +152,8 @@ def _write_header(sheet: Any, style: Style, report: Report, block: CellBlock) ->
         style.text(sheet, _SYMBOL, at, "", "symbol")
 
 
-def _write_words(sheet: Any, style: Style, report: Report, place: Place, name: str) -> None:
+def _write_words(sheet: Any, style: Style, place: Place, name: str, texts: Sequence[str]) -> None:
     """Write a column of words, which no formula reads."""
-    texts = [report.inputs.texts[test][name] for test in report.inputs.tests]
     width = min(_SMALL * max(map(len, (name, *texts))) + 2, _NOTE_WIDTH)
     _write_head(sheet, style, place.column, width, name)
     for row, words in enumerate(texts, start=place.row):
