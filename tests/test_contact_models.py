@@ -369,10 +369,10 @@ TOY = ContactModel(
 )
 '''
 SIMULATED = """\
+from contact_laws import law_of
 from loopsheet.derivations.contact import hertz
 from loopsheet.derivations.contact.toy import TOY
 from loopsheet.report import build
-from loopsheet.report.impacts.models import law_of
 from loopsheet.report.impacts.simulation import simulate
 law = law_of(TOY)
 given = {hertz.E_1: 2e11, hertz.E_2: 2e11, hertz.nu_1: .3, hertz.nu_2: .3, hertz.d: .01, hertz.e: .6}
@@ -394,7 +394,11 @@ def test_a_model_is_one_file_and_one_line(tmp_path: Path) -> None:
     )
 
     def run(*words: str) -> str:
-        own = {**os.environ, "PYTHONPATH": str(tmp_path), "LOOPSHEET_CACHE": ""}
+        own = {
+            **os.environ,
+            "PYTHONPATH": os.pathsep.join([str(tmp_path), str(Path(__file__).parent)]),
+            "LOOPSHEET_CACHE": "",
+        }
         done = subprocess.run(
             [sys.executable, *words], cwd=tmp_path, env=own, capture_output=True, text=True, check=False
         )
