@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from .axis import MemberAxis
 from .column import Given, written_in
-from .inputs.groups import groups
 from .inputs.inputs import Inputs, check_cells
 
 if TYPE_CHECKING:
@@ -52,7 +51,7 @@ class Prepared:
         found = {axis.name: self.inputs.tests for axis in self.sheet.axes if axis.is_given}
         for axis in self.sheet.axes:
             if isinstance(axis, MemberAxis):
-                number = groups(self.inputs, axis.by)
+                number = self.inputs.groups(axis.by)
                 found[axis.name] = tuple(number[test] for test in self.inputs.tests)
         return found
 

@@ -14,7 +14,6 @@ import loopsheet
 from loopsheet.report import build, method
 from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
-from loopsheet.report.inputs.groups import groups
 from loopsheet.report.judge.sample import part
 from loopsheet.report.study import Study
 
@@ -215,4 +214,4 @@ def test_a_large_table_is_judged_by_some_of_its_rows(tmp_path: Path) -> None:
     report = Study(grouped.write(tmp_path, rows)).computed
     some = part(report.inputs, report.values, 300)
     assert 4 < len(some.tests) < 400
-    assert set(groups(some, "instrument").items()) >= {(1, 1), (40, 40), (41, 1)}
+    assert set(some.groups("instrument").items()) >= {(1, 1), (40, 40), (41, 1)}

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 from ...derivations.proved import enumerated
 from ...derivations.unit_text import is_pure
 from ..cells.address import index_text
-from ..inputs.groups import words as words_of
 from ..inputs.measurements import LeftOut
 from ..inputs.published import PublishedValue
 from ..quantity import span
@@ -198,7 +197,7 @@ class Tables:
         names: Mapping[int, Mapping[str, str]] = inputs.rows
         if isinstance(axis, GroupAxis):
             words = (axis.row,)
-            names = {n: {axis.row: word} for n, word in enumerate(words_of(inputs, axis.row), start=1)}
+            names = {n: {axis.row: word} for n, word in enumerate(inputs.words(axis.row), start=1)}
 
         def row(label: tuple[int, ...], items: Iterable[Entry], state: str = "") -> Row:
             told = (_run(names[label[0]][name]) for name in words)

@@ -2,33 +2,40 @@
 
 from __future__ import annotations
 
-from .inputs import Inputs
+from collections.abc import Mapping, Sequence
+
+from .measurements import LeftOut
 
 __all__ = ["groups", "words"]
 
+Texts = Mapping[int, Mapping[str, str]]
 
-def words(inputs: Inputs, column: str) -> list[str]:
+
+def words(texts: Texts, left_out: Sequence[LeftOut], column: str) -> list[str]:
     """The words of a column in the order in which they first appear, in tests that are left out too.
 
     Parameters
     ----------
-    inputs : Inputs
+    texts : mapping of int to mapping of str to str
+        The rows of the others, in the order of the table, by column.
+    left_out : sequence of LeftOut
     column : str
         By which the workbook groups.
     """
-    found = [row[column] for row in inputs.texts.values()]
-    for each in inputs.left_out:
+    found = [row[column] for row in texts.values()]
+    for each in left_out:
         found.insert(each.place, each.texts[column])
     return list(dict.fromkeys(found))
 
 
-def groups(inputs: Inputs, column: str) -> dict[int, int]:
+def groups(texts: Texts, left_out: Sequence[LeftOut], column: str) -> dict[int, int]:
     """The number of each test's word, from 1: whatever is left out, others keep theirs.
 
     Parameters
     ----------
-    inputs, column
+    texts, left_out, column
         As for :func:`words`.
     """
-    number = {word: place for place, word in enumerate(words(inputs, column), start=1)}
-    return {test: number[row[column]] for test, row in inputs.rows.items()}
+    number = {word: place for place, word in enumerate(words(texts, left_out, column), start=1)}
+    every = {**texts, **{each.test: each.texts for each in left_out}}
+    return {test: number[row[column]] for test, row in every.items()}

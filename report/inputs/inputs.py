@@ -26,6 +26,7 @@ from ..quantity import there
 from .cards import AskedCards, read_cards
 from .draws import read_draws
 from .expected import EXAMPLE, Expectation, check_expected
+from .groups import groups, words
 from .limits import Limits, check_limits, read_limits
 from .measurements import MODES, LeftOut, Measurements, read_measurements
 from .number_text import NumberError, read_printed
@@ -172,6 +173,14 @@ class Inputs:
     def naming(self) -> tuple[str, ...]:
         """The column of words that says which row is which: the first with a word for every test; or none."""
         return tuple(name for name in self.remarks if all(self.texts[test][name] for test in self.tests))[:1]
+
+    def words(self, column: str) -> list[str]:
+        """As :func:`~loopsheet.report.inputs.groups.words`."""
+        return words(self.texts, self.left_out, column)
+
+    def groups(self, column: str) -> dict[int, int]:
+        """As :func:`~loopsheet.report.inputs.groups.groups`."""
+        return groups(self.texts, self.left_out, column)
 
     def called(self, test: int) -> str:
         """A row in a sentence: its number, and its name if it has one, ``3 (S-17)``."""

@@ -57,7 +57,6 @@ def _plan(report: Report, address: str) -> str:
 def _lines(report: Report, column: Column, labels: Collection[tuple[int, ...]]) -> Iterator[str]:
     from ...derivations.text import text_of_equation
     from ..axis import GroupAxis
-    from ..inputs.groups import words
 
     name = column.name
     yield f"{name}  {column.meaning}  [{report.shown[name].unit}]  {column.source}"
@@ -79,7 +78,7 @@ def _lines(report: Report, column: Column, labels: Collection[tuple[int, ...]]) 
         for label in (every if over is not None and over.is_given else ())
     }
     if isinstance(over, GroupAxis):
-        every_word = words(inputs, over.row)
+        every_word = inputs.words(over.row)
         names = {label: f"{every_word[label[0] - 1]}  " for label in every}
     wide = max(map(len, names.values()), default=0)
     nothing = [0.0] * len(every)

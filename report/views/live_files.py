@@ -9,7 +9,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ..inputs.groups import groups
 from ..quantity import Printed, behind
 from ..result.result import Report
 from ..sheet import MemberAxis
@@ -36,7 +35,7 @@ def given(report: Report) -> dict[str, Any]:
 def _groups(report: Report) -> dict[str, dict[int, int]]:
     """For each axis of rows in groups, the number of every test's group."""
     axes = (axis for axis in report.sheet.axes if isinstance(axis, MemberAxis))
-    return {axis.name: groups(report.inputs, axis.by) for axis in axes}
+    return {axis.name: report.inputs.groups(axis.by) for axis in axes}
 
 
 def _tests(report: Report, measured: Mapping[str, tuple[Printed | None, ...]]) -> list[dict[str, Any]]:

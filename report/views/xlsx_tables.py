@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..cells.grid import FIRST_ROW, STEPS, CellBlock, Grid, Place, letters
-from ..inputs.groups import words as words_of
 from ..result.result import Report
 from ..sheet import GroupAxis, RepeatAxis
 from .xlsx_inputs import GivenCells
@@ -87,7 +86,7 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
         below = inputs.write_left_out(sheet, style, given, grid.notes[name])
     words = grid.words.get(name, ())
     if isinstance(axis, GroupAxis):
-        words_in, numbers = words_of(report.inputs, axis.row), report.values.layouts[axis.name].labels[:, 0]
+        words_in, numbers = report.inputs.words(axis.row), report.values.layouts[axis.name].labels[:, 0]
         _write_words(sheet, style, words[0], axis.row, [words_in[number - 1] for number in numbers.tolist()])
     else:  # rows made of others have none
         for place, column in zip(words, report.inputs.remarks, strict=False):
