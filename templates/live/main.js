@@ -87,7 +87,6 @@ function pasteBlock(element, rows) {
   const { cell, index } = element.dataset, table = page.tables.find((one) => one.element === gridOf(element));
   const names = table?.editable ? table.inputs.slice(table.inputs.indexOf(cell)) : [];
   const scalars = table ? [] : all("input[data-cell]", gridOf(element).tBodies[0]).map((input) => input.dataset.cell);
-  let refused = false;
   change((state) => {
     rows.forEach((fields, down) => {
       if (!names.length) {
@@ -96,13 +95,11 @@ function pasteBlock(element, rows) {
         return;
       }
       const first = state.tests.findIndex((test) => String(test.label) === index);
-      const test = state.tests[first + down] ?? (LIVE.groups ? null : newTest(state));
-      refused ||= !test;
+      const test = state.tests[first + down] ?? (LIVE.groups ? null : newTest(state)); // it says where one is added
       if (test) fields.slice(0, names.length).forEach((text, right) => (test.cells[names[right]] = text));
     });
   });
   enter(element);
-  if (refused) note(`What goes beyond the last ${ROW} was left out. ${ADDED_ELSEWHERE}`);
 }
 
 const undo = () => moved(page.history.move(-1));
