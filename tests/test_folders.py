@@ -252,6 +252,18 @@ def test_an_output_that_somebody_changed_is_kept_and_told(gauge: Path, run: Run)
     assert sorted((gauge / "out").iterdir()) == before
 
 
+def test_an_edited_output_that_is_not_built_again_does_not_pass_for_a_part_of_the_report(
+    gauge: Path, run: Run
+) -> None:
+    assert run("build", "gauge", "--to", "json,latex")[0] == 0
+    (gauge / "out" / "report.tex").write_text("mine")
+    (gauge / "d.csv").write_text("test,d [nm]\n1,216\n2,204\n")
+    told = run("build", "gauge", "--to", "json")[1]
+    assert "report.tex was not as built: it is kept as report.edited.tex" in told
+    assert files(gauge) == ["out/manifest.json", "out/report.edited.tex", "out/values.json"]
+    assert (gauge / "out" / "report.edited.tex").read_text() == "mine"
+
+
 def test_what_no_build_made_is_kept_as_well(gauge: Path, run: Run) -> None:
     assert run("build", "gauge", "--to", "json")[0] == 0
     (gauge / "out" / "report.tex").write_text("mine")

@@ -193,13 +193,14 @@ def _lines(workbook: Workbook, name: str) -> Iterator[str]:
         yield f"# {column.name}: {_meaning(column)}"
     if not workbook.measured:
         return
-    last = workbook.measured[-1].name
+    last, unit = workbook.measured[-1].name, workbook.measured[-1].unit
+    width = f"0.03{behind(unit)}"  # with its unit: another head of the column does not change it
     yield from (
         "# Its first line names each column and its unit, which may be any that converts to the one above.",
         f"# A column u({last}) [unit] gives standard uncertainties; without it the printed digits do.",
         "",
         "# [uncertainty]                          # of whole columns, and of parameters",
-        f'# {last} = "U = 0.03, k = 2"            # or +-0.1 rect, 0.5 % of reading + 2 digits, exact',
+        f'# {last} = "U = {width}, k = 2"         # or +-0.1 rect, 0.5 % of reading + 2 digits, exact',
         "",
         "# [measurements.printed]",
         f'# {last} = "truncated"                    # if digits were cut off; without this, "rounded"',

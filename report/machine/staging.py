@@ -242,8 +242,8 @@ def _move_in(
     """Put the staged files in place, all or none; return what was kept, and as what, and what was removed.
 
     The manifest comes last and never speaks of half an output. What an earlier build made and this one does
-    not is taken away, unless somebody changed it. `killed` is what other builds were about to put here;
-    `gone` goes in any case, and what somebody changed of it is kept.
+    not is taken away, as is what is `gone`: under its name it would be taken for a part of this report. What
+    somebody changed of it is kept under another. `killed` is what other builds were about to put here.
     """
     names = sorted(
         (p.relative_to(stage) for p in stage.rglob("*") if p.is_file()),
@@ -256,7 +256,7 @@ def _move_in(
     done: list[tuple[Path, Path | None]] = []
     kept_as: dict[Path, Path] = {}
     try:
-        for name in _changed(stage, out, (*names, *gone), built, [*killed, gone]):
+        for name in _changed(stage, out, (*names, *removed), built, [*killed, gone]):
             kept_as[name] = _free(name, out)
             done.append((out / kept_as[name], None))
             shutil.copy2(out / name, out / kept_as[name])
@@ -353,14 +353,13 @@ def _added(stage: Path, out: Path, added: Callable[[Path], Mapping[Path, str]]) 
 
 
 def _stale(out: Path, names: Collection[Path], built: dict[Path, str]) -> list[Path]:
-    """What an earlier build made, unchanged since, and this build does not make."""
+    """What an earlier build made, and this build does not make."""
     return [
         name
-        for name, digest in sorted(built.items())
+        for name in sorted(built)
         if not (name in names or name.is_absolute() or ".." in name.parts)
         and not (out / name).is_symlink()
         and (out / name).is_file()
-        and _sha256(out / name) == digest
     ]
 
 
