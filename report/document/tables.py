@@ -158,12 +158,12 @@ class Tables:
             return self.material.head(self.report.sheet[each.name])
 
         made = (
-            _Made("sum of squares", lambda each: self._meaning(head(each)), "words", 0.42),
+            _Made("sum of squares", lambda each: self._meaning(head(each)), "words", 0.3),
             _Made("symbol", lambda each: Math(head(each).latex), "symbol"),
             _Made("value", lambda each: self.material.item(each.name), "number"),
             _Made("squares", lambda each: str(number(each, self.report)), "number"),
             _Made("taken", lambda each: str(each.fitted), "number", tip="numbers that were taken from them"),
-            _Made("degrees of freedom", lambda each: str(freedom(each, self.report)), "number"),
+            _Made("freedom", lambda each: str(freedom(each, self.report)), "number", tip="its degrees"),
             _Made("probability", likely, "number", tip="of a sum that is as large, or larger"),
         )
         title = "Sums of squares, and how likely chance alone makes them so large"
