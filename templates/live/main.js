@@ -95,7 +95,7 @@ function pasteBlock(element, rows) {
         return;
       }
       const first = state.tests.findIndex((test) => String(test.label) === index);
-      const test = state.tests[first + down] ?? (LIVE.groups ? null : newTest(state)); // it says where one is added
+      const test = state.tests[first + down] ?? (LIVE.groups ? null : newTest(state)); // of no group
       if (test) fields.slice(0, names.length).forEach((text, right) => (test.cells[names[right]] = text));
     });
   });
