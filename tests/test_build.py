@@ -338,14 +338,16 @@ def test_what_is_in_the_way_is_named_and_nothing_is_touched(tmp_path: Path, gaug
     assert sorted(p.name for p in out.iterdir()) == ["manifest.json", "values.json"]
 
 
-def test_what_an_earlier_build_made_goes_unless_it_was_changed(tmp_path: Path, gauge: Path) -> None:
+def test_what_an_earlier_build_made_goes_and_what_was_changed_has_another_name(
+    tmp_path: Path, gauge: Path
+) -> None:
     out = tmp_path / "out"
     build.build(Study(gauge), out, ("json", "latex"))
     (out / "report.tex").write_text("changed by hand")
     build.build(Study(gauge), out, ("json",))
     assert sorted(p.name for p in out.rglob("*") if p.is_file()) == [
         "manifest.json",
-        "report.tex",
+        "report.edited.tex",
         "values.json",
     ]
 

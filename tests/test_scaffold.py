@@ -57,7 +57,7 @@ file = "measurements.csv"
 # A column u(x_p) [unit] gives standard uncertainties; without it the printed digits do.
 
 # [uncertainty]                          # of whole columns, and of parameters
-# x_p = "U = 0.03, k = 2"            # or +-0.1 rect, 0.5 % of reading + 2 digits, exact
+# x_p = "U = 0.03 m, k = 2"         # or +-0.1 rect, 0.5 % of reading + 2 digits, exact
 
 # [measurements.printed]
 # x_p = "truncated"                    # if digits were cut off; without this, "rounded"

@@ -5,12 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from ..cells.address import address, index_text, named
 from ..messages.errors import Findings, Location, listing, suggest
+from .parameters import wrong_type
 
-__all__ = ["EXAMPLE", "Expectation", "check_expected"]
+if TYPE_CHECKING:
+    from .tables import TomlTables
+
+__all__ = ["Expectation", "check_expected", "read_expected"]
 
 EXAMPLE = '"alpha[1-2]" = "both drops from one height"'
 """A line of the section."""
@@ -68,6 +72,20 @@ class Expectation:
         """Whether it speaks of a cell, by itself or by one of the tests that it rests on."""
         name, own = self.cell
         return own[0] in tests if not name else (name, own) == (cell, index)
+
+
+def read_expected(tables: TomlTables) -> tuple[Expectation, ...]:
+    """Read the section; what is wrong with it is told where it stands."""
+    toml, path = tables.toml, "expected"
+    table = toml.data.get(path, {})
+    if not isinstance(table, dict):
+        wrong_type(toml, tables.findings, (path,), "a table [expected]", EXAMPLE)
+        return ()
+    # What has no reason is refused, and its cell is looked at all the same.
+    reasons = {address: tables.text((path,), address, "double bounce heard") for address in table}
+    return tuple(
+        Expectation(address, reason or "", toml.key(path, address)) for address, reason in reasons.items()
+    )
 
 
 def check_expected(

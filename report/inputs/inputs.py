@@ -25,7 +25,7 @@ from ..messages.errors import (
 from ..quantity import there
 from .cards import AskedCards, read_cards
 from .draws import read_draws
-from .expected import EXAMPLE, Expectation, check_expected
+from .expected import Expectation, check_expected, read_expected
 from .groups import groups, words
 from .limits import Limits, check_limits, read_limits
 from .measurements import MODES, LeftOut, Measurements, read_measurements
@@ -336,7 +336,7 @@ class _Reader:
             uncertainty, parameters, measurements = self.uncertainty(parameters, measurements)
         computable = not self.findings.found
         published = self.published()
-        expected, limits = self.expected(), read_limits(self.tables)
+        expected, limits = read_expected(self.tables), read_limits(self.tables)
         cards = read_cards(self.tables)
         errata = self.errata(measurements) if measurements is not None else {}
         if not computable:
@@ -599,20 +599,6 @@ class _Reader:
         else:
             return name, tests.index(index)
         return None
-
-    def expected(self) -> tuple[Expectation, ...]:
-        """Read what is expected to be out of the ordinary, and why: ``"test 3" = "double bounce heard"``."""
-        path = "expected"
-        table = self.toml.data.get(path, {})
-        if not isinstance(table, dict):
-            wrong_type(self.toml, self.findings, (path,), "a table [expected]", EXAMPLE)
-            return ()
-        # What has no reason is refused, and its cell is looked at all the same.
-        reasons = {address: self.tables.text((path,), address, "double bounce heard") for address in table}
-        return tuple(
-            Expectation(address, reason or "", self.toml.key(path, address))
-            for address, reason in reasons.items()
-        )
 
     def published(self) -> tuple[PublishedValue, ...]:
         if "published" not in self.toml.data:
