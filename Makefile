@@ -17,7 +17,7 @@ LOCK := .venv-lock/bin/uv pip compile --quiet --universal --python-version 3.11 
 PYTEST := $(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder $(if $(SEED),--seed $(SEED))
 
 .DEFAULT_GOAL := help
-.PHONY: help report test campaigns seen mutants bench docs wheel lock clean
+.PHONY: help report test campaigns codes seen mutants bench docs wheel lock clean
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 
@@ -25,6 +25,7 @@ help:
 	@echo 'make report      build the report of the shipped paper into $(OUT)/'
 	@echo 'make test        ruff, mypy and all tests, with a few of the campaigns that are drawn at random'
 	@echo 'make campaigns   all of these campaigns, and what was found in them (SEED=7: others)'
+	@echo 'make codes       run cards in five simulation codes, which are a gigabyte'
 	@echo "make seen        the page's scripts or the paper's report were changed and looked at: they are right"
 	@echo 'make mutants     one spot of the sources changed at a time: what no test notices (SEED=7, EACH=40, PART=plan)'
 	@echo 'make bench       the benchmarks'
@@ -47,6 +48,9 @@ test: $(VENV)/.test .mypy_root/loopsheet
 
 campaigns: $(VENV)/.test
 	$(PYTEST) -m campaigns --campaigns all
+
+codes: $(VENV)/.test
+	$(PYTEST) -m codes tests/outside/test_codes.py
 
 seen: $(VENV)/.test
 	$(BIN)/python -m pytest -q --seen tests/outside/page/test_shortened.py tests/paper/test_paper_issued.py

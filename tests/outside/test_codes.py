@@ -14,6 +14,8 @@ from loopsheet.report.cli import main
 
 SCRIPT = Path(__file__).parents[2] / "benchmarks" / "card_in_code.py"
 ROW = re.compile(r" *([\d.]+) m/s +(\d+) steps +e (-?[\d.]+), card ([\d.]+) +([\de.-]+) m")
+pytestmark = pytest.mark.codes
+
 CODES = ("drake", "exudyn", "lammps", "mujoco", "simbody")
 """Not exudyn-damped: Exudyn's solver gives up there where a step just meets the surface."""
 DIGITS = 2e-8
