@@ -32,8 +32,11 @@ __all__ = [
 ]
 
 _LONGEST = 60
-_HIGHEST = 12
-"""The largest power, and the largest number below its stroke: m^9999 would make ten thousand digits."""
+_HIGHEST, _BELOW = 60, 12
+"""The largest power, and the largest number below its stroke: m^9999 would make ten thousand digits.
+
+A fit of fifth degree to volts has columns in s^-30.
+"""
 _DIGITS = Context(prec=60)
 """Of the size of a unit that is no fraction, such as mm^(3/2)."""
 _PI = Fraction("3.1415926535897932384626433832795028841971693993751")
@@ -465,7 +468,7 @@ class _Parser:
         """The number that a unit is raised to."""
         text = "".join(raised.translate(_SUPERSCRIPTS).split()).strip("^*()")
         power = Fraction(text) if len(text) <= 7 and not re.search(r"/0+$", text) else Fraction(0)
-        if not 0 < abs(power) <= _HIGHEST or power.denominator > _HIGHEST:
+        if not 0 < abs(power) <= _HIGHEST or power.denominator > _BELOW:
             self.refuse(where, raised)
         return power
 
@@ -532,7 +535,7 @@ def _from_pint(name: str) -> tuple[Fraction, Dimension]:
     if zero.magnitude != 0 or not isinstance(size, int | Fraction) or size <= 0:
         raise ArithmeticError(name)
     powers: dict[str, Power] = {
-        _BASE.get(base, base): Fraction(power).limit_denominator(_HIGHEST)
+        _BASE.get(base, base): Fraction(power).limit_denominator(_BELOW)
         for base, power in one.unit_items()
         if base not in _COUNTED
     }

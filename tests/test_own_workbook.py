@@ -74,7 +74,7 @@ SHEET = "Sheet((d, *given.values(), l))"
             "",
             "l is computed from (H.1) l = l_S, which the ledger does not have: add it there",
         ),
-        (changed(UNIT, '"Pa m^13", "length'), '"Pa m^13"', "l: 'Pa m^13' cannot be read: no unit '^13'"),
+        (changed(UNIT, '"Pa m^61", "length'), '"Pa m^61"', "l: 'Pa m^61' cannot be read: no unit '^61'"),
         (
             changed(UNIT, '"mm", "length'),
             '"mm", "length',

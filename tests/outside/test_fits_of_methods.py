@@ -1,8 +1,10 @@
 """Fits of methods in LibreOffice: after an edit they are what NumPy makes of it."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import spreadsheets
 
@@ -63,3 +65,46 @@ def test_an_edited_workbook_is_what_numpy_makes_of_it(
     if not edits:
         other = delivered[folder].values({(values.sheet.columns[0].name, 0): 70.0})
         assert spreadsheets.compare(delivered[folder], other, read[name]).wrong
+
+
+MANY = 500
+METHOD = '''"""A curve of third degree."""
+
+from loopsheet import Method, fit, let, measured, unknown
+
+
+class Cubic(Method, headline="a b c d spread"):
+    """A curve through many readings."""
+
+    x = measured("V", "voltage")
+    y = measured("K", "temperature", positive=True)
+    a = unknown("first coefficient", "K")
+    b = unknown("second coefficient", "K/V")
+    c = unknown("third coefficient", "K/V^2")
+    d = unknown("fourth coefficient", "K/V^3")
+    curve = fit(y, a + b * x + c * x**2 + d * x**3)
+    off = let(y - curve.fitted, "deviation", "mK")
+    spread = let(max(off) - min(off), "range of the deviations", "mK")
+'''
+
+
+def test_a_fit_to_many_rows_has_a_value_in_every_cell(tmp_path: Path, require: Callable[..., str]) -> None:
+    """LibreOffice computes such columns in threads, if it may, and then leaves #VALUE! in some."""
+    generator = np.random.default_rng(1)
+    x = np.linspace(0.5, 2.0, MANY)
+    y = 250 + 40 * x - 3 * x**2 + 0.5 * x**3 + generator.normal(0, 0.01, MANY)
+    rows = [f"{n},{at:.4f},{height:.3f}" for n, (at, height) in enumerate(zip(x, y, strict=True), 1)]
+    folder = tmp_path / "cubic"
+    folder.mkdir()
+    (folder / "workbook.py").write_text(METHOD)
+    (folder / "measurements.csv").write_text("\n".join(["test,x [V],y [K]", *rows, ""]))
+    (folder / "report.toml").write_text(
+        'title = "Many"\nworkbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
+    )
+    book = spreadsheets.deliver(folder, drawn=False)
+    read = spreadsheets.recalculate(
+        require("soffice", "libreoffice"), tmp_path / "office", {"many": book.edited({})}
+    )
+    found = spreadsheets.compare(book, book.values({}), read["many"])
+    assert found.cells > 10 * MANY
+    assert [line for line in found.wrong if "'#" in line] == []  # what is left of 290 K has lost some digits
