@@ -243,7 +243,8 @@ class _Picture:
                 (self.points if series.style == "points" else self.lines)(series, own)
         if len(self.keys) > 1 or any(key.get_marker() == "^" for key in self.keys):
             texts = [str(key.get_label()) for key in self.keys]
-            ncols = len(texts) if sum(map(len, texts)) < 83 else 2 if len(texts[0]) < 48 else 1
+            room = sum(map(len, texts)) + 4 * len(texts)  # in letters; a sign before each is as wide as four
+            ncols = len(texts) if room < 95 else 2 if len(texts[0]) < 48 else 1
             self.figure.legend(
                 handles=self.keys, loc="outside upper left", ncols=ncols, handlelength=1.5, columnspacing=1
             )
