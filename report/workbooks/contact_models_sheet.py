@@ -70,7 +70,7 @@ def sheet(given: frozenset[str]) -> Sheet:
     alike = tuple(c for c in laid.columns.values() if c.name.startswith("miss_") and not c.spare)
     for model in MODELS:
         for equation in _parts(model)[1]:
-            laid.tell(equation, alongside=alike)
+            laid.tell(equation, spare=bool(model.left_out), alongside=alike)
     for equation in checks.CELLS:
         laid.tell(equation, checks.NEEDS)
     return Sheet(tuple(laid.columns.values()))
