@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.special import stdtrit
 
 from loopsheet.report.distribution import DIVISORS, Shape
 from loopsheet.report.laws import Exponential, Law, Samples, TruncatedNormal
 from loopsheet.report.result.uncertain import ErrorSource
 from loopsheet.report.uncertainty.conformity import beyond
 from loopsheet.report.uncertainty.convolution import LITTLE, Convolved, _Part, convolved
+from loopsheet.report.uncertainty.freedom import of_sum
 
 CLOSE = 2e-6
 """Bins are 1/2048 wide: their square, times what the densities below are and bend at most."""
@@ -175,8 +177,23 @@ def test_beside_a_very_wide_error_one_that_is_less_wide_keeps_its_shape() -> Non
     draws, size = np.random.default_rng(1), 400_000
     errors = 0.43 * draws.uniform(-(3**0.5), 3**0.5, size) + 0.6 * draws.standard_normal(size)
     errors += 0.32 * draws.standard_t(3, size) + 0.15 * draws.standard_t(1, size)
-    found, u = known(*parts), math.hypot(*(size for _, size in parts))
+    u = math.hypot(*(size for _, size in parts))
+    found = Convolved([_Part(each.shape, size / u, each.dof) for each, size in parts])
     for z in (1.0, 2.5, 10.0):
         beyond_it = np.mean(np.abs(errors) > z * u)
         spread = math.sqrt(beyond_it / size)
         assert 2 * found.above(z) == pytest.approx(beyond_it, abs=4 * spread)
+
+
+@pytest.mark.parametrize("more", [(NORMAL, 0.8), (source(Shape.STUDENT, 3), 0.5)])
+def test_a_source_with_ends_that_moves_next_to_nothing_changes_nothing(
+    more: tuple[ErrorSource, float],
+) -> None:
+    """An estimate of few degrees of freedom has them together with others, whatever else there is."""
+    parts = [(source(Shape.STUDENT, 1), 0.6), more]
+    sources, sizes = zip(*parts, strict=True)
+    _, dof = of_sum(sources, np.array(sizes), ())
+    assert dof == (7 if more[0] is NORMAL else 2)
+    for little in (1e-9, 1e-5, 1e-3):
+        assert known((RECTANGULAR, little), *parts).half(0.95) == pytest.approx(stdtrit(dof, 0.975), rel=1e-4)
+    assert known((RECTANGULAR, 0.3), *parts).half(0.95) < stdtrit(dof, 0.975)

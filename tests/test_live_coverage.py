@@ -12,8 +12,7 @@ import pytest
 from scipy.special import stdtrit
 
 from loopsheet.report.distribution import Shape
-from loopsheet.report.result.uncertain import ErrorSource
-from loopsheet.report.uncertainty.convolution import Convolved, convolved
+from loopsheet.report.uncertainty.convolution import Convolved, _Part
 from loopsheet.report.views.writer import TEMPLATES
 
 CLOSE = 1e-4
@@ -51,11 +50,8 @@ def page(errors: list[Error]) -> list[dict[str, object]]:
 
 
 def build(errors: list[Error]) -> Convolved:
-    sources = [ErrorSource("g", shape, dof, (), "", "", None) for shape, _, dof in errors]
-    sizes = np.array([size for _, size, _ in errors])
-    found = convolved(sources, sizes, math.hypot(*sizes))
-    assert found is not None
-    return found
+    u = math.hypot(*(size for _, size, _ in errors))
+    return Convolved([_Part(shape, size / u, dof) for shape, size, dof in errors])
 
 
 def sums(seed: int, number: int) -> list[list[Error]]:

@@ -30,7 +30,7 @@ from loopsheet.report.views.writer import TEMPLATES
 
 pytestmark = pytest.mark.usefixtures("keeping")
 
-SCRIPTS = ("numbers.js", "inputs.js", "trace.js", "nearby.js", "coverage.js", "sure.js", "cells.js")
+SCRIPTS = ("numbers.js", "inputs.js", "trace.js", "sensitivities.js", "coverage.js", "sure.js", "cells.js")
 HARNESS = """
 const state = { tests: LIVE.tests, parameters: LIVE.parameters };
 for (const [name, label, text] of EDITS) {
@@ -45,7 +45,7 @@ for (const { name } of CELLS) {
   cells[name].values = [...trace.sheet.value[name]];
   if (follow) cells[name].u = rows.map((row) => look.sure.u(name, row));
   if (follow && rows.length) cells[name].factor = look.sure.budget(name, 0).factor;
-  if (follow) cells[name].parts = rows.map((row) => look.sure.parts(name, row));
+  if (follow) cells[name].parts = rows.map((row) => [...look.sure.parts(name, row)]);
 }
 const errors = follow ? look.sure.errors.map(({ called }) => called) : null;
 console.log(JSON.stringify({ cells, errors }, (_, value) => Number.isNaN(value) ? null : value));

@@ -13,7 +13,7 @@ from itertools import count, groupby
 from pathlib import Path
 from typing import Any
 
-from sympy import Expr, Symbol, cse, numbered_symbols
+from sympy import Expr, Piecewise, Symbol, cse, numbered_symbols
 from sympy.core.symbol import Str
 from sympy.printing.jscode import JavascriptCodePrinter
 
@@ -330,6 +330,8 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
         if isinstance(node, Map) and column.positive:
             # 2 is positive by what is assumed of the cells: then a zero is a value that no double holds.
             entry["positive"] += node.positive == True  # noqa: E712
+        if isinstance(node, Map) and _is_one_of_several(node.value):
+            entry["jumps"] = 1
         parts = [f"{name}: {json.dumps(value)}" for name, value in entry.items() if value]
         if isinstance(node, GivenNode) and node.allowed is not None:
             x = Symbol("x", real=True)
@@ -353,6 +355,11 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
     if sheet.loops:
         used += LOOPS.read_text(encoding="utf-8")
     return f"(() => {{\n{used}\nreturn {text};\n}})()" if used else text
+
+
+def _is_one_of_several(value: Expr) -> bool:
+    """Whether a value is one of several constants: it has no slope, and between them it jumps."""
+    return isinstance(value, Piecewise) and all(piece.is_number for piece, _ in value.args)
 
 
 _KINDS = {GivenNode: "given", Map: "map", RootNode: "root"}

@@ -18,6 +18,7 @@ from ..distribution import DIVISORS, PARTS, Shape
 from ..laws import Law, Samples
 from ..result.uncertain import ErrorSource
 from .conformity import beyond_each
+from .freedom import of_sum
 
 __all__ = ["Convolved", "convolved"]
 
@@ -181,8 +182,11 @@ def convolved(
     u : float
         The standard uncertainty of the sum, in the same unit.
     pairs : sequence of (int, int, float)
-        Places of two sources that are correlated, and their coefficient. Such are normal, as they are drawn;
-        those from one table of draws come row by row, those of one estimate have a t distribution together.
+        Places of two sources that are correlated, and their coefficient.
+
+    Those from one table of draws come row by row. All that have no ends are one error, normal or t with its
+    effective degrees of freedom, as they are where nothing else is: a source with ends that moves next to
+    nothing changes next to nothing.
     """
     sizes = contributions / u
     moving = [n for n, size in enumerate(sizes.tolist()) if size]
@@ -192,16 +196,14 @@ def convolved(
     if not ended or doubtful:
         return None
     together: dict[str, list[int]] = {}
-    for n in moving:
-        source = sources[n]
-        if n in ended:
-            key = f"table {source.table}" if source.table else f"alone {n}"
-        elif source.shape is Shape.STUDENT and (source.sample or n not in mixed):
-            key = f"sample {source.sample}" if source.sample else f"alone {n}"
-        else:
-            key = "normal"
-        together.setdefault(key, []).append(n)
-    parts = [_one([(sources[n], float(sizes[n]), n) for n in of], pairs) for of in together.values()]
+    for n in ended:
+        together.setdefault(f"table {table}" if (table := sources[n].table) else f"alone {n}", []).append(n)
+    parts = [_one([(sources[n], float(sizes[n])) for n in of]) for of in together.values()]
+    rest = sizes.copy()
+    rest[ended] = 0.0
+    size, dof = of_sum(sources, rest, [each for each in pairs if not {*each[:2]} & {*ended}])
+    if size:
+        parts.append(_Part(Shape.NORMAL if math.isinf(dof) else Shape.STUDENT, size, dof))
     return Convolved(tuple(_fewer(parts)))
 
 
@@ -220,18 +222,12 @@ def _fewer(parts: Sequence[_Part]) -> list[_Part]:
     return [*(part for part in parts if id(part) not in gone), one]
 
 
-def _one(of: Sequence[tuple[ErrorSource, float, int]], pairs: Sequence[tuple[int, int, float]]) -> _Part:
-    """Errors that are no others' business as one."""
-    first, size, _ = of[0]
+def _one(of: Sequence[tuple[ErrorSource, float]]) -> _Part:
+    """An error with ends or a law, or all from one table of draws."""
+    first, size = of[0]
     if len(of) == 1:
         return _Part(first.shape, size, first.dof, first.law)
-    if first.table:
-        told = [size * source.law.errors for source, size, _ in of if isinstance(source.law, Samples)]
-        errors: Array = np.sum(told, axis=0)
-        sd = float(np.std(errors, ddof=1))
-        return _Part(Shape.SAMPLES, sd, math.inf, Samples(errors / sd, first.table))
-    own = {n: size for _, size, n in of}
-    variance = sum(size**2 for size in own.values())
-    variance += sum(2 * r * own[a] * own[b] for a, b, r in pairs if a in own and b in own)
-    shape = first.shape if first.shape is Shape.STUDENT else Shape.NORMAL
-    return _Part(shape, math.sqrt(max(variance, 0.0)), first.dof)
+    told = [size * source.law.errors for source, size in of if isinstance(source.law, Samples)]
+    errors: Array = np.sum(told, axis=0)
+    sd = float(np.std(errors, ddof=1))
+    return _Part(Shape.SAMPLES, sd, math.inf, Samples(errors / sd, first.table))

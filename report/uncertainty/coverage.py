@@ -14,33 +14,7 @@ from ..laws import Law
 from ..result.uncertain import ErrorSource
 from .convolution import convolved
 
-__all__ = ["assigned", "coverage", "effective"]
-
-
-def effective(u: float, contributions: NDArray[np.float64], dof: Sequence[float]) -> float:
-    """Effective degrees of freedom of a sum, by Welch and Satterthwaite (JCGM 100, G.2b).
-
-    Parameters
-    ----------
-    u : float
-        The combined standard uncertainty.
-    contributions : float array (estimates,)
-        In the same unit: each of what one estimate tells of.
-    dof : sequence of float
-        Of each estimate, which is independent of the others.
-
-    Returns
-    -------
-    float
-        Rounded to two decimals, then truncated: 8.999 is 9, 8.99 is 8. At least 1; infinite if all are.
-
-    Examples
-    --------
-    >>> effective(5.0, np.array([3.0, 4.0]), [4.0, math.inf])
-    30.0
-    """
-    below = sum(c**4 / n for c, n in zip((contributions / u).tolist(), dof, strict=True)) if u > 0 else 0.0
-    return float(max(1, math.floor(round(1 / below, 2)))) if below > 0 else math.inf
+__all__ = ["assigned", "coverage"]
 
 
 def assigned(

@@ -26,7 +26,8 @@ from ..result.uncertain import Budget, Conformity, Contribution, Influence, Misf
 from ..sheet import Column, Given, PairAxis, RepeatAxis
 from ..workbook import Curve
 from .conformity import conformity
-from .coverage import assigned, coverage, effective
+from .coverage import assigned, coverage
+from .freedom import of_sum, with_correlated
 from .misfit import least_squares_of_errors
 from .monte_carlo import by_draws
 from .second_order import SecondOrder, root_of
@@ -165,20 +166,12 @@ class Spread:
     def covariance(self, cells: Sequence[tuple[str, int]]) -> Array:
         """Variances and covariances of some cells (cells, cells)."""
         found = self.contributions(cells)
-        return found @ self._with_correlated(found).T
-
-    def _with_correlated(self, found: Array) -> Array:
-        """Contributions times the correlation matrix of their sources."""
-        moved = found.copy()
-        for a, b, r in self._pairs:
-            moved[:, a] += r * found[:, b]
-            moved[:, b] += r * found[:, a]
-        return moved
+        return found @ with_correlated(found, self._pairs).T
 
     def _variance(self, found: Array) -> Array:
         """Of first order."""
         with np.errstate(all="ignore"):
-            variance: Array = np.sum(found * self._with_correlated(found), axis=1)
+            variance: Array = np.sum(found * with_correlated(found, self._pairs), axis=1)
             return np.maximum(variance, 0.0)
 
     def _orders(self, cells: Sequence[tuple[str, int]], own: Array) -> tuple[Array, Array]:
@@ -222,9 +215,8 @@ class Spread:
         u = math.sqrt(first + second) if math.isfinite(first + second) else math.nan
         if math.isnan(u):
             return Budget(address(name, label), name, label, value, level=level)
-        together = self._with_correlated(found)[0, : len(self.sources)]
-        shares = own / u * (together / u) if u > 0 else np.zeros(len(own))
-        dof = self._effective(math.sqrt(first), own, together)
+        shares = own / u * (with_correlated(own, self._pairs) / u) if u > 0 else np.zeros(len(own))
+        _, dof = of_sum(self.sources, own, self._pairs, math.sqrt(first))
         shape, law = assigned(self.sources, own, u, dof, second, self._pairs)
         factor, because = coverage(shape, law, dof, level)
         order = [
@@ -321,29 +313,16 @@ class Spread:
             return None
         own, observed = ([(name, int(row)) for row in rows] for name in (curve.residual, curve.observed))
         moved = self.contributions(observed)
-        together, size = self._with_correlated(moved), np.sqrt(self._variance(moved))
+        size = np.sqrt(self._variance(moved))
         if not np.all(size > 0):
             return None
         residuals = self.values.value[curve.residual][rows]
         chi2, dof = least_squares_of_errors(residuals, self.covariance(own), size, len(curve.fitted))
-        known_by = min(map(self._effective, size.tolist(), moved, together))
+        each = zip(moved, size.tolist(), strict=True)
+        known_by = min(of_sum(self.sources, own, self._pairs, u)[1] for own, u in each)
         moving = np.any(moved != 0, axis=0)
         stated = any(source.said for source, moves in zip(self.sources, moving, strict=True) if moves)
         return Misfit(chi2, dof, known_by, stated) if dof else None
-
-    def _effective(self, u: float, own: Array, together: Array) -> float:
-        """Of independent estimates: the sources of one sample are one of them."""
-        samples = [source.sample or n for n, source in enumerate(self.sources)]
-        moving = [(a, b) for a, b, _ in self._pairs if own[a] and own[b]]
-        apart = (n for pair in moving if len({samples[n] for n in pair}) > 1 for n in pair)
-        if any(np.isfinite(self.sources[n].dof) for n in apart):
-            return float("nan")
-        variances: dict[str | int, float] = {}
-        for n, sample in enumerate(samples):
-            variances[sample] = variances.get(sample, 0.0) + float(own[n] * together[n])
-        dof = {sample: source.dof for sample, source in zip(samples, self.sources, strict=True)}
-        parts = np.sqrt(np.maximum(list(variances.values()), 0.0))
-        return effective(u, parts, list(dof.values()))
 
 
 def _known(values: Values) -> set[str]:

@@ -46,7 +46,7 @@ SCRIPTS = (
     "numbers.js",
     "inputs.js",
     "trace.js",
-    "nearby.js",
+    "sensitivities.js",
     "coverage.js",
     "sure.js",
     "cells.js",

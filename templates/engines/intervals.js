@@ -19,15 +19,15 @@ function out(low, high, by = Number.EPSILON) {
 
 function plus(x, y) {
   let a = x, b = x, c = y, d = y;
-  if (x.length) [a, b] = x;
-  if (y.length) [c, d] = y;
+  if (x.length) a = x[0], b = x[1];
+  if (y.length) c = y[0], d = y[1];
   return out(a + c, b + d);
 }
 
 function times(x, y) {
-  let a = x, b = x, c = y, d = y; // no arrays: most of an edit is spent here
-  if (x.length) [a, b] = x;
-  if (y.length) [c, d] = y;
+  let a = x, b = x, c = y, d = y;
+  if (x.length) a = x[0], b = x[1]; // no arrays taken apart: most of an edit is spent here
+  if (y.length) c = y[0], d = y[1];
   const p = a * c || 0, q = a * d || 0, r = b * c || 0, s = b * d || 0;
   return out(Math.min(p, q, r, s), Math.max(p, q, r, s));
 }
@@ -40,8 +40,7 @@ function power(x, n) {
 }
 
 function rising(f, x) {
-  const [a, b] = span(x);
-  return out(f(a), f(b), 4 * Number.EPSILON);
+  return x.length ? out(f(x[0]), f(x[1]), 4 * Number.EPSILON) : out(f(x), f(x), 4 * Number.EPSILON);
 }
 
 function cosine(x) {
@@ -58,12 +57,13 @@ function sums(kept, terms) {
   let count = 0;
   for (let row = 0; row < kept.length; row++) {
     if (!kept[row]) continue;
-    terms(row).forEach((term, n) => {
-      const [a, b] = span(term);
-      low[n] = (low[n] ?? 0) + a;
-      high[n] = (high[n] ?? 0) + b;
-      size[n] = (size[n] ?? 0) + Math.max(-a, b);
-    });
+    const found = terms(row);
+    for (let n = 0; n < found.length; n++) {
+      let a = found[n], b = a;
+      if (a.length) b = a[1], a = a[0];
+      if (count) low[n] += a, high[n] += b, size[n] += Math.max(-a, b);
+      else low[n] = a, high[n] = b, size[n] = Math.max(-a, b);
+    }
     count += 1;
   }
   return low.map((_, n) => {

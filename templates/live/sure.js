@@ -1,7 +1,6 @@
 // How sure the cells are: the errors of what was given, and what they do to each cell, by the law of propagation of
 // uncertainty (JCGM 100, 5.1 and 5.2), to first order.
 
-const MOVE = 2 ** -11; // in standard uncertainties, to both sides: far enough for doubles, near enough for a straight line
 const CELLS = PROGRAM.columns.filter(({ name }) => LIVE.columns[name]);
 
 // Every independent error of a state: what it is called, and what it moves, by one standard uncertainty.
@@ -38,19 +37,11 @@ class Sure {
     [this.known, this.told] = [{}, {}];
   }
 
-  // The sheet to both sides of where it is, along each error, and how far apart they are in its standard uncertainty.
-  get sides() {
-    const { sheet } = this.trace;
-    return (this.found ??= this.errors.map(({ moves }) => {
-      const [up, down] = [MOVE, -MOVE].map((far) => nearby(CELLS, sheet, moves.map(([name, row, u]) => [name, row, far * u])));
-      const [name, row, u] = moves[0];
-      return { up, down, apart: (up[name][row] - down[name][row]) / u };
-    }));
-  }
-
   // What each error does to a cell, in SI, with its sign.
   parts(name, row) {
-    return this.sides.map(({ up, down, apart }) => (up[name] === down[name] ? 0 : (up[name][row] - down[name][row]) / apart));
+    const { length } = this.errors;
+    this.effects ??= sensitivities(CELLS, this.trace.sheet, this.errors);
+    return this.effects[name]?.subarray(row * length, (row + 1) * length) ?? new Float64Array(length);
   }
 
   // Each of them times what it makes of the variance, together with those that it is correlated with.
@@ -98,15 +89,13 @@ class Sure {
 
   // From the sum of the errors, where they are not all normal or t; as a rebuild tells it (uncertainty/convolution.py).
   factor(parts, variances, freedom, u) {
-    const { errors, pairs } = this, mixed = new Set(pairs.flatMap(([a, b]) => [a, b])), found = new Map();
-    const moving = [...parts.keys()].filter((n) => parts[n]), ended = (n) => !mixed.has(n) && ENDED[errors[n].shape];
-    if (!freedom || !moving.some(ended) || moving.some((n) => errors[n].dof && errors[n].shape !== "t")) return studentFactor(freedom);
-    for (const n of moving) {
-      const { shape, dof, sample } = errors[n], own = ended(n) || (dof && (sample || !mixed.has(n)));
-      const key = !own ? "normal" : dof && sample ? sample : n, one = found.get(key) ?? { shape: own ? shape : "normal", dof, variance: 0 };
-      found.set(key, { ...one, variance: one.variance + variances[n] / u ** 2 });
-    }
-    return summedFactor([...found.values()].map((one) => ({ ...one, size: Math.sqrt(Math.max(0, one.variance)) })));
+    const { errors, pairs } = this, mixed = new Set(pairs.flatMap(([a, b]) => [a, b]));
+    const ended = errors.map(({ shape }, n) => Boolean(parts[n] && !mixed.has(n) && ENDED[shape]));
+    if (!freedom || !ended.includes(true) || errors.some(({ dof, shape }, n) => parts[n] && dof && shape !== "t")) return studentFactor(freedom);
+    // All others are one error, as they are where nothing else is.
+    const rest = variances.map((one, n) => (ended[n] ? 0 : one)), size = Math.sqrt(Math.max(0, sum(rest))), dof = this.freedom(parts, rest, size);
+    const own = errors.flatMap(({ shape }, n) => (ended[n] ? { shape, size: Math.sqrt(variances[n]) / u } : []));
+    return summedFactor([...own, { shape: "t", size: size / u, ...(dof < Infinity && { dof }) }]);
   }
 }
 
