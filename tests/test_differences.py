@@ -14,7 +14,7 @@ from msgspec.structs import replace
 from loopsheet.report.archive.differences import Differences, Move, compare
 from loopsheet.report.cli import main
 from loopsheet.report.files.form import Index
-from loopsheet.report.files.values import Column, Oddity, Published, Result
+from loopsheet.report.files.values import Column, Oddity, Published, Result, Unit
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.views.differences import as_markdown, as_text, moved
 
@@ -113,12 +113,59 @@ def test_what_the_user_gave_comes_first_then_scalars() -> None:
     )
     found = compare(RESULT, after)
     assert [move.address for move in found.moved] == ["v[2]", "m", "a[1-2]"]
-    assert [move.given for move in found.moved] == [True, False, False]
+    assert [move.kind for move in found.moved] == ["input", "moved", "moved"]
     text = as_text(found, 2)
     assert "  input    v[2]             3 -> 3.5 m/s   +16.7 %\n" in text
     assert "  moved    m                1.25 -> 1.3   +4 %\n" in text
     assert "and 1 more: a (1)" in text
     assert text.endswith("different\n")
+
+
+def test_the_headline_comes_before_what_leads_there() -> None:
+    numbers = {name: Column(unit="1", rule="(1) x = 1", value=1.0, status="ok", u=0.1) for name in "abcd"}
+    before = replace(RESULT, headline=["d", "b"], aside=["a"], cells={**numbers, "v": V})
+    two = {name: replace(column, value=2.0) for name, column in numbers.items()}
+    found = compare(
+        before, replace(before, cells={**two, "v": replace(V, rule="(2) v = 1", value=[1.0, 3.0])})
+    )
+    assert [(move.address, move.kind) for move in found.moved] == [
+        ("d", "result"), ("b", "result"), ("c", "moved"), ("v[1]", "moved"), ("a", "moved"),
+    ]  # fmt: skip
+    assert "  result   d                1 -> 2" in as_text(found, 20)
+    assert "| `d` | result |" in as_markdown(found, 20)
+    surer = {name: replace(column, u=0.2) for name, column in numbers.items()}
+    found = compare(before, replace(before, cells={**surer, "v": V}))
+    assert [move.address for move in found.moved] == ["u(d)", "u(b)", "u(c)", "u(a)"]
+
+
+def test_numbers_are_told_in_the_unit_that_they_are_shown_in() -> None:
+    cells = {
+        "t": Column(
+            unit="K", rule="(1) t = 1", value=293.15, status="ok", u=0.01,
+            shown=Unit(text="degC", scale=1.0, zero=273.15),
+        ),
+        "R": Column(
+            unit="ohm", rule="given", value=10470.0, status="ok", u=5.0, shown=Unit(text="kohm", scale=1000.0)
+        ),
+    }  # fmt: skip
+    before = replace(RESULT, cells=cells)
+
+    def told(after: dict[str, Column]) -> list[tuple[str, ...]]:
+        found = compare(before, replace(before, cells=after))
+        return [(move.address, *moved(move), move.unit) for move in found.moved]
+
+    other = {"t": replace(cells["t"], value=293.4), "R": replace(cells["R"], value=10480.0)}
+    assert told(other) == [
+        ("R", "10.47", "10.48", "+0.0955 %", "kohm"),
+        ("t", "20", "20.25", "+0.25 K", "degC"),
+    ]
+    none = {**other, "t": replace(cells["t"], value=None, status="#DOMAIN!")}
+    assert told(none)[1] == ("t", "20", "#DOMAIN!", "", "degC")
+    surer = {"t": replace(cells["t"], u=0.02), "R": replace(cells["R"], u=6.0)}
+    assert told(surer) == [
+        ("u(R)", "0.005", "0.006", "+20 %", "kohm"),
+        ("u(t)", "0.01", "0.02", "+100 %", "K"),
+    ]
 
 
 @pytest.mark.parametrize(
@@ -178,10 +225,7 @@ def test_a_limit_that_was_moved_is_a_difference(tmp_path: Path, capsys: pytest.C
     assert main(["diff", str(tmp_path / "wide"), str(tmp_path / "narrow")]) == 1
     told = capsys.readouterr().out
     assert "0 moved" in told
-    assert (
-        "check      limits l: 50.0007 to 50.0010 mm: conforms, accepted from 0.0500007 to 0.050001 in SI"
-        in told
-    )
+    assert "check      limits l: 50.0007 to 50.0010 mm: conforms, accepted from 50.0007 to 50.001 mm" in told
     assert "-> 50.0007 to 50.0008 mm: does not conform" in told
     assert main(["diff", str(tmp_path / "wide"), str(tmp_path / "wide")]) == 0
 
@@ -190,7 +234,7 @@ def test_markdown_has_a_table_for_each_kind_and_no_live_text() -> None:
     evil = "|`<b>@you"
     found = Differences(
         evil, evil, 1, 0,
-        (Move(evil, "1", False, 1.0, 2.0, ("ok", "ok")),) * 3,
+        (Move(evil, "1", "moved", 1.0, 2.0, ("ok", "ok")),) * 3,
         (), (evil,), (), (), (),
     )  # fmt: skip
     text = as_markdown(found, 2)
@@ -203,7 +247,7 @@ def test_markdown_has_a_table_for_each_kind_and_no_live_text() -> None:
 def test_digits_tell_any_two_doubles_apart() -> None:
     for value in (1.0, 1.2579969787312368, 1e-300, 123456789.123, 2.97e-05):
         other = math.nextafter(value, math.inf)
-        was, now, _ = moved(Move("x", "1", False, value, other, ("ok", "ok")))
+        was, now, _ = moved(Move("x", "1", "moved", value, other, ("ok", "ok")))
         assert was != now
         assert (float(was), float(now)) == (value, other)
 

@@ -90,9 +90,14 @@ WRONG: dict[str, Callable[[dict[str, Any]], Any]] = {
     "published": lambda d: d["published"].append(1),
     "published index": lambda d: d["published"][0].pop("index"),
     "title": lambda d: d.pop("title"),
+    "headline": lambda d: d.update(headline="m"),
+    "shown": lambda d: d["cells"]["m"].update(shown={"text": "percent", "scale": 0}),
+    "decision": lambda d: d.update(
+        conformity=[{"cell": "x[1]", "limits": "1 to 2", "acceptance": [1, 2], "decision": "conforms"}]
+    ),
 }
 
-NOT_IN_A_SCHEMA = {"rows", "twice", "size", "huge"}
+NOT_IN_A_SCHEMA = {"decision", "rows", "twice", "size", "huge"}
 """What hangs on other fields, and on doubles."""
 
 

@@ -36,6 +36,13 @@ def test_shape(values: dict) -> None:  # type: ignore[type-arg]
     assert {c["axis"] for c in values["cells"].values()} == {"tests", "pairs", "points", None}
 
 
+def test_it_says_which_are_the_results_and_in_which_unit_people_read_them(values: dict) -> None:  # type: ignore[type-arg]
+    assert values["headline"][:3] == ["alpha_eiv", "C_eiv", "chi2_eiv"]
+    assert values["aside"] == []
+    assert values["cells"]["x_p"]["shown"] == {"text": "um", "scale": 1e-06, "zero": 0.0}
+    assert "shown" not in values["cells"]["v"]
+
+
 def test_rows_that_a_rule_makes_of_each_pair_are_counted_not_listed(values: dict) -> None:  # type: ignore[type-arg]
     F = dict(values["cells"]["F"])
     assert F.pop("rule").startswith("(L")

@@ -93,8 +93,8 @@ def test_an_input_that_changed_and_what_it_moves(campaign: Path, capsys: pytest.
     assert main(["verify", str(campaign / "out"), "--most", "3"]) == 1
     out = capsys.readouterr().out
     assert "input      the input measurements.csv was changed\n" in out
-    assert "number     x_p[2] was 2.97e-05 and is 2.98e-05 m (+0.337 %)\n" in out
-    assert "number     alpha_mean was 1.30264 and is 1.30487 (+0.171 %)\n" in out
+    assert "number     x_p[2] was 29.7 and is 29.8 um (+0.337 %)\n" in out
+    assert "number     alpha_eiv was 1.3013 and is 1.30664 (+0.41 %)\n" in out
     assert " more\n" in out
     assert out.endswith("different: the input (measurements.csv) changed\n")
     assert hashes(campaign) == before

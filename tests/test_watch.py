@@ -149,7 +149,7 @@ def test_what_is_saved_is_built_again(tmp_path: Path) -> None:
         draft.write_text(right.replace("215", "216"))
         draft.replace(data)
         told = watch.until("4 files in ", since)
-        assert re.search(r"\n  input    d\[1\] +2\.15e-07 -> 2\.16e-07 m +\+0\.465 %\n", told)
+        assert re.search(r"\n  input    d\[1\] +215 -> 216 nm +\+0\.465 %\n", told)
         last = json.loads(get(f"{address}news?known={wrong['known']}")[1])
         assert (last["number"], last["error"]) == (2, "")
         assert "d[1]" in last["changed"]

@@ -12,6 +12,7 @@ from msgspec import UNSET
 from ..cells.address import address
 from ..files.form import Index
 from ..files.values import Column, Conformity, Result
+from ..quantity import behind
 from ..result.agreement import LIMIT
 
 __all__ = ["Differences", "Move", "OtherChange", "compare"]
@@ -19,6 +20,8 @@ __all__ = ["Differences", "Move", "OtherChange", "compare"]
 SURELY = 1e-6
 """Relative: what an uncertainty may differ by, of which nobody reads the third digit."""
 EPS = sys.float_info.epsilon
+Held = tuple[float | None, str]
+"""A number in SI and a status."""
 
 
 @dataclass(frozen=True)
@@ -30,21 +33,24 @@ class Move:
     address : str
         ``alpha[1-2]``.
     unit : str
-        SI.
-    given : bool
-        Whether the user gives it.
+        In which people read it; in SI, if that tells none.
+    kind : str
+        ``input`` if the user gives it, ``result`` of one of the headline, ``moved`` of all else.
     before, after : float or None
-        None where it has no value.
+        In that unit; None where it has no value.
     status : tuple of str
         Before and after.
+    by : float and str, optional
+        The difference in SI with its unit, where a share tells nothing: of temperatures in degC.
     """
 
     address: str
     unit: str
-    given: bool
+    kind: str
     before: float | None
     after: float | None
     status: tuple[str, str]
+    by: tuple[float, str] | None = None
 
     @property
     def relative(self) -> float | None:
@@ -76,8 +82,9 @@ class Differences:
     noise : int
         How many differ by what rounding may do.
     moved : tuple of Move
-        The others: what the user gives first, then scalars, then the rest in the order of the sheet; then
-        ``u(alpha_mean)``, the standard uncertainty of a number that is the same.
+        The others: what the user gives first, then the headline, then other scalars, then the rest in the
+        order of the sheet, what only leads to other cells last; then ``u(alpha_mean)``, the standard
+        uncertainty of a number that is the same.
     method : tuple of OtherChange
         Columns that follow another equation, or have another unit or index set, and equations whose proof
         came out otherwise.
@@ -127,33 +134,36 @@ def compare(
         What they are called.
     """
     same = noise = 0
-    moved: list[tuple[int, Move]] = []
+    moved: list[tuple[tuple[int, ...], Move]] = []
+    headline, aside = after.headline or before.headline, {*before.aside, *after.aside}
     for name, old in before.cells.items():
         new = after.cells.get(name)
         if new is None:
             continue
+        kind, rank = "moved", (4 if name in aside else 3 if old.axis else 2, 0)
+        if old.rule == new.rule == "given":
+            kind, rank = "input", (0, 0)
+        elif name in headline:
+            kind, rank = "result", (1, headline.index(name))
         there = new.cells
         for index, was in old.cells.items():
             if index not in there:
                 continue
-            now = there[index]
-            given = old.rule == new.rule == "given"
+            now, named = there[index], address(name, index)
             if was == now:
                 same += 1
             elif _within(was, now, (allowed or {}).get(name, {}).get(index, 0.0)):
                 noise += 1
             else:
-                rank = 0 if given else 1 if not old.axis else 2
-                named = address(name, index)
-                moved.append((rank, Move(named, new.unit, given, was[0], now[0], (was[1], now[1]))))
+                moved.append(((0, *rank), _move(named, kind, new, was, now, False)))
                 continue
             if index in old.uncertainties and index in new.uncertainties:
                 surer = old.uncertainties[index], new.uncertainties[index]
                 if _as_sure(*surer):
                     same += 1
                 else:
-                    named = f"u({address(name, index)})"
-                    moved.append((3, Move(named, new.unit, given, *surer, ("not known", "not known"))))
+                    u_was, u_now = ((each, "not known") for each in surer)
+                    moved.append(((1, *rank), _move(f"u({named})", kind, new, u_was, u_now, True)))
     return Differences(
         *names,
         same,
@@ -167,7 +177,20 @@ def compare(
     )
 
 
-def _within(was: tuple[float | None, str], now: tuple[float | None, str], allowed: float) -> bool:
+def _move(named: str, kind: str, column: Column, was: Held, now: Held, is_u: bool) -> Move:
+    """What moved, in the unit that its column is shown in; uncertainties of degC are differences, in K."""
+    (before, status_before), (after, status_after) = was, now
+    status = status_before, status_after
+    shown = column.shown
+    if shown is UNSET or (is_u and shown.zero):
+        return Move(named, column.unit, kind, before, after, status)
+    by = None
+    if shown.zero and before is not None and after is not None:
+        by = after - before, column.unit
+    return Move(named, shown.text, kind, shown.of(before), shown.of(after), status, by)
+
+
+def _within(was: Held, now: Held, allowed: float) -> bool:
     if was[0] is None or now[0] is None or was[1] != now[1]:
         return False
     return abs(now[0] - was[0]) <= max(LIMIT * EPS * max(abs(was[0]), abs(now[0])), allowed)
@@ -206,12 +229,21 @@ def _checks(result: Result) -> dict[str, str]:
     """Of each check that found something, as ``limit alpha``, what it told; of each limit, the decision."""
     told = {f"{each.kind} {each.name}": each.sentence for each in result.oddities}
     decided = () if result.conformity is UNSET else result.conformity
-    return told | {f"limits {each.cell}": f"{each.limits}: {_decision(each)}" for each in decided}
+    return told | {
+        f"limits {each.cell}": f"{each.limits}: {_decision(each, result.cells[each.column])}"
+        for each in decided
+    }
 
 
-def _decision(found: Conformity) -> str:
-    ends = " to ".join("..." if end is None else f"{end:.12g}" for end in found.acceptance)
-    return f"{found.decision}, accepted from {ends} in SI"
+def _decision(found: Conformity, column: Column) -> str:
+    unit, ends = column.unit, found.acceptance
+    if column.shown is not UNSET:
+        unit, ends = column.shown.text, (column.shown.of(ends[0]), column.shown.of(ends[1]))
+    return f"{found.decision}, accepted from {' to '.join(map(_end, ends))}" + behind(unit)
+
+
+def _end(value: float | None) -> str:
+    return "..." if value is None else f"{value:.12g}"
 
 
 def _changes(before: Mapping[str, str], after: Mapping[str, str]) -> list[OtherChange]:

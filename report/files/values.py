@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
 from pathlib import Path
 from typing import Annotated
 
@@ -26,6 +27,7 @@ __all__ = [
     "Source",
     "Table",
     "Tried",
+    "Unit",
     "Witness",
     "read_result",
 ]
@@ -48,6 +50,35 @@ class Marked(Form, frozen=True, kw_only=True):
     of: int
 
 
+class Unit(Form, frozen=True, kw_only=True):
+    """A unit that is not that of SI.
+
+    Parameters
+    ----------
+    text : str
+        ``mm`` or ``degC``.
+    scale : number
+        One of it in SI.
+    zero : number
+        Its zero in SI: 273.15 of ``degC``.
+    """
+
+    text: Text
+    scale: Annotated[float, Meta(gt=0)]
+    zero: float = 0.0
+
+    def of(self, value: Number) -> Number:
+        """A value in SI in this unit, without the digits that a rounded quotient would add.
+
+        >>> Unit(text="degC", scale=1.0, zero=273.15).of(293.1)
+        19.95
+        """
+        if value is None:
+            return None
+        exactly, zero, scale = (Decimal(repr(each)) for each in (float(value), self.zero, self.scale))
+        return float((exactly - zero) / scale)
+
+
 class Column(Form, frozen=True, kw_only=True):
     """One column: of an index set lists, of a scalar one cell; rows made of each row of another are counted.
 
@@ -59,6 +90,8 @@ class Column(Form, frozen=True, kw_only=True):
         Whose rows those of the axis are made of: such rows are as many as pairs times points.
     unit : str
         SI; 1 for a pure number.
+    shown : Unit
+        In which people read it, where that is another one: all numbers here are in SI.
     rule : str
         Its equation with its number; ``given`` for what the user gave, empty if it is not told.
     index : list
@@ -84,6 +117,7 @@ class Column(Form, frozen=True, kw_only=True):
     axis: Text | None = None
     of: Text | UnsetType = UNSET
     unit: Text
+    shown: Unit | UnsetType = UNSET
     rule: Text = ""
     size: Annotated[int, Meta(ge=0)] | UnsetType = UNSET
     index: list[Row] | UnsetType = UNSET
@@ -156,6 +190,11 @@ class Conformity(Form, frozen=True, kw_only=True):
     acceptance: tuple[Number, Number]
     probability: Number = None
     decision: Text
+
+    @property
+    def column(self) -> str:
+        """The name of its column."""
+        return self.cell.partition("[")[0]
 
 
 class Erratum(Form, frozen=True, kw_only=True):
@@ -366,6 +405,10 @@ class Result(Form, frozen=True, kw_only=True):
     ----------
     schema : 1
     workbook, title : str
+    headline : list of str
+        The results: names of scalars, the first of them first.
+    aside : list of str
+        Columns that only lead to other cells, as those that a fit is computed by.
     cells : table of Column
         In the order of the sheet.
     oddities : list of Oddity
@@ -386,6 +429,8 @@ class Result(Form, frozen=True, kw_only=True):
     schema: Schema
     workbook: Text
     title: Text
+    headline: list[Text] = field(default_factory=list)
+    aside: list[Text] = field(default_factory=list)
     cells: dict[Text, Column]
     oddities: list[Oddity] = field(default_factory=list)
     conformity: list[Conformity] | UnsetType = UNSET
@@ -395,6 +440,11 @@ class Result(Form, frozen=True, kw_only=True):
     published: list[Published]
     influences: Influences | UnsetType = UNSET
     referee: Referee | UnsetType = UNSET
+
+    def __post_init__(self) -> None:
+        for each in () if self.conformity is UNSET else self.conformity:
+            if each.column not in self.cells:
+                raise ValueError(f"it decides on {each.cell}, and has no such cell")
 
 
 def read_result(path: Path) -> Result:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from decimal import Decimal
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from ..cells.marks import Marks
 from ..cells.values import Cell, Status, Values
+from ..files.values import Unit
 from ..inputs.inputs import Inputs, PublishedValue
 from ..messages.diagnostics import Check
 from ..quantity import Printed, behind
@@ -65,14 +65,14 @@ class Shown:
         """A value in SI, or an array of them, in that unit; of a difference only its scale is asked."""
         return (value - self.zero) / self.scale
 
-    def digits_of(self, value: float) -> str:
-        """All digits of a value in SI in that unit, without those that a rounded quotient would add.
+    @property
+    def as_data(self) -> Unit:
+        """The unit, as files hold it."""
+        return Unit(text=self.unit, scale=self.scale, zero=self.zero)
 
-        >>> Shown("degC", 1.0, 4, 273.15).digits_of(293.1)
-        '19.95'
-        """
-        exactly, zero, scale = (Decimal(repr(float(each))) for each in (value, self.zero, self.scale))
-        return repr(float((exactly - zero) / scale))
+    def digits_of(self, value: float) -> str:
+        """All digits of a value in SI in that unit."""
+        return repr(self.as_data.of(value))
 
 
 @dataclass(frozen=True)

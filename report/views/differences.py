@@ -25,9 +25,8 @@ def as_text(found: Differences, most: int) -> str:
     """
     lines = [f"numbers    {_count(found)}"]
     for move in found.moved[:most]:
-        kind = "input" if move.given else "moved"
         was, now, by = moved(move)
-        lines.append(f"  {kind}    {move.address:16} {was} -> {now}{_unit(move)}   {by}".rstrip())
+        lines.append(f"  {move.kind:6}   {move.address:16} {was} -> {now}{_unit(move)}   {by}".rstrip())
     lines += _rest([move.address for move in found.moved], most)
     for word, changes in _others(found):
         for change in changes[:most]:
@@ -75,19 +74,24 @@ def _unit(move: Move) -> str:
 def moved(move: Move) -> tuple[str, str, str]:
     """Both values, with as many digits as it takes to tell them apart, and by how much.
 
-    >>> moved(Move("alpha_mean", "1", False, 1.30256, 1.30277, ("ok", "ok")))
+    >>> moved(Move("alpha_mean", "1", "result", 1.30256, 1.30277, ("ok", "ok")))
     ('1.30256', '1.30277', '+0.0161 %')
-    >>> moved(Move("x", "m", False, 1.0, 1.0 + 2**-40, ("ok", "ok")))
+    >>> moved(Move("x", "m", "moved", 1.0, 1.0 + 2**-40, ("ok", "ok")))
     ('1', '1.0000000000009095', '+9.1e-13 of it')
-    >>> moved(Move("x", "m", False, 1.0, None, ("ok", "#NOROOT!")))
+    >>> moved(Move("x", "m", "moved", 1.0, None, ("ok", "#NOROOT!")))
     ('1', '#NOROOT!', '')
+    >>> moved(Move("t", "degC", "result", 20.0, 20.25, ("ok", "ok"), (0.25, "K")))
+    ('20', '20.25', '+0.25 K')
     """
     was, now = move.before, move.after
     if was is None or now is None:
         return _value(was, move.status[0], 6), _value(now, move.status[1], 6), ""
     digits = next((d for d in range(6, 17) if f"{was:.{d}g}" != f"{now:.{d}g}"), 17)
     by = move.relative
-    if by is None:
+    if move.by is not None:
+        difference, unit = move.by
+        said = f"{difference:+.3g} {unit}"
+    elif by is None:
         said = ""
     elif abs(by) >= 1e-6:
         said = f"{100 * by:+.3g} %"
@@ -108,8 +112,7 @@ def as_markdown(found: Differences, most: int) -> str:
     rows = []
     for move in found.moved[:most]:
         was, now, by = moved(move)
-        kind = "input" if move.given else "result"
-        rows.append([md.code(move.address), kind, md.cell(was), md.cell(now + _unit(move)), md.cell(by)])
+        rows.append([md.code(move.address), move.kind, md.cell(was), md.cell(now + _unit(move)), md.cell(by)])
     text += _section(["number", "", "before", "after", "by"], rows, [m.address for m in found.moved], most)
     for word, changes in _others(found):
         rows = [[md.code(c.name), md.code(_said(c.before)), md.code(_said(c.after))] for c in changes[:most]]

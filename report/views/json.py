@@ -45,6 +45,8 @@ def values(report: Report) -> str:
             schema=SCHEMA,
             workbook=report.workbook.name,
             title=report.title,
+            headline=[name for name in report.workbook.headline if name in report.sheet],
+            aside=[column.name for column in report.sheet.columns if column.name in report.workbook.aside],
             cells={column.name: _column(report, column) for column in report.sheet.columns},
             oddities=oddities(report.oddities),
             conformity=[_decided(each) for each in report.uncertain().conformities] or UNSET,
@@ -93,6 +95,8 @@ def _column(report: Report, column: Column) -> form.Column:
         labels = report.values.layouts[column.axis.name].labels.tolist()
         index = [label[0] for label in labels] if len(labels[0]) == 1 else list(map(tuple, labels))
         entry = {"axis": column.axis.name, "index": index}
+    if (how := report.shown[column.name]).unit != column.unit:
+        entry["shown"] = how.as_data
     if column.name in report.values.roots:
         reasons = [cell.reason or None for cell in report.values.cells(column.name)]
         entry["reason"] = told(reasons)
