@@ -7,7 +7,17 @@ from typing import ClassVar
 from sympy import Expr, Function, Mul, Sum
 from sympy.concrete.expr_with_limits import ExprWithLimits
 
-__all__ = ["REDUCTIONS", "Greatest", "Least", "Median", "Member", "OrderStatistic", "member_of", "taken_of"]
+__all__ = [
+    "REDUCTIONS",
+    "Greatest",
+    "Least",
+    "Median",
+    "Member",
+    "OrderStatistic",
+    "member_of",
+    "never_negative",
+    "taken_of",
+]
 
 
 class OrderStatistic(ExprWithLimits):  # type: ignore[misc] # sympy has no types
@@ -79,6 +89,25 @@ class Member(Function):  # type: ignore[misc] # sympy has no types
     nargs = 2
     is_real = True
     is_nonnegative = True
+
+
+def never_negative(expr: Expr) -> bool:
+    """Whether an expression is surely 0 or more: as sympy knows, or as a range of one and the same terms is.
+
+    >>> from sympy import IndexedBase, Symbol
+    >>> k, n, t = Symbol("k", integer=True), Symbol("n", integer=True), IndexedBase(Symbol("t", real=True))
+    >>> high, low = (taken(t[k], (k, 1, n)) for taken in (Greatest, Least))
+    >>> [never_negative(each) for each in ((high - low) / 2, (high - low) ** 2, high + low, high, low - high)]
+    [True, True, False, False, False]
+    """
+    if expr.is_nonnegative:
+        return True
+    if isinstance(expr, Mul):
+        return all(map(never_negative, expr.args))
+    terms = expr.as_coefficients_dict()
+    greatest = [each for each in terms if isinstance(each, Greatest)]
+    ranges = {each: terms[each] for each in greatest} | {Least(*each.args): -terms[each] for each in greatest}
+    return all(terms[each] > 0 for each in greatest) and terms == ranges
 
 
 REDUCTIONS = (Sum, Median, Greatest, Least)

@@ -17,6 +17,7 @@ from ..result.chi_square import RARE, SIGNIFICANT, freedom, head, largest, tail,
 from ..result.conformity import decision
 from ..result.numbers import probability, rounded
 from ..result.statements import statements
+from ..result.uncertain import draws_of
 from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
 from ..workbook import FigureSpec
 from . import cards
@@ -212,17 +213,19 @@ class Said:
             meaning,
             item,
             (*(rows if item.ok else ()), *(count.said for count in marks)),
-            self._sure(name),
+            *self._sure(name),
         )
 
-    def _sure(self, name: str) -> Inlines:
-        """The expanded uncertainty of a result, where one is known."""
+    def _sure(self, name: str) -> tuple[Inlines, Inlines]:
+        """The expanded uncertainty of a result, where one is known, and whether it may not hold."""
         for budget in self.material.budgets:
             if budget.name == name and budget.label == () and math.isfinite(budget.factor):
                 _, expanded = self.report.stated(name, budget.value, budget.expanded)
                 factor = f" (k\u00a0=\u00a0{rounded(budget.factor, 3).text})"
-                return "±\u00a0", Number(expanded), *in_unit(self.report.shown[name].unit), factor
-        return ()
+                told = "±\u00a0", Number(expanded), *in_unit(self.report.shown[name].unit), factor
+                instead = ("; use ", Code(draws_of(budget.cell))) if budget.fails else ()
+                return told, ((budget.doubt, *instead) if budget.doubt else ())
+        return (), ()
 
     def oddities(self) -> Blocks:
         """What there is to tell of the data themselves."""

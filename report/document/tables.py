@@ -21,7 +21,7 @@ from ..result.numbers import Numeral, decimals, probability, read, rounded, tabl
 from ..result.result import Comparison
 from ..result.shares import SEEN, foremost
 from ..result.statements import of_column
-from ..result.uncertain import Budget, Conformity, Contribution, Decision
+from ..result.uncertain import Budget, Conformity, Contribution, Decision, draws_of
 from ..result.verdict import ALL, INPUT, UNREACHABLE, TableVerdict
 from ..sheet import Axis, GroupAxis
 from ..workbook import SquareSum, TableSpec, sentence_case
@@ -261,15 +261,18 @@ class Tables:
         level = f"{100 * self.material.budgets[0].level:.12g}\u00a0%"
         caption = (Strong(("Uncertainty of the results.",)), f" U is the expanded one, for {level}")
         every = self.material.budgets
-        legend = self._bent([(Code(each.cell),) for each in every if each.second])
+        legend = self._doubted(every)
         return _table("uncertain", caption, made, [((), every)], look="list", wide=True, legend=legend)
 
     @staticmethod
-    def _bent(cells: Sequence[Inlines]) -> Inlines:
-        """That a normal distribution need not be that of some cells."""
-        asked = Code("loopsheet budget CELL --draws 1000000")
-        told = " so that U may not hold: ", asked, " tells the interval."
-        return ("Terms of second order count in ", *joined(cells, ", ", " and "), ",", *told) if cells else ()
+    def _doubted(budgets: Iterable[Budget]) -> Inlines:
+        """Of which results U may not hold, and why."""
+        doubts: dict[str, list[Inlines]] = {}
+        for each in budgets:
+            if each.doubt:
+                doubts.setdefault(each.doubt, []).append((Code(each.cell),))
+        told = [(f"{doubt} (", *joined(cells, ", ", " and "), "). ") for doubt, cells in doubts.items()]
+        return (*joined(told, ""), Code(draws_of("CELL")), " tells the interval.") if told else ()
 
     def budget(self) -> tuple[Table, ...]:
         """Where the uncertainty of the first result comes from, source by source; nothing if none is seen.

@@ -345,13 +345,14 @@ class Items(Block):
 
 @dataclass(frozen=True)
 class HeadlineItem:
-    """A cell that is a result: how sure it is, over how many rows if not all, how many carry marks."""
+    """A cell that is a result: over how many rows if not all, how many carry marks, how sure it is."""
 
     symbol: Math
     meaning: Inlines
     item: Item
     said: tuple[str, ...]
     sure: Inlines = ()
+    doubt: Inlines = ()
 
 
 @dataclass(frozen=True)

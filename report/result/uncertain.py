@@ -30,6 +30,7 @@ __all__ = [
     "Misfit",
     "Together",
     "Uncertainties",
+    "draws_of",
 ]
 
 TOLERANCE = 1e-3
@@ -167,6 +168,8 @@ class Budget:
         Columns over pairs of rows that the cell sums: pairs share their rows.
     draws : int
         So many told its distribution and the coverage factor; 0 where the errors' own did.
+    least : float
+        What the quantity cannot fall below, in SI.
     """
 
     cell: str
@@ -186,6 +189,36 @@ class Budget:
     law: Law | None = None
     summed: tuple[Together, ...] = ()
     draws: int = 0
+    least: float = -math.inf
+
+    @property
+    def fails(self) -> bool:
+        """Whether first order plainly fails: second order makes more of the variance, or U leads too low."""
+        if not self.of_second_order:
+            return False
+        return abs(self.second) > self.u**2 - self.second or self.value - self.expanded < self.least
+
+    @property
+    def of_second_order(self) -> bool:
+        """Whether terms of second order count, or nobody knows."""
+        return self.is_known and self.u > 0 and bool(self.second or self.unlooked)
+
+    @property
+    def hold(self) -> str:
+        """How far the expanded uncertainty is to be believed where terms of second order are not nothing."""
+        return "U does not hold" if self.fails else "U may not hold"
+
+    @property
+    def doubt(self) -> str:
+        """That, with its reason; nothing where first order is enough."""
+        if not self.of_second_order or math.isnan(self.factor):
+            return ""
+        return f"{self.hold}: second order {'counts' if self.second else 'was not looked at'}"
+
+    @property
+    def advice(self) -> str:
+        """The doubt for where the number stands, and what to use instead where first order plainly fails."""
+        return f"{self.doubt}; use '{draws_of(self.cell)}'" if self.doubt and self.fails else self.doubt
 
     @property
     def expanded(self) -> float:
@@ -196,6 +229,11 @@ class Budget:
     def is_known(self) -> bool:
         """Whether there is a standard uncertainty, even if it is 0."""
         return math.isfinite(self.u)
+
+
+def draws_of(cell: str) -> str:
+    """The command that draws what a cell rests on."""
+    return f"loopsheet budget {cell} --draws 1000000"
 
 
 @dataclass(frozen=True)
@@ -384,3 +422,8 @@ class Uncertainties:
     influence: Influence | None = None
     bent: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
     misfits: Mapping[str, Misfit] = field(default_factory=dict)
+
+    @property
+    def advice(self) -> dict[str, str]:
+        """Of which cells of the headline U may not hold, and why."""
+        return {each.cell: each.advice for each in self.budgets if each.advice}

@@ -135,7 +135,8 @@ def by_draws(inputs: Inputs, values: Values, budget: Budget) -> Budget:
     errors = (np.concatenate(found) - budget.value) / budget.u
     if errors.size < (1 - WITHOUT) * SOME:
         return replace(budget, factor=math.nan, because="nothing: too many draws have no value")
-    told, law = f"{SOME} draws: terms of first order do not tell its distribution", Samples(errors)
+    why = "terms of second order count" if budget.second else "terms of second order were not looked at"
+    told, law = f"{SOME} draws: {why}", Samples(errors)
     factor = law.half(budget.level)
     return replace(budget, factor=factor, because=told, shape=Shape.SAMPLES, law=law, draws=SOME)
 

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ...derivations.reductions import never_negative
 from ..cells.address import address
 from ..cells.layout import how_large, precedents
 from ..cells.values import Status, Values, rows_kept
@@ -23,7 +24,7 @@ from ..inputs.limits import Limits
 from ..judge.chain import Chain, Made
 from ..judge.sensitivity import Numbers
 from ..result.uncertain import Budget, Conformity, Contribution, Influence, Misfit, Together, Uncertainties
-from ..sheet import Column, Given, PairAxis, RepeatAxis
+from ..sheet import Column, Formula, Given, PairAxis, RepeatAxis
 from ..workbook import Curve
 from .conformity import conformity
 from .coverage import assigned, coverage
@@ -229,7 +230,8 @@ class Spread:
             (self.sources[a].name, self.sources[b].name): r for a, b, r in self._pairs if {a, b} <= set(order)
         }
         known = value, u, told, pairs, dof, level, factor, because, second, unlooked, shape, law
-        return Budget(address(name, label), name, label, *known, tuple(self._summed(column)))
+        summed, least = tuple(self._summed(column)), _least(column)
+        return Budget(address(name, label), name, label, *known, summed, least=least)
 
     def _summed(self, column: Column) -> Iterator[Together]:
         """The columns over pairs of rows that a column sums, of the rows that it sums."""
@@ -336,6 +338,15 @@ def _known(values: Values) -> set[str]:
         for column in sheet.columns
         if generated.isdisjoint(each.name for each in (column, *sheet.ancestors(column)))
     }
+
+
+def _least(column: Column) -> float:
+    """What its cells cannot fall below, in SI, as far as its rule tells."""
+    rule = column.rule
+    if isinstance(rule, Given) and rule.bounds.low is not None:
+        return float(rule.bounds.low)
+    known = isinstance(rule, Formula) and column.mentioned is None and never_negative(rule.expression)
+    return 0.0 if column.positive or known else -math.inf
 
 
 def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Uncertainties:

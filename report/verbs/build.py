@@ -112,4 +112,5 @@ def _line(report: Report, name: str) -> str:
     left = "".join(f"  (over {n} of {report.values.layouts[a].size} {a})" for a, n in rows.items())
     left += "".join(f"  ({count.said})" for count in report.marks.behind(column) if count.number)
     left += (mark := report.marks.of(name)[0]) and f"  {mark}"
+    left += (doubt := report.uncertain().advice.get(name, "")) and f"  ({doubt})"
     return f"{name:12} {report.text(cell)}  {column.meaning} {column.source}{left}"

@@ -181,10 +181,11 @@ def notes(report: Report, budget: Budget) -> Iterator[str]:
             there = f"{far}{unit} {'above' if off > 0 else 'below'} the given number"
             yield f"the expectation of {each.source.name} lies {there}: --draws counts it"
     if budget.unlooked and budget.is_known:
-        yield f"terms of second order were not looked at: {budget.unlooked}; --draws tells more"
+        said = f"terms of second order were not looked at: {budget.unlooked}"
+        yield f"{said}; {budget.hold}, --draws tells more"
     if budget.second:
         share = percent(budget.second / budget.u**2)
-        yield f"terms of second order make {share} of the variance: U may not hold, --draws tells more"
+        yield f"terms of second order make {share} of the variance: {budget.hold}, --draws tells more"
     if budget.is_known and budget.u:
         if not math.isinf(budget.dof) and not math.isnan(budget.dof):
             yield f"{budget.dof:.0f} effective degrees of freedom"

@@ -223,6 +223,8 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
         entry["given"] = _given(report, column)
         return entry if (stated := errors(report, column)) is None else entry | {"errors": stated}
     entry |= digits(report, column)
+    if doubt := report.uncertain().advice.get(column.name):
+        entry["doubt"] = doubt
     if column.spare or report.told_of(column) != column.name:
         entry["spare"] = 1
     if head.sources != (column.source,):

@@ -211,9 +211,8 @@ class _Written:
             said = f'=IF({self.unmoved(at)},"{told}","{instead}")'
             self.style.formula(self.sheet, row, 1, said, told, self.style("text"))
             row += 1
-        if budget.second:
-            told = "terms of second order count, so that U may not hold: 'budget --draws' tells the interval"
-            self.style.text(self.sheet, row, 0, told)
+        if budget.advice:
+            self.style.text(self.sheet, row, 0, budget.advice)
             row += 1
         return self.limits(row, own, at)
 

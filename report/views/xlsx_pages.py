@@ -125,7 +125,13 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
         "Computed with " + ", ".join(f"{name} {version}" for name, version in report.versions.items()) + ".",
     ]
     known = [f"{name}: {said}." for name, said in statements(report)]
-    parts = ("The data as they were given", odd), ("Stated uncertainties", known), ("How to use it", notes)
+    doubts = [f"{name}: {said}." for name, said in report.uncertain().advice.items()]
+    parts = (
+        ("The data as they were given", odd),
+        ("Stated uncertainties", known),
+        ("How sure the results are", doubts),
+        ("How to use it", notes),
+    )
     for title, lines in parts:
         if lines:
             row = _write_lines(sheet, style, row, title, lines) + 2

@@ -49,7 +49,7 @@ function fillBar(look, name, row, index) {
 
 // Its uncertainty and what most of it comes from.
 function fillSure(look, name, row) {
-  const known = sureOf(look, name, row), { kept, unit } = LIVE.columns[name];
+  const known = sureOf(look, name, row), { kept, unit, doubt } = LIVE.columns[name];
   if (!known) {
     const told = LIVE.shared ? kept?.[look.trace.index(name, row)] && "its uncertainty is of second order, which an edit leaves to draws" : kept && "its uncertainty is as issued";
     if (told && look.trace.isOk(name, row)) fillLine("bar-sure", make("span", { class: "says" }, told));
@@ -61,7 +61,7 @@ function fillSure(look, name, row) {
     bar.style.width = `${Math.round(60 * Math.abs(share))}px`;
     return make(goto ? "button" : "span", { type: goto && "button", "data-goto": goto }, make("code", {}, called), ` ${percent(share)} `, bar);
   });
-  const wide = expanded ? [`, U = ${expanded}`, ...behind(), ` with k = ${factor} for 95\u00a0%`] : [];
+  const wide = expanded ? [`, U = ${expanded}`, ...behind(), ` with k = ${factor} for 95\u00a0%`, ...(doubt ? [`; ${doubt}`] : [])] : [];
   fillLine("bar-sure", make("span", { class: "says" }, "sure to"), `u = ${u}`, ...behind(), ...wide, ...from);
 }
 
