@@ -21,6 +21,7 @@ import pytest
 from loopsheet.report import build, cost
 from loopsheet.report.cli import main
 from loopsheet.report.engines import excel_grid
+from loopsheet.report.files.manifest import read_manifest
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.machine.background import Later
 from loopsheet.report.machine.staging import put, strangers
@@ -191,6 +192,42 @@ def test_nothing_is_written_among_the_files_of_somebody(
 def test_a_report_folder_may_hold_its_report(tmp_path: Path, gauge: Path) -> None:
     own = shutil.copytree(gauge, tmp_path / "own", ignore=lambda *_: ["out"])
     assert out_of(Namespace(out=str(own)), own) == own
+
+
+def test_what_is_of_the_same_inputs_stays(
+    tmp_path: Path, gauge: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def outputs() -> set[str]:
+        there = {*hashes(out)} - {"manifest.json"}
+        assert there == {*read_manifest(out).outputs}  # all that lies there is marked
+        return {name for name in there if "/" not in name}
+
+    def again(*formats: str) -> list[str]:
+        told: list[str] = []
+        build.build(Study(gauge), out, formats, tell=told.append)
+        return told[1:]
+
+    out, whole = tmp_path / "out", {"report.html", "report.tex", "values.json"}
+    again("html", "latex", "json")
+    before = hashes(out)
+    assert again("json") == []
+    assert hashes(out) == before
+    (out / "report.tex").write_text("edited")
+    assert again("html")[0] == "report.tex was not as built: it is kept as report.edited.tex"
+    (out / "report.edited.tex").unlink()
+    assert outputs() == whole - {"report.tex"}
+    again("latex")
+    assert hashes(out) == before
+    with monkeypatch.context() as patch:
+        sums = build.sources()
+        patch.setattr(build, "sources", lambda: sums | {"program": "0"})
+        again("html", "json")
+        assert outputs() == whole - {"report.tex"}
+    again("html", "latex", "json")
+    toml = gauge / "report.toml"
+    toml.write_text(toml.read_text().replace("0.1 K", "0.2 K"))
+    assert again("html")[-1].endswith("report.tex, values.json: removed, as of the report before")
+    assert outputs() == {"report.html"}
 
 
 def test_a_failure_while_writing_leaves_everything_as_it_was(

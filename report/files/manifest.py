@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Annotated
 
 from msgspec import Meta, field
+from msgspec.structs import replace
 
 from .form import Form, Malformed, Schema, Text, load, read
 
@@ -53,6 +54,10 @@ class Manifest(Form, frozen=True, kw_only=True):
         for name in (*self.inputs, *self.outputs):
             if any(len(part.encode()) > 255 for part in name.split("/")):
                 raise ValueError(f"'{name[:20]}...' can be no file")
+
+    def of(self, outputs: Sums) -> Manifest:
+        """The same of other outputs."""
+        return replace(self, outputs=outputs)
 
     @property
     def software(self) -> Mapping[str, str]:

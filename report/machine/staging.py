@@ -20,6 +20,7 @@ PATIENCE = 60.0
 """Seconds to wait for somebody else who builds into the same folder."""
 
 
+_MANIFEST = Path("manifest.json")
 _HEAD = 1000
 """Bytes in which a file of ours says what it is."""
 
@@ -157,8 +158,9 @@ def staged(
 ) -> Iterator[Path]:
     """Give a temporary folder beside the output, moved in whole when the block ends well.
 
-    A file that is in its way, and that no build made as it is there, is kept under another name. Who builds
-    into the same folder meanwhile waits for some time, and is told then.
+    What a build before made of the same inputs, sources and versions, and is as it was built, stays where
+    this one does not make it again. A file that is in its way, and that no build made as it is there, is kept
+    under another name. Who builds into the same folder meanwhile waits for some time, and is told then.
 
     Parameters
     ----------
@@ -187,7 +189,9 @@ def staged(
             with scratch(out) as stage:
                 yield stage
                 with unstoppable():
-                    kept, removed = _move_in(stage, out, killed, _added(stage, out, added))
+                    manifest, whole = _together(stage, out)
+                    gone = _added(stage, out, manifest, added)
+                    kept, removed = _move_in(stage, out, killed, gone, manifest, whole)
                     for name in removed:
                         _remove([out / parent for parent in name.parents[:-1]])
         for name, free in kept.items():
@@ -237,22 +241,27 @@ def _remove(made: list[Path]) -> None:
 
 
 def _move_in(
-    stage: Path, out: Path, killed: list[dict[Path, str]], gone: Mapping[Path, str]
+    stage: Path,
+    out: Path,
+    killed: list[dict[Path, str]],
+    gone: Mapping[Path, str],
+    manifest: bytes,
+    whole: Collection[Path],
 ) -> tuple[dict[Path, Path], list[Path]]:
     """Put the staged files in place, all or none; return what was kept, and as what, and what was removed.
 
-    The manifest comes last and never speaks of half an output. What an earlier build made and this one does
-    not is taken away, as is what is `gone`: under its name it would be taken for a part of this report. What
-    somebody changed of it is kept under another. `killed` is what other builds were about to put here.
+    The manifest comes last and never speaks of half an output. What an earlier build made and is not of the
+    `whole` is taken away, as is what is `gone`: under its name it would be taken for a part of this report.
+    What somebody changed of it is kept under another. `killed` is what other builds were about to put here.
     """
     names = sorted(
         (p.relative_to(stage) for p in stage.rglob("*") if p.is_file()),
-        key=lambda name: (name.name == "manifest.json", name),
+        key=lambda name: (name == _MANIFEST, name),
     )
     for name in names:
         _refuse_what_is_in_the_way(out, name)
     before, built = stage / ".before", _listed(out)
-    removed = [*gone, *_stale(out, names, built or {})]
+    removed = [*gone, *_stale(out, [*names, *whole], built or {})]
     done: list[tuple[Path, Path | None]] = []
     kept_as: dict[Path, Path] = {}
     try:
@@ -266,6 +275,8 @@ def _move_in(
             done.append((target, kept))
             if name in names:
                 target.parent.mkdir(parents=True, exist_ok=True)
+                if name == _MANIFEST and manifest:
+                    (stage / name).write_bytes(manifest)
                 os.replace(stage / name, target)
             else:
                 target.unlink()
@@ -303,13 +314,10 @@ def _refuse_what_is_in_the_way(out: Path, name: Path) -> None:
 
 def _listed(folder: Path) -> dict[Path, str] | None:
     """The sha256 of what a build made, as its manifest says; None if there is none of ours."""
-    from ..files.form import Malformed, load
-    from ..files.manifest import NAME, Manifest
+    from ..files.manifest import manifest_of
 
-    try:
-        return {Path(name): digest for name, digest in load(folder / NAME, Manifest).outputs.items()}
-    except Malformed:
-        return None
+    found = manifest_of(folder)
+    return None if found is None else {Path(name): digest for name, digest in found.outputs.items()}
 
 
 def _changed(
@@ -322,7 +330,7 @@ def _changed(
     """What is about to be replaced or removed, and is neither as a build made it nor as it is built now."""
     for name in names:
         path = out / name
-        if path.is_symlink() or not path.is_file() or (name.name == "manifest.json" and built is not None):
+        if path.is_symlink() or not path.is_file() or (name == _MANIFEST and built is not None):
             continue
         ours = {listed.get(name) for listed in (built or {}, *killed)}
         now = {_sha256(stage / name)} if (stage / name).is_file() else set()
@@ -337,10 +345,12 @@ def _free(name: Path, out: Path) -> Path:
     return next(free for free in names if not os.path.lexists(out / free))
 
 
-def _added(stage: Path, out: Path, added: Callable[[Path], Mapping[Path, str]]) -> dict[Path, str]:
+def _added(
+    stage: Path, out: Path, manifest: bytes, added: Callable[[Path], Mapping[Path, str]]
+) -> dict[Path, str]:
     """What was added to the report that is there, if another one takes its place."""
-    old, new = out / "manifest.json", stage / "manifest.json"
-    if old.is_file() and new.is_file() and old.read_bytes() == new.read_bytes():
+    old = out / _MANIFEST
+    if manifest and old.is_file() and old.read_bytes() == manifest:
         return {}
     return {
         name: digest
@@ -352,15 +362,37 @@ def _added(stage: Path, out: Path, added: Callable[[Path], Mapping[Path, str]]) 
     }
 
 
+def _together(stage: Path, out: Path) -> tuple[bytes, list[Path]]:
+    """The manifest of what is staged and of what stays, and their names.
+
+    What stays is what a build before made of the very same inputs by the very same sources and versions.
+    """
+    from ..files.form import text
+    from ..files.manifest import manifest_of
+
+    new, old = manifest_of(stage), manifest_of(out)
+    if new is None:
+        return b"", []  # of nothing that is built
+    stays = {}
+    if old is not None and old.of(new.outputs) == new:
+        stays = {
+            name: digest
+            for name, digest in old.outputs.items()
+            if _is_there(out, Path(name)) and _sha256(out / name) == digest
+        }
+    whole = dict(sorted((stays | new.outputs).items()))
+    return text(new.of(whole)).encode(), [*map(Path, whole)]
+
+
+def _is_there(out: Path, name: Path) -> bool:
+    """Whether what a manifest names is a file of an output; no name makes us read outside of it."""
+    inside = not (name.is_absolute() or ".." in name.parts or (out / name).is_symlink())
+    return inside and (out / name).is_file()
+
+
 def _stale(out: Path, names: Collection[Path], built: dict[Path, str]) -> list[Path]:
     """What an earlier build made, and this build does not make."""
-    return [
-        name
-        for name in sorted(built)
-        if not (name in names or name.is_absolute() or ".." in name.parts)
-        and not (out / name).is_symlink()
-        and (out / name).is_file()
-    ]
+    return [name for name in sorted(built) if name not in names and _is_there(out, name)]
 
 
 def _sha256(path: Path) -> str:
