@@ -2,36 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
+from pathlib import Path
 
 from .files.manifest import manifest_of
 from .inputs.folders import PAPER, changed, is_report, output
 from .messages.diagnostics import Check
-from .messages.errors import listing
+from .messages.errors import Location, listing
 
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from .inputs.inputs import Inputs
-
-__all__ = ["outdated"]
+__all__ = ["outdated", "outdated_sources"]
 
 
-def outdated(inputs: Inputs) -> Iterator[Check]:
+def outdated(folder: Path, files: Iterable[str]) -> Iterator[Check]:
     """A warning for each of them.
 
     Of an output without a manifest, or without a report folder above it, nobody can tell.
+
+    Parameters
+    ----------
+    folder : Path
+        A report folder.
+    files : iterable of str
+        The names of what it is read from.
     """
-    folder = inputs.folder
-    others = {(folder / one.file).parent.parent for one in inputs.taken.values()} - {folder}
-    for each in [*sorted(others), *([folder] if folder != PAPER else [])]:
-        if is_report(each) and (names := _changed(each)):
-            after = listing(names, last="and")
-            said = f"{output(each).as_posix()} is older than what it was built from, {after}"
-            so = " and so are the numbers that are taken from it" if each in others else ""
-            at, told = inputs.place, f"{said}{so and ',' + so}: build it again"
-            yield Check("outputs", each.as_posix(), True, told, at, note="warning")
+    yield from outdated_sources(folder, files)
+    if folder != PAPER:
+        yield from _older(folder, folder, "")
+
+
+def outdated_sources(folder: Path, files: Iterable[str]) -> Iterator[Check]:
+    """A warning for each report that is read from, and is older than what it was built from."""
+    others = {(folder / name).parent for name in files}
+    for each in sorted(out.parent for out in others if out.parent != folder and out == output(out.parent)):
+        yield from _older(folder, each, ", and so are the numbers that are taken from it")
+
+
+def _older(folder: Path, each: Path, so: str) -> Iterator[Check]:
+    if is_report(each) and (names := _changed(each)):
+        after = listing(names, last="and")
+        said = f"{output(each).as_posix()} is older than what it was built from, {after}{so}: build it again"
+        at = Location((folder / "report.toml").as_posix())
+        yield Check("outputs", each.as_posix(), True, said, at, note="warning")
 
 
 def _changed(folder: Path) -> list[str]:

@@ -286,3 +286,21 @@ def test_check_warns_of_outputs_that_are_older_than_their_inputs(
     assert f"{apart.as_posix()}/out is older than what it was built from, report.toml: build it" in own
     build(apart / "ball")  # whose numbers are the same, and its manifest is not
     assert len(warnings()) == 1
+
+
+@pytest.mark.usefixtures("keeping")
+def test_build_warns_of_older_numbers_that_it_takes(apart: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def warnings() -> list[str]:
+        build(apart)
+        return [line for line in capsys.readouterr().out.splitlines() if "is older than" in line]
+
+    assert warnings() == []
+    for at in (apart / "ball", apart):
+        with (at / "report.toml").open("a", encoding="utf-8") as file:
+            file.write("# another line\n")
+    told = warnings()
+    assert len(told) == 1  # what is built now is not older
+    assert "ball/out is older than what it was built from, report.toml, and so are the numbers" in told[0]
+    assert warnings() == told  # of what was kept, too
+    build(apart / "ball")
+    assert warnings() == []

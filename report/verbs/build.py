@@ -11,6 +11,7 @@ from .common import FINDINGS, OK, Progress, folder_argument, keeping_arguments, 
 
 if TYPE_CHECKING:
     from ..result.result import Report
+    from ..study import Study
 
 HELP = "compute a report and write it"
 
@@ -75,8 +76,9 @@ def run(options: argparse.Namespace) -> int:
         print(visible(sentence), flush=True)
 
     with Progress(sys.stderr) as progress:
-        found = build.built(Study(folder, step=progress), out, formats, options.engines, say, summary)
-    for line in found.told["lines"]:
+        study = Study(folder, step=progress)
+        found = build.built(study, out, formats, options.engines, say, summary)
+    for line in (*found.told["lines"], *older(study)):
         print(line)
     names = {path.name: path for path in found.files}
     first = next(
@@ -86,6 +88,13 @@ def run(options: argparse.Namespace) -> int:
     )
     say(f"{len(found.files)} files in {out}; look at {first}")
     return OK if found.told["passed"] else FINDINGS
+
+
+def older(study: Study) -> list[str]:
+    """What is older than its inputs of the reports that a folder takes from; asked of a kept build, too."""
+    from ..outdated import outdated_sources
+
+    return told(tuple(outdated_sources(study.folder, study.files)))
 
 
 def summary(report: Report) -> dict[str, Any]:

@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
         return _accept(options)
     with Progress(sys.stderr) as progress:
         report = Study(report_folder(options.folder), step=progress).report
-    found = (*checks(report), *outdated(report.inputs))
+    found = (*checks(report), *outdated(report.inputs.folder, report.inputs.files))
     if options.format == "text":
         _print(report, found)
     else:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .build import out_argument, out_of, summary
+from .build import older, out_argument, out_of, summary
 from .common import OK, Progress, folder_argument, keeping_arguments
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ def _again(folder: Path, out: Path, formats: tuple[str, ...], tell: Callable[...
     after = _result(out)
     changed = as_text(compare(before, after), MOST) if before and after else ""
     told = changed.splitlines() if changed else found.told["lines"]
-    print(*told, visible(f"{len(found.files)} files in {out}"), sep="\n", flush=True)
+    print(*told, *older(study), visible(f"{len(found.files)} files in {out}"), sep="\n", flush=True)
     tell(changed=changed)
     return study.files
 
