@@ -8,6 +8,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 from argparse import Namespace
 from collections.abc import Callable
 from dataclasses import replace
@@ -20,7 +21,7 @@ from loopsheet.report.archive.scaffold import new
 from loopsheet.report.cli import _parse
 from loopsheet.report.files.manifest import read_manifest
 from loopsheet.report.files.values import read_result
-from loopsheet.report.inputs.folders import built_from, report_folder
+from loopsheet.report.inputs.folders import PAPER, built_from, report_folder
 from loopsheet.report.inputs.inputs import check_cells, load
 from loopsheet.report.machine.staging import own, replaced
 from loopsheet.report.messages import errors
@@ -41,8 +42,10 @@ from loopsheet.report.messages.errors import (
     suggest,
 )
 from loopsheet.report.quantity import Bounds
+from loopsheet.report.study import Study
 from loopsheet.report.verbs import check
 from loopsheet.report.verbs.build import out_of
+from loopsheet.report.verbs.common import find
 from loopsheet.report.views.validation import TITLE
 from loopsheet.report.workbook import Measured, Parameter, Workbook
 
@@ -195,6 +198,15 @@ def build_over_notes() -> None:
     Path("thesis").mkdir()
     Path("thesis", "notes.txt").write_text("mine\n")
     out_of(Namespace(out="thesis"), Path("campaign"))
+
+
+def why_of_a_row_left_out() -> None:
+    table = "test,v [m/s],e [1],x_p [um],left out\n1,2.334,0.530,23.5,\n2,2.940,0.512,29.7,hit twice\n"
+    folder = Path("campaign")
+    shutil.copytree(PAPER, folder)
+    (folder / "measurements.csv").write_text(f"{table}3,4.089,0.479,41.6,\n")
+    (folder / "report.toml").write_text((PAPER / "report.toml").read_text().partition("[published]")[0])
+    find(Study(folder).computed, "alpha[1-2]")
 
 
 def huge() -> None:
@@ -377,6 +389,7 @@ CASES: dict[str, Callable[[], None]] = {
         reason="the formula returns from 0.2000 to 0.9000 at 3 m/s, not 0.1000",
     ),
     "LS626": build_over_notes,
+    "LS627": why_of_a_row_left_out,
 }
 
 

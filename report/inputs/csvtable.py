@@ -13,6 +13,7 @@ from itertools import compress
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..messages.errors import close, listing, suggest
+from .keys import for_left_out
 from .number_text import NumberError, read_number
 
 if TYPE_CHECKING:
@@ -296,6 +297,8 @@ def match_columns(
         What some of them are called in what is told.
     """
     known, own = [*required, *optional], called or {}
+    strange = {name for name in names if name and name not in known}
+    lacking = [own.get(name, name) for name in required if name not in names]
     places: dict[str, int] = {}
     meant: Counter[str | None] = Counter()
     for place, (name, field) in enumerate(zip(names, table.header, strict=True)):
@@ -307,7 +310,10 @@ def match_columns(
             told = list(dict.fromkeys(own.get(word, word) for word in known))
             missing = [own.get(word, word) for word in known if word not in names]
             meant[close(name, missing)] += 1  # a misspelt column is one problem, not two
-            suggestion = suggest(name, missing) or suggest(name, told)
+            suggestion = for_left_out(name) or suggest(name, missing) or suggest(name, told)
+            if not suggestion and len(strange) == len(lacking) == 1:  # renamed
+                suggestion = f"'{lacking[0]}' is missing: did you mean that?"
+                meant[lacking[0]] += 1
             findings.add("LS303", table.at(field), text=name, known=listing(told), suggestion=suggestion)
     for name, example in required.items():
         if name not in places and not meant[own.get(name, name)]:

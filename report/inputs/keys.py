@@ -8,9 +8,27 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = ["ANY", "MEASURED", "PUBLISHED", "TABLES", "Key", "fixed"]
+__all__ = ["ANY", "MEASURED", "PUBLISHED", "TABLES", "Key", "fixed", "for_left_out"]
 
 ANY = "*"
+_LEAVING = {
+    "exclude",
+    "excluded",
+    "ignore",
+    "ignored",
+    "omit",
+    "omitted",
+    "outlier",
+    "rejected",
+    "skip",
+    "skipped",
+}
+
+
+def for_left_out(word: str) -> str:
+    """What to write instead of a word that somebody takes for the one that leaves a row out; else nothing."""
+    told = "a row that takes no part has its reason in a column 'left out' of the table of measurements"
+    return told if word.lower() in _LEAVING else ""
 
 
 class Key(NamedTuple):
@@ -70,7 +88,11 @@ TABLES: dict[tuple[str, ...], dict[str, Key]] = {
     },
     ("measurements", "taken", ANY): _TAKEN,
     ("uncertainty",): {
-        ANY: Key('"0.5 % of reading + 2 digits"', "Of a measured column or of a parameter, by itself."),
+        ANY: Key(
+            '"0.5 % of reading + 2 digits"',
+            "Of a measured column or of a parameter, by itself. A size without a unit, `u = 0.003`, is in "
+            "the unit that the head of the column, or the parameter, is written in.",
+        ),
         "plus_minus": Key('"rect"', "What `+-0.1` means where no word says more."),
         "digits": Key("1", "Of an uncertainty that is shown: 1 or 2; 2 without it."),
         "paired": Key('["V", "I"]', "Repeated readings that were taken together: they scatter, correlated."),

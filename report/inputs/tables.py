@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from ..messages.errors import Findings, Location, close, listing, suggest
-from .keys import TABLES, fixed
+from .keys import TABLES, fixed, for_left_out
 from .parameters import wrong_type
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class TomlTables:
             return {}
         for key in data:
             if key not in known:
-                suggestion = suggest(key, known)
+                suggestion = for_left_out(key) or suggest(key, known)
                 allowed = listing(known) if known else "no key"
                 self.findings.add(
                     "LS203",

@@ -441,7 +441,7 @@ CATALOGUE: dict[str, Entry] = {
     "LS618": Entry(
         "no design known",
         "how measurements for the workbook '{text}' are planned is not known",
-        "a workbook that declares a design: of those that are shipped, those of drop tests",
+        "a workbook that declares a design, as 'soft_impact' does for drop tests; no Method declares one",
         "'loopsheet budget CELL' tells how uncertain a number of what was measured is",
     ),
     "LS619": Entry(
@@ -484,6 +484,12 @@ CATALOGUE: dict[str, Entry] = {
         "'{text}' holds what no build has written: {known}",
         "a folder that is empty or does not exist yet, or one that an earlier build has written",
         "nothing was written; choose another folder with --out",
+    ),
+    "LS627": Entry(
+        "row left out",
+        "there is no {text}: {row} is left out, {reason}",
+        "a row that is not left out",
+        "with that field empty it takes part again",
     ),
 }
 

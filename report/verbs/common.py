@@ -215,6 +215,10 @@ def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
         return column, labels
     wanted = [label for label in labels if index_text(label) == index]
     if not wanted:
+        for each in report.inputs.left_out:
+            if str(each.test) in index.split("-"):
+                said = f"{report.workbook.row} {each.test}"
+                raise UsageError(diagnose("LS627", each.at, text=address, row=said, reason=each.reason))
         known = listing([index_text(label) for label in labels])
         raise UsageError(diagnose("LS604", kind=f"row of {name}", text=index, known=known, suggestion=""))
     return column, wanted

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 MOST, MOST_PLANNED = 12, 60
 """Tests that are looked for, each of which makes the search longer, and tests that are planned."""
 
-HELP = "tell how uncertain a number of a planned campaign will be, and what would make it surer"
+HELP = "tell how uncertain a number of planned drop tests will be, and what would make it surer"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
