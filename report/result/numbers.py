@@ -253,7 +253,7 @@ def _figure(text: str, exponent: int | None) -> Numeral:
     whole, _, fraction = text.lstrip("-").partition(".")
     if not int(whole + fraction):
         negative = False
-    return Numeral(negative, whole, fraction, exponent)
+    return Numeral(negative, whole, fraction, exponent or None)  # a power of 0 is no power
 
 
 def shown(values: Iterable[float | None], places: Iterable[int]) -> tuple[Numeral | None, ...]:
@@ -265,6 +265,11 @@ def shown(values: Iterable[float | None], places: Iterable[int]) -> tuple[Numera
         In the unit that is shown; None where a cell has no value.
     places : iterable of int
         The power of ten of the last digit of each.
+
+    Examples
+    --------
+    >>> [figure.plain for figure in shown([1.18425, 2.56288e-4, 0.0], [-5, -9, -5])]
+    ['1.18425', '2.56288e-4', '0.00000']
     """
     cells = list(zip(values, places, strict=True))
     found = [None if value is None else at(value, place) for value, place in cells]

@@ -11,7 +11,7 @@ const draws = (look, name) => LIVE.shared && axisNamed(look.trace.declared[name]
 
 // Every cell that is to be drawn: after an edit the results, and the one in the bar.
 function cellsToDraw(look) {
-  const results = isEdited() && page.panel ? LIVE.headline.slice(0, MOST_RESULTS).map((name) => [name, 0]) : [];
+  const results = isEdited() && page.panel ? LIVE.headline.slice(0, MOST_DRAWN).map((name) => [name, 0]) : [];
   const own = bar.name === null ? [] : [[bar.name, look.trace.row(bar.name, bar.index)]];
   return [...results, ...own].filter(([name, row]) => row >= 0 && draws(look, name) && look.trace.isOk(name, row));
 }

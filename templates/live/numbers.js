@@ -91,7 +91,7 @@ function significant(x, digits) {
 
 function figureOf(text, exponent = null) {
   const plain = text.replace("-", ""), [whole, fraction = ""] = plain.split(".");
-  return { negative: text[0] === "-" && /[1-9]/.test(plain), whole, fraction, exponent };
+  return { negative: text[0] === "-" && /[1-9]/.test(plain), whole, fraction, exponent: exponent || null }; // a power of 0 is no power
 }
 
 // A printed number as it stands; null if it is not plain digits.

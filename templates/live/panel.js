@@ -1,7 +1,7 @@
 // Beside the table that is edited: the result, as issued and now, and a picture of it. Where there is no room
 // beside the table it stands at the top of the window, while one is in the table.
 
-const MOST_RESULTS = 4; // so that there is room for what is edited
+const MOST_DRAWN = 4; // results; of the others, and of the number in the bar, one asks by selecting it
 
 function makePanel() {
   const table = page.tables.find((one) => one.editable), names = LIVE.headline;
@@ -16,10 +16,10 @@ function makePanel() {
 
 function writePanel(look) {
   if (!page.panel) return;
-  const rows = LIVE.headline.slice(0, MOST_RESULTS).map((name) => {
+  const rows = LIVE.headline.map((name, place) => {
     const [before, now] = [page.issued, look].map((one) => one.cell(name, 0).text), same = before === now;
     const second = LIVE.shared && (LIVE.columns[name].kept || isOff(look, name)), u = LIVE.shared && !second ? look.sure.u(name, 0) / LIVE.columns[name].scale : NaN;
-    const more = isEdited() && LIVE.shared && look.trace.isOk(name, 0) ? [...(second ? ["second order"] : []), shortDraws(name)] : [];
+    const more = isEdited() && LIVE.shared && look.trace.isOk(name, 0) ? [...(second ? ["second order"] : []), ...(place < MOST_DRAWN ? [shortDraws(name)] : [])] : [];
     return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
       make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now, u > 0 ? ` (${told(u, LIVE.most).digits})` : "", ...more.map((text) => make("span", {}, text))));
   });
@@ -28,7 +28,11 @@ function writePanel(look) {
   // The last of the pictures: those before it show steps on the way.
   const chart = Object.values(LIVE.figures).at(-1), picture = chart && drawChart({ ...chart, ...SMALL }, look)?.svg;
   picture?.setAttribute("aria-hidden", "true"); // the same stands in the report, with words
-  page.panel.replaceChildren(make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows)), ...(picture ? [picture] : []));
+  // So that there is room for what is edited, more results than some are scrolled to.
+  const results = make("div", { class: "results", tabindex: 0, "aria-label": "all results" }, make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows)));
+  const { scrollTop = 0 } = page.panel.firstChild ?? {};
+  page.panel.replaceChildren(results, ...(picture ? [picture] : []));
+  results.scrollTop = scrollTop;
 }
 
 function placePanel() {

@@ -40,8 +40,15 @@ def test_the_result_is_on_the_screen_while_the_tests_are_edited(open_page: Open,
     panel = live.page.locator("#live-panel")
     shown = [text for text in panel.locator("tbody tr").all_inner_texts() if text]
     assert [word for word in shown[0].split() if word[0] in "1("][:3] == ["1.3013", "1.3066", "(31)"]
-    assert len(seen(live, "#live-panel tbody tr")) >= 3
-    assert all(seen(live, "#live-panel tbody tr, #live-panel svg"))
+    assert all(seen(live, "#live-panel tbody tr:nth-child(-n+3), #live-panel svg"))
+    assert panel.locator("tbody tr").count() == live.page.locator(".headline > div").count() > 3
+    # The others are scrolled to, and stay there while it follows.
+    results = panel.locator(".results")
+    results.evaluate("box => box.scrollTop = box.scrollHeight")
+    assert seen(live, "#live-panel tbody tr:last-child") == [True]
+    live.type("x_p", 2, "29.9")
+    assert results.evaluate("box => box.scrollTop") > 0
+    results.evaluate("box => box.scrollTop = 0")
     assert seen(live, "#live-panel svg") == [True]
     assert all(seen(live, "#cell-x_p-2, #cell-x_p-3"))
     # It follows, and with the last edit taken back it is as it was.
@@ -50,6 +57,15 @@ def test_the_result_is_on_the_screen_while_the_tests_are_edited(open_page: Open,
     live.click("live-reset")
     cells = panel.locator("tbody tr").first.locator("td").all_inner_texts()
     assert cells == ["", "1.3013 (31)"]
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_a_long_number_makes_its_card_wider(open_page: Open, width: int) -> None:
+    live = open_page(viewport={"width": width, "height": 850})
+    number = live.page.locator(".headline .value").nth(1)
+    number.evaluate("one => (one.textContent = '−2.56288012\u00a0×\u00a010⁻⁴')")
+    cards = live.page.locator(".headline > div")
+    assert cards.evaluate_all("all => all.map((one) => one.scrollWidth - one.clientWidth)") == [0] * 9
 
 
 @pytest.mark.parametrize("height", [664, 844])
