@@ -25,6 +25,8 @@ from sympy.core.parameters import evaluate
 
 from ..equation import Derivation, Equation, Kind, Ledger, Step
 from ..vocabulary import Quantity, Vocabulary
+from . import damping
+from .quantities import SHARED
 
 # fmt: off
 __all__ = [  # noqa: RUF022 - symbols, then equations in their order
@@ -36,22 +38,19 @@ __all__ = [  # noqa: RUF022 - symbols, then equations in their order
 # fmt: on
 
 VOCABULARY = Vocabulary(
-    Quantity("x", "normal approach", "m", "x%s", (1e-6, 1e-4)),
-    Quantity("xdot", "rate of the approach", "m/s", r"\dot{x}%s", (-5.0, 5.0), positive=False),
+    *(damping.VOCABULARY[name] for name in ("x", "xdot", "v_0", "m_red", "g")),
     Quantity("F_c", "force in compression", "N", "F_{c%s}", (1.0, 5000.0)),
     Quantity("F_r", "force in restitution", "N", "F_{r%s}", (1.0, 5000.0)),
-    Quantity("v_0", "impact speed", "m/s", "v_{0%s}", (0.5, 8.0)),
-    Quantity("m_red", "reduced mass of the two bodies", "kg", "m_{red%s}", (1e-3, 1e-1)),
     Quantity("C", "coefficient of the compression", "N/m^alpha", "C%s", (1e8, 1e10)),
     Quantity("alpha", "exponent of the compression", "1", r"\alpha%s", (1.0, 1.5)),
     Quantity("beta", "exponent of the restitution", "1", r"\beta%s", (1.0, 2.0)),
     Quantity("Cprime", "force where both branches meet", "N", "C'%s", (100.0, 1e4)),
     Quantity("x_m", "maximum approach", "m", "x_{m%s}", (5e-5, 1e-4)),
     Quantity("x_p", "imprint depth", "m", "x_{p%s}", (1e-6, 4e-5)),
+    SHARED["delta"],
     Quantity("e", "coefficient of restitution", "1", "e%s", (0.05, 0.6)),
     Quantity("c_c", "damping number of the compression", "1", "c_{c%s}", (0.05, 1.5)),
     Quantity("c_r", "damping number of the restitution", "1", "c_{r%s}", (0.05, 1.5)),
-    Quantity("g", "factor of the force that the damping leaves at separation", "1", "g%s", (0.05, 0.95)),
     Quantity("s_c", "elastic work of compression over the energy at impact", "1", "s_{c%s}", (0.3, 1.0)),
     Quantity("s_r", "elastic work of restitution over the energy of rebound", "1", "s_{r%s}", (1.0, 2.0)),
     Quantity("S_c", "elastic work of compression", "J", "S_{c%s}", (1e-3, 1.0)),
@@ -65,10 +64,21 @@ VOCABULARY = Vocabulary(
 x, rate, F_c, F_r, v_0, m_red, C, alpha, beta, Cprime = VOCABULARY.plain(
     "x xdot F_c F_r v_0 m_red C alpha beta Cprime"
 )
-x_m, x_p, e, c_c, c_r, g, s_c, s_r, S_c, S_r = VOCABULARY.plain("x_m x_p e c_c c_r g s_c s_r S_c S_r")
+x_m, x_p, delta, e, c_c, c_r, g, s_c, s_r, S_c, S_r = VOCABULARY.plain(
+    "x_m x_p delta e c_c c_r g s_c s_r S_c S_r"
+)
 W_c, W_r, W_p, C_u, beta_u = VOCABULARY.plain("W_c W_r W_p C_u beta_u")
-w, y = Symbol("w", positive=True), Symbol("y", positive=True)
+w = Symbol("w", positive=True)
 _parts = c_r * e < 1
+
+# What the damping family says of each branch: the approach of the restitution begins at the imprint.
+_there = {damping.K: C, damping.n: alpha, damping.c: c_c, damping.W: S_c}
+_back = {
+    damping.K: Cprime / delta**beta, damping.n: beta, damping.x_m: delta, damping.c: c_r, damping.e_o: e,
+    damping.W: S_r,
+}  # fmt: skip
+compression, work_c = damping.compression.at(_there), damping.work.at(_there)
+restitution, work_r, left = (each.at(_back) for each in (damping.rebound, damping.work, damping.left))
 
 with evaluate(False):
     _energy = Rational(1, 2) * m_red * v_0**2
@@ -87,49 +97,14 @@ with evaluate(False):
         "restitution with internal friction",
     )
 
-    # m x'' = -F as m x' dx' = -F dx, divided by the factor of the damping; w = |x'|/v_0, or that factor.
-    work_c = Equation(
+    recovery = Equation(
         "",
-        (S_c, Integral(C * x**alpha, (x, 0, x_m))),
-        "definition",
+        (delta, x_m - x_p),
+        "definition, the approach that the restitution takes back",
         Kind.DEFINITION,
-        "elastic work of compression",
-        defines=S_c,
+        "elastic recovery",
+        defines=delta,
     )
-    work_r = Equation(
-        "",
-        (S_r, (x_m - x_p) * Integral(Cprime * y**beta, (y, 0, 1))),
-        "definition, y the part of the way back that is left",
-        Kind.DEFINITION,
-        "elastic work of restitution",
-        defines=S_r,
-    )
-    compression = Equation(
-        "",
-        (Integral(C * x**alpha, (x, 0, x_m)), m_red * v_0**2 * Integral(w / (1 + c_c * w), (w, 0, 1))),
-        "Newton's law in compression, variables separated",
-        Kind.ASSUMPTION,
-        "Newton's law in compression",
-    )
-    left = Equation(
-        "",
-        (g, 1 - c_r * e),
-        "(L202) at the speed of rebound; the force does not pull, so it is positive",
-        Kind.DEFINITION,
-        "factor of the damping at separation",
-        defines=g,
-    )
-    restitution = Equation(
-        "",
-        (
-            (x_m - x_p) * Integral(Cprime * y**beta, (y, 0, 1)),
-            m_red * v_0**2 * Integral((1 - w) / w, (w, g, 1)) / c_r**2,
-        ),
-        "Newton's law in restitution, variables separated, w the factor of the damping",
-        Kind.ASSUMPTION,
-        "Newton's law in restitution",
-    )
-
     share_c = Equation(
         "(L203)",
         (s_c, 2 * (c_c - log(1 + c_c)) / c_c**2),
@@ -291,7 +266,7 @@ LEDGER = Ledger(
             "Integrate the separated law from rest to the speed of rebound.",
         ),
         Derivation.of(by_approach, (work_c,), (S_c,), "Integrate the elastic part."),
-        Derivation.of(by_recovery, (work_r,), (S_r,), "Integrate the elastic part."),
+        Derivation.of(by_recovery, (work_r, recovery), (S_r, delta), "Integrate the elastic part."),
         Derivation.of(
             approach,
             (elastic_c, by_approach),

@@ -27,9 +27,9 @@ from ..vocabulary import Quantity, Vocabulary
 
 # fmt: off
 __all__ = [  # noqa: RUF022 - symbols, then equations in their order
-    "x", "rate", "K", "n", "c", "e", "e_o", "v_0", "m_red", "x_m", "u_F", "x_F",
-    "family", "approach", "returned", "peak_speed", "peak_approach", "tsuji",
-    "damping_ratio", "zeta", "K_T", "J", "mean_flores", "MEMBERS", "LEDGER",
+    "x", "rate", "K", "n", "c", "e", "e_o", "v_0", "m_red", "x_m", "u_F", "x_F", "W",
+    "family", "compression", "left", "rebound", "work", "approach", "returned", "peak_speed",
+    "peak_approach", "tsuji", "damping_ratio", "zeta", "K_T", "J", "mean_flores", "MEMBERS", "LEDGER",
 ]
 # fmt: on
 
