@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -15,7 +15,7 @@ from .result.card import Card, Cards, NoCard, Point, Prescribed
 if TYPE_CHECKING:
     from sympy import Symbol
 
-    from .impacts.code import SimulationCode
+    from .impacts.code import ContactFormula
     from .impacts.drops import Drop, Drops
     from .result.result import Report
 
@@ -25,6 +25,7 @@ __all__ = [
     "NotTogether",
     "asked_for",
     "card",
+    "contacts_of",
     "curve",
     "drop_at",
     "drops_of",
@@ -76,25 +77,34 @@ class Asked:
     nu: float | None = None
     R: float | None = None
 
-    def symbols(self, code: SimulationCode) -> frozenset[Symbol]:
-        """Which of modulus, Poisson's ratio and radius a code has to know."""
+    def symbols(self, code: ContactFormula) -> frozenset[Symbol]:
+        """Which of Poisson's ratio and radius a code has to know."""
         return code.asks(self.E is not None)
 
     def bodies(self, drops: Drops) -> tuple[float | None, float, float]:
         """Modulus, Poisson's ratio and radius that are taken."""
         return (
             self.E,
-            POISSON if self.nu is None else self.nu,
+            self.poisson(drops)[0],
             drops.radius if self.R is None else self.R,
         )
 
-    def check(self, codes: Sequence[SimulationCode], drops: Drops) -> None:
+    def poisson(self, drops: Drops) -> tuple[float, str]:
+        """Poisson's ratio that is taken, and what is to be said of it."""
+        if self.nu is not None:
+            return self.nu, ""
+        if math.isfinite(drops.nu):
+            return drops.nu, f"Poisson's ratio is that of the ball: {drops.nu:g}"
+        return POISSON, f"Poisson's ratio was not given: {POISSON:g}"
+
+    def check(self, codes: Sequence[ContactFormula], drops: Drops) -> None:
         """Raise :class:`NotTogether` for what says nothing to any of the codes, and for what one lacks."""
         from .impacts.code import R, nu
 
         names, dash = listing([code.name for code in codes], most=20), self.prefix
         if self.E is not None and all(code.by_hertz is None for code in codes):
-            reason = f"{dash}E says nothing to {names}: its stiffness is not Hertz's"
+            why = ": its stiffness is not Hertz's" if any(code.solves for code in codes) else " here"
+            reason = f"{dash}E says nothing to {names}{why}"
             raise NotTogether(reason, f"leave {dash}E out", "E")
         for option, symbol in (("nu", nu), ("R", R)):
             unasked = all(symbol not in self.symbols(code) for code in codes)
@@ -131,6 +141,7 @@ def drops_of(report: Report) -> Drops:
         C,
         _number(report, "beta"),
         _number(report, "ball_diameter") / 2,
+        _number(report, "nu_1"),
     )
     if lacking:
         raise NoImpacts(f"it has no {' and no '.join(lacking)}")
@@ -178,7 +189,7 @@ def drop_at(drops: Drops, asked: Asked) -> Drop:
     return drop
 
 
-def card(code: SimulationCode, drops: Drops, drop: Drop, of: str, asked: Asked) -> Card:
+def card(code: ContactFormula, drops: Drops, drop: Drop, of: str, asked: Asked) -> Card:
     """A card, which tells what was taken though nobody said it.
 
     Raises
@@ -188,13 +199,12 @@ def card(code: SimulationCode, drops: Drops, drop: Drop, of: str, asked: Asked) 
     """
     from .impacts.card import card as made
 
-    bodies = asked.bodies(drops)
-    found = made(code, drops, drop, of, *bodies)
-    return replace(found, notes=(*found.notes, *_assumed(code, asked, bodies[-1])))
+    found = made(code, drops, drop, of, *asked.bodies(drops))
+    return replace(found, notes=(*found.notes, *_assumed(code, asked, drops)))
 
 
 def swept(
-    code: SimulationCode | None,
+    code: ContactFormula | None,
     drops: Drops,
     drop: Drop,
     asked: Asked,
@@ -205,7 +215,7 @@ def swept(
 
     Parameters
     ----------
-    code : SimulationCode or None
+    code : ContactFormula or None
         Whose card they follow; None: the identified law.
     drops, drop, asked
         As for :func:`card`.
@@ -220,24 +230,36 @@ def swept(
     """
     import numpy as np
 
-    from .impacts.card import constants_of
+    from .impacts.card import solved
     from .impacts.sweep import as_csv, sweep
 
     law, constants = drops.law(), {}
     if code is not None:
-        law, constants = code.law, constants_of(code, drops, drop, *asked.bodies(drops))
+        law, constants = code.law, solved(code, drops, drop, *asked.bodies(drops))[0]
     speeds = np.linspace(drops.tests[0].speed, drops.tests[-1].speed, impacts).tolist()
     return as_csv(speeds, sweep(law, constants, drops.mass, speeds, step))
 
 
-def _assumed(code: SimulationCode, asked: Asked, radius: float) -> Iterator[str]:
+def _assumed(code: ContactFormula, asked: Asked, drops: Drops) -> Iterator[str]:
     """What was taken though nobody said it."""
     from .impacts.code import R, nu
 
     if R in asked.symbols(code) and asked.R is None:
-        yield f"the effective radius is that of the ball, {radius:g} m: the target is flat"
-    if nu in asked.symbols(code) and asked.nu is None:
-        yield f"Poisson's ratio was not given: {POISSON:g}"
+        yield f"the effective radius is that of the ball, {drops.radius:g} m: the target is flat"
+    if nu in asked.symbols(code) and (said := asked.poisson(drops)[1]):
+        yield said
+
+
+def contacts_of(report: Report) -> Mapping[str, ContactFormula]:
+    """The forces of the contact models that stand beside the tests of a report, by name."""
+    workbook = report.workbook
+    if workbook.constants is None:
+        return {}
+    from .impacts.contact import formula
+
+    words = workbook.ledger().vocabulary
+    numbers = {symbol: _number(report, name) for symbol, name in workbook.constants(report.sheet).items()}
+    return {model.name: formula(model, numbers, words) for model in workbook.models}
 
 
 # --- what a folder asks for ------------------------------------------------------------------------------
@@ -259,7 +281,7 @@ def asked_for(report: Report) -> Callable[[], Cards]:
             known = {"known": listing(CODES, most=20), "suggestion": suggest(name, CODES)}
             findings.add("LS604", at, kind="code", text=name, **known)
     findings.check()
-    codes = [CODES[name] for name in said.codes]
+    codes: list[ContactFormula] = [CODES[name] for name in said.codes]
     asked = Asked("", **{name: float(printed.value) for name, printed in said.numbers.items()})
     try:
         drops = drops_of(report)
@@ -276,7 +298,8 @@ def asked_for(report: Report) -> Callable[[], Cards]:
     @cache
     def made() -> Cards:
         notes = taken(report, drops)
-        every = [_kept(code, drops, drop, report.title, asked) for code in codes]
+        models = contacts_of(report).values()
+        every = [_kept(formula, drops, drop, report.title, asked) for formula in (*codes, *models)]
         cards = tuple(each for each in every if isinstance(each, Card))
         refused = tuple(each for each in every if isinstance(each, NoCard))
         return Cards(cards, _measured(report, drops), refused, _laws(), notes)
@@ -295,7 +318,7 @@ def _measured(report: Report, drops: Drops) -> tuple[Point, ...]:
     return tuple(Point(*row) for number, row in enumerate(rows) if number not in aside)
 
 
-def _kept(code: SimulationCode, drops: Drops, drop: Drop, of: str, asked: Asked) -> Card | NoCard:
+def _kept(code: ContactFormula, drops: Drops, drop: Drop, of: str, asked: Asked) -> Card | NoCard:
     """A card, made now or before, or why there is none."""
     from msgspec import convert, to_builtins
 
@@ -307,7 +330,7 @@ def _kept(code: SimulationCode, drops: Drops, drop: Drop, of: str, asked: Asked)
         except Unreachable as error:
             return {"refused": to_builtins(NoCard(code.name, code.title, str(error)))}
 
-    found = kept("a card", [code.name, of, repr(drops), repr(drop), repr(asked)], make)
+    found = kept("a card", [repr(code), of, repr(drops), repr(drop), repr(asked)], make)
     if "card" in found:
         return convert(found["card"], Card)
     return convert(found["refused"], NoCard)

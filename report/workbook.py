@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from .quantity import Bounds
 
 if TYPE_CHECKING:
-    from sympy import Expr
+    from sympy import Expr, Symbol
 
     from ..derivations.equation import Ledger
     from .axis import Axis
@@ -322,6 +322,10 @@ class Workbook:
     drawn: Callable[[Sheet], Drawn] | None = None
     drawings: Callable[[], Mapping[str, Callable[[Any], Any]]] | None = None
     """Returns what draws its figures, by name: each takes the report and returns a matplotlib figure."""
+    models: tuple[Any, ...] = ()
+    """The contact models beside its tests: cards are made of their forces."""
+    constants: Callable[[Sheet], Mapping[Symbol, str]] | None = None
+    """Takes the sheet; returns the cells that symbols of these models are, where one is for all rows."""
     design: Callable[[Sheet], Design] | None = None
     """Takes the sheet; returns how measurements are planned. Without it, they cannot be."""
 

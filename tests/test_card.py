@@ -20,7 +20,7 @@ from loopsheet.report.impacts.codes import CODES
 from loopsheet.report.impacts.drops import Drops
 from loopsheet.report.impacts.law import ForceLaw, rate, x
 from loopsheet.report.impacts.simulation import simulate
-from loopsheet.report.impacts.source import SOURCES
+from loopsheet.report.impacts.source import SOURCES, identified
 from loopsheet.report.impacts.sweep import as_csv, sweep
 from loopsheet.report.result.card import Card
 
@@ -169,7 +169,7 @@ def by_law(place: float, greatest: float) -> float:
 
 def test_the_law_in_python() -> None:
     space: dict[str, Callable[[float, float], float]] = {}
-    exec(SOURCES["python"][1](STEEL, STEEL.middle), space)
+    exec(SOURCES["python"].printed(identified(STEEL, STEEL.middle)), space)
     for place in PLACES:
         assert space["contact_force"](*place) == pytest.approx(by_law(*place), rel=1e-14)
 
@@ -179,7 +179,7 @@ def test_the_law_in_c(require: Callable[..., str], tmp_path: Path) -> None:
     calls = "".join(
         f'    printf("%.17g\\n", contact_force({place!r}, {greatest!r}));\n' for place, greatest in PLACES
     )
-    source = SOURCES["c"][1](STEEL, STEEL.middle)
+    source = SOURCES["c"].printed(identified(STEEL, STEEL.middle))
     program = f"{source}\n#include <stdio.h>\nint main(void)\n{{\n{calls}    return 0;\n}}\n"
     (tmp_path / "law.c").write_text(program)
     flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"]
@@ -190,7 +190,7 @@ def test_the_law_in_c(require: Callable[..., str], tmp_path: Path) -> None:
 
 
 def test_the_law_as_a_table_has_the_loop_of_the_measured_loss() -> None:
-    first, *lines = SOURCES["table"][1](STEEL, STEEL.middle).splitlines()
+    first, *lines = SOURCES["table"].printed(identified(STEEL, STEEL.middle)).splitlines()
     assert first == "phase,x [m],F [N]"
     rows = [
         (phase, float(place), float(force)) for phase, place, force in (line.split(",") for line in lines)

@@ -85,7 +85,8 @@ def _cell(head: str, text: str) -> Inlines:
 
 def _about(card: Card) -> list[list[str]]:
     """How it is written, its formula, where that stands, and what a user has to know besides."""
-    lines = [["in an input", card.snippet], ["formula", card.formula], ["version", card.version]]
+    lines = [["in an input", card.snippet], ["formula", card.formula]]
+    lines += [["version", card.version]] if card.version else []
     lines += [["source", source] for source in card.sources]
     return [["", WORDS], *lines, *(["note", note] for note in card.notes)]
 

@@ -442,6 +442,7 @@ SAID: dict[str, Callable[[Said], Answer]] = {
     "other_engines": lambda s: len(s.report.engines) > 1,
     "files": lambda s: joined(((Code(name),) for name in s.report.inputs.files), ", "),
     "cards": lambda s: cards.blocks(s.report.cards()),
+    "card_models": lambda s: any(not card.solved for card in s.report.cards().made),
     "untold": lambda s: joined(((name,) for name in s.material.untold), " and "),
     "exactly": lambda s: s.report.exactly is not None,
     "versions": Said.versions,

@@ -12,12 +12,12 @@ from sympy import Expr, Symbol
 from ...derivations.text import text
 from ...derivations.vocabulary import NO_WORDS
 from ..result.card import Behaviour, Card, CardRow, Prescribed, TypedValue
-from .code import E, R, SimulationCode, alpha, depth, nu
+from .code import ContactFormula, E, R, SimulationCode, Typed, alpha, depth, e, nu
 from .drops import Drop, Drops
 from .law import m_red, v_0
 from .simulation import Impact, simulate
 
-__all__ = ["PRESCRIBED", "Unreachable", "card", "constants_of"]
+__all__ = ["PRESCRIBED", "Unreachable", "card", "solved"]
 
 CLOSE = 1e-11
 """How near to the wanted depth the search for the stiffness ends, over it."""
@@ -37,7 +37,7 @@ class Unreachable(Exception):
 
 
 def card(
-    code: SimulationCode,
+    code: ContactFormula,
     drops: Drops,
     drop: Drop,
     of: str,
@@ -49,7 +49,8 @@ def card(
 
     Parameters
     ----------
-    code : SimulationCode
+    code : ContactFormula
+        Of a simulation code; or one of which all numbers are known.
     drops : Drops
         What was measured.
     drop : Drop
@@ -67,8 +68,7 @@ def card(
     Unreachable
         The formula cannot return this restitution.
     """
-    solver = _Solver(code, drops, drop, modulus, poisson, radius)
-    constants, found = solver.solved()
+    constants, found, notes = solved(code, drops, drop, modulus, poisson, radius)
     rows = []
     for test in drops.tests:
         again = simulate(code.law, constants, drops.mass, test.speed)
@@ -81,7 +81,7 @@ def card(
             float((one.symbol * one.scale).subs(constants)),
             one.unit,
             one.meaning,
-            one.value is None and not (one.symbol == code.stiffness and solver.hertzian),
+            one.value is None and not _by_hertz(code, one, modulus),
         )
         for one in code.typed
     )
@@ -101,27 +101,48 @@ def card(
         returned=Behaviour(found.e, found.x_p, found.x_m, found.F_m, found.duration),
         rows=tuple(rows),
         prescribed=tuple(
-            Prescribed(e, _returned(code, constants, drops.mass, drop.speed, e)) for e in prescribed
+            Prescribed(typed, _returned(code, constants, drops.mass, drop.speed, typed))
+            for typed in prescribed
         ),
-        notes=(*solver.notes, *(() if imprint else ("it leaves no imprint",)), *code.notes),
+        notes=(*notes, *(() if imprint else ("it leaves no imprint",)), *code.notes),
     )
 
 
-def constants_of(
-    code: SimulationCode, drops: Drops, drop: Drop, modulus: float | None, poisson: float, radius: float
-) -> dict[Symbol, float]:
-    """The constants of the law with which it returns what was measured, in SI; as for :func:`card`."""
-    return _Solver(code, drops, drop, modulus, poisson, radius).solved()[0]
+def solved(
+    code: ContactFormula, drops: Drops, drop: Drop, modulus: float | None, poisson: float, radius: float
+) -> tuple[dict[Symbol, float], Impact, list[str]]:
+    """The constants with which it returns what was measured, in SI, the impact, and what was done for it.
+
+    As for :func:`card`.
+    """
+    if isinstance(code, SimulationCode):
+        solver = _Solver(code, drops, drop, modulus, poisson, radius)
+        return *solver.solved(), solver.notes
+    known = {one.symbol: one.value.subs(e, drop.e) for one in code.typed if one.value is not None}
+    constants = {symbol: float(value) for symbol, value in known.items()}
+    lacking = [str(symbol) for symbol, value in constants.items() if math.isnan(value)]
+    if lacking:
+        raise Unreachable(f"{lacking[0]} has no value")
+    found = simulate(code.law, constants, drops.mass, drop.speed)
+    if found.failure:
+        raise Unreachable(found.failure)
+    return constants, found, []
+
+
+def _by_hertz(code: ContactFormula, one: Typed, modulus: float | None) -> bool:
+    """Whether it is the stiffness that a given modulus says."""
+    stiffness = isinstance(code, SimulationCode) and one.symbol == code.stiffness
+    return stiffness and modulus is not None and code.by_hertz is not None
 
 
 def _returned(
-    code: SimulationCode, constants: Mapping[Symbol, float], mass: float, speed: float, typed: float
+    code: ContactFormula, constants: Mapping[Symbol, float], mass: float, speed: float, typed: float
 ) -> float:
     """What comes back of a restitution that is typed in; NaN where the bodies do not part."""
-    return simulate(code.law, {**constants, code.damping: typed}, mass, speed).e
+    return simulate(code.law, {**constants, e: typed}, mass, speed).e
 
 
-def _formula(code: SimulationCode) -> str:
+def _formula(code: ContactFormula) -> str:
     law = code.law
     words = {one.symbol: Symbol(one.word) for one in code.typed if one.scale != -1}
     where = [f"{one.word} = -{one.symbol}" for one in code.typed if one.scale == -1]

@@ -17,6 +17,7 @@ __all__ = [
     "K_T",
     "STRENGTHS",
     "TSUJI",
+    "ContactFormula",
     "E",
     "R",
     "SimulationCode",
@@ -67,7 +68,7 @@ class Typed:
     meaning : str
     value : Expr, optional
         What it is, where it is not solved for: in terms of what is known of the impact (:data:`alpha`,
-        :data:`depth`, :data:`nu`, :data:`R`, the mass).
+        :data:`depth`, :data:`nu`, :data:`R`, :data:`e`, the mass).
     scale : Expr
         What turns SI into the unit, in terms of the law's own symbols.
     """
@@ -80,9 +81,9 @@ class Typed:
     scale: Expr = ONE
 
 
-@dataclass(frozen=True)
-class SimulationCode:
-    """A contact formula of a simulation code.
+@dataclass(frozen=True, kw_only=True)
+class ContactFormula:
+    """A force of a contact, with the numbers that a user types into it.
 
     Parameters
     ----------
@@ -91,18 +92,12 @@ class SimulationCode:
     title : str
         Program and model.
     version : str
-        Of what was read.
+        Of what was read, if it has any.
     sources : tuple of str
         Where the formula stands.
     law : ForceLaw
         In terms of what is typed.
     typed : tuple of Typed
-    stiffness, damping : Symbol
-        Which of them are solved for: by the depth, and by the restitution.
-    damping_unit : Expr
-        A size of the damping that is neither weak nor strong, from speed, mass and depth.
-    damping_ends : tuple of float
-        What it may be, in that unit: a typed restitution and a share are below 1.
     by_hertz : Expr, optional
         The stiffness for Hertz's contact of a given modulus, if the law is Hertz's without its damping.
     snippet : str
@@ -113,26 +108,47 @@ class SimulationCode:
 
     name: str
     title: str
-    version: str
+    version: str = ""
     sources: tuple[str, ...]
     law: ForceLaw
     typed: tuple[Typed, ...]
-    stiffness: Symbol
-    damping: Symbol
-    damping_unit: Expr = ONE
-    damping_ends: tuple[float, float] = (1e-3, 1 - 1e-6)
     by_hertz: Expr | None = None
     snippet: str = ""
     notes: tuple[str, ...] = ()
 
     @property
+    def solves(self) -> bool:
+        """Whether some of its numbers are not known before."""
+        return any(one.value is None for one in self.typed)
+
+    @property
     def takes_e(self) -> bool:
         """Whether a restitution is typed in."""
-        return bool(self.damping == e)
+        return any(one.symbol == e for one in self.typed)
 
     def asks(self, hertzian: bool) -> frozenset[Symbol]:
-        """Which of modulus, Poisson's ratio and radius have to be known for a stiffness."""
-        named = set(self.law.constants) - {self.stiffness}
+        """Which of Poisson's ratio and radius have to be known, with or without a modulus."""
+        named = set(self.law.constants)
         if hertzian and self.by_hertz is not None:
             named |= self.by_hertz.free_symbols
-        return frozenset(named & {E, nu, R})
+        return frozenset(named & {nu, R})
+
+
+@dataclass(frozen=True, kw_only=True)
+class SimulationCode(ContactFormula):
+    """That of a simulation code, of which two numbers are solved for.
+
+    Parameters
+    ----------
+    stiffness, damping : Symbol
+        Which of them: by the depth, and by the restitution.
+    damping_unit : Expr
+        A size of the damping that is neither weak nor strong, from speed, mass and depth.
+    damping_ends : tuple of float
+        What it may be, in that unit: a typed restitution and a share are below 1.
+    """
+
+    stiffness: Symbol
+    damping: Symbol
+    damping_unit: Expr = ONE
+    damping_ends: tuple[float, float] = (1e-3, 1 - 1e-6)

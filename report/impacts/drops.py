@@ -42,6 +42,8 @@ class Drops:
         The identified law (3): its loading curve and the exponent of unloading; NaN where there is none.
     radius : float
         Of the ball; NaN if it is not known.
+    nu : float
+        Poisson's ratio of the ball; NaN if it is not known.
     """
 
     mass: float
@@ -52,6 +54,7 @@ class Drops:
     C: float = math.nan
     beta: float = math.nan
     radius: float = math.nan
+    nu: float = math.nan
 
     @cached_property
     def tests(self) -> tuple[Drop, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from sympy import Expr, Integer, Symbol, lambdify
@@ -49,6 +49,18 @@ class ForceLaw:
     def back(self) -> Expr:
         """The force after the turning point."""
         return self.loading if self.unloading is None else self.unloading
+
+    def with_numbers(self, numbers: Mapping[Symbol, Expr]) -> ForceLaw:
+        """The law with numbers in place of constants."""
+
+        def put(part: Expr) -> Expr:
+            return part.xreplace(numbers).evalf(17)
+
+        back = None if self.unloading is None else put(self.unloading)
+        where = tuple((symbol, put(value)) for symbol, value in self.where)
+        return replace(
+            self, loading=put(self.loading), unloading=back, imprint=put(self.imprint), where=where
+        )
 
     @cached_property
     def constants(self) -> tuple[Symbol, ...]:

@@ -1,34 +1,102 @@
-"""The identified law as a table, and as source for programs of one's own: printed from its sympy."""
+"""The identified law or a contact model's, as a table and as source: printed from its sympy."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from textwrap import wrap
 from typing import NamedTuple
 
 import numpy as np
-from sympy import Expr, ccode, pycode
+from sympy import Expr, Float, ccode, pycode
 
+from .card import solved
+from .code import ContactFormula
 from .drops import Drop, Drops
+from .law import ForceLaw
 
-__all__ = ["SOURCES", "Language", "as_table"]
+__all__ = ["SOURCES", "Language", "WrittenLaw", "identified", "modelled"]
 
 _TEMPLATES = Path(__file__).resolve().parents[2] / "templates" / "impacts"
 POINTS = 100
 """Steps of each branch in a table."""
+_LINE = 107
+"""Characters of a line of comment."""
 
 
-def _filled(template: str, printed: Callable[[Expr], str], drops: Drops) -> str:
+@dataclass(frozen=True)
+class WrittenLaw:
+    """A law that can be written down.
+
+    Parameters
+    ----------
+    law : ForceLaw
+        With all numbers in it.
+    says : str
+        What it is, in a line.
+    beyond : str
+        What it does beyond the measured speeds.
+    drops : Drops
+    drop : Drop
+        The impact that a table is of.
+    x_m : float
+        Its greatest approach, in m.
+    """
+
+    law: ForceLaw
+    says: str
+    beyond: str
+    drops: Drops
+    drop: Drop
+    x_m: float
+
+
+def identified(drops: Drops, drop: Drop) -> WrittenLaw:
+    """The identified law."""
+    says = (
+        "Law (3) of the report: C x^alpha while the approach x grows, and back along the power beta to the "
+        "imprint."
+    )
+    return WrittenLaw(
+        drops.law(), says, "the imprint keeps its share of the greatest approach", drops, drop, drop.x_m
+    )
+
+
+def modelled(formula: ContactFormula, drops: Drops, drop: Drop) -> WrittenLaw:
+    """A formula of which all numbers are known.
+
+    Raises
+    ------
+    Unreachable
+        One is not, or the law has no impact for them.
+    """
+    constants, found, _ = solved(formula, drops, drop, None, math.nan, math.nan)
+    numbers = {symbol: Float(repr(value), 17) for symbol, value in constants.items()}
+    law = formula.law.with_numbers(numbers)
+    told = (f"{one.word} = {constants[one.symbol]:.9g} {one.unit}" for one in formula.typed)
+    return WrittenLaw(
+        law, f"{formula.title}; {', '.join(told)}.", "the law is the same", drops, drop, found.x_m
+    )
+
+
+def _filled(template: str, printed: Callable[[Expr], str], line: str, indent: str, of: WrittenLaw) -> str:
     """A program: what is marked with @ in the template is put in."""
-    law = drops.law()
-    ((_, imprint),) = law.where
+
+    def put(value: Expr) -> str:
+        return " ".join(printed(value).split())
+
     words = {
-        "loading": printed(law.loading),
-        "unloading": printed(law.back),
-        "imprint": " ".join(printed(imprint).split()),
-        "mass": repr(drops.mass),
-        "slowest": repr(drops.tests[0].speed),
-        "fastest": repr(drops.tests[-1].speed),
+        "says": f"\n{indent}".join(wrap(of.says, _LINE)),
+        "beyond": of.beyond,
+        "loading": put(of.law.loading),
+        "unloading": put(of.law.back),
+        "where": "\n    ".join(line.format(name, put(value)) for name, value in reversed(of.law.where)),
+        "imprint": put(of.law.imprint),
+        "mass": repr(of.drops.mass),
+        "slowest": repr(of.drops.tests[0].speed),
+        "fastest": repr(of.drops.tests[-1].speed),
     }
     text = (_TEMPLATES / template).read_text(encoding="utf-8")
     for word, value in words.items():
@@ -36,20 +104,19 @@ def _filled(template: str, printed: Callable[[Expr], str], drops: Drops) -> str:
     return text.rstrip("\n")
 
 
-def as_c(drops: Drops, _: Drop) -> str:
+def as_c(of: WrittenLaw) -> str:
     """A function in C99."""
-    return _filled("force.c.txt", ccode, drops)
+    return _filled("force.c.txt", ccode, "const double {} = {};", "   ", of)
 
 
-def as_python(drops: Drops, _: Drop) -> str:
+def as_python(of: WrittenLaw) -> str:
     """A function in Python, which imports nothing."""
-    return _filled("force.py.txt", pycode, drops)
+    return _filled("force.py.txt", pycode, "{} = {}", "", of)
 
 
-def as_table(drops: Drops, drop: Drop) -> str:
+def as_table(of: WrittenLaw) -> str:
     """The force over the approach of one impact as CSV, one branch after the other."""
-    forces = drops.law().at(drops.mass, drop.speed, {})
-    x_m = drop.x_m
+    forces, x_m = of.law.at(of.drops.mass, of.drop.speed, {}), of.x_m
     lines = ["phase,x [m],F [N]"]
     for place in np.linspace(0.0, x_m, POINTS + 1).tolist():
         lines.append(f"loading,{place!r},{forces.loading(place, 0.0, place)!r}")
@@ -62,14 +129,14 @@ class Language(NamedTuple):
     """A language: what it is for, what prints the law in it, and how a line of comment begins and ends."""
 
     said: str
-    printed: Callable[[Drops, Drop], str]
+    printed: Callable[[WrittenLaw], str]
     begins: str = "# "
     ends: str = ""
 
-    def of(self, drops: Drops, drop: Drop, remarks: Sequence[str]) -> str:
+    def of(self, written: WrittenLaw, remarks: Sequence[str]) -> str:
         """The law below comments, in which nothing ends a comment."""
         safe = (line.replace("*/", "* /").replace("/*", "/ *") for line in remarks)
-        return "\n".join([*(self.begins + line + self.ends for line in safe), self.printed(drops, drop)])
+        return "\n".join([*(self.begins + line + self.ends for line in safe), self.printed(written)])
 
 
 SOURCES = {

@@ -104,6 +104,11 @@ class Card:
     oddities: tuple[Check, ...] = ()
 
     @property
+    def solved(self) -> bool:
+        """Whether anything that is typed was solved for; of a contact model nothing is."""
+        return any(one.solved for one in self.typed)
+
+    @property
     def takes_e(self) -> bool:
         """Whether the code wants a restitution."""
         return any(row.typed is not None for row in self.rows)
@@ -116,7 +121,8 @@ class Card:
     @property
     def furthest(self) -> CardRow:
         """The measured speed at which its restitution is furthest from the measured one."""
-        return max(self.rows, key=lambda row: abs(row.by_card - row.measured))
+        returned = [row for row in self.rows if row.by_card == row.by_card]
+        return max(returned, key=lambda row: abs(row.by_card - row.measured))
 
 
 class Point(NamedTuple):

@@ -21,7 +21,8 @@ def head(card: Card) -> Iterator[str]:
 
 def sources(card: Card) -> Iterator[str]:
     """The version that was read, and where the formula stands in it."""
-    yield f"version: {card.version}"
+    if card.version:
+        yield f"version: {card.version}"
     yield from (f"source: {source}" for source in card.sources)
 
 
@@ -47,15 +48,19 @@ def rows(card: Card) -> Iterator[list[str]]:
     heads = ["v [m/s]", "e measured", "e by this card", *(["e if e is typed in"] if card.takes_e else [])]
     yield [*heads, *(["imprint measured", "imprint by this card"] if card.leaves_imprint else [])]
     for row in card.rows:
-        typed = [] if row.typed is None else [f"{row.typed:.4f}"]
+        typed = [] if row.typed is None else [_share(row.typed)]
         imprints = [_metres(row.imprint), _metres(row.imprint_by_card)] if card.leaves_imprint else []
-        yield [f"{row.speed:.4g}", f"{row.measured:.4f}", f"{row.by_card:.4f}", *typed, *imprints]
+        yield [f"{row.speed:.4g}", f"{row.measured:.4f}", _share(row.by_card), *typed, *imprints]
 
 
 def misses(card: Card) -> str:
     """By how much its restitution is off where it is furthest off."""
     row = card.furthest
     return f"{row.by_card - row.measured:+.4f} at {row.speed:.4g} m/s"
+
+
+def _share(value: float) -> str:
+    return f"{value:.4f}" if value == value else "does not part"
 
 
 def _metres(value: float) -> str:

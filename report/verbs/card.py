@@ -27,9 +27,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     folder_argument(parser)
     said = (
-        "the code that the card is for, or 'table', 'c' or 'python' for the identified law itself (default: "
+        "the code or contact model that the card is for, or 'table', 'c' or 'python' for the identified law "
+        "itself (default: "
     )
     parser.add_argument("--for", metavar="CODE", dest="code", default="list", help=said + "a list of them)")
+    said = "of 'table', 'c' and 'python': the law of a contact model that the folder has"
+    parser.add_argument("--model", metavar="MODEL", help=f"{said} (default: the identified law)")
     said = "the impact speed that the card is for, such as '3 m/s' (default: the test in the middle)"
     parser.add_argument("--speed", metavar="V", help=said)
     said = (
@@ -67,14 +70,15 @@ def run(options: argparse.Namespace) -> int:
         titles += [(name, source.said) for name, source in SOURCES.items()]
         print(*(f"{name:14} {title}" for name, title in titles), sep="\n")
         return OK
-    if options.code not in CODES and options.code not in SOURCES:
-        known = [*CODES, *SOURCES]
-        hint = suggest(options.code, known)
-        allowed = listing(known, most=20)
-        raise UsageError(diagnose("LS604", kind="code", text=options.code, known=allowed, suggestion=hint))
     with Progress(sys.stderr) as progress:
         study = Study(report_folder(options.folder), step=progress)
-        names = ("code", "speed", "E", "nu", "R", "format", "sweep")
+        asked = {"code": [*CODES, *SOURCES, *_models(study)], "model": _models(study)}
+        for kind, known in asked.items():
+            text = getattr(options, kind)
+            if text is not None and text not in known:
+                hint, allowed = suggest(text, known), listing(known, most=20) or "none in this folder"
+                raise UsageError(diagnose("LS604", kind=kind, text=text, known=allowed, suggestion=hint))
+        names = ("code", "model", "speed", "E", "nu", "R", "format", "sweep")
         parts = [f"{name} {getattr(options, name)!r}" for name in names]
         # What is found names its place, and so the folder as it is written here.
         made, found = study.kept("card", lambda: _told(study, options), *parts, str(study.folder))
@@ -84,6 +88,11 @@ def run(options: argparse.Namespace) -> int:
     return FINDINGS if found else OK
 
 
+def _models(study: Study) -> list[str]:
+    """The names of the contact models that the workbook of a folder has."""
+    return [model.name for model in study.inputs.workbook.models]
+
+
 def _told(study: Study, options: argparse.Namespace) -> tuple[str, list[str]]:
     """The card, and what is found wrong with the data that it is made from."""
     report = study.computed
@@ -91,11 +100,11 @@ def _told(study: Study, options: argparse.Namespace) -> tuple[str, list[str]]:
 
 
 def _made(study: Study, report: Report, options: argparse.Namespace) -> str:
-    from ..cards import Asked, NoImpacts, NotTogether, card, drop_at, drops_of, swept, taken
+    from ..cards import Asked, NoImpacts, NotTogether, card, contacts_of, drop_at, drops_of, swept, taken
     from ..impacts.card import Unreachable
     from ..impacts.codes import CODES
     from ..impacts.source import SOURCES
-    from ..messages.errors import UsageError, diagnose
+    from ..messages.errors import UsageError, diagnose, listing
     from ..views.card import FORMATS
     from ..views.checks import lines
 
@@ -106,8 +115,10 @@ def _made(study: Study, report: Report, options: argparse.Namespace) -> str:
         raise UsageError(diagnose("LS624", text=title, reason=error)) from error
     left_out = taken(report, drops)
     if options.code in SOURCES:
-        return _law(study, drops, options, [*lines(report.oddities), *left_out])
-    code = CODES[options.code]
+        return _law(study, report, drops, options, [*lines(report.oddities), *left_out])
+    if options.model is not None:
+        raise _wrong(f"--model says nothing to --for {options.code}", f"--for {listing(SOURCES)}")
+    code = CODES[options.code] if options.code in CODES else contacts_of(report)[options.code]
     if options.sweep is not None and options.format != "text":
         raise _wrong(f"--format {options.format} says nothing to --sweep", "leave --format out")
     try:
@@ -125,27 +136,34 @@ def _made(study: Study, report: Report, options: argparse.Namespace) -> str:
     return FORMATS[options.format](replace(made, notes=(*made.notes, *left_out), oddities=report.oddities))
 
 
-def _law(study: Study, drops: Drops, options: argparse.Namespace, remarks: list[str]) -> str:
-    """The identified law itself."""
-    from ..cards import Asked, NotTogether, drop_at, swept
-    from ..impacts.source import SOURCES
+def _law(study: Study, report: Report, drops: Drops, options: argparse.Namespace, remarks: list[str]) -> str:
+    """The identified law itself, or that of a contact model."""
+    from ..cards import Asked, NotTogether, contacts_of, drop_at, swept
+    from ..impacts.card import Unreachable
+    from ..impacts.source import SOURCES, identified, modelled
     from ..messages.errors import UsageError, diagnose
 
     names = [name for name in ("E", "nu", "R") if getattr(options, name) is not None]
-    names += ["speed"] if options.speed is not None and options.code != "table" else []
+    at_speed = options.code == "table" or options.model is not None
+    names += ["speed"] if options.speed is not None and not at_speed else []
     names += ["format"] if options.format != "text" else []
     names += ["sweep"] if options.sweep is not None and options.code != "table" else []
     if names:
         raise _wrong(f"--{names[0]} says nothing to --for {options.code}", f"leave --{names[0]} out")
-    if not drops.has_curve:
+    model = None if options.model is None else contacts_of(report)[options.model]
+    if model is None and not drops.has_curve:
         raise UsageError(diagnose("LS624", text="the folder", reason="no loading curve was found"))
     try:
         drop = drop_at(drops, Asked("--", _read(options, "speed")))
     except NotTogether as error:
         raise _wrong(error.reason, error.known) from error
-    if options.sweep is not None:
-        return swept(None, drops, drop, Asked(), options.sweep, study.step)
-    return SOURCES[options.code].of(drops, drop, remarks)
+    try:
+        if options.sweep is not None:
+            return swept(model, drops, drop, Asked(), options.sweep, study.step)
+        written = identified(drops, drop) if model is None else modelled(model, drops, drop)
+    except Unreachable as error:
+        raise UsageError(diagnose("LS625", text=options.model, reason=error)) from error
+    return SOURCES[options.code].of(written, remarks)
 
 
 def _read(options: argparse.Namespace, name: str) -> float | None:

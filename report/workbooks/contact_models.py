@@ -14,7 +14,9 @@ from . import soft_impact
 from .contact_models_charts import columns, over_speed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping
+
+    from sympy import Symbol
 
     from ...derivations.contact.model import ContactModel
     from ...derivations.equation import Ledger
@@ -65,6 +67,12 @@ def _drawings() -> dict[str, Callable[[Any], Any]]:
     from .contact_models_drawings import draw_loops
 
     return {"loops": draw_loops}
+
+
+def _constants(sheet: Sheet) -> Mapping[Symbol, str]:
+    from .contact_models_sheet import constants
+
+    return constants(sheet)
 
 
 # --- tables -------------------------------------------------------------------------------------------------
@@ -230,6 +238,8 @@ WORKBOOK = Workbook(
     ),
     drawn=columns,
     drawings=_drawings,
+    models=MODELS,
+    constants=_constants,
     example=soft_impact.WORKBOOK.example,
     example_parameters={
         "ball_diameter": "12.7 mm", "ball_density": "7800 kg/m^3", "beta": "1.5",

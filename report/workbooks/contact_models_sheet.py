@@ -20,7 +20,7 @@ from ..sheet import Column, Formula, Given, Limit, RepeatAxis, Root, Sheet
 from . import soft_impact_fit
 from .soft_impact_sheet import TESTS, beta, e, masses, v, x_p
 
-__all__ = ["branches", "sheet"]
+__all__ = ["branches", "constants", "sheet"]
 
 _BODIES = ("E_1", "nu_1", "E_2", "nu_2")
 """What is given of both bodies besides their masses."""
@@ -187,6 +187,16 @@ def _defined(equation: Equation) -> Symbol:
     """What an equation is a column of; of a test it may say so itself."""
     of = equation.sides[0] if equation.defines is None else equation.defines
     return LEDGER.vocabulary[name_of(of)].symbol if isinstance(of, Indexed) else of
+
+
+def constants(sheet: Sheet) -> dict[Symbol, str]:
+    """Which cells the quantities of the derivations are that are the same for all tests."""
+    called = {name: _CALLED.get(name, name) for name in LEDGER.vocabulary}
+    return {
+        LEDGER.vocabulary[quantity].symbol: name
+        for quantity, name in called.items()
+        if name in sheet and sheet[name].axis is None
+    }
 
 
 def branches(sheet: Sheet, points: int) -> Drawn:
