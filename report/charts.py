@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from sympy import Expr
 
 __all__ = [
-    "BARS", "BLUE", "INK", "MOST_DOTS", "STYLES", "VERMILION", "Chart", "Drawn", "Series", "copied", "drawn",
-    "shade", "with_copies",
+    "BARS", "BLUE", "INK", "IN_A_ROW", "MOST_DOTS", "MOST_PANELS", "STYLES", "VERMILION", "Chart", "Drawn",
+    "Series", "copied", "drawn", "shade", "with_copies",
 ]  # fmt: skip
 
 INK, VERMILION, BLUE = "#1a1a1a", "#d55e00", "#0072b2"
@@ -23,6 +23,8 @@ BARS = "bars: standard uncertainty"
 STYLES = ("points", "line", "level")
 MOST_DOTS = 500
 """Points of a series that are drawn; more are thinned: they would blacken the paper and bloat the file."""
+MOST_PANELS, IN_A_ROW = 9, 3
+"""Panels of a picture; of more rows some are drawn, evenly."""
 _SHADES = ((68, 1, 84), (70, 50, 127), (54, 92, 141), (39, 127, 142), (31, 161, 135))
 
 
@@ -84,8 +86,10 @@ class Chart:
         Whether both axes begin at zero.
     whole : bool
         Whether every point is drawn where it is, however far from the lines and the other points.
+    panels : bool
+        Whether each row of the repeated axis has a panel of its own, with axes in common; series are lines.
     height : float
-        In centimetres, of 16 cm of width.
+        In centimetres, of 16 cm of width; with panels, of a row of these.
     """
 
     title: str
@@ -95,6 +99,7 @@ class Chart:
     log: str = ""
     from_zero: bool = False
     whole: bool = False
+    panels: bool = False
     height: float = 8
 
 

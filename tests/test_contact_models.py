@@ -8,7 +8,8 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+import zipfile
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from html import unescape
@@ -33,16 +34,10 @@ from loopsheet.derivations.equation import Derivation
 from loopsheet.derivations.proof import check_step, prove
 from loopsheet.derivations.proved import ProofStatus
 from loopsheet.report import build
-from loopsheet.report.cards import contacts_of, drops_of
-from loopsheet.report.cli import main
-from loopsheet.report.impacts.card import Unreachable, solved
-from loopsheet.report.impacts.contact import formula, law_of
+from loopsheet.report.impacts.contact import law_of
 from loopsheet.report.impacts.simulation import simulate
-from loopsheet.report.impacts.source import SOURCES, modelled
 from loopsheet.report.plan.special import EXACT, in_elementary_terms
 from loopsheet.report.result import chi_square
-from loopsheet.report.result.card import Card
-from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.workbooks.contact_models import WORKBOOK
 
@@ -426,112 +421,24 @@ def test_a_model_is_one_file_and_one_line(tmp_path: Path) -> None:
     assert card["returned"]["imprint"] / card["returned"]["approach"] == pytest.approx(1 - 0.479, rel=1e-9)
 
 
-# --- cards of the models ------------------------------------------------------------------------------------
-
-
-@cache
-def shipped_cards() -> tuple[Report, dict[str, Card]]:
-    shipped = Study(SHIPPED).computed
-    return shipped, {card.name: card for card in shipped.cards().made}
-
-
-def test_the_shipped_folder_has_cards_of_codes_and_of_all_models() -> None:
-    _, cards = shipped_cards()
-    assert [*cards] == ["lammps", "exudyn", *(model.name for model in MODELS)]
-    assert [name for name, card in cards.items() if card.solved] == ["lammps", "exudyn"]
-
-
-def of_test(values: Any, row: int) -> float:
-    return float(values[row if values.size > 1 else 0])
-
-
-@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
-def test_a_card_of_a_model_returns_what_the_report_says_of_it(model: ContactModel) -> None:
-    """Simulated from the numbers of the card at every measured speed, beside the cells of the sheet."""
-    shipped, cards = shipped_cards()
-    card, value = cards[model.name], shipped.values.value
-    middle = 2  # the test whose restitution is told
-    for row, told in enumerate(card.rows):
-        expected = {"e": value["e"][middle] if model.told else of_test(value[model.predicts["e"].name], row)}
-        if not model.told or row == middle:
-            expected["x_p"] = of_test(value[model.predicts["x_p"].name], row)
-        found = {"e": told.by_card, "x_p": told.imprint_by_card}
-        for name, wanted in expected.items():
-            assert found[name] == pytest.approx(wanted, rel=1e-8, abs=1e-15), (name, row)
-    typed = {one.word: one.value for one in card.typed}
-    scalars = {"e": value["e"][middle], "alpha": value["alpha_eiv"][0], "C": value["C_eiv"][0]}
-    assert typed == {name: scalars[name] if name in scalars else value[name][0] for name in typed}
-    assert (typed.keys() >= {"e"}) == model.told
-
-
-@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
-def test_the_law_of_a_model_in_python_and_in_c(
-    model: ContactModel, require: Callable[..., str], tmp_path: Path
-) -> None:
-    shipped, _ = shipped_cards()
-    drops, formula = drops_of(shipped), contacts_of(shipped)[model.name]
-    written = modelled(formula, drops, drops.middle)
-    forces = written.law.at(drops.mass, drops.middle.speed, {})
-    places = [(x_m * share, x_m) for x_m in (2e-6, 3e-5, 9e-5) for share in (0.0, 0.1, 0.5, 0.8, 0.95, 1.0)]
-
-    def by_law(place: float, greatest: float) -> float:
-        if place <= 0:
-            return 0.0
-        if place >= greatest:
-            return forces.loading(place, 0.0, place)
-        return forces.unloading(place, 0.0, greatest) if place > forces.imprint(greatest) else 0.0
-
-    expected = [by_law(*place) for place in places]
-    assert 0 < sum(force == 0 for force in expected) < len(expected) - 6
-    space: dict[str, Callable[[float, float], float]] = {}
-    exec(SOURCES["python"].printed(written), space)
-    assert [space["contact_force"](*place) for place in places] == pytest.approx(expected, rel=1e-12)
-    calls = "".join(f'    printf("%.17g\\n", contact_force({a!r}, {b!r}));\n' for a, b in places)
-    program = (
-        f"{SOURCES['c'].printed(written)}\n#include <stdio.h>\nint main(void)\n{{\n{calls}    return 0;\n}}\n"
-    )
-    (tmp_path / "law.c").write_text(program, encoding="utf-8")
-    flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"]
-    subprocess.run([require("cc", "gcc"), *flags, "law.c", "-lm", "-o", "law"], cwd=tmp_path, check=True)
-    told = subprocess.run([tmp_path / "law"], capture_output=True, text=True, check=True).stdout
-    assert [*map(float, told.split())] == pytest.approx(expected, rel=1e-12)
-
-
-def test_a_model_without_its_constant_has_no_card() -> None:
-    shipped, _ = shipped_cards()
-    drops = drops_of(shipped)
-    lacking = formula(johnson.JOHNSON, {johnson.p_d: float("nan")}, LEDGER.vocabulary)
-    with pytest.raises(Unreachable, match="E_1 has no value"):
-        solved(lacking, drops, drops.middle, None, 0.3, drops.radius)
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["--for", "jonson"], "LS604]: unknown code 'jonson'"),
-        (["--for", "c", "--model", "jonson"], "LS604]: unknown model 'jonson'"),
-        (["--for", "lammps", "--model", "johnson"], "LS614]: --model says nothing to --for lammps"),
-        (["--for", "johnson", "--E", "210 GPa"], "LS614]: --E says nothing to johnson here"),
-        (["--for", "johnson", "--nu", "0.3"], "LS614]: --nu says nothing to johnson here"),
-        (["--for", "c", "--model", "johnson", "--speed", "9 m/s"], "LS614]: --speed 9 m/s is not among"),
-    ],
-)
-def test_what_does_not_fit_a_model_is_told(
-    words: list[str], said: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["card", str(SHIPPED), *words]) == 2
-    assert said in capsys.readouterr().err
-
-
-def test_a_folder_without_models_says_so(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["card", "paper", "--for", "c", "--model", "johnson"]) == 2
-    assert "none in this folder" in capsys.readouterr().err
-
-
-def test_codes_have_poisson_s_ratio_of_the_ball(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder = changed(tmp_path, nu_1="0.25").folder
-    assert main(["card", str(folder), "--for", "lammps"]) in (0, 1)
-    assert "Poisson's ratio is that of the ball: 0.25" in capsys.readouterr().out
+def test_loops_are_native_charts_of_the_workbook_a_panel_for_each_test(tmp_path: Path) -> None:
+    """Drawn from the cells of the worksheet, as the page draws them from its own."""
+    build.build(Study(SHIPPED), tmp_path, ("xlsx",))
+    with zipfile.ZipFile(tmp_path / "report.xlsx") as parts:
+        charts = [parts.read(name).decode() for name in parts.namelist() if "charts/chart" in name]
+    panels = [chart for chart in charts if "loops!" in chart]
+    assert len(panels) == 5
+    for number, chart in enumerate(panels):
+        assert f"<a:t>test {number + 1}</a:t>" in chart
+        first = 8 + 33 * number
+        places = [
+            re.findall(r"<c:f>loops!(.*?)</c:f>", one) for one in re.findall("<c:ser>.*?</c:ser>", chart)
+        ]
+        assert len(places) == 2 * len(MODELS)
+        rows = {tuple(re.findall(r"[$](\d+)", place)) for own in places for place in own}
+        assert rows == {(str(first), str(first + 32))}
+        assert len({place for own in places for place in own}) == 4 * len(MODELS)
+        assert all(model.title in chart for model in MODELS)
 
 
 # --- closed forms beside simulated impacts ------------------------------------------------------------------

@@ -135,12 +135,6 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
         RUNTIME - {"scipy", "mpmath"},
     ),
     "report.workbooks": (DECLARED | rooms("judge", "result", "workbooks") | {"derivations"}, ALGEBRA),
-    "report.workbooks.contact_models_drawings": (
-        DECLARED
-        | rooms("cells", "document.charted", "result", "views.drawing", "workbooks")
-        | {"derivations"},
-        {"matplotlib", "numpy"},
-    ),
     "report.workbooks.soft_impact_schematics": (
         DECLARED | rooms("engines.numpy_code", "result", "views.drawing", "workbooks") | {"derivations"},
         {"matplotlib", "numpy", "sympy"},

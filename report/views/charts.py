@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cells.address import index_text
 from ..cells.layout import evenly
 from ..cells.values import Status
-from ..charts import BARS, MOST_DOTS, VERMILION, Chart, Series, shade
+from ..charts import BARS, IN_A_ROW, MOST_DOTS, MOST_PANELS, VERMILION, Chart, Series, shade
 from ..document.charted import PREFIXES, Letters, Words, thinned
 from ..result.result import Report
 from . import drawing
@@ -170,13 +171,15 @@ class Frame:
 
 def draw(report: Report, chart: Chart) -> Figure:
     """Draw a chart of a report."""
-    figure, axes = drawing.page(chart.height)
     words = Words(report)
     units = _units(words, chart)
     found = [
         list(traces(words, chart, series, [(size, zero) for _, size, zero in units]))
         for series in chart.series
     ]
+    if chart.panels and any(found):
+        return _panels(words, chart, [unit for unit, *_ in units], found)
+    figure, axes = drawing.page(chart.height)
     if not any(found):
         drawing.empty(axes, "Nothing to draw: the cells that it shows have no value.")
         return figure
@@ -188,6 +191,38 @@ def draw(report: Report, chart: Chart) -> Figure:
             }
         )
     _Picture(words, chart, units[1][1:], figure, axes, found).draw()
+    return figure
+
+
+def _panels(words: Words, chart: Chart, units: list[str], found: list[list[Trace]]) -> Figure:
+    """Draw a panel for each row of the axis that is repeated, of many for some."""
+    from matplotlib.lines import Line2D
+
+    rows = sorted({tuple(trace.labels[0]) for own in found for trace in own})
+    shown = [rows[n] for n in evenly(len(rows), MOST_PANELS)]
+    across, down = min(len(shown), IN_A_ROW), -(-len(shown) // IN_A_ROW)
+    figure, whole = drawing.page(1.5 + chart.height * down)
+    whole.remove()
+    every = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False).ravel().tolist()
+    panels, spare = every[: len(shown)], every[len(shown) :]
+    for panel, row in zip(panels, shown, strict=True):
+        panel.set_title(f"{words.axis(chart.series[0]).row} {index_text(row)}", fontsize=9)
+        panel.grid(visible=True)
+        for series, own in zip(chart.series, found, strict=True):
+            for trace in own:
+                if tuple(trace.labels[0]) == row:
+                    panel.plot(*trace.at, color=series.colour, lw=1.2)
+    for panel in spare:
+        panel.remove()
+    for panel in panels[-across:]:  # above a place that stays empty, too
+        panel.tick_params(labelbottom=True)
+    if chart.from_zero:
+        panels[0].set(xlim=(0, None), ylim=(0, None))
+    for axis, scale, unit in zip("xy", words.scales(chart), units, strict=True):
+        getattr(figure, f"sup{axis}label")(mathtext(scale.titled(unit)), fontsize=9)
+    keys = {mathtext(words.label(series)): series.colour for series in chart.series}
+    handles = [Line2D([], [], color=colour, label=label) for label, colour in keys.items()]
+    figure.legend(handles=handles, loc="outside upper left", ncols=3, handlelength=1.5, columnspacing=1)
     return figure
 
 

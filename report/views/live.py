@@ -168,6 +168,8 @@ def _chart(words: Words, chart: Chart) -> dict[str, Any]:
         found["zero"] = 1
     if chart.whole:
         found["whole"] = 1
+    if chart.panels:
+        found["panels"] = words.axis(chart.series[0]).row
     plain = {field.name: field.default for field in fields(Series)}
     for series in chart.series:
         # Drawn again, points have no bars: uncertainties may have changed.

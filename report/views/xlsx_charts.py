@@ -10,7 +10,8 @@ import numpy as np
 
 from ..cells.address import index_text
 from ..cells.grid import CellBlock, Grid, Place
-from ..charts import BARS, Series, copied, shade
+from ..cells.layout import evenly
+from ..charts import BARS, IN_A_ROW, MOST_PANELS, Chart, Series, copied, shade
 from ..document.charted import Words, plain, thinned
 from ..quantity import behind
 from ..result.result import Report
@@ -22,10 +23,14 @@ __all__ = ["charted", "write_charts"]
 _SIZE = {"width": 900, "height": 540}
 _ROWS = 29
 """Rows of the worksheet that a chart covers."""
+_PANEL = 300, 240, 13
+"""Width and height of one of many in pixels, and its rows."""
 _BESIDE = 20
 """The first column, from 0, of how long bars are."""
 _PICTURED = 6
 """Digits of a number that nobody reads but a chart, which is less than a thousand points wide."""
+_IN_PANEL = 4
+"""The same of a chart that is one of many, and a third as wide."""
 _INK, _GRID = "#1F2A36", "#E3E8ED"
 _UNSEEN: dict[str, Any] = {
     "name": "",
@@ -47,52 +52,110 @@ def charted(report: Report, grid: Grid) -> list[FigureSpec]:
 
 def write_charts(book: Any, sheet: Any, style: Style, report: Report, grid: Grid) -> None:
     """Draw every chart, one below the other."""
-    figures, beside = charted(report, grid), _BESIDE
-    words = Words(report)
+    figures, words = charted(report, grid), Words(report)
     sheet.hide_gridlines(2)
     sheet.set_landscape()
     sheet.set_paper(9)
     sheet.fit_to_pages(1, 0)
-    sheet.set_h_pagebreaks([1 + number * _ROWS for number in range(1, len(figures))])
     style.text(sheet, 0, 0, "figures: drawn from the cells, they follow every edit", "title")
-    for number, figure in enumerate(figures):
-        chart, top = figure.chart, 2 + number * _ROWS
-        assert chart is not None
-        drawn = book.add_chart({"type": "scatter"})
-        labels: list[str] = []
-        ends: list[dict[str, Any]] = []
-        for place, series in enumerate(chart.series):
-            bars = list(_barred(words, grid, series))
-            for each in _series(words, grid, series):
-                each["name"] += f"; {BARS} as issued" if bars else ""
-                for axis, name, u in bars:
-                    head = f"u({name}) as issued{said(grid[name].unit)}"
-                    each[f"{axis}_error_bars"] = _bars(sheet, style, beside, head, u, series.colour)
-                    own = _ends(sheet, style, beside, axis, grid[name], u, axis in chart.log)
-                    ends += [{**each, **end} for end in own]
-                    beside += 3
-                labels.append(each["name"])
-                if value := series.value or (series.y if series.style == "level" else ""):
-                    # Behind the chart, a formula: what is told of a number follows it.
-                    each["name"] = _told(sheet, style, top + place, labels[-1], grid[value], words)
-                drawn.add_series(each)
-        for each in ends:
-            drawn.add_series(each)
-        title = f"Figure {figure.number}: {plain(words.letters(chart.title))}"
-        drawn.set_title({"name": title, "name_font": {"size": 13, "color": _INK}, "overlay": False})
-        for axis, scale, set_axis in zip(
-            "xy", words.scales(chart), (drawn.set_x_axis, drawn.set_y_axis), strict=True
-        ):
-            set_axis(_axis(plain(scale.titled(scale.unit)), chart.from_zero, axis in chart.log))
-        again = [place for place, label in enumerate(labels) if label in labels[:place]]
-        again += range(len(labels), len(labels) + len(ends))
-        told = len(labels) > 1 or BARS in labels[0]
-        drawn.set_legend({"position": "right", "delete_series": again} if told else {"none": True})
-        drawn.set_size(_SIZE)
-        drawn.show_na_as_empty_cell()
-        sheet.insert_chart(top, 0, drawn, {"description": title})
+    beside, tops = _BESIDE, [2]
+    for figure in figures:
+        assert figure.chart is not None
+        if figure.chart.panels:
+            tops.append(_panels(book, sheet, words, grid, figure, figure.chart, tops[-1]))
+        else:
+            beside = _whole(book, sheet, style, words, grid, figure, figure.chart, tops[-1], beside)
+            tops.append(tops[-1] + _ROWS)
+    sheet.set_h_pagebreaks([top - 1 for top in tops[1:-1]])
     if beside > _BESIDE:
-        sheet.print_area(0, 0, 1 + len(figures) * _ROWS, _BESIDE - 6)
+        sheet.print_area(0, 0, tops[-1] - 1, _BESIDE - 6)
+
+
+def _whole(
+    book: Any,
+    sheet: Any,
+    style: Style,
+    words: Words,
+    grid: Grid,
+    figure: FigureSpec,
+    chart: Chart,
+    top: int,
+    beside: int,
+) -> int:
+    """Draw one chart; return the first column that is free beside it."""
+    drawn = book.add_chart({"type": "scatter"})
+    labels: list[str] = []
+    ends: list[dict[str, Any]] = []
+    for place, series in enumerate(chart.series):
+        bars = list(_barred(words, grid, series))
+        for each in _series(words, grid, series):
+            each["name"] += f"; {BARS} as issued" if bars else ""
+            for axis, name, u in bars:
+                head = f"u({name}) as issued{said(grid[name].unit)}"
+                each[f"{axis}_error_bars"] = _bars(sheet, style, beside, head, u, series.colour)
+                own = _ends(sheet, style, beside, axis, grid[name], u, axis in chart.log)
+                ends += [{**each, **end} for end in own]
+                beside += 3
+            labels.append(each["name"])
+            if value := series.value or (series.y if series.style == "level" else ""):
+                # Behind the chart, a formula: what is told of a number follows it.
+                each["name"] = _told(sheet, style, top + place, labels[-1], grid[value], words)
+            drawn.add_series(each)
+    for each in ends:
+        drawn.add_series(each)
+    again = [place for place, label in enumerate(labels) if label in labels[:place]]
+    again += range(len(labels), len(labels) + len(ends))
+    told = len(labels) > 1 or BARS in labels[0]
+    drawn.set_legend({"position": "right", "delete_series": again} if told else {"none": True})
+    title = f"Figure {figure.number}: {plain(words.letters(chart.title))}"
+    _framed(drawn, words, chart, title, 13)
+    drawn.set_size(_SIZE)
+    sheet.insert_chart(top, 0, drawn, {"description": title})
+    return beside
+
+
+def _panels(
+    book: Any, sheet: Any, words: Words, grid: Grid, figure: FigureSpec, chart: Chart, top: int
+) -> int:
+    """Draw a chart for each row of the axis that is repeated, of many for some; return the row below them.
+
+    What the lines are stands above, in their colours: so all panels are alike.
+    """
+    lines = [list(_series(words, grid, series, _IN_PANEL)) for series in chart.series]
+    colours = {own[0]["name"]: series.colour for own, series in zip(lines, chart.series, strict=True) if own}
+    title = f"Figure {figure.number}: {plain(words.letters(chart.title))}"
+    sheet.write_string(top, 0, title, book.add_format({"bold": True, "font_color": _INK}))
+    for row, (label, colour) in enumerate(colours.items(), start=top + 1):
+        sheet.write_string(
+            row, 0, f"\N{HORIZONTAL BAR} {label}", book.add_format({"font_color": colour, "bold": True})
+        )
+    top += len(colours) + 2
+    of = words.axis(chart.series[0])
+    names = words.plotted.values.layouts[of.name].labels.tolist()
+    shown = evenly(len(names), MOST_PANELS)
+    width, height, rows = _PANEL
+    for place, row in enumerate(shown):
+        drawn = book.add_chart({"type": "scatter"})
+        for own in lines:
+            drawn.add_series(own[row])
+        name = f"{of.row} {index_text(names[row])}"
+        _framed(drawn, words, chart, name, 11)
+        drawn.set_legend({"none": True})
+        drawn.set_size({"width": width, "height": height})
+        down, across = divmod(place, IN_A_ROW)
+        where = {"description": f"{title}, {name}", "x_offset": across * width}
+        sheet.insert_chart(top + down * rows, 0, drawn, where)
+    return int(top + -(-len(shown) // IN_A_ROW) * rows)
+
+
+def _framed(drawn: Any, words: Words, chart: Chart, title: str, size: int) -> None:
+    """Give a chart its title and its axes."""
+    drawn.set_title({"name": title, "name_font": {"size": size, "color": _INK}, "overlay": False})
+    for axis, scale, set_axis in zip(
+        "xy", words.scales(chart), (drawn.set_x_axis, drawn.set_y_axis), strict=True
+    ):
+        set_axis(_axis(plain(scale.titled(scale.unit)), chart.from_zero, axis in chart.log))
+    drawn.show_na_as_empty_cell()
 
 
 def _axis(name: str, from_zero: bool, log: bool) -> dict[str, Any]:
@@ -116,7 +179,7 @@ def _told(sheet: Any, style: Style, row: int, label: str, block: CellBlock, word
     return f"={sheet.get_name()}!$A${row + 1}"
 
 
-def _series(words: Words, grid: Grid, series: Series) -> Iterator[dict[str, Any]]:
+def _series(words: Words, grid: Grid, series: Series, digits: int = _PICTURED) -> Iterator[dict[str, Any]]:
     """A chart's series: one, or one for each row of the axis that is repeated."""
     values = words.plotted.values
     axis, of = values.sheet[series.x].axis, words.axis(series)
@@ -129,7 +192,7 @@ def _series(words: Words, grid: Grid, series: Series) -> Iterator[dict[str, Any]
     if axis is of or series.style == "points":
         label = plain(words.label(series, f"the {of.name}"))
         label += thinned(values.layouts[axis.name].size, x.place.rows)
-        yield _one(label, series, series.colour, x, y, 0, x.place.rows)
+        yield _one(label, series, series.colour, x, y, 0, x.place.rows, digits)
         return
     parents = values.layouts[of.name].labels.tolist()
     each = x.place.rows // max(1, len(parents))
@@ -137,7 +200,7 @@ def _series(words: Words, grid: Grid, series: Series) -> Iterator[dict[str, Any]
         own, colour = f"the {of.name}", series.colour
         if series.each:
             own, colour = f"{of.row} {index_text(label)}", shade(number / max(1, len(parents) - 1))
-        yield _one(plain(words.label(series, own)), series, colour, x, y, number * each, each)
+        yield _one(plain(words.label(series, own)), series, colour, x, y, number * each, each, digits)
 
 
 def _barred(words: Words, grid: Grid, series: Series) -> Iterator[tuple[str, str, list[float]]]:
@@ -187,7 +250,7 @@ def _ends(
 
 
 def _one(
-    label: str, series: Series, colour: str, x: CellBlock, y: CellBlock, first: int, rows: int
+    label: str, series: Series, colour: str, x: CellBlock, y: CellBlock, first: int, rows: int, digits: int
 ) -> dict[str, Any]:
     looks: dict[str, Any] = {"marker": {"type": "none"}, "line": {"color": colour, "width": 1.5}}
     if series.style == "points":
@@ -201,12 +264,12 @@ def _one(
         "categories": f"={x.place.range(first=first, rows=rows)}",
         "values": f"={y.place.range(first=first, rows=rows)}",
         # What viewers draw before they calculate.
-        "categories_data": _pictured(x.values[stretch]),
-        "values_data": _pictured(y.values[stretch]),
+        "categories_data": _pictured(x.values[stretch], digits),
+        "values_data": _pictured(y.values[stretch], digits),
         **looks,
     }
 
 
-def _pictured(values: Iterable[float | str | None]) -> list[float | str | None]:
+def _pictured(values: Iterable[float | str | None], digits: int) -> list[float | str | None]:
     """What a chart knows of cells before it reads them; one without a value is a gap."""
-    return [float(f"{value:.{_PICTURED}g}") if isinstance(value, float) else value for value in values]
+    return [float(f"{value:.{digits}g}") if isinstance(value, float) else value for value in values]

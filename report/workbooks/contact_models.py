@@ -5,16 +5,16 @@ All that is shown of a model is made of its declaration in derivations/contact/.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ...derivations.contact.models import LEDGER, MODELS
 from ..quantity import Bounds
 from ..workbook import FigureSpec, Parameter, SquareSum, TableSpec, Workbook, sentence_case
 from . import soft_impact
-from .contact_models_charts import columns, over_speed
+from .contact_models_charts import LOOPS, columns, over_speed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
     from sympy import Symbol
 
@@ -61,12 +61,6 @@ def _sheet(given: frozenset[str]) -> Sheet:
 
 def _ledger() -> Ledger:
     return LEDGER
-
-
-def _drawings() -> dict[str, Callable[[Any], Any]]:
-    from .contact_models_drawings import draw_loops
-
-    return {"loops": draw_loops}
 
 
 def _constants(sheet: Sheet) -> Mapping[Symbol, str]:
@@ -232,12 +226,11 @@ WORKBOOK = Workbook(
             alt="Marks of the tests, and a line for each model that predicts the restitution.",
         ),
         FigureSpec(
-            "loops", "3", "Force over approach by all models, a panel for each test.",
+            "loops", "3", "Force over approach by all models, a panel for each test.", chart=LOOPS,
             alt="Panels with the same axes: in each a loop for every model, up to its greatest force.",
         ),
     ),
     drawn=columns,
-    drawings=_drawings,
     models=MODELS,
     constants=_constants,
     example=soft_impact.WORKBOOK.example,

@@ -1,4 +1,4 @@
-"""The charts of the contact models, restitution and imprint over speed, and the points of their loops."""
+"""The charts of the contact models: restitution and imprint over speed, and the loops of all models."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from ..charts import Drawn
     from ..sheet import Sheet
 
-__all__ = ["COLOUR_OF", "columns", "over_speed"]
+__all__ = ["LOOPS", "columns", "over_speed"]
 
 _COLOURS = ("#56b4e9", "#cc79a7", VERMILION, "#009e73", BLUE, "#e69f00", "#f0e442")
 """Of Okabe and Ito: told apart by every eye."""
-COLOUR_OF = {model.name: colour for model, colour in zip(MODELS, cycle(_COLOURS), strict=False)}
+_COLOUR_OF = {model.name: colour for model, colour in zip(MODELS, cycle(_COLOURS), strict=False)}
 """The same in every picture."""
 _POINTS = 33
 """Abscissae of each branch; straight lines between so many look like a curve."""
@@ -25,12 +25,28 @@ _POINTS = 33
 def over_speed(cell: str, title: str, axis: str) -> Chart:
     """What was measured over the speed, and what every model predicts that says more of it than a number."""
     lines = (
-        Series("v", f"{cell}_{model.name}", model.title, colour=COLOUR_OF[model.name])
+        Series("v", f"{cell}_{model.name}", model.title, colour=_COLOUR_OF[model.name])
         for model in MODELS
         if model.varies(cell)
     )
     points = Series("v", cell, "%s, as measured", "points", INK, named=True, bars=True)
     return Chart(title, "impact speed", axis, (*lines, points), whole=True)
+
+
+LOOPS = Chart(
+    "force over approach by all models",
+    "approach x",
+    "force F",
+    tuple(
+        Series(f"{way}_x_{model.name}", f"{way}_F_{model.name}", model.title, colour=_COLOUR_OF[model.name])
+        for model in reversed(MODELS)
+        for way in ("loading", "unloading")
+    ),
+    from_zero=True,
+    panels=True,
+    height=4.2,
+)
+"""The first on top: where two load alike, the loop of the elastic one is but a line."""
 
 
 def columns(sheet: Sheet) -> Drawn:

@@ -5,7 +5,7 @@ const AROUND = [
   [5, 9, "start"], [-5, -5, "end"], [-5, 9, "end"], [5, -5, "start"],
 ];
 const BESIDE_END = [[5, 10, "start"], [-4, -4, "end"], [-6, -14, "end"], [-8, -26, "end"]];
-const MOST_DOTS = 500, MOST_NAMES = 21, SOME_NAMES = 12, ROOM = 0.25, MARGINS = [0.06, 0.1], GHOST = "#c4c4c4";
+const MOST_DOTS = 500, MOST_NAMES = 21, SOME_NAMES = 12, ROOM = 0.25, MARGINS = [0.06, 0.1], MOST_PANELS = 9, IN_A_ROW = 3, GHOST = "#c4c4c4";
 
 // From dark to middling, as the pictures that were issued.
 const SHADES = [[68, 1, 84], [70, 50, 127], [54, 92, 141], [39, 127, 142], [31, 161, 135]];
@@ -56,6 +56,24 @@ function waysOf({ each }, traces) {
 
 const sameTraces = (some, others) => JSON.stringify(some) === JSON.stringify(others);
 
+// A panel for each row of the axis that is repeated, of many for some; a line has the colour of its series.
+function drawPanels({ height, log, panels }, series, own, ghosts, { ends }, titled, mark) {
+  const named = new Map(own.flat().map(([{ row, name }]) => [name, row])), rows = [...named.keys()].sort((a, b) => named.get(a) - named.get(b));
+  const shown = evenly(rows.length, MOST_PANELS).map((n) => rows[n]), across = Math.min(shown.length, IN_A_ROW), top = 33;
+  const svg = canvas(WIDTH, top + Math.ceil(shown.length / across) * height), keys = new Map(), width = WIDTH / across;
+  shown.forEach((row, n) => {
+    const picture = new Picture({ height, log, width, small: true }, ends, titled(["", `${panels} ${row}: `]), 14);
+    for (const way of ghosts.flat()) if (way[0].name === row) picture.line(way, GHOST, 1);
+    own.forEach((ways, of) => ways.forEach((way) => way[0].name === row && picture.line(way, series[of].colour, 1.2)));
+    const at = [(n % across) * width, top + Math.floor(n / across) * height];
+    svg.append(draw("g", { transform: `translate(${at})` }, ...picture.svg.childNodes));
+  });
+  for (const { label, colour } of series) keys.set(plainOf(label), { mark: mark("M0 0h13", { stroke: colour, "stroke-width": 1.4 }), text: label });
+  if (ghosts.flat().length) keys.set("", { mark: mark("M0 0h13", { stroke: GHOST, "stroke-width": 2 }), text: [["", "as issued"]] });
+  Picture.prototype.key.call({ svg }, [...keys.values()]);
+  return { svg, says: `${[...keys.values()].map(({ text }) => plainOf(text)).join("; ")}.` };
+}
+
 // A chart, or nothing if no cell that it shows has a value; a small one says less.
 function drawChart(chart, look) {
   const { trace } = look, { value } = trace.sheet, series = chart.series.map((one) => ({ style: "line", colour: INK, ...one }));
@@ -73,9 +91,10 @@ function drawChart(chart, look) {
   const [lines, dots] = ["line", "points"].map((style) => own.flatMap((traces, n) => (series[n].style === style ? traces.flat() : [])));
   if (!lines.length && !dots.length) return null;
   const frame = frameOf(chart, [...lines, ...ghostly], dots), [x, y] = frame.ends, keys = [], names = [];
-  const titles = ["x", "y"].map((axis, n) => lettered([...chart[axis].title, ["", units[n][0] && ` / ${units[n][0]}`]]));
-  const picture = new Picture(chart, frame.ends, titles, chart.small ? 14 : series.filter(({ style }) => style !== "level").length > 1 || !dots.every(frame.holds) || ghosts.some((traces) => traces.length) ? 33 : 4);
+  const titled = (before = ["", ""]) => ["x", "y"].map((axis, n) => lettered([["", before[n]], ...chart[axis].title, ["", units[n][0] && ` / ${units[n][0]}`]]));
   const mark = (d, attributes) => draw("path", { d, ...attributes });
+  if (chart.panels) return drawPanels(chart, series, own, ghosts, frame, titled, mark);
+  const picture = new Picture(chart, frame.ends, titled(), chart.small ? 14 : series.filter(({ style }) => style !== "level").length > 1 || !dots.every(frame.holds) || ghosts.some((traces) => traces.length) ? 33 : 4);
   const key = ({ label, rows, value }, count, more, sign) => {
     const told = label.map(([kind, text]) => [kind, text.replace("%s", `${count} ${rows?.[Number(count === 1)]}`)]);
     const text = [...told, ["", more + (value ? look.shownText(value, 0) : "")]];

@@ -24,6 +24,11 @@ function logTicks(low, high, most) {
   return found.length > 1 ? found : ticks(low, high, most);
 }
 
+const canvas = (width, height) => draw("svg", {
+  role: "img", viewBox: `0 0 ${width} ${height}`, width: Math.round((width * 4) / 3), height: Math.round((height * 4) / 3),
+  "font-family": FONT, "font-size": "9", fill: INK, class: "picture",
+}, draw("rect", { width, height, fill: "#fff" }));
+
 class Picture {
   constructor({ height, log, width = WIDTH, small }, limits, titles, top) {
     const marks = (n, most) => (log[n] ? logTicks : ticks)(...limits[n], most);
@@ -33,11 +38,7 @@ class Picture {
     this.limits = limits;
     this.log = log;
     this.taken = [];
-    this.svg = draw("svg", {
-      role: "img", viewBox: `0 0 ${width} ${height}`, width: Math.round((width * 4) / 3), height: Math.round((height * 4) / 3),
-      "font-family": FONT, "font-size": "9", fill: INK, class: "picture",
-    });
-    this.svg.append(draw("rect", { width, height, fill: "#fff" }));
+    this.svg = canvas(width, height);
     this.axes(marks(0, small ? 5 : 9), yTicks, titles, height, small);
   }
 

@@ -25,8 +25,8 @@ function writePanel(look) {
   });
   const head = make("tr", {}, ...["result", "as issued", LIVE.shared ? "now (u)" : "now"].map((text) => make("th", { scope: "col" }, text)));
   if (LIVE.shared) head.lastChild.append(make("span", {}, `95\u00a0% of ${DRAWS} draws`));
-  // The last of the pictures: those before it show steps on the way.
-  const chart = Object.values(LIVE.figures).at(-1), picture = chart && drawChart({ ...chart, ...SMALL }, look)?.svg;
+  // The last of the pictures that is one: those before it show steps on the way.
+  const chart = Object.values(LIVE.figures).findLast(({ panels }) => !panels), picture = chart && drawChart({ ...chart, ...SMALL }, look)?.svg;
   picture?.setAttribute("aria-hidden", "true"); // the same stands in the report, with words
   // So that there is room for what is edited, more results than some are scrolled to.
   const results = make("div", { class: "results", tabindex: 0, "aria-label": "all results" }, make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows)));

@@ -1,0 +1,78 @@
+"""Contact models in the page: their loops follow an edit, and what cannot follow is struck out."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from driving import Live
+
+import loopsheet
+from loopsheet.report.build import build
+from loopsheet.report.study import Study
+from loopsheet.report.workbooks.contact_models_charts import LOOPS
+
+SHIPPED = Path(loopsheet.__file__).parent / "data" / "contact_models"
+PANEL = 4
+"""The last test has the largest loops."""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    return Path(shutil.copytree(SHIPPED, tmp_path / "own", ignore=shutil.ignore_patterns("out")))
+
+
+@pytest.fixture
+def live(folder: Path, open_page: Callable[..., Live]) -> Live:
+    build(Study(folder), folder / "out", ("html",))
+    return open_page(folder / "out" / "report.html")
+
+
+def reaches(live: Live) -> dict[str, float]:
+    """How far each loop of a panel goes to the right of the force's axis, in points."""
+    paths = live.page.locator(f"#figure-loops svg > g:nth-of-type({PANEL + 1}) > path").evaluate_all(
+        "all => all.map((path) => [path.getAttribute('stroke'), path.getAttribute('d')])"
+    )
+    places = [(colour, [float(x) for x in re.findall(r"[ML](-?[\d.]+) ", d)]) for colour, d in paths]
+    axis = min(xs[0] for _, xs in places if len(xs) > 1 and len(set(xs)) > 1)
+    found: dict[str, float] = {}
+    for colour, xs in places:
+        found[colour] = max(found.get(colour, 0.0), max(xs, default=axis) - axis)
+    return found
+
+
+def test_loops_of_models_follow_an_edit(live: Live, folder: Path) -> None:
+    picture = live.page.locator("#figure-loops svg")
+    assert "Redrawn" not in (picture.get_attribute("aria-label") or "")
+    live.type("E_2", "", "70")
+    assert "Redrawn after an edit" in (picture.get_attribute("aria-label") or "")
+    toml = (folder / "report.toml").read_text(encoding="utf-8")
+    assert toml.count('E_2 = "210 GPa') == 1
+    (folder / "report.toml").write_text(toml.replace('E_2 = "210 GPa', 'E_2 = "70 GPa'), encoding="utf-8")
+    value = Study(folder).computed.values.value
+    found = reaches(live)
+    colours = {series.x.removeprefix("loading_x_"): series.colour for series in LOOPS.series}
+    names = ("hertz", "johnson", "thornton", "power")
+    expected = {name: float(value[f"x_m_{name}"][PANEL]) for name in names}
+    for name in names:
+        part = found[colours[name]] / found[colours["thornton"]]
+        assert part == pytest.approx(expected[name] / expected["thornton"], abs=2e-4), name
+    # Of the law of the paper, which asks for no modulus, nothing moved: below the others is what was.
+    assert live.page.locator('#figure-loops svg > g > path[stroke="#c4c4c4"]').count() == 5 * 8 + 1
+
+
+def test_cards_that_an_edit_has_left_behind_are_struck_out(live: Live) -> None:
+    def looks() -> tuple[set[str], set[str]]:
+        style = "all => all.map((one) => getComputedStyle(one)['%s'])"
+        cells, cards = (live.page.locator(f"#cards {what}") for what in ("td:not(.words)", ".card"))
+        return set(cells.evaluate_all(style % "textDecorationLine")), set(
+            cards.evaluate_all(style % "opacity")
+        )
+
+    assert looks() == ({"none"}, {"1"})
+    live.type("E_2", "", "70")
+    assert looks() == ({"line-through"}, {"0.35"})
+    assert live.page.locator("#cards > .stale").is_visible()
