@@ -55,6 +55,7 @@ __all__ = [
     "speed",
     "speed_scale",
     "speed_step",
+    "speeds",
     "squares",
     "squares_D",
     "squares_X",
@@ -266,6 +267,8 @@ with evaluate(False):
     )
 
     _ln_v, _ln_x = log(VO[k] / v_0), log(XO[k] / x_0)
+    speeds = over_tests(_ln_v**2)
+    """How far the speeds are apart."""
     _mean_e2 = over_tests(EO[k] ** 2) / n_tests
 
     first_exponent = Equation(
@@ -273,7 +276,7 @@ with evaluate(False):
         (
             alpha_0,
             Max(
-                2 * over_tests(_ln_v**2) / over_tests(_ln_v * _ln_x),
+                2 * speeds / over_tests(_ln_v * _ln_x),
                 Rational(3, 2),
                 Rational(6, 5) * (beta + 1) * _mean_e2,
             )

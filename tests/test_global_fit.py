@@ -136,6 +136,20 @@ def test_one_test_has_no_exponent() -> None:
     assert values.cell("chi2_eiv").culprit is not None
 
 
+@pytest.mark.parametrize(("speed", "number"), [(3.0, 3), (2.9, 3), (2.3, 7)])
+def test_tests_at_one_speed_say_why_they_tell_no_exponent(speed: float, number: int) -> None:
+    """Whether or not rounding makes the mean of equal speeds that speed."""
+    v, part = np.full(number, speed), 1 + 1e-3 * np.arange(number)
+    us = [np.full(number, u) for u in (1e-3, 1e-3, 1e-7)]
+    reason = fitted(v, 0.5 * part, 3e-5 * part, *us).cell("alpha_eiv").reason
+    assert reason == (
+        "#DOMAIN! alpha_eiv needs alpha_0: outside the domain of (L49): all tests are at one speed, which "
+        "tells no exponent"
+    )
+    v[0] *= 1 + 1e-6
+    assert fitted(v, 0.5 * part, 3e-5 * part, *us).status["alpha_0"][0] == Status.OK
+
+
 @pytest.mark.parametrize(
     ("v", "e", "x_p"),
     [

@@ -61,7 +61,7 @@ def columns(tests: Axis, measured: tuple[Column, Column, Column]) -> tuple[Colum
         ),
         made("x_0", fit.depth_scale, display="like x_p"),
         made("v_0", fit.speed_scale, display="like v"),
-        made("alpha_0", fit.first_exponent),
+        made("alpha_0", fit.first_exponent, (fit.speeds > _NOTHING, _ONE_SPEED)),
         made("x_m", fit.approach, display="like x_p", meaning="approach on the common curve"),
         made("x_p", fit.depth, display="like x_p", meaning="adjusted imprint depth"),
         made("D", fit.by_exponent, display="like x_p"),
@@ -142,6 +142,9 @@ _LEAST = Rational(1, 2**30)
 """What is left of a difference, as a part of what it was made of, is more than rounding from here on."""
 _LEFT = Rational(1, 2**20)
 """The same of a trend, which is a difference of what was made of such differences."""
+_NOTHING = Rational(1, 2**48)
+"""More than rounding makes of the logarithms of equal speeds, squared and added."""
+_ONE_SPEED = "all tests are at one speed, which tells no exponent"
 _ALONE = "the other tests alone tell no curve"
 _TWO = "two tests lie on one curve, so that nothing is left over"
 _BENT = "tests at two speeds tell no trend"
