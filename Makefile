@@ -16,6 +16,9 @@ LOCK := .venv-lock/bin/uv pip compile --quiet --universal --python-version 3.11 
 # Files go to the workers whole: the tests of one share what they made; the longest first (tests/conftest.py).
 PYTEST := $(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder $(if $(SEED),--seed $(SEED))
 
+# The tests begin hundreds of processes: each would compile the sources for itself.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DEFAULT_GOAL := help
 .PHONY: help report test campaigns codes seen mutants bench docs wheel lock clean
 .DELETE_ON_ERROR:
