@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from .quantity import Bounds
@@ -341,7 +342,7 @@ class Workbook:
                 raise TypeError("what sheet() returns is no Sheet")
             return sheet.bounded(bounds)
 
-        object.__setattr__(self, "sheet", bounded)
+        object.__setattr__(self, "sheet", cache(bounded))
 
     @property
     def charts(self) -> tuple[Chart, ...]:
