@@ -8,8 +8,9 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
-from functools import cache
+from functools import cache, cached_property
 from importlib import import_module
 from pathlib import Path
 from pkgutil import walk_packages
@@ -120,8 +121,48 @@ def keeping(_kept: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[N
 def _made_by_what_is_patched(request: pytest.FixtureRequest) -> Iterator[None]:
     """Where a test patches what makes something, others are not given that, nor it what others made."""
     with pytest.MonkeyPatch.context() as patch:
-        if "monkeypatch" in request.fixturenames and "keeping" not in request.fixturenames:
-            patch.setenv(SETTING, "")
+        if "monkeypatch" in request.fixturenames:
+            patch.setitem(ONCE, "now", False)
+            if "keeping" not in request.fixturenames:
+                patch.setenv(SETTING, "")
+        yield
+
+
+ONCE = {"now": True}
+"""Whether a part of a shipped folder's study that was made once is given to whoever asks for it."""
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _shipped_folders_once(_kept: None) -> Iterator[None]:
+    """What is known of the folders that ship is made once a run, also for the commands that tests call."""
+    from loopsheet.report.study import Study
+
+    found: dict[tuple[str, Path, Any], tuple[Any, list[str]]] = {}
+
+    def once(name: str, make: Callable[[Study], Any]) -> Callable[[Study], Any]:
+        def made(study: Study) -> Any:
+            if not (ONCE["now"] and os.environ[SETTING] and study.folder.parent == PAPER.parent):
+                return make(study)
+            key = name, study.folder, study.find
+            if key in found:
+                part, said = found[key]
+                for sentence in said:
+                    study.step(sentence)
+                return part
+            said, tell = [], study.step
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr(study, "step", lambda sentence: (said.append(sentence), tell(sentence)))
+                part = make(study)
+            found[key] = part, said
+            return part
+
+        return made
+
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("computed", "numpy", "refereed"):
+            part = cached_property(once(name, vars(Study)[name].func))
+            part.__set_name__(Study, name)
+            patch.setattr(Study, name, part)
         yield
 
 
@@ -165,7 +206,6 @@ def gauge(tmp_path: Path) -> Path:
 @pytest.fixture(scope="session")
 def report() -> "Report":
     """The report of the shipped paper, computed and proved."""
-    from loopsheet.report.inputs.folders import PAPER
     from loopsheet.report.study import Study
 
     return Study(PAPER).proved
@@ -174,16 +214,15 @@ def report() -> "Report":
 @pytest.fixture(scope="session")
 def paper(report: "Report") -> "Report":
     """The report of the shipped paper, refereed too."""
-    from loopsheet.report import stages
+    from loopsheet.report.study import Study
 
-    return stages.refereed(report)
+    return replace(Study(PAPER).refereed, proofs=report.proofs, errata=report.errata)
 
 
 @pytest.fixture(scope="session")
 def issued(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the shipped paper, and in `out` its report as `loopsheet build` writes it."""
     from loopsheet.report import build
-    from loopsheet.report.inputs.folders import PAPER
     from loopsheet.report.study import Study
 
     folder = shutil.copytree(PAPER, tmp_path_factory.mktemp("issued") / "steel")
@@ -192,7 +231,7 @@ def issued(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def unrefereed(monkeypatch: pytest.MonkeyPatch) -> None:
+def unrefereed() -> Iterator[None]:
     """No referee, who takes longer than all else."""
     from loopsheet.report import build, referee, stages
     from loopsheet.report.result.verdict import Referee
@@ -200,16 +239,37 @@ def unrefereed(monkeypatch: pytest.MonkeyPatch) -> None:
     def unasked(made: Any, values: Any, *_: object) -> Any:
         return Referee(), referee.compare(made.inputs.published, values)
 
-    for module in (build, stages):
-        monkeypatch.setattr(module, "refereed_values", unasked)
+    with without("a referee") as patch:
+        for module in (build, stages):
+            patch.setattr(module, "refereed_values", unasked)
+        yield
 
 
 @pytest.fixture
-def unjudged(report: "Report", unrefereed: None, monkeypatch: pytest.MonkeyPatch) -> None:
+def unjudged(report: "Report", unrefereed: None) -> Iterator[None]:
     """No judge of the engines either, and the proofs are known: for tests of how files are written."""
     from loopsheet.report import stages
 
-    monkeypatch.setattr(stages, "judged", lambda report, *_: report)
+    with without("a judge") as patch:
+        patch.setattr(stages, "judged", lambda report, *_: report)
+        yield
+
+
+@contextmanager
+def without(what: str) -> Iterator[pytest.MonkeyPatch]:
+    """A patch that changes no more than outputs: these are kept beside those of others, all else with it."""
+    from loopsheet.report.study import Study
+
+    kept = Study.kept
+
+    def beside(study: Study, part: str, make: Any, *parts: str, **by: str) -> Any:
+        more = (f"without {what}",) if part == "outputs" else ()
+        return kept(study, part, make, *parts, *more, **by)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(ONCE, "now", False)
+        patch.setattr(Study, "kept", beside)
+        yield patch
 
 
 # --- processes ---

@@ -24,6 +24,7 @@ from loopsheet.report.engines import excel_grid
 from loopsheet.report.files.manifest import read_manifest
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.machine.background import Later
+from loopsheet.report.machine.kept import SETTING
 from loopsheet.report.machine.staging import put, strangers
 from loopsheet.report.messages.errors import InputError, OutputError, UsageError
 from loopsheet.report.result.result import Report
@@ -123,8 +124,10 @@ def test_the_referee_says_the_same_of_values_that_it_is_told(paper: Report) -> N
 
 @pytest.mark.usefixtures("unjudged", "beside")
 def test_proofs_from_a_process_of_their_own_are_of_the_ledgers_own_equations(
-    report: Report, tmp_path: Path
+    report: Report, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setenv(SETTING, "")  # where they are known, no process is begun
+    assert not Study(PAPER).are_proved()
     built, _ = build.build(Study(PAPER), tmp_path / "out", ("json",))
     assert (built.proofs, built.errata) == (report.proofs, report.errata)
     assert any(proof.remark for proof in built.proofs)
