@@ -84,18 +84,27 @@ def test_another_status_without_a_number_has_moved() -> None:
     assert len(compare(none, other).moved) == 1
 
 
-def test_another_uncertainty_of_the_same_number_is_told_last() -> None:
+def test_another_uncertainty_is_told_also_where_the_number_moved() -> None:
+    """Behind what the user gives and behind results; of all else last."""
     sure = replace(V, u=[0.1, 0.2])
     before = with_column("v", sure)
     found = compare(before, with_column("v", replace(sure, u=[0.1, 0.2 * (1 + 1e-7)])))
     assert (found.same, found.any) == (6, False)
     surer = replace(
-        before, cells={**before.cells, "v": replace(sure, u=[0.1, 0.3]), "m": replace(M, value=2.0)}
+        before,
+        cells={
+            **before.cells,
+            "v": replace(sure, value=[2.0, 3.5], u=[0.1, 0.3]),
+            "m": replace(M, value=2.0, u=0.4),
+        },
     )
-    found = compare(before, surer)
+    certain = replace(before, cells={**before.cells, "m": replace(M, u=0.2)})
+    found = compare(certain, surer)
     assert [(move.address, move.before, move.after) for move in found.moved] == [
-        ("m", 1.25, 2.0),
+        ("v[2]", 3.0, 3.5),
         ("u(v[2])", 0.2, 0.3),
+        ("m", 1.25, 2.0),
+        ("u(m)", 0.2, 0.4),
     ]
     unknown = compare(before, with_column("v", replace(sure, u=[None, 0.2])))
     assert [(move.address, moved(move)) for move in unknown.moved] == [("u(v[1])", ("0.1", "not known", ""))]

@@ -228,6 +228,12 @@ def test_the_folder_is_the_one_that_holds_the_report_or_where_one_stands_or_the_
     with pytest.raises(KeyboardInterrupt):
         verify(elsewhere, None)
     assert asked == [Path(), Path(), issued, PAPER]
+    # A copy of the paper that was edited is that folder, though the shipped one holds what it was built from.
+    mine = shutil.copytree(issued, tmp_path / "mine")
+    (mine / "measurements.csv").write_text("")
+    with pytest.raises(KeyboardInterrupt):
+        verify(mine / "out", None)
+    assert asked[-1] == Path("mine")
     manifest = json.loads((elsewhere / "manifest.json").read_text())
     manifest["inputs"]["report.toml"] = "00"
     (elsewhere / "manifest.json").write_text(json.dumps(manifest))

@@ -83,8 +83,8 @@ class Differences:
         How many differ by what rounding may do.
     moved : tuple of Move
         The others: what the user gives first, then the headline, then other scalars, then the rest in the
-        order of the sheet, what only leads to other cells last; then ``u(alpha_mean)``, the standard
-        uncertainty of a number that is the same.
+        order of the sheet, what only leads to other cells last. ``u(alpha_mean)``, the standard uncertainty
+        of a number, stands behind what the user gives and behind a result; those of all else come last.
     method : tuple of OtherChange
         Columns that follow another equation, or have another unit or index set, and equations whose proof
         came out otherwise.
@@ -156,14 +156,14 @@ def compare(
                 noise += 1
             else:
                 moved.append(((0, *rank), _move(named, kind, new, was, now, False)))
-                continue
             if index in old.uncertainties and index in new.uncertainties:
                 surer = old.uncertainties[index], new.uncertainties[index]
                 if _as_sure(*surer):
                     same += 1
                 else:
                     u_was, u_now = ((each, "not known") for each in surer)
-                    moved.append(((1, *rank), _move(f"u({named})", kind, new, u_was, u_now, True)))
+                    place = (int(kind == "moved"), *rank)
+                    moved.append((place, _move(f"u({named})", kind, new, u_was, u_now, True)))
     return Differences(
         *names,
         same,

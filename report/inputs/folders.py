@@ -131,9 +131,9 @@ def built_from(out: Path, inputs: Mapping[str, str]) -> Path:
     """
     here, above = Path.cwd(), out.resolve().parent
     above = above.relative_to(here) if above.is_relative_to(here) else above
-    of_above = is_report(above) and out.resolve() == output(above).resolve()
-    near = [out, above] if of_above or is_report(out) else [above, out / INPUTS]
-    found = [folder for folder in (*near, Path(), PAPER) if is_report(folder)]
+    known = is_report(out) or (is_report(above) and out.resolve() == output(above).resolve())
+    near = [out, above] if known else [above, out / INPUTS]
+    found = [folder for folder in (*near, Path(), *(() if known else (PAPER,))) if is_report(folder)]
     for folder in found:
         if holds(folder, inputs):
             return folder
