@@ -414,6 +414,7 @@ def test_metadata_that_somebody_tampered_with_removes_nothing(name: object, edit
 
 def test_a_file_of_the_report_before_does_not_go_without_a_word(gauge: Path, run: Run) -> None:
     assert run("build", str(gauge), "--to", "html,json")[0] == 0
+    (gauge / "report.toml").write_text((gauge / "report.toml").read_text() + "# edited\n")
     code, said, _ = run("build", str(gauge), "--to", "json")
     assert code == 0
     assert re.fullmatch(r".*report\.html: removed, as of the report before", said.splitlines()[1])
