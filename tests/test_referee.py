@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from small_report import found, judged, pure
-from sympy import Symbol
+from sympy import Sum, Symbol
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.report.cli import main
@@ -296,6 +296,38 @@ def test_uncertainties_combine_in_quadrature_and_cover_twice(text: str, mode: st
     assert found.u == pytest.approx(0.5, rel=1e-9)
     assert found.verdict == verdict
     assert comparison.finding == UNEXPECTED
+
+
+def _stated(u: str, said: str) -> tuple[Error, ...]:
+    return (Error(Fraction(u), said=said),)
+
+
+@pytest.mark.parametrize(
+    ("stated", "text", "verdict"),
+    [
+        (None, "30.7", REACHABLE),
+        ((), "30.7", UNREACHABLE),
+        ((), "30.0", EXACT),
+        (_stated("0.0001", "u = 0.0001"), "30.7", UNREACHABLE),
+        (_stated("0.0001", "u = 0.0001"), "30.0003", REACHABLE),
+        (_stated("0.0001", "u = 0.0001"), "30.0006", UNREACHABLE),
+        (_stated("3", "u = 3"), "30.7", REACHABLE),
+        (_stated("0", "scatter"), "30.7", REACHABLE),
+    ],
+)
+def test_what_is_stated_of_a_number_holds_it_closer_than_its_digits(
+    stated: tuple[Error, ...] | None, text: str, verdict: str
+) -> None:
+    """A typed 10 that is exact, or known to 0.0001, is not 10.4; how much readings scatter holds none."""
+    k, n = (Symbol(name, integer=True, positive=True) for name in "kn")
+    x = Column("x", Axis("rows", k, n), Given())
+    mean = Formula(Equation("", (Symbol("y"), 2 * Sum(x[k], (k, 1, n)) / n), "for a test", Kind.DEFINITION))
+    sheet = Sheet((x, Column("y", None, mean)))
+    measured = {"x": [replace(pure(digits), stated=stated) for digits in ("10", "20")]}
+    (comparison,) = judged(sheet, measured, {}, lambda _: [PublishedValue("Table", "y", (), pure(text))])
+    assert comparison.refereed is not None
+    assert comparison.refereed.verdict == verdict
+    assert comparison.as_expected is (verdict in (EXACT, REACHABLE))
 
 
 OILS = """\

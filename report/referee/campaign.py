@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from ..cells.values import Values
 from ..engines.numpy import Program
 from ..inputs.inputs import Inputs
+from ..inputs.stated import SCATTER
 from ..judge.chain import Made
 from ..quantity import Bounds, Printed, there
 from ..result.verdict import Witness
@@ -45,6 +47,8 @@ class Unknown:
         Its value in SI as printed, or as recomputed.
     allowed : Bounds
         What it may be, whatever is printed.
+    held : float
+        How far from what is printed it may be at most, in SI, whatever its digits allow.
     reach : float
         How far from what is printed it may be all the same, in SI.
     """
@@ -55,16 +59,19 @@ class Unknown:
     printed: Printed | None
     start: float
     allowed: Bounds = field(default_factory=Bounds)
+    held: float = inf
     reach: float = 0.0
 
-    def interval(self, mode: str = "") -> tuple[float, float]:
-        """Where it may lie, in SI; under another manner of printing than was declared."""
-        if self.printed is None:
+    def interval(self, printed: Printed | None = None, mode: str = "") -> tuple[float, float]:
+        """Where it may lie, in SI, by its digits and by what is stated of it; or if it were printed so."""
+        printed = printed or self.printed
+        if printed is None:
             ends = (self.start / FREE, self.start * FREE)
             return self.allowed.clip(min(ends), max(ends))
-        printed = replace(self.printed, mode=mode) if mode else self.printed
-        low, high = map(float, printed.interval)
-        return self.allowed.clip(min(low, self.start - self.reach), max(high, self.start + self.reach))
+        printed = replace(printed, mode=mode) if mode else printed
+        (low, high), value = map(float, printed.interval), float(printed.value)
+        low, high = max(low, value - self.held), min(high, value + self.held)
+        return self.allowed.clip(min(low, value - self.reach), max(high, value + self.reach))
 
     @cached_property
     def scale(self) -> float:
@@ -128,6 +135,16 @@ class Campaign:
             for name, row, u in source.moves if source.said else ():
                 found.setdefault((name, row), []).append(u)
         return {place: COVERAGE * float(np.hypot.reduce(sizes)) for place, sizes in found.items()}
+
+    def _held(self, column: str, row: int, printed: Printed | None) -> float:
+        """How far a given cell may be from its print by what is stated of it, in SI; infinite if nothing is.
+
+        How much readings scatter does not say how far one of them is from its print.
+        """
+        errors = None if printed is None else printed.stated
+        if errors is None or any(error.said == SCATTER for error in errors):
+            return inf
+        return self.reaches.get((column, row), 0.0)
 
     @property
     def states(self) -> bool:
@@ -208,5 +225,6 @@ class Campaign:
                     continue
                 start = value if np.isfinite(value) else 1.0
                 start = start if text is None else float(text.value)
+                held = self._held(column.name, row, text)
                 reach = self.reaches.get((column.name, row), 0.0) if self.stated else 0.0
-                yield Unknown(column.name, row, index, text, start, sheet.bounds[column.name], reach)
+                yield Unknown(column.name, row, index, text, start, sheet.bounds[column.name], held, reach)

@@ -58,7 +58,7 @@ class _Cell:
         printed = respelt(self.printed, units)
         if not self.given:
             return problem.reprinted({self.n: printed}), box
-        low, high = problem.unknowns[self.n].allowed.clip(*map(float, printed.interval))
+        low, high = problem.unknowns[self.n].interval(printed)
         start = min(max(float(box.start[self.n]), low), high)
         return problem, box.moved([self.n], [low], [high], [start])
 

@@ -28,7 +28,9 @@ def truncated_inputs(search: Search) -> Iterator[Explained]:
         if printed is None or problem.sheet[name].exact or not search.worth(search.resting_on(members)):
             continue
         was, would = printed.mode, _other(printed.mode)
-        low, high = zip(*(problem.unknowns[n].interval(would) for n in members), strict=True)
+        low, high = zip(*(problem.unknowns[n].interval(mode=would) for n in members), strict=True)
+        if np.array_equal((low, high), (problem.box.low[members], problem.box.high[members])):
+            continue  # of what is exact nothing was cut
         middles = [(one + other) / 2 for one, other in zip(low, high, strict=True)]
         moved = problem.box.moved(members, low, high, middles)
         now = search.met(problem, moved)
