@@ -165,7 +165,7 @@ def _evaluated(made: Prepared, ledger: Callable[[], Ledger], step: Step) -> Repo
         algebra=ledger,
         proofs=(),
         errata=(),
-        comparisons=compare(inputs.published, values),
+        comparisons=compare(inputs.published, values, inputs.expected),
         plotted=cache(lambda: plotted(values, inputs)),
         uncertain=cache(lambda: uncertain(workbook, values, inputs)),
         versions=versions(),
@@ -289,7 +289,9 @@ def refereed_values(
         return found
 
     found = judge(made.sheet, made.inputs, values, made.data, step, known)
-    return found, referee.refereed(referee.compare(made.inputs.published, values), found)
+    return found, referee.refereed(
+        referee.compare(made.inputs.published, values, made.inputs.expected), found
+    )
 
 
 def compared(report: Report) -> Report:
@@ -298,7 +300,8 @@ def compared(report: Report) -> Report:
     from .referee.uncertain import compare_uncertainties
 
     inputs = load(report.inputs.folder, find_workbook)
-    comparisons = referee.refereed(referee.compare(inputs.published, report.values), report.referee)
+    beside = referee.compare(inputs.published, report.values, inputs.expected)
+    comparisons = referee.refereed(beside, report.referee)
     again = replace(report, inputs=inputs, comparisons=comparisons)
     return replace(again, comparisons_u=compare_uncertainties(inputs, report.values))
 

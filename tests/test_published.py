@@ -240,6 +240,43 @@ def test_a_cell_without_a_value_may_be_known(tmp_path: Path) -> None:
         assert of_comparison(comparison, "alpha[1-5]").message.startswith(f"T alpha[1-5] {said}")
 
 
+TWICE = """\
+from loopsheet import Method, let, measured
+
+
+class Twice(Method, rows="runs"):
+    \"\"\"Twice the length.\"\"\"
+
+    a, b = measured("m", "length"), measured("m", "width")
+    y = let(2 * a, "twice the length", "m")
+    z = let(2 * b, "twice the width", "m")
+"""
+
+
+@pytest.mark.parametrize("expected", ["", "a[2]", "y[2]", "run 2"])
+def test_what_has_no_value_is_not_excused_by_the_others(tmp_path: Path, check: Check, expected: str) -> None:
+    """The others come out; what nobody can recompute is skipped where it is expected, else a finding."""
+    toml = (
+        'workbook = "workbook.py"\n[measurements]\nfile = "runs.csv"\n[published]\nfile = "published.csv"\n'
+    )
+    toml += f'[expected]\n"{expected}" = "not read"\n' if expected else ""
+    lines = "source,cell,index,value,unit\nT,y,1,2.46,m\nT,z,2,3.13,m\nT,y,2,5.00,m\nT,u(y),2,0.01,m\n"
+    files = {"report.toml": toml, "workbook.py": TWICE, "published.csv": lines}
+    files["runs.csv"] = "run,a [m],b [m]\n1,1.23,2.22\n2,,1.56\n"
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    _, out = check("--format", "json")
+    found = {each["name"]: each for each in json.loads(out)["checks"] if each["kind"] == "published"}
+    told = [(each["passed"], each["skipped"]) for each in found.values()]
+    assert list(found) == ["y[1]", "z[2]", "y[2]", "u(y)[2]"]
+    assert told == [(True, False)] * 2 + [(bool(expected), bool(expected))] * 2
+    assert "T y[2] cannot be checked: #INPUT! y[2] needs a[2]: " in found["y[2]"]["message"]
+    said = (
+        "4 values: 1 print the same, 0 differ as is known, 1 comes out of other inputs that print as given, "
+    )
+    assert f"published  {said}2 cannot be checked\n" in check()[1]
+
+
 def test_a_difference_of_an_old_file_is_not_pinned(tmp_path: Path, check: Check) -> None:
     published(
         tmp_path, "H.1,l_S,,51.2,mm,differs,a slip", header="source,cell,index,value,unit,expect,reason"

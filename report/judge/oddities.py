@@ -139,22 +139,13 @@ class _Oddities:
         for row in np.flatnonzero(marks.outside(margin) & marks.telling(margin)).tolist():
             yield self.values.cell(margin.of.name, labels[row])
 
-    def tests(self, cell: Cell) -> tuple[int, ...]:
-        """The numbers of the tests that a row rests on; none of a scalar."""
-        column = self.sheet[cell.name]
-        if column.axis is None:
-            return ()
-        layout, row = self.values.layouts[column.axis.name], self.values.row(column, cell.label)
-        own = (index for index, axis in column.axis.named.items() if axis.is_given)
-        return tuple(self.inputs.tests[layout.rows[index][row]] for index in own)
-
     def pairs(self, cells: Iterable[Cell]) -> set[tuple[int, ...]]:
         """The tests of the rows that rest on several."""
-        return {tests for cell in cells if len(tests := self.tests(cell)) > 1}
+        return {tests for cell in cells if len(tests := self.values.tests(cell)) > 1}
 
     def reason(self, cell: Cell, says: str) -> str:
         """Why somebody expects what is said of a cell; empty if nobody does. A loop rests on all tests."""
-        found, tests = "", self.inputs.tests if cell.name in self.sheet.loop_of else self.tests(cell)
+        found, tests = "", self.inputs.tests if cell.name in self.sheet.loop_of else self.values.tests(cell)
         for each in self.inputs.expected:
             if each.covers(cell.name, cell.label, tests):
                 self.met[each.address].append(f"{cell.address} {says}")
@@ -398,7 +389,7 @@ class _Oddities:
         """A check that found something: with the test to look at, or with why it is expected."""
         if not odd.open:
             return Check(kind, name, True, f"{said}, as is expected", self.inputs.place)
-        if any(self.suspect in self.tests(cell) for cell in odd.open):
+        if any(self.suspect in self.values.tests(cell) for cell in odd.open):
             first = f"{self.inputs.workbook.row} {self.inputs.called(self.suspect)}"
             said += f"; look at {first} first: {self.because}"
         warns = kind in (LIMIT, UNCERTAINTY, SQUARES)
@@ -410,7 +401,7 @@ class _Oddities:
     def place(self, cells: Sequence[Cell]) -> Location:
         """Where the first cell was printed, or the first number of the test to look at; else report.toml."""
         printed = self.printed(cells[0])
-        if printed is None and any(self.suspect in self.tests(cell) for cell in cells):
+        if printed is None and any(self.suspect in self.values.tests(cell) for cell in cells):
             row = self.inputs.tests.index(self.suspect)
             columns = self.inputs.measured.items()
             printed = next((column[row] for name, column in columns if name not in self.inputs.taken), None)

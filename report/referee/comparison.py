@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from decimal import Context, Decimal
 from fractions import Fraction
 
 from ..cells.values import Cell, Values
+from ..inputs.expected import Expectation
 from ..inputs.published import PublishedValue
 from ..quantity import Printed
 from ..result import verdict_words as words
 from ..result.result import Comparison
 from ..result.verdict import (
     EXACT,
+    NOT_CHECKABLE,
     OTHERWISE,
     REACHABLE,
     UNAMENDED,
@@ -26,7 +29,7 @@ from ..result.verdict import (
     Verdict,
 )
 
-__all__ = ["beside", "compare", "print_as", "prints_same", "refereed"]
+__all__ = ["beside", "compare", "missing_as_expected", "print_as", "prints_same", "refereed"]
 
 DIGITS = 15
 """Of a decimal number, how many every double keeps."""
@@ -70,17 +73,35 @@ def prints_same(value: float, printed: Printed) -> bool:
     return math.isfinite(value) and Fraction(print_as(value, printed)) == Fraction(printed.text)
 
 
-def compare(published: tuple[PublishedValue, ...], values: Values) -> tuple[Comparison, ...]:
+def compare(
+    published: tuple[PublishedValue, ...], values: Values, expected: Sequence[Expectation] = ()
+) -> tuple[Comparison, ...]:
     """Set every published value beside its cell."""
-    return tuple(_compare(value, values) for value in published)
+    cells = [values.cell(value.cell, value.index) for value in published]
+    return tuple(
+        beside(value, cell, expected=missing_as_expected(cell, values, expected))
+        for value, cell in zip(published, cells, strict=True)
+    )
 
 
-def _compare(published: PublishedValue, values: Values) -> Comparison:
-    return beside(published, values.cell(published.cell, published.index))
+def missing_as_expected(cell: Cell, values: Values, expected: Sequence[Expectation]) -> bool:
+    """Whether a cell has no value, and somebody expects that, of it or of the cell where the error began."""
+    begun = (cell, *([cell.culprit] if cell.culprit else []))
+    return cell.value is None and any(
+        each.covers(one.name, one.label, values.tests(one)) for each in expected for one in begun
+    )
 
 
-def beside(published: PublishedValue, cell: Cell) -> Comparison:
-    """Set a published number beside a cell that holds what is computed."""
+def beside(published: PublishedValue, cell: Cell, *, expected: bool = False) -> Comparison:
+    """Set a published number beside a cell that holds what is computed.
+
+    Parameters
+    ----------
+    published : PublishedValue
+    cell : Cell
+    expected : bool
+        Whether it is expected that the cell has no value.
+    """
     printed = published.printed
     if cell.value is None:
         again, distance, verdict = cell.status.code, None, "not-checkable"
@@ -88,7 +109,8 @@ def beside(published: PublishedValue, cell: Cell) -> Comparison:
         again = print_as(cell.value, printed)
         distance = _double((Fraction(cell.value) - printed.value) / (2 * printed.half_unit))
         verdict = "same" if prints_same(cell.value, printed) else "differs"
-    return Comparison(published, cell, again, distance, verdict, _finding(published, again, verdict))
+    finding = "" if expected and not published.expect else _finding(published, again, verdict)
+    return Comparison(published, cell, again, distance, verdict, finding)
 
 
 def _double(number: Fraction) -> float:
@@ -121,6 +143,8 @@ def refereed(comparisons: tuple[Comparison, ...], found: Referee) -> tuple[Compa
 def _refereed(comparison: Comparison, verdict: Verdict, found: Referee) -> str:
     """What is not as expected: the referee excuses what is reachable, and knows what explains the rest."""
     published = comparison.published
+    if not published.expect and verdict.verdict == NOT_CHECKABLE:
+        return comparison.finding  # nothing excuses what nobody can recompute
     if not published.expect:
         possible = verdict.verdict in (EXACT, REACHABLE) or found.as_printed
         return "" if possible else UNEXPECTED

@@ -29,10 +29,10 @@ from ..result.verdict import (
     Tried,
     Verdict,
 )
-from ..sheet import Sheet
+from ..sheet import Given, Sheet
 from .campaign import Campaign
 from .certificate import Certificate
-from .comparison import prints_same
+from .comparison import missing_as_expected, prints_same
 from .explain import Explained, explanations
 from .labels import Numbers, fits, labels
 from .minimax import Best, counted, meet
@@ -101,9 +101,10 @@ def referee(
         joint = _allowed(campaign, joint, checkable, near)
     explained: tuple[Explained, ...] = ()
     tried: Tried | None = None
-    if len(checkable) < len(published):
+    asked = [value for value in published if not _is_gone(campaign, value)]
+    if len(checkable) < len(asked):
         # What was published once had a value: a change must give it one.
-        whole = Problem.of(campaign, published)
+        whole = Problem.of(campaign, asked)
         found = meet(whole)
     if found.mismatch > 1 and joint.verdict != WITHIN:
         step("refereeing what would explain the difference")
@@ -121,6 +122,17 @@ def referee(
         alone, tuple(tables), joint, tuple(each.explanation for each in explained), tried, named, fit,
         inputs.free, _known(inputs), amended, misprints,
     )  # fmt: skip
+
+
+def _is_gone(campaign: Campaign, published: PublishedValue) -> bool:
+    """Whether no change of what is printed gives its cell a value: for want of a datum, or as is expected."""
+    values, inputs = campaign.values, campaign.inputs
+    cell = values.cell(published.cell, published.index)
+    begun = cell.culprit or cell
+    column = values.sheet[begun.name]
+    printed = inputs.printed(begun.name) if isinstance(column.rule, Given) else ()
+    is_empty = bool(printed) and printed[values.row(column, begun.label)] is None
+    return is_empty or missing_as_expected(cell, values, inputs.expected)
 
 
 def _allowed(

@@ -14,7 +14,7 @@ from ..inputs.inputs import Inputs
 from ..result.result import Comparison
 from ..uncertainty.monte_carlo import draw
 from ..uncertainty.propagation import Spread
-from .comparison import beside
+from .comparison import beside, missing_as_expected
 
 if TYPE_CHECKING:
     from ..inputs.published import PublishedValue
@@ -45,7 +45,7 @@ def compare_uncertainties(
     if not inputs.published_u:
         return ()
     asked = _Asked(inputs, values, step)
-    return tuple(beside(each, asked.cell(each)) for each in inputs.published_u)
+    return tuple(asked.compared(each) for each in inputs.published_u)
 
 
 class _Asked:
@@ -55,6 +55,13 @@ class _Asked:
         self.inputs, self.values, self.step = inputs, values, step
         self.spread = Spread(inputs, values)
         self.drawn: dict[tuple[str, float, float], tuple[float, float]] = {}
+
+    def compared(self, published: PublishedValue) -> Comparison:
+        """It beside what is computed; if its cell has no value, that may be expected."""
+        assert published.about is not None
+        there = self.values.cell(published.about.cell, published.index)
+        expected = missing_as_expected(there, self.values, self.inputs.expected)
+        return beside(published, self.cell(published), expected=expected)
 
     def cell(self, published: PublishedValue) -> Cell:
         """What is computed, as a cell of its own name; without a value where the cell has none."""

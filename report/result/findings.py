@@ -90,7 +90,8 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
     """
     published, cell = comparison.published, comparison.cell
     said = f"{published.source} {cell.address} prints {published.printed.text}"
-    if cell.value is None and not comparison.as_expected:
+    skipped = cell.value is None and not published.expect and comparison.as_expected
+    if skipped or (cell.value is None and not comparison.as_expected):
         said = f"{published.source} {cell.address} cannot be checked: {cell.reason}"
     elif published.expect and comparison.verdict == "same":
         said += f" and no longer differs; drop its '{published.expect}'"
@@ -102,7 +103,7 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
     field = {UNPINNED: "recomputed", UNREASONED: "reason", UNEXPLAINED: "explained"}
     places = published.places
     at = places.get(field.get(comparison.finding, ""), places.get("value", Location()))
-    return Check("published", name, comparison.as_expected, said, at)
+    return Check("published", name, comparison.as_expected, said, at, skipped=skipped)
 
 
 def of_limits(found: Conformity) -> Check:

@@ -122,13 +122,15 @@ def _print(report: Report, found: Sequence[Check]) -> None:
     every = report.every_comparison
     same = sum(c.verdict == "same" for c in every)
     known = sum(bool(c.published.expect) and c.as_expected for c in every)
-    other = sum(c.verdict != "same" and not c.published.expect and c.as_expected for c in every)
-    within = sum(c.word == WITHIN and not c.as_expected for c in every)
+    other = sum(c.verdict == "differs" and not c.published.expect and c.as_expected for c in every)
+    within = sum(c.verdict == "differs" and c.word == WITHIN and not c.as_expected for c in every)
+    missing = sum(c.verdict == "not-checkable" and not c.published.expect for c in every)
     if every:
         said = [f"{same} print the same", f"{known} differ as is known"]
         come, differ = ("comes" if other == 1 else "come"), ("differs" if within == 1 else "differ")
         said += [f"{other} {come} out of other inputs that print as given"] * bool(other)
         said += [f"{within} {differ} within the stated uncertainties alone"] * bool(within)
+        said += [f"{missing} cannot be checked"] * bool(missing)
         print(f"published  {len(every)} value{'s' * (len(every) != 1)}: {', '.join(said)}")
     for comparison in every:
         if comparison.verdict != "same":
