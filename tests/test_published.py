@@ -277,6 +277,45 @@ def test_what_has_no_value_is_not_excused_by_the_others(tmp_path: Path, check: C
     assert f"published  {said}2 cannot be checked\n" in check()[1]
 
 
+CANCELLING = """\
+from loopsheet import Method, let, mean, measured
+
+
+class Spread(Method, rows="runs"):
+    \"\"\"A mean, and a variance as a difference.\"\"\"
+
+    x = measured("1", "reading")
+    m = let(mean(x), "mean")
+    s2 = let(mean(x**2) - mean(x) ** 2, "variance")
+"""
+
+
+@pytest.mark.parametrize(
+    ("m", "s2", "wrong", "perhaps"),
+    [
+        ("1000.23333333333", "0.0155555555555556", [], ""),
+        ("1000.23333333333", "0.0155555555555565", ["s2"], "s2 of T is printed 0.0155555555555565 for "),
+        ("1000.2", "0.0155555555555556", [], ""),
+        ("1000.3", "0.0155555555555556", ["m"], "m of T is printed 1000.3 for 1000.2: then all"),
+    ],
+)
+def test_more_digits_than_doubles_keep_are_right_or_wrong_all_the_same(
+    tmp_path: Path, check: Check, m: str, s2: str, wrong: list[str], perhaps: str
+) -> None:
+    """Of the variance, 7/450, NumPy keeps eight digits."""
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "runs.csv"\n[uncertainty]\nx = "exact"\n'
+    files = {"report.toml": f'{toml}[published]\nfile = "published.csv"\n', "workbook.py": CANCELLING}
+    files["published.csv"] = f"source,cell,index,value,unit\nT,m,,{m},1\nT,s2,,{s2},1\n"
+    files["runs.csv"] = "run,x [1]\n1,1000.1\n2,1000.2\n3,1000.4\n"
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    code, out = check("--format", "json")
+    told = json.loads(out)
+    failed = [each["name"] for each in told["checks"] if each["kind"] == "published" and not each["passed"]]
+    assert (code, failed) == (int(bool(wrong)), wrong)
+    assert perhaps in told["findings"][-1] if perhaps else not told["referee"]["explanations"]
+
+
 def test_a_difference_of_an_old_file_is_not_pinned(tmp_path: Path, check: Check) -> None:
     published(
         tmp_path, "H.1,l_S,,51.2,mm,differs,a slip", header="source,cell,index,value,unit,expect,reason"

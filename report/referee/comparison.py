@@ -49,8 +49,23 @@ def print_as(value: float, like: Printed) -> str:
     >>> from fractions import Fraction
     >>> print_as(4.15439e-05, Printed("41.61", "um", Fraction("4.161e-5"), Fraction(1, 10**6)))
     '41.54'
+
+    The nearest double to 0.232818234301152496 is a little more than what is rounded up:
+
+    >>> text = "0.232818234301152"
+    >>> print_as(0.232818234301152496, Printed(text, "1", Fraction(text), Fraction(1)))
+    '0.232818234301152'
     """
-    in_unit, places = like.of(Fraction(value)), like.decimals
+    if like.mode == "rounded" and like.digits >= DIGITS:
+        # It stands for all that rounds to it, of which one may print so.
+        ends = (Fraction(value) + way * Fraction(math.ulp(value)) / 2 for way in (0, -1, 1))
+        texts = [_print(end, like) for end in ends]
+        return next((text for text in texts if Fraction(text) == Fraction(like.text)), texts[0])
+    return _print(Fraction(value), like)
+
+
+def _print(value: Fraction, like: Printed) -> str:
+    in_unit, places = like.of(value), like.decimals
     if like.mode == "truncated":
         # A double is a little less or more than the decimal number it stands for: 29.7 is not cut to 29.6.
         near = Context(prec=DIGITS).divide(Decimal(in_unit.numerator), Decimal(in_unit.denominator))

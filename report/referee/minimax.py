@@ -15,15 +15,13 @@ from scipy.optimize import linprog
 
 from ..engines.elementary import exp, log
 from .campaign import Array
-from .problem import Box, Problem
+from .problem import ENOUGH, Box, Problem
 
 __all__ = ["Best", "best", "counted", "meet"]
 
 STEPS = 100
 PATIENCE = 5
 """After how many steps that gain next to nothing a search that only has to get somewhere gives up."""
-ENOUGH = 1e-6
-"""What a step must gain, in half units of the last digit."""
 WIDE = 4.0
 """How many times its low end the high end of an interval is from which on a search counts in logarithms."""
 STARTS = 3

@@ -27,7 +27,10 @@ from ..sheet import Given, Sheet
 from .campaign import Array, Campaign, Unknown
 from .ways import Way
 
-__all__ = ["Box", "Here", "Problem"]
+__all__ = ["ENOUGH", "Box", "Here", "Problem"]
+
+ENOUGH = 1e-6
+"""What is less makes no difference, in half units of the last digit."""
 
 
 @dataclass(frozen=True)
@@ -243,13 +246,30 @@ class Problem:
         """All that the sheet computes at points."""
         return evaluate(self.sheet, self.campaign.labels, self.data(points), self.program)
 
+    @cached_property
+    def _rounded(self) -> dict[str, Array]:
+        """What NumPy's cells lack of the campaign's values at what is printed: what rounding took from them.
+
+        It counts where more digits are published than doubles keep through the calculation.
+        """
+        known, key, own = self.campaign.shared, ("rounded", *self._printed), self.campaign.values
+        if key not in known:
+            start = np.array([own.value[u.column][..., u.row].item() for u in self.unknowns])
+            here = self._values(start[None])
+            lacks = {name: own.value[name] - here.value[name][0] for name in here.value if name in own.value}
+            known[key] = {name: np.nan_to_num(each) for name, each in lacks.items()}
+        return known[key]  # type: ignore[no-any-return]
+
     def _cells(self, points: Array, plain: Values) -> Array:
         found = np.empty((len(points), len(self.published)))
         for way in dict.fromkeys(self.ways):
             values = plain if way is None else way.evaluate(self.campaign, self.data(points), plain)
             for name, (which, rows) in self._asked[way].items():
-                alive = values.status[name][..., rows] == Status.OK
-                found[:, which] = np.where(alive, values.value[name][..., rows], np.nan)
+                alive, cells = values.status[name][..., rows] == Status.OK, values.value[name][..., rows]
+                if way is None:
+                    lacks = self._rounded[name][rows]
+                    cells = cells + np.where(np.abs(lacks) > ENOUGH * self.half[which], lacks, 0.0)
+                found[:, which] = np.where(alive, cells, np.nan)
         return found
 
     def mismatch(self, cells: Array) -> Array:
