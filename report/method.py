@@ -127,7 +127,7 @@ def constant(name: str, *, latex: str = "") -> Any:
     default = f"{value!r} {unit}" + (f", u = {u!r} {unit}" if u else "")
     column = {"exact": not u, "latex": latex, "positive": value > 0}
     bounds = _bounds(None, None, value > 0, False)
-    return _said(InputLine(f"{name}, CODATA", unit, column, bounds, default, is_adjusted=u > 0))
+    return _said(InputLine(f"{name}, CODATA", unit, column, bounds, default, is_constant=True))
 
 
 def measured(
@@ -573,7 +573,7 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
         row=body.axis.row,
         curves=tuple(body.curves),
         claims=tuple(body.claims),
-        adjusted=frozenset(body.adjusted),
+        constants=frozenset(body.constants),
         aside=frozenset(body.aside),
         tables=(*body.tables, *tables_of(sheet, in_tables)) if body.tables else (),
         figures=tuple(body.figures),

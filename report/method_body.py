@@ -77,7 +77,7 @@ class InputLine(Declaration):
     default: str | None = None
     is_measured: bool = False
     example: str = ""
-    is_adjusted: bool = False
+    is_constant: bool = False
 
 
 @dataclass(frozen=True)
@@ -195,7 +195,7 @@ class MethodBody(dict[str, Any]):
         self.drawn: list[Column] = []  # what figures alone ask for
         self.tables: list[TableSpec] = []
         self.announced: dict[str, UnknownLine] = {}
-        self.adjusted: list[str] = []
+        self.constants: list[str] = []
         self.unnamed: list[Declaration | FitLine] = []
         self.aside: list[str] = []
         self.of_fits: dict[str, bool] = {}  # and whether it is a parameter
@@ -453,7 +453,7 @@ class MethodBody(dict[str, Any]):
         own = name, said.unit, said.meaning, bounds
         self.inputs.append(Measured(*own) if said.is_measured else Parameter(*own, said.default))
         self.examples |= {name: said.example} if said.example else {}
-        self.adjusted += [name] * said.is_adjusted
+        self.constants += [name] * said.is_constant
         positive = said.column["positive"] or bool(size.zero and bounds.low is not None and bounds.low > 0)
         rule = Given("measured" if said.is_measured else "parameter")
         axis = self.axis if said.is_measured else None

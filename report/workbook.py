@@ -305,8 +305,8 @@ class Workbook:
     """The curves whose residuals are to be no larger and no smaller than their uncertainties make them."""
     claims: tuple[Claimed, ...] = ()
     """What is to hold of its cells, whatever is measured."""
-    adjusted: frozenset[str] = frozenset()
-    """Parameters whose defaults were adjusted together, as constants of nature are."""
+    constants: frozenset[str] = frozenset()
+    """Parameters whose defaults are constants of nature; those that are not exact were adjusted together."""
     aside: frozenset[str] = frozenset()
     """What only leads to other cells: it is in no table, but in those that the workbook declares."""
     fits: tuple[str, ...] = ()

@@ -498,3 +498,40 @@ def test_an_error_that_tests_share_reaches_as_far_as_it_is_stated(tmp_path: Path
 
 
 SHARED = '[uncertainty.shared.datum]\nof = "x_p"\nstated = "u = 0.2 um"\ngroups = [[1]]\n'
+
+
+ENERGY = """\
+from loopsheet import Method, constant, let, measured
+
+
+class Energy(Method, rows="runs"):
+    \"\"\"RT by the run, and twice that.\"\"\"
+
+    T = measured("K", "temperature")
+    R = constant("molar gas constant")
+    E = let(R * T, "energy", "kJ/mol")
+    twice = let(2 * E, "twice the energy", "kJ/mol")
+"""
+
+
+@pytest.mark.parametrize(
+    ("published", "perhaps"),
+    [
+        ("E,1,2.497\nT,twice,2,13.00", "twice[2] of T is printed 13.00 for 12.00: "),
+        ("E,1,2.598\nT,E,2,6.242\nT,twice,2,12.48", "T[1] is printed 300.32 for 312.4"),
+    ],
+)
+def test_a_constant_of_nature_is_never_suspected(tmp_path: Path, published: str, perhaps: str) -> None:
+    """By R = 9.0 or 8.65 all would come out; it is exact, and nobody typed it."""
+    (tmp_path / "workbook.py").write_text(ENERGY)
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "runs.csv"\n'
+    toml += '[published]\nfile = "published.csv"\n'
+    (tmp_path / "report.toml").write_text(toml)
+    (tmp_path / "runs.csv").write_text("run,T [K]\n1,300.32\n2,721.65\n")
+    rows = "".join(f"{line},kJ/mol\n" for line in f"T,{published}".splitlines())
+    (tmp_path / "published.csv").write_text(f"source,cell,index,value,unit\n{rows}")
+    report = refereed(Study(tmp_path).computed)
+    found = lines(report.referee, lambda _: "")
+    told = [line for line in found if "perhaps" in line]
+    assert perhaps in told[0]
+    assert not any("R " in line for line in told)

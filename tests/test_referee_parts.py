@@ -16,7 +16,7 @@ from loopsheet.report.inputs.published import PublishedValue
 from loopsheet.report.referee import misprints, search
 from loopsheet.report.referee.certificate import Certificate, excluded
 from loopsheet.report.referee.digits import is_slip, moved, respelt, slips
-from loopsheet.report.referee.explain import _digits_moved, _likelihood
+from loopsheet.report.referee.explain import Doubts, _digits_moved
 from loopsheet.report.referee.minimax import Best, _Counted
 from loopsheet.report.referee.problem import Box, Problem
 from loopsheet.report.referee.search import Explained, Search
@@ -104,9 +104,12 @@ def misprint(printed: str, would: str) -> Change:
     return Change("misprint", "x", (1,), "input", printed, would)
 
 
-def likelihood(change: Change, mismatch: float = 0.5) -> tuple[float, ...]:
+NO_DOUBTS = Doubts()
+
+
+def likelihood(change: Change, mismatch: float = 0.5, doubts: Doubts = NO_DOUBTS) -> tuple[float, ...]:
     one = Explanation((change,), mismatch, 3, 3)
-    return _likelihood(Explained(one, None, None, None))  # type: ignore[arg-type]
+    return doubts.likelihood(Explained(one, None, None, None))  # type: ignore[arg-type]
 
 
 def test_a_slip_is_likelier_than_other_digits_and_what_holds_for_many_likelier_still() -> None:
@@ -115,6 +118,16 @@ def test_a_slip_is_likelier_than_other_digits_and_what_holds_for_many_likelier_s
     found = [unit, short, misprint("29.7", "29.8"), misprint("29.7", "30.8"), long]
     assert [likelihood(change)[0] for change in found] == [0, 0, 1, 2, 2]
     assert likelihood(unit, 0.1) < likelihood(unit, 0.9)
+
+
+def test_a_slip_of_what_alone_does_not_print_is_likeliest_and_of_what_is_exact_least_likely() -> None:
+    """What accuses nobody stands before it, for then nothing is wrong."""
+    doubts = Doubts(0, ("T", "y", ()), frozenset({("x", (1,))}))
+    rounded = Change("printed", "", (), "T", "", "y", count=0)
+    unit = Change("unit", "x", (), "input", "", "", power=3)
+    slip, other = (Change("misprint", "y", (), "T", "104.0", would) for would in ("103.0", "97.2"))
+    found = [rounded, slip, unit, other, misprint("29.7", "29.8")]
+    assert [likelihood(change, doubts=doubts)[0] for change in found] == [-2, -1, 0, 2, 3]
 
 
 @pytest.mark.parametrize(

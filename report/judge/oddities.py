@@ -87,7 +87,8 @@ def _stated(sheet: Sheet, inputs: Inputs) -> list[str]:
 def _adjusted(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, list[str]]]:
     """The results that rest on two adjusted constants or more of whose correlation nothing is stated."""
     for name in (name for name in inputs.workbook.headline if name in sheet):
-        own = {each.name for each in sheet.ancestors(sheet[name])} & inputs.workbook.adjusted
+        behind = {each.name for each in sheet.ancestors(sheet[name]) if not each.exact}
+        own = behind & inputs.workbook.constants
         pairs = map(frozenset, combinations(sorted(own), 2))
         if any(pair not in map(frozenset, inputs.uncertainty.correlations) for pair in pairs):
             yield name, sorted(own)

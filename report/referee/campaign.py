@@ -146,6 +146,10 @@ class Campaign:
             return inf
         return self.reaches.get((column, row), 0.0)
 
+    def suspects(self, name: str) -> bool:
+        """Whether the numbers of a given column may be wrong; not a constant of nature that nobody typed."""
+        return name in self.inputs.given or name not in self.inputs.workbook.constants
+
     @property
     def states(self) -> bool:
         """Whether any uncertainty is stated."""

@@ -7,19 +7,23 @@ conflicts among the published values (:mod:`.conflicts`); one is dropped only wi
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from fractions import Fraction
 
-from ..result.verdict import Change, Tried
+import numpy as np
+
+from ..result.verdict import INPUT, Change, Tried
 from ..result.verdict_words import mismatch as in_words
+from .comparison import prints_same
 from .digits import is_slip
 from .exchanges import columns, exchanged_in_tables, exchanged_inputs, orders
 from .habits import computed_from_printed, every_row, other_conventions, other_rows
-from .misprints import misprints, two_misprints
+from .misprints import misprint, misprints, two_misprints
 from .problem import Problem
 from .scales import misplaced_inputs, misplaced_tables, truncated_inputs, truncated_tables
 from .search import Explained, Search
 
-__all__ = ["Explained", "explanations"]
+__all__ = ["Doubts", "Explained", "explanations"]
 
 Kind = Callable[[Search], Iterator[Explained]]
 
@@ -54,18 +58,69 @@ def explanations(problem: Problem) -> tuple[tuple[Explained, ...], Tried]:
         least = min((each.explanation.count for each in found), default=None)
         if least == 0 or (least is not None and kinds is not KINDS[0]):
             break
-    equal = [each for each in found if each.explanation.count == least]
-    return tuple(sorted(equal, key=_likelihood)), Tried(len(found), search.excluded, search.open)
+    doubts = Doubts.of(problem)
+    if doubts.alone is not None and least == 0:  # no misprints were looked for
+        found += filter(doubts.is_slip_of_it, misprint(search, doubts.alone))
+    equal = [each for each in found if each.explanation.count == least or doubts.is_slip_of_it(each)]
+    return tuple(sorted(equal, key=doubts.likelihood)), Tried(len(found), search.excluded, search.open)
 
 
-def _likelihood(each: Explained) -> tuple[int, float, float]:
-    """What is likelier comes first: what holds for many numbers or is one slip, then what is met best."""
-    change = each.explanation.first
-    # A convention with many digits can be made to fit, as the digits of a misprint can.
-    long = change.kind == "parameter" and len(change.would_print) > len("1.25")
-    plain = change.kind == "misprint" and not is_slip(change.printed, change.would_print)
-    order = 2 if plain or long else 1 if change.kind == "misprint" else 0
-    return order, float(in_words(each.explanation.mismatch)), _digits_moved(change)
+@dataclass(frozen=True)
+class Doubts:
+    """What is likelier to be wrong than other numbers, and what less likely.
+
+    Parameters
+    ----------
+    alone : int or None
+        The place of the published value that alone does not print as it is recomputed, if there is one.
+    its : tuple
+        Its source, column and index.
+    exact : set of (str, tuple of int)
+        Given cells that are known to be what they are printed as.
+    """
+
+    alone: int | None = None
+    its: tuple[str, str, tuple[int, ...]] | None = None
+    exact: frozenset[tuple[str, tuple[int, ...]]] = frozenset()
+
+    @classmethod
+    def of(cls, problem: Problem) -> Doubts:
+        """Those of published values that do not come out of one input."""
+        cells = problem.at(problem.box.start).cells.tolist()
+        both = zip(problem.published, cells, strict=True)
+        other = [n for n, (value, cell) in enumerate(both) if not prints_same(cell, value.printed)]
+        held = (problem.unknowns[n] for n in np.flatnonzero(problem.box.width == 0))
+        exact = frozenset((unknown.column, unknown.index) for unknown in held)
+        if len(other) != 1:
+            return cls(exact=exact)
+        value = problem.published[other[0]]
+        return cls(other[0], (value.source, value.cell, value.index), exact)
+
+    def is_slip_of_it(self, each: Explained) -> bool:
+        """Whether one slip in the value that alone does not print explains everything."""
+        (change, *others) = each.explanation.changes
+        own = change.kind == "misprint" and (change.source, change.cell, change.index) == self.its
+        return own and not others and is_slip(change.printed, change.would_print)
+
+    def likelihood(self, each: Explained) -> tuple[int, float, float]:
+        """What is likelier comes first: what holds for many numbers or is one slip, then what is met best.
+
+        Before all stands what accuses nobody, then one slip where one value alone does not print; last stands
+        another number for one that is exact.
+        """
+        change = each.explanation.first
+        where = change.cell, change.index
+        # A convention with many digits can be made to fit, as the digits of a misprint can.
+        long = change.kind == "parameter" and len(change.would_print) > len("1.25")
+        plain = change.kind == "misprint" and not is_slip(change.printed, change.would_print)
+        order = 2 if plain or long else 1 if change.kind == "misprint" else 0
+        if each.explanation.as_printed:
+            order = -2
+        elif self.is_slip_of_it(each):
+            order = -1
+        elif (change.kind, change.source) == ("misprint", INPUT) and where in self.exact:
+            order = 3
+        return order, float(in_words(each.explanation.mismatch)), _digits_moved(change)
 
 
 def _digits_moved(change: Change) -> float:

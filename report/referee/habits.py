@@ -222,6 +222,7 @@ def other_conventions(search: Search) -> Iterator[Explained]:
             isinstance(column.rule, Given)
             and column.exact
             and column.name in problem.campaign.inputs.parameters
+            and problem.campaign.suspects(column.name)
         ):
             yield from (_other_count if column.name in counts else _other_number)(search, column)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations, pairwise
@@ -18,7 +18,7 @@ from .minimax import Best, best
 from .problem import Box, Problem
 from .search import Explained, Search
 
-__all__ = ["freed", "misprints", "two_misprints"]
+__all__ = ["freed", "misprint", "misprints", "two_misprints"]
 
 RANGE = 10.0
 """A misprinted number is looked for between a tenth and ten times what is printed."""
@@ -82,7 +82,7 @@ def _cells(search: Search) -> Iterator[_Cell]:
     problem = search.problem
     for n, unknown in enumerate(problem.unknowns):
         touches = search.resting_on([n])
-        if unknown.printed is not None and touches:
+        if unknown.printed is not None and touches and problem.campaign.suspects(unknown.column):
             yield _Cell(n, True, unknown.printed, touches)
     for n, value in enumerate(problem.published):
         yield _Cell(n, False, value.printed, frozenset({n}))
@@ -158,8 +158,17 @@ def _in_order(printed: Printed, low: int, high: int) -> list[int]:
 
 def misprints(search: Search) -> Iterator[Explained]:
     """One cell, given or published, that would have to be printed otherwise."""
+    yield from _misprinted(search, _cells(search))
+
+
+def misprint(search: Search, n: int) -> Iterator[Explained]:
+    """The same of one published value."""
+    yield from _misprinted(search, (cell for cell in _cells(search) if not cell.given and cell.n == n))
+
+
+def _misprinted(search: Search, cells: Iterable[_Cell]) -> Iterator[Explained]:
     problem = search.problem
-    for cell in _cells(search):
+    for cell in cells:
         if not search.worth(cell.touches):
             continue
         if cell.given:

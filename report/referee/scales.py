@@ -25,7 +25,9 @@ def truncated_inputs(search: Search) -> Iterator[Explained]:
     problem = search.problem
     for name, members in problem.rows.items():
         printed = problem.unknowns[members[0]].printed
-        if printed is None or problem.sheet[name].exact or not search.worth(search.resting_on(members)):
+        if printed is None or problem.sheet[name].exact or not problem.campaign.suspects(name):
+            continue
+        if not search.worth(search.resting_on(members)):
             continue
         was, would = printed.mode, _other(printed.mode)
         low, high = zip(*(problem.unknowns[n].interval(mode=would) for n in members), strict=True)
@@ -96,6 +98,8 @@ def misplaced_inputs(search: Search) -> Iterator[Explained]:
     problem, tried = search.problem, list[_Misplaced]()
     for name, members in problem.rows.items():
         if problem.unknowns[members[0]].printed is None or problem.sheet[name].exact:
+            continue
+        if not problem.campaign.suspects(name):
             continue
         every = [members] if len(members) == 1 else [members, *([n] for n in members)]
         for some in every:
