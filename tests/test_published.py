@@ -414,6 +414,19 @@ ACCEPTED = (
 )
 
 
+@pytest.mark.parametrize("recomputed", ["", "51.2 -> 49.9", "51.2 -> 50.0"])
+def test_accepting_takes_back_an_explanation_that_is_none_and_is_done_at_once(
+    tmp_path: Path, check: Check, recomputed: str
+) -> None:
+    """What it has written it accepts, and a second time there is nothing to write."""
+    path = published(tmp_path, f"H.1,l_S,,51.2,mm,differs,{recomputed},misprint d[1],a slip", header=KNOWN)
+    assert check()[0] == 1
+    code, out = check("--accept")
+    assert (code, out.splitlines()[0]) == (0, "published.csv: 1 line changed")
+    assert path.read_text().splitlines()[1] == "H.1,l_S,,51.2,mm,differs,51.2 -> 50.0,,a slip"
+    assert check("--accept") == (0, "published.csv: no lines changed\n")
+
+
 def test_accepting_writes_what_is_recomputed_and_shows_it(tmp_path: Path, check: Check) -> None:
     path = published(tmp_path, *ROWS, header=HEADER)
     code, out = check("--accept")

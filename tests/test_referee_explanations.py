@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -9,11 +10,11 @@ from small_report import found, pure
 from sympy import Sum, Symbol
 
 from loopsheet.derivations.equation import Equation, Kind
-from loopsheet.report.inputs.published import PublishedValue
+from loopsheet.report.inputs.published import Pin, PublishedValue
 from loopsheet.report.referee import certificate, misprints, search
 from loopsheet.report.referee.scales import shifted
 from loopsheet.report.result import verdict_words as words
-from loopsheet.report.result.verdict import REACHABLE, Change, Referee
+from loopsheet.report.result.verdict import REACHABLE, Change, Explanation, Referee
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
 
 k, n = (Symbol(name, integer=True, positive=True) for name in "kn")
@@ -161,3 +162,39 @@ def test_nothing_is_excluded_without_a_certificate(monkeypatch: pytest.MonkeyPat
     assert uncertain.tried is not None
     assert certain.tried.excluded > 0 == uncertain.tried.excluded
     assert changes(certain) == changes(uncertain)
+
+
+def test_what_is_pinned_does_not_hide_the_next_error() -> None:
+    """A known misprint of a published value, and then x in another unit: neither alone explains all."""
+    texts = {"square": "1.520 5.350", "tenfold": "15.20 53.05"}  # the squares are 1.523 and 5.350
+    pin = Pin("53.05", "53.50")
+    cells = [
+        PublishedValue("Table", name, (row,), pure(text), *(("differs", pin) if text == pin.printed else ()))
+        for name, line in texts.items()
+        for row, text in enumerate(line.split(), 1)
+    ]
+    x = [pure("1.233e3"), pure("2.313e3")]
+    of = found(SHEET, {"x": x}, cells)
+    assert [each[:3] for each in changes(of)[0]] == [("unit", "x", ())]
+    assert (of.explanations[0].values, of.explanations[0].of) == (3, 4)
+    unpinned = [replace(cell, expect="", pin=None) for cell in cells]
+    assert not any(each[0][:3] == ("unit", "x", ()) for each in changes(found(SHEET, {"x": x}, unpinned)))
+
+
+@pytest.mark.parametrize(
+    ("said", "holds"),
+    [
+        ("", True),
+        ("misprint tenfold[2] (Table)", True),
+        ("misprint tenfold[2]", True),
+        ("perhaps tenfold[2] of Table is printed 53.05 for 53.50", True),
+        ("tenfold[2] of Table is printed 53.05 for 53.50", True),
+        ("misprint tenfold[1]", False),
+        ("tenfold[2] of Table is printed 53.05 for 53.51", False),
+    ],
+)
+def test_an_explanation_is_known_by_its_name_and_by_what_is_said_of_it(said: str, holds: bool) -> None:
+    change = Change("misprint", "tenfold", (2,), "Table", "53.05", "53.50")
+    every = (Explanation((change,), 0.5, 3, 4),)
+    assert words.holds(said, every) is holds
+    assert words.names(every).endswith(": misprint tenfold[2] (Table)")

@@ -15,7 +15,8 @@ from ..inputs.csvtable import CsvRow, CsvTable, Field, read_table
 from ..inputs.published import COLUMNS, Pin
 from ..inputs.sources import open_source
 from ..messages.errors import Findings
-from ..result.verdict import OTHERWISE, UNEXPECTED, UNPINNED, UNREASONED
+from ..result.verdict import OTHERWISE, UNEXPECTED, UNEXPLAINED, UNPINNED, UNREASONED
+from ..result.verdict_words import holds
 
 if TYPE_CHECKING:
     from ..result.result import Comparison, Report
@@ -90,7 +91,11 @@ def accepted(report: Report, reason: str = "") -> Accepted:
     table = None if source is None else read_table(source, COLUMNS, findings)
     findings.check()
     assert table is not None  # it was read before, with the same content
-    words = [_words(comparison, reason) for comparison in report.every_comparison]
+    explanations = report.referee.explanations
+    words = [
+        _words(comparison, reason, holds(comparison.published.explained, explanations))
+        for comparison in report.every_comparison
+    ]
     new = [name for name in COLUMNS if any(each.get(name) for each in words) and name not in _names(table)]
     lines = list(_lines(table, words, new))
     text = table.source.text
@@ -101,8 +106,11 @@ def accepted(report: Report, reason: str = "") -> Accepted:
     return Accepted(path, before, mark + text.encode(), changes, len(lines) - len(changes))
 
 
-def _words(comparison: Comparison, reason: str) -> Words:
-    """What has to be written of a published value, as far as it is not there."""
+def _words(comparison: Comparison, reason: str, explained: bool) -> Words:
+    """What has to be written of a published value, as far as it is not there.
+
+    An explanation that is none any more is taken back: what is expected now is the difference alone.
+    """
     published, finding = comparison.published, comparison.finding
     why = {} if published.reason or not reason else {"reason": reason}
     pin = {"recomputed": str(Pin(published.printed.text, comparison.again))}
@@ -110,8 +118,8 @@ def _words(comparison: Comparison, reason: str) -> Words:
         return dict.fromkeys(("expect", "recomputed", "explained", "reason"), "")
     if finding == UNEXPECTED and (published.reason or reason):
         return {"expect": "differs", **pin, **why}
-    if finding in (UNPINNED, OTHERWISE):
-        return {**pin, **why}
+    if finding in (UNPINNED, OTHERWISE, UNEXPLAINED):
+        return {**pin, **({} if explained else {"explained": ""}), **why}
     return why if finding == UNREASONED else {}
 
 

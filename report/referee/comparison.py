@@ -169,5 +169,4 @@ def _refereed(comparison: Comparison, verdict: Verdict, found: Referee) -> str:
     wrong = (change for each in found.misprints for change in each.changes)
     if own in {(change.source, change.cell, change.index) for change in wrong}:
         return UNAMENDED
-    holding = {"", *map(words.name, found.explanations)}
-    return "" if published.explained in holding else UNEXPLAINED
+    return "" if words.holds(published.explained, found.explanations) else UNEXPLAINED

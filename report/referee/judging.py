@@ -108,7 +108,7 @@ def referee(
         found = meet(whole)
     if found.mismatch > 1 and joint.verdict != WITHIN:
         step("refereeing what would explain the difference")
-        explained, tried = explanations(whole)
+        explained, tried = _explained(whole)
     first = explained[0] if explained else None
     workbook = inputs.workbook
     fit: tuple[Fit, ...] = ()
@@ -133,6 +133,22 @@ def _is_gone(campaign: Campaign, published: PublishedValue) -> bool:
     printed = inputs.printed(begun.name) if isinstance(column.rule, Given) else ()
     is_empty = bool(printed) and printed[values.row(column, begun.label)] is None
     return is_empty or missing_as_expected(cell, values, inputs.expected)
+
+
+def _explained(whole: Problem) -> tuple[tuple[Explained, ...], Tried]:
+    """What would explain all; or with less changes what is not known to differ, if that does not come out."""
+    explained, tried = explanations(whole)
+    known = {
+        n for n, value in enumerate(whole.published)
+        if value.pin is not None and value.pin.holds(value.printed, value.pin.again)
+    }  # fmt: skip
+    rest = whole.ignoring(known)
+    if not known or (explained and explained[0].explanation.count <= 1) or meet(rest).mismatch <= 1:
+        return explained, tried
+    others, looked = explanations(rest)
+    if others and (not explained or others[0].explanation.count < explained[0].explanation.count):
+        return others, looked
+    return explained, tried
 
 
 def _allowed(

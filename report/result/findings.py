@@ -120,7 +120,8 @@ def _otherwise(comparison: Comparison) -> str:
         UNPINNED: f"its known difference is not pinned: any other would pass; {accept}",
         OTHERWISE: f"differs otherwise than is known ({published.pin}); if that is right, {accept}",
         UNREASONED: "why it differs is not said; say it in the column 'reason'",
-        UNEXPLAINED: f"rests on '{published.explained}', which explains it no more",
+        UNEXPLAINED: f"rests on '{published.explained}', which explains it no more; "
+        "'loopsheet check --accept FOLDER' takes that back",
         UNAMENDED: "does not come out once the known misprints are put right",
     }.get(comparison.finding, comparison.finding)
 

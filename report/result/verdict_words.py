@@ -50,9 +50,11 @@ __all__ = [
     "fit",
     "follows",
     "headline",
+    "holds",
     "lines",
     "mismatch",
     "name",
+    "names",
     "perhaps",
     "relabelled",
     "suggested",
@@ -232,9 +234,31 @@ def name(found: Explanation) -> str:
     return " and ".join(map(_name, found.changes))
 
 
-def _name(change: Change) -> str:
-    where = "" if change.source == INPUT else f"({change.source})"
+def _name(change: Change, *, sourced: bool = True) -> str:
+    where = f"({change.source})" if sourced and change.source != INPUT else ""
     return " ".join(filter(None, (change.kind, address(change.cell, change.index), where)))
+
+
+def holds(said: str, explanations: Sequence[Explanation]) -> bool:
+    """Whether what a known difference is explained by is an explanation; nothing always is.
+
+    It may be its name, also without the table, or what the referee says that is claimed.
+    """
+    said = said.removeprefix("perhaps ")
+    return not said or any(
+        said == " and ".join(told)
+        for each in explanations
+        for told in (
+            map(_name, each.changes),
+            (_name(change, sourced=False) for change in each.changes),
+            map(claimed, each.changes),
+        )
+    )
+
+
+def names(explanations: Sequence[Explanation]) -> str:
+    """What the column ``explained`` calls each of some explanations."""
+    return f"in the column 'explained' of a known difference: {'; '.join(map(name, explanations))}"
 
 
 def perhaps(explanations: Sequence[Explanation]) -> tuple[str, ...]:
@@ -382,6 +406,8 @@ def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
         yield f"referee    {together(table)}"
     for said in why(found):
         yield f"  {said}"
+    if found.asked_why and found.explanations:
+        yield f"  names    {names(found.explanations)}"
     for label in found.labels:
         yield f"  label    {relabelled(label)}"
     for each in found.fits:
