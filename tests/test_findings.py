@@ -128,6 +128,19 @@ def test_tables(small: Report) -> None:
     assert all(check.at.path.endswith("/report.toml") for check in (first, second, together))
 
 
+@pytest.mark.parametrize(
+    ("joint", "said"),
+    [
+        (TableVerdict("all", 3, UNREACHABLE, 8.0), "cannot come out either, as is told of Table 2; no small"),
+        (TableVerdict("all", 3, UNREACHABLE, 8.1), "cannot come out of one input that prints as given: "),
+        (TableVerdict("all", 3, REACHABLE, 0.5), "can come out of one input that prints as given, with a "),
+    ],
+)
+def test_what_is_told_of_a_table_is_not_told_again(small: Report, joint: TableVerdict, said: str) -> None:
+    message = refereed(small, joint=joint)[-1].message
+    assert message.startswith(f"all 3 published values together {said}")
+
+
 def test_tables_without_known_differences_have_to_come_out(small: Report) -> None:
     published = tuple(replace(value, expect="") for value in small.inputs.published)
     unannounced = replace(small, inputs=replace(small.inputs, published=published))

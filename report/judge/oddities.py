@@ -199,8 +199,9 @@ class _Oddities:
                 cells = (cell for cell in self.values.cells(name) if cell.value is not None)
                 expected = [self.follows(cell, f"is {over}") for cell in cells]
                 if not all(expected):
-                    found.setdefault(over, []).append(name)
-        said = "; ".join(f"{_some(n)} {'is' if len(n) == 1 else 'are'} {over}" for over, n in found.items())
+                    found.setdefault(over, []).extend(self.leading_to(name))
+        told = ((over, self.first(dict.fromkeys(names))) for over, names in found.items())
+        said = "; ".join(f"{_some(n)} {'is' if len(n) == 1 else 'are'} {over}" for over, n in told)
         if not said:
             said = (
                 "rows are left out as is expected"
@@ -227,6 +228,17 @@ class _Oddities:
             has = "has" if len(missing) == 1 else "have"
             said = f"{_addresses(missing)} of the result {has} no value, for want of {_some(list(causes))}"
         return Check(DATA, RESULT, not missing, said, self.inputs.place)
+
+    def leading_to(self, name: str) -> list[str]:
+        """A column itself; of one that only leads somewhere those that it leads to."""
+        found, waiting, seen = list[str](), [name], set[str]()
+        while waiting:
+            if (one := waiting.pop()) not in self.report.workbook.aside:
+                found.append(one)
+            elif one not in seen:
+                seen.add(one)
+                waiting += [each.name for each in reversed(self.sheet.dependents(self.sheet[one]))]
+        return found
 
     def first(self, some: Iterable[str]) -> list[str]:
         """Names, those of the result first."""

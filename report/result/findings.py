@@ -156,7 +156,7 @@ def of_referee(report: Report) -> tuple[Check, ...]:
         Check("table", t.source, found.as_printed or t.possible or t.source in known, words.together(t), at)
         for t in found.tables
     ]
-    said = "; ".join((words.together(found.joint), *words.why(found)))
+    said = "; ".join((words.all_together(found), *words.why(found)))
     tables.append(Check("table", TOGETHER, bool(known) or found.as_printed, said, at))
     if found.amended is None:
         return tuple(tables)

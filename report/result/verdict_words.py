@@ -38,6 +38,7 @@ __all__ = [
     "NOTHING_EXPLAINS",
     "POSSIBLE",
     "address",
+    "all_together",
     "amended",
     "at_least",
     "because",
@@ -193,6 +194,25 @@ def together(table: TableVerdict) -> str:
                 f"a mismatch of {off}. That there is none is not certain"
             )
     return "none of the published values could be asked for: their cells have no values"
+
+
+def all_together(found: Referee) -> str:
+    """The same of all tables; shortly, where one of them has told all of it."""
+    joint = found.joint
+    assert joint is not None
+    alike = (table.source for table in found.tables if _told(table) == _told(joint))
+    source = next(alike, "")
+    if joint.verdict not in (UNREACHABLE, NOT_FOUND) or not source:
+        return together(joint)
+    come = "cannot come out" if joint.verdict == UNREACHABLE else "did not come out"
+    return f"{_whose(joint)} {come} either, as is told of {source}"
+
+
+def _told(table: TableVerdict) -> tuple[str, str, str]:
+    """What is said of how far off a table is."""
+    ends = (table.mismatch, mismatch), (table.at_least, at_least)
+    off, least = ("" if value is None else said(value) for value, said in ends)
+    return table.verdict, off, least
 
 
 def contradiction(table: TableVerdict) -> str:
@@ -402,8 +422,8 @@ def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
     """
     if found.joint is None:
         return
-    for table in (*found.tables, found.joint):
-        yield f"referee    {together(table)}"
+    for said in (*map(together, found.tables), all_together(found)):
+        yield f"referee    {said}"
     for said in why(found):
         yield f"  {said}"
     if found.asked_why and found.explanations:
