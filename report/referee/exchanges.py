@@ -47,7 +47,7 @@ def exchanged_inputs(search: Search) -> Iterator[Explained]:
     for place in search.screened([box for *_, box in tried]):
         n, m, box = tried[place]
         box = replace(box, start=problem.restarted(box.start[None])[0])
-        now = search.met(problem, box)
+        now = search.met_if_hopeful(problem, box)
         if now is not None:
             one, other = problem.unknowns[n], problem.unknowns[m]
             assert one.printed is not None

@@ -38,13 +38,17 @@ KINDS: tuple[tuple[Kind, ...], ...] = (
 """What is tried, in the order of how much it changes: later ones only where the earlier explain nothing."""
 
 
-def explanations(problem: Problem) -> tuple[tuple[Explained, ...], Tried]:
+def explanations(
+    problem: Problem, step: Callable[[str], None] = lambda _: None
+) -> tuple[tuple[Explained, ...], Tried]:
     """Find the smallest changes with which all published values come out.
 
     Parameters
     ----------
     problem : Problem
         One that cannot be met.
+    step : callable
+        Told what is begun.
 
     Returns
     -------
@@ -53,8 +57,12 @@ def explanations(problem: Problem) -> tuple[tuple[Explained, ...], Tried]:
     Tried
     """
     search, found = Search(problem), list[Explained]()
+    number, tried = sum(map(len, KINDS)), 0
     for kinds in KINDS:
-        found += [each for kind in kinds for each in kind(search)]
+        for kind in kinds:
+            step(f"refereeing what would explain the difference: {tried} of {number} kinds of change tried")
+            found += kind(search)
+            tried += 1
         least = min((each.explanation.count for each in found), default=None)
         if least == 0 or (least is not None and kinds is not KINDS[0]):
             break

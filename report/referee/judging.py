@@ -107,8 +107,7 @@ def referee(
         whole = Problem.of(campaign, asked)
         found = meet(whole)
     if found.mismatch > 1 and joint.verdict != WITHIN:
-        step("refereeing what would explain the difference")
-        explained, tried = _explained(whole)
+        explained, tried = _explained(whole, step)
     first = explained[0] if explained else None
     workbook = inputs.workbook
     fit: tuple[Fit, ...] = ()
@@ -135,9 +134,9 @@ def _is_gone(campaign: Campaign, published: PublishedValue) -> bool:
     return is_empty or missing_as_expected(cell, values, inputs.expected)
 
 
-def _explained(whole: Problem) -> tuple[tuple[Explained, ...], Tried]:
+def _explained(whole: Problem, step: Callable[[str], None]) -> tuple[tuple[Explained, ...], Tried]:
     """What would explain all; or with less changes what is not known to differ, if that does not come out."""
-    explained, tried = explanations(whole)
+    explained, tried = explanations(whole, step)
     known = {
         n for n, value in enumerate(whole.published)
         if value.pin is not None and value.pin.holds(value.printed, value.pin.again)
@@ -145,7 +144,7 @@ def _explained(whole: Problem) -> tuple[tuple[Explained, ...], Tried]:
     rest = whole.ignoring(known)
     if not known or (explained and explained[0].explanation.count <= 1) or meet(rest).mismatch <= 1:
         return explained, tried
-    others, looked = explanations(rest)
+    others, looked = explanations(rest, step)
     if others and (not explained or others[0].explanation.count < explained[0].explanation.count):
         return others, looked
     return explained, tried
@@ -196,7 +195,7 @@ def _amended(
     problem = Problem.of(replace(campaign, inputs=inputs), published)
     which = list(range(len(problem.published)))
     verdict, found = _together(ALL, problem, which, Certificate(problem), (), ())
-    misprints = explanations(problem)[0] if found.mismatch > 1 else ()
+    misprints = explanations(problem, step)[0] if found.mismatch > 1 else ()
     return verdict, tuple(each.explanation for each in misprints)
 
 

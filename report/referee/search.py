@@ -105,6 +105,14 @@ class Search:
             return None
         return found
 
+    def met_if_hopeful(self, problem: Problem, box: Box) -> Best | None:
+        """The same of one of many changes: an input is sought only where the derivatives promise one."""
+        first = best(problem, box, unless=-1.0)
+        if first.promised > HOPELESS:
+            self.drop(Certificate(problem, box).at_least(first.weights) > 1)
+            return None
+        return self.met(problem, box)
+
     def likeliest(self, asked: Sequence[tuple[Problem, Box | None]]) -> list[tuple[int, Best]]:
         """Of many changes of a kind, those that explain it: those are looked into that promise most.
 
