@@ -535,3 +535,32 @@ def test_a_constant_of_nature_is_never_suspected(tmp_path: Path, published: str,
     told = [line for line in found if "perhaps" in line]
     assert perhaps in told[0]
     assert not any("R " in line for line in told)
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "perhaps"),
+    [
+        ("210", "402.0", ["or perhaps x[1] is printed 210 for 201: then all 2 published values come out"]),
+        ("210", "436.0", ["or perhaps x[1] is printed 210 for 218"]),
+        ("210", "414.0", []),  # 207 is no slip of it
+    ],
+)
+def test_within_uncertainty_a_slip_is_a_possibility(x: str, y: str, perhaps: list[str]) -> None:
+    """With u = 10.9 another measurement explains it, and a swapped digit does so, too: it stays a finding."""
+    k, n = (Symbol(name, integer=True, positive=True) for name in "kn")
+    given = Column("x", Axis("rows", k, n), Given())
+    rules = {
+        name: Formula(Equation("", (Symbol(name), by * given[k]), "for a test", Kind.DEFINITION))
+        for name, by in (("y", 2), ("z", 4))
+    }
+    sheet = Sheet((given, *(Column(name, given.axis, rule) for name, rule in rules.items())))
+    printed = [replace(pure(x), stated=_stated("10.9", "u = 10.9"))]
+    published = [
+        PublishedValue("T", name, (1,), pure(text)) for name, text in (("y", y), ("z", f"{2 * float(y):.1f}"))
+    ]
+    of = found(sheet, {"x": printed}, published)
+    assert of.joint is not None
+    assert (of.joint.verdict, of.explanations) == (WITHIN, ())
+    told = [line.strip() for line in lines(of, lambda _: "") if "perhaps" in line]
+    assert len(told) == len(perhaps)
+    assert all(line.startswith(start) for line, start in zip(told, perhaps, strict=True))

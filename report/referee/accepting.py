@@ -91,7 +91,7 @@ def accepted(report: Report, reason: str = "") -> Accepted:
     table = None if source is None else read_table(source, COLUMNS, findings)
     findings.check()
     assert table is not None  # it was read before, with the same content
-    explanations = report.referee.explanations
+    explanations = (*report.referee.explanations, *report.referee.slips)
     words = [
         _words(comparison, reason, holds(comparison.published.explained, explanations))
         for comparison in report.every_comparison

@@ -36,7 +36,9 @@ from .comparison import missing_as_expected, prints_same
 from .explain import Explained, explanations
 from .labels import Numbers, fits, labels
 from .minimax import Best, counted, meet
+from .misprints import slipped
 from .problem import Problem
+from .search import Search
 from .values import verdicts
 
 __all__ = ["referee"]
@@ -108,6 +110,10 @@ def referee(
         found = meet(whole)
     if found.mismatch > 1 and joint.verdict != WITHIN:
         explained, tried = _explained(whole, step)
+    slips: tuple[Explained, ...] = ()
+    if found.mismatch > 1 and joint.verdict == WITHIN:
+        step("refereeing what one slip would explain")
+        slips = tuple(slipped(Search(whole)))
     first = explained[0] if explained else None
     workbook = inputs.workbook
     fit: tuple[Fit, ...] = ()
@@ -119,7 +125,7 @@ def referee(
     amended, misprints = _amended(campaign, checkable, step) if inputs.errata else (None, ())
     return Referee(
         alone, tuple(tables), joint, tuple(each.explanation for each in explained), tried, named, fit,
-        inputs.free, _known(inputs), amended, misprints,
+        inputs.free, _known(inputs), amended, misprints, tuple(each.explanation for each in slips),
     )  # fmt: skip
 
 

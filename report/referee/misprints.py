@@ -13,12 +13,12 @@ from ..quantity import Printed
 from ..result.verdict import INPUT, Change
 from .campaign import Array
 from .conflicts import Conflict
-from .digits import moved, respelt, slips
+from .digits import is_slip, moved, respelt, slips
 from .minimax import Best, best
 from .problem import Box, Problem
-from .search import Explained, Search
+from .search import HOPELESS, LOOKED_INTO, Explained, Search
 
-__all__ = ["freed", "misprint", "misprints", "two_misprints"]
+__all__ = ["freed", "misprint", "misprints", "slipped", "two_misprints"]
 
 RANGE = 10.0
 """A misprinted number is looked for between a tenth and ten times what is printed."""
@@ -246,6 +246,58 @@ def _promising(problem: Problem, n: int, pieces: list[Box], alive: list[int]) ->
     around = np.concatenate([[np.inf], left, [np.inf]])
     lowest = [n for n in range(len(alive)) if left[n] <= around[n] and left[n] <= around[n + 2]]
     return [alive[n] for n in sorted(lowest, key=lambda n: left[n])[:TRIED]]
+
+
+def slipped(search: Search) -> Iterator[Explained]:
+    """One cell in which one slip explains everything: only those are looked for, and all of them at once."""
+    problem = search.problem
+    here = problem.guessing.at(problem.box.start)
+    tried = [
+        (cell, units, _at(problem, cell, units))
+        for cell in _cells(search)
+        if search.worth(cell.touches)
+        for units in _slips_of(cell, here.cells)
+    ]
+    if not tried:
+        return
+    cells = problem.guessing.evaluate(problem.restarted(np.stack([point for _, _, point in tried])))
+    reach = np.abs(np.nan_to_num(problem.slopes(here, problem.box))) @ (problem.box.width / 2) / problem.half
+    off = np.abs(problem.mismatch(cells)) - reach
+    for n, (cell, _, _) in enumerate(tried):
+        if not cell.given:
+            off[n, cell.n] = 0.0
+    left = np.nan_to_num(off, nan=np.inf, posinf=np.inf).max(axis=1)
+    order = [n for n in np.argsort(left, kind="stable").tolist() if left[n] <= HOPELESS]
+    texts: dict[_Cell, list[str]] = {}
+    first: dict[_Cell, tuple[Problem, Box, Best]] = {}
+    for cell, units, _ in (tried[n] for n in order[:LOOKED_INTO]):
+        changed, box = cell.reprinted(problem, problem.box, units)
+        now = search.met(changed, box)
+        if now is not None:
+            texts.setdefault(cell, []).append(respelt(cell.printed, units).text)
+            first.setdefault(cell, (changed, box, now))
+    for cell, (would, *also) in texts.items():
+        yield search.explained([cell.change(problem, would, also, ())], *first[cell])
+
+
+def _slips_of(cell: _Cell, cells: Array) -> Iterator[int]:
+    """How many units further one slip prints a cell; a published one only as it is recomputed."""
+    own = cell.printed
+    texts = dict.fromkeys(slips(own.text))
+    found = {moved(own, Fraction(text) * own.scale + own.zero) for text in texts}
+    units = sorted(each for each in found if is_slip(own.text, respelt(own, each).text))
+    value = np.nan if cell.given else float(cells[cell.n])
+    again = moved(own, Fraction(value)) if np.isfinite(value) else None
+    yield from (each for each in units if cell.given or each == again)
+
+
+def _at(problem: Problem, cell: _Cell, units: int) -> Array:
+    """What is printed, with a given cell printed otherwise."""
+    point = problem.box.start.copy()
+    if cell.given:
+        low, high = problem.unknowns[cell.n].interval(respelt(cell.printed, units))
+        point[cell.n] = min(max(float(respelt(cell.printed, units).value), low), high)
+    return point
 
 
 # --- two cells --------------------------------------------------------------------------------------------

@@ -348,6 +348,8 @@ class Referee:
         All tables together if the known misprints of the input are put right; None if none are known.
     misprints : tuple of Explanation
         What else would have to change then, if they do not come out.
+    slips : tuple of Explanation
+        One slip each that would explain what the stated uncertainties explain as well.
     """
 
     values: tuple[Verdict, ...] = ()
@@ -361,6 +363,7 @@ class Referee:
     errata: tuple[Change, ...] = ()
     amended: TableVerdict | None = None
     misprints: tuple[Explanation, ...] = ()
+    slips: tuple[Explanation, ...] = ()
 
     @property
     def as_printed(self) -> bool:

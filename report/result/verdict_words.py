@@ -202,7 +202,7 @@ def all_together(found: Referee) -> str:
     assert joint is not None
     alike = (table.source for table in found.tables if _told(table) == _told(joint))
     source = next(alike, "")
-    if joint.verdict not in (UNREACHABLE, NOT_FOUND) or not source:
+    if joint.possible or not source:
         return together(joint)
     come = "cannot come out" if joint.verdict == UNREACHABLE else "did not come out"
     return f"{_whose(joint)} {come} either, as is told of {source}"
@@ -289,7 +289,7 @@ def perhaps(explanations: Sequence[Explanation]) -> tuple[str, ...]:
 def why(found: Referee) -> tuple[str, ...]:
     """The same for all published values, and how certain that is; nothing where none is asked for."""
     if not found.asked_why:
-        return ()
+        return tuple(f"or perhaps {explained(each)}" for each in found.slips)
     return (*perhaps(found.explanations), *([tried(found.tried)] if found.tried is not None else []))
 
 
@@ -426,8 +426,8 @@ def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
         yield f"referee    {said}"
     for said in why(found):
         yield f"  {said}"
-    if found.asked_why and found.explanations:
-        yield f"  names    {names(found.explanations)}"
+    if every := (*(found.explanations if found.asked_why else ()), *found.slips):
+        yield f"  names    {names(every)}"
     for label in found.labels:
         yield f"  label    {relabelled(label)}"
     for each in found.fits:
