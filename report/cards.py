@@ -253,12 +253,13 @@ def _assumed(code: ContactFormula, asked: Asked, drops: Drops) -> Iterator[str]:
 def contacts_of(report: Report) -> Mapping[str, ContactFormula]:
     """The forces of the contact models that stand beside the tests of a report, by name."""
     workbook = report.workbook
-    if workbook.constants is None:
+    if workbook.card_constants is None:
         return {}
     from .impacts.contact import formula
 
     words = workbook.ledger().vocabulary
-    numbers = {symbol: _number(report, name) for symbol, name in workbook.constants(report.sheet).items()}
+    named = workbook.card_constants(report.sheet)
+    numbers = {symbol: _number(report, name) for symbol, name in named.items()}
     return {model.name: formula(model, numbers, words) for model in workbook.models}
 
 

@@ -325,7 +325,7 @@ class Workbook:
     """Returns what draws its figures, by name: each takes the report and returns a matplotlib figure."""
     models: tuple[Any, ...] = ()
     """The contact models beside its tests: cards are made of their forces."""
-    constants: Callable[[Sheet], Mapping[Symbol, str]] | None = None
+    card_constants: Callable[[Sheet], Mapping[Symbol, str]] | None = None
     """Takes the sheet; returns the cells that symbols of these models are, where one is for all rows."""
     design: Callable[[Sheet], Design] | None = None
     """Takes the sheet; returns how measurements are planned. Without it, they cannot be."""

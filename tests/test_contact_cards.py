@@ -19,6 +19,7 @@ from loopsheet.report.cards import contacts_of, drops_of
 from loopsheet.report.cli import main
 from loopsheet.report.impacts.card import Unreachable, solved
 from loopsheet.report.impacts.contact import formula
+from loopsheet.report.impacts.simulation import simulate
 from loopsheet.report.impacts.source import SOURCES, modelled
 from loopsheet.report.result.card import Card
 from loopsheet.report.result.result import Report
@@ -134,3 +135,38 @@ def test_codes_have_poisson_s_ratio_of_the_ball(tmp_path: Path, capsys: pytest.C
     (folder / "report.toml").write_text(toml.replace('nu_1 = "0.30', 'nu_1 = "0.25'), encoding="utf-8")
     assert main(["card", str(folder), "--for", "lammps"]) in (0, 1)
     assert "Poisson's ratio is that of the ball: 0.25" in capsys.readouterr().out
+
+
+ALUMINIUM = """title = "Aluminium plate, 20 mm ball"
+workbook = "contact_models"
+[parameters]
+ball_diameter = "20.00 mm"
+ball_density = "7830 kg/m^3"
+E_1 = "208 GPa"
+nu_1 = "0.29"
+E_2 = "70 GPa"
+nu_2 = "0.33"
+sigma_Y = "280 MPa"
+beta = "1.5"
+[measurements]
+file = "measurements.csv"
+"""
+DROPS = """test,v [m/s],e [1],x_p [um]
+1,2.204,0.532,46.2
+2,2.226,0.530,46.7
+3,3.128,0.499,66.4
+4,3.121,0.500,66.4
+5,3.951,0.480,83.1
+6,4.842,0.460,100.8
+"""
+
+
+def test_a_way_back_ends_at_the_imprint_however_that_is_rounded(tmp_path: Path) -> None:
+    """Where the law reckons it a rounding deeper than the sheet does, the power has a negative base there."""
+    (tmp_path / "report.toml").write_text(ALUMINIUM, encoding="utf-8")
+    (tmp_path / "measurements.csv").write_text(DROPS, encoding="utf-8")
+    report = Study(tmp_path).computed
+    contact, drops = contacts_of(report)["johnson"], drops_of(report)
+    law = modelled(contact, drops, drops.middle).law
+    for speed in [2.2 + 0.1 * n for n in range(27)] + [3.121, 3.128]:
+        assert not simulate(law, {}, drops.mass, speed).failure, speed

@@ -31,6 +31,8 @@ LONGEST = 300.0
 """In units of the estimated depth over the impact speed; the contacts of the literature last from 2 to 6."""
 SLOWEST = 1e-9
 """A rebound below this share of the impact speed is none: the steps cannot tell it from creeping."""
+ROUNDED = 1e-12
+"""Of the greatest approach: what two ways of reckoning one depth may differ by."""
 CORNERS = 8
 """Of how many intervals in which a force acts a restitution may consist."""
 
@@ -147,7 +149,11 @@ class _Course:
         # No step goes below the imprint, by rounding neither: a power of less than nothing is no number.
         depth, greatest = max(self.depth * approach, self.imprint), self.depth * self.greatest
         law = self.forces.loading if math.isnan(greatest) else self.forces.unloading
-        return law(depth, self.speed * rate, greatest) / self.unit
+        force = law(depth, self.speed * rate, greatest)
+        # The law may reckon the imprint in another way: just there a power of next to nothing is nothing.
+        if isinstance(force, complex) and depth - self.imprint <= ROUNDED * greatest:
+            return 0.0
+        return force / self.unit
 
     def acting(self, approach: float, rate: float) -> float:
         """The force that acts."""

@@ -133,7 +133,8 @@ def built_from(out: Path, inputs: Mapping[str, str]) -> Path:
     above = above.relative_to(here) if above.is_relative_to(here) else above
     known = is_report(out) or (is_report(above) and out.resolve() == output(above).resolve())
     near = [out, above] if known else [above, out / INPUTS]
-    found = [folder for folder in (*near, Path(), *(() if known else (PAPER,))) if is_report(folder)]
+    places = [*near, Path()] if known else [*near, Path(), PAPER]
+    found = [folder for folder in places if is_report(folder)]
     for folder in found:
         if holds(folder, inputs):
             return folder

@@ -111,14 +111,14 @@ class _Oddities:
             margin.column.name: _Odd(self, self.cells(margin), f"is marked ({margin.limit.mark})")
             for margin in report.marks.margins
         }
-        silent = {
+        self.silent = {
             pair
             for margin in report.marks.margins
             if margin.limit.silent
             for pair in self.pairs(self.outside[margin.column.name].cells)
         }
-        failed = self.pairs(self.failed.open) - silent
-        odd = failed.union(*(self.pairs(each.open) for each in self.outside.values())) - silent
+        failed = self.pairs(self.failed.open) - self.silent
+        odd = failed.union(*(self.pairs(each.open) for each in self.outside.values())) - self.silent
         self.suspect, self.because = suspected(report, odd, failed)
 
     def checks(self) -> Iterator[Check]:
@@ -402,19 +402,23 @@ class _Oddities:
         """A check that found something: with the test to look at, or with why it is expected."""
         if not odd.open:
             return Check(kind, name, True, f"{said}, as is expected", self.inputs.place)
-        if any(self.suspect in self.values.tests(cell) for cell in odd.open):
+        if self.is_due_to_suspect(odd.open):
             first = f"{self.inputs.workbook.row} {self.inputs.called(self.suspect)}"
             said += f"; look at {first} first: {self.because}"
         warns = kind in (LIMIT, UNCERTAINTY, SQUARES)
         at = self.at(where) if where else self.place(odd.open)
         return Check(kind, name, warns, said, at, note="warning" * warns)
 
+    def is_due_to_suspect(self, cells: Iterable[Cell]) -> bool:
+        """Whether any rests on the test to look at and is not odd by itself, as pairs at one speed are."""
+        return any(self.suspect in tests for tests in {*map(self.values.tests, cells)} - self.silent)
+
     # --- where
 
     def place(self, cells: Sequence[Cell]) -> Location:
         """Where the first cell was printed, or the first number of the test to look at; else report.toml."""
         printed = self.printed(cells[0])
-        if printed is None and any(self.suspect in self.values.tests(cell) for cell in cells):
+        if printed is None and self.is_due_to_suspect(cells):
             row = self.inputs.tests.index(self.suspect)
             columns = self.inputs.measured.items()
             printed = next((column[row] for name, column in columns if name not in self.inputs.taken), None)

@@ -232,7 +232,7 @@ WORKBOOK = Workbook(
     ),
     drawn=columns,
     models=MODELS,
-    constants=_constants,
+    card_constants=_constants,
     example=soft_impact.WORKBOOK.example,
     example_parameters={
         "ball_diameter": "12.7 mm", "ball_density": "7800 kg/m^3", "beta": "1.5",
