@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -168,3 +169,14 @@ def test_two_fits_are_told_apart_by_their_symbols(tmp_path: Path, body: str, lat
     """One alone is printed short, unless its letters mean something else, too."""
     sheet = in_folder(tmp_path, body, "1,1,1.0\n2,2,2.8\n3,3,5.2\n").sheet
     assert {name: sheet[name].latex for name in latex} == latex
+
+
+def test_sums_of_a_fit_that_lack_rows_are_told_by_what_they_lead_to(tmp_path: Path) -> None:
+    """Its sums have names that nobody gave them."""
+    report = in_folder(tmp_path, LINE, "1,1,2.1\n2,2,3.9\n3,3,\n4,4,8.2\n5,5,9.9\n")
+    assert set(report.values.counted) & report.workbook.aside
+    (said,) = (check.message for check in report.oddities if check.name == "rows")
+    told, _, over = said.partition(" are over ")
+    assert over.startswith("4 of 5 ")
+    assert {"a", "b", "f_s"} <= set(re.findall(r"\w+", told))
+    assert not set(re.findall(r"\w+", told)) & report.workbook.aside

@@ -581,34 +581,6 @@ def test_sums_of_one_result_run_over_the_same_rows(
     assert told[-1] == "level, dx and slope are over 4 of 5 readings"
 
 
-LINE = """\
-from loopsheet import Method, fit, measured, unknown
-
-
-class Line(Method, rows="runs"):
-    \"\"\"A line.\"\"\"
-
-    x, y = measured("m", "length"), measured("m", "height")
-    a, b = unknown("intercept", "m"), unknown("slope")
-    line = fit(y, a + b * x)
-"""
-
-
-def test_sums_of_a_fit_that_lack_rows_are_told_by_what_they_lead_to(tmp_path: Path) -> None:
-    """Its sums have names that nobody gave them."""
-    files = {"workbook.py": LINE, "rows.csv": "run,x [m],y [m]\n1,1,2.1\n2,2,3.9\n3,3,\n4,4,8.2\n5,5,9.9\n"}
-    files["report.toml"] = 'workbook = "workbook.py"\n[measurements]\nfile = "rows.csv"\n'
-    for name, text in files.items():
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    report = Study(tmp_path).computed
-    assert set(report.values.counted) & report.workbook.aside
-    (said,) = (check.message for check in report.oddities if check.name == "rows")
-    told, _, over = said.partition(" are over ")
-    assert over == "4 of 5 runs"
-    assert {"a", "b", "line_s"} <= set(re.findall(r"\w+", told))
-    assert not set(re.findall(r"\w+", told)) & report.workbook.aside
-
-
 @pytest.mark.parametrize(
     ("equation", "low", "code", "says"),
     [

@@ -70,7 +70,10 @@ def test_bounds_in_json_are_rounded_outwards(value: float) -> None:
 
 
 def test_every_format_says_the_same(paper: Report, capsys: pytest.CaptureFixture[str]) -> None:
-    """One sentence: in the terminal, on the page, in the article, and in the formats of findings."""
+    """One sentence: in the terminal, on the page, in the article, and in the formats of findings.
+
+    Where these tell a table first that makes it so, they do not say it again of all together.
+    """
     joint, first = paper.referee.joint, paper.referee.explanations[1]
     assert joint is not None
     verdict, reason = words.together(joint), words.explained(first)
@@ -79,9 +82,14 @@ def test_every_format_says_the_same(paper: Report, capsys: pytest.CaptureFixture
     check._print(paper, found)
     told = {"terminal": capsys.readouterr().out}
     told |= {name: write(found, "title", {}) for name, write in formats.FORMATS.items()}
+    table, again = words.together(paper.referee.tables[0]), words.all_together(paper.referee)
+    assert again.endswith("cannot come out either, as is told of Table 2")
     for name, text in told.items():
-        assert verdict in text, name
+        assert table in text, name
+        assert again in text, name
+        assert verdict not in text, name
         assert reason in text.replace("\\", ""), name  # Markdown escapes brackets
+    assert [told["terminal"].count(said) for said in (table, again)] == [1, 1]
     data = json.loads(values_json.values(paper))["referee"]
     assert data["explanations"][1]["sentence"] == reason
     # On a page cells are symbols, and LaTeX keeps some signs apart; what follows is the same.
