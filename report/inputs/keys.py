@@ -91,7 +91,8 @@ TABLES: dict[tuple[str, ...], dict[str, Key]] = {
         ANY: Key(
             '"0.5 % of reading + 2 digits"',
             "Of a measured column or of a parameter, by itself. A size without a unit, `u = 0.003`, is in "
-            "the unit that the head of the column, or the parameter, is written in.",
+            "the unit that the head of the column, or the parameter, is written in. The referee holds the "
+            "numbers to it: what is `exact` is no other number that prints so.",
         ),
         "plus_minus": Key('"rect"', "What `+-0.1` means where no word says more."),
         "digits": Key("1", "Of an uncertainty that is shown: 1 or 2; 2 without it."),
