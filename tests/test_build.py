@@ -384,6 +384,7 @@ def test_what_an_earlier_build_made_goes_and_what_was_changed_has_another_name(
     out = tmp_path / "out"
     build.build(Study(gauge), out, ("json", "latex"))
     (out / "report.tex").write_text("changed by hand")
+    (gauge / "report.toml").write_text((gauge / "report.toml").read_text() + "# edited\n")
     build.build(Study(gauge), out, ("json",))
     assert sorted(p.name for p in out.rglob("*") if p.is_file()) == [
         "manifest.json",
