@@ -338,6 +338,15 @@ class Column:
     mentioned: ClassVar[Mentioned | None] = None
     """Of a column of which only a part is known."""
 
+    @cached_property
+    def nonnegative(self) -> bool:
+        """Whether its rule gives no number below 0."""
+        if self.positive or not isinstance(self.rule, Formula):
+            return self.positive
+        from ..derivations.reductions import never_negative
+
+        return never_negative(self.rule.expression)
+
     @property
     def written(self) -> str:
         """The unit that it is declared in: what it is shown in, if that is a unit, else that of SI."""

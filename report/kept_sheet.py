@@ -66,6 +66,7 @@ class _ToldColumn:
     latex: str
     display: str
     positive: bool
+    nonnegative: bool
     exact: bool
     is_u: bool
     spare: bool
@@ -219,8 +220,8 @@ def _column(
     alongside = tuple(other.name for other in column.alongside)
     return _ToldColumn(
         column.name, None if column.axis is None else column.axis.name, column.unit, column.meaning,
-        column.latex, column.display, column.positive, column.exact, column.is_u, column.spare, column.source,
-        column.conditions, _mentioned(sheet, column), tuple(limits), alongside,
+        column.latex, column.display, column.positive, column.nonnegative, column.exact, column.is_u,
+        column.spare, column.source, column.conditions, _mentioned(sheet, column), tuple(limits), alongside,
         asdict(rule) if isinstance(rule, Given) else None,
         tuple(told_equation(each, *writing) for each in equations) if writing else (), place,
         (rule.none, rule.two, rule.unknown_name, rule.by_proof) if isinstance(rule, Root) else None,
@@ -279,6 +280,7 @@ class _Known:
                 "latex",
                 "display",
                 "positive",
+                "nonnegative",
                 "exact",
                 "is_u",
                 "spare",

@@ -85,6 +85,7 @@ def test_what_is_not_known_is_declared_again(both: list[Sheet]) -> None:
         assert own == column
         assert column == own
         assert own.requires == column.requires
+        assert own.nonnegative is column.nonnegative
         assert [r.cell for r in sheet.named(own)] == [r.cell for r in declared.named(column)]
     assert [axis.maps for axis in sheet.axes] == [axis.maps for axis in declared.axes]
     assert Program.of(sheet).source == Program.of(declared).source

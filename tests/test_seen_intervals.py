@@ -49,7 +49,7 @@ def test_what_inputs_were_seen_to_yield_contains_what_is_shown_with_it(
 ) -> None:
     """The recomputed value, the value of a witness, and where it is certain, nothing that is impossible."""
     # What would explain a difference takes longest, and says nothing of intervals.
-    monkeypatch.setattr(judging, "explanations", lambda problem: ((), None))
+    monkeypatch.setattr(judging, "explanations", lambda *_: ((), None))
     known = certain = 0
     for seed, comparison in intervals(range(SHEETS)):
         found, value, where = comparison.refereed, comparison.cell.value, (seed, comparison.cell.address)

@@ -19,13 +19,15 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
+import msgspec
 import pytest
 from campaign_sizes import Sizes
 from small_report import end_gauge
 
 from loopsheet.report import cli, stages
 from loopsheet.report.cli import main
-from loopsheet.report.files.manifest import read_manifest
+from loopsheet.report.files.form import text
+from loopsheet.report.files.manifest import Manifest, read_manifest
 from loopsheet.report.machine import staging
 from loopsheet.report.machine.background import Background, Later
 from loopsheet.report.machine.scratch import PREFIX, scratch
@@ -58,16 +60,17 @@ def named(out: Path) -> list[str]:
     return [check.message for check in _outputs(out, then, then, "") if not check.passed]
 
 
-def outputs(**texts: str) -> dict[str, str]:
-    """Files, and a manifest that lists them."""
-    files = {name.replace("__", "/").replace("_", "."): text for name, text in texts.items()}
-    listed = {name: hashlib.sha256(text.encode()).hexdigest() for name, text in files.items()}
-    manifest = {"schema": 1, "inputs": {}, "outputs": listed, "versions": {}}
-    return {**files, "manifest.json": json.dumps(manifest)}
+def outputs(made_of: str, **texts: str) -> dict[str, str]:
+    """Files, and a manifest that lists them and what they were made of."""
+    files = {name.replace("__", "/").replace("_", "."): each for name, each in texts.items()}
+    listed = {name: hashlib.sha256(files[name].encode()).hexdigest() for name in sorted(files)}
+    digest = hashlib.sha256(made_of.encode()).hexdigest()
+    manifest = {"schema": 1, "inputs": {"report.toml": digest}, "outputs": listed, "versions": {}}
+    return {**files, "manifest.json": text(msgspec.convert(manifest, Manifest))}
 
 
-OLD = outputs(a_json="old", figures__b_svg="old", gone_txt="old")
-NEW = outputs(a_json="new", figures__b_svg="new", more_html="new", figures__c_svg="new")
+OLD = outputs("old", a_json="old", figures__b_svg="old", gone_txt="old")
+NEW = outputs("new", a_json="new", figures__b_svg="new", more_html="new", figures__c_svg="new")
 
 
 def contents(files: Mapping[str, str]) -> Hashes:
@@ -75,8 +78,8 @@ def contents(files: Mapping[str, str]) -> Hashes:
 
 
 def fill(out: Path, files: Mapping[str, str]) -> None:
-    for name, text in files.items():
-        put(out / name, text)
+    for name, each in files.items():
+        put(out / name, each)
 
 
 # --- builds in processes of their own ---

@@ -13,7 +13,6 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ...derivations.reductions import never_negative
 from ..cells.address import address
 from ..cells.layout import how_large, precedents
 from ..cells.values import Status, Values, rows_kept
@@ -24,7 +23,7 @@ from ..inputs.limits import Limits
 from ..judge.chain import Chain, Made
 from ..judge.sensitivity import Numbers
 from ..result.uncertain import Budget, Conformity, Contribution, Influence, Misfit, Together, Uncertainties
-from ..sheet import Column, Formula, Given, PairAxis, RepeatAxis
+from ..sheet import Column, Given, PairAxis, RepeatAxis
 from ..workbook import Curve
 from .conformity import conformity
 from .coverage import assigned, coverage
@@ -345,8 +344,7 @@ def _least(column: Column) -> float:
     rule = column.rule
     if isinstance(rule, Given) and rule.bounds.low is not None:
         return float(rule.bounds.low)
-    known = isinstance(rule, Formula) and column.mentioned is None and never_negative(rule.expression)
-    return 0.0 if column.positive or known else -math.inf
+    return 0.0 if column.nonnegative else -math.inf
 
 
 def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Uncertainties:
