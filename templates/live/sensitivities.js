@@ -5,7 +5,7 @@ const MOVE = 2 ** -10; // in standard uncertainties, to both sides: far enough f
 const BENT = 2 ** -20; // of the change to both sides together: what those to either side may differ by where it is straight
 const LEAST = 2 ** -32; // of a cell: no step is shorter
 const NEAR = 2 ** -17; // of a root: so far from it its form is asked for its slope
-const STILL = 2 ** -40; // of a vector: what moves no more is settled
+const STILL = 2 ** -40; // of the largest effect: what moves no more is settled
 const MOST_PASSES = 60; // of columns that rest on one another
 
 // For each column, in SI, what each of the errors does to each of its rows: row by row in one array. There is none where
@@ -14,14 +14,15 @@ function sensitivities(columns, sheet, errors) {
   const found = {}, known = {}, count = errors.length, blank = (name) => new Float64Array(sheet.value[name].length * count);
   errors.forEach(({ moves }, n) => moves.forEach(([name, row, by]) => ((found[name] ??= blank(name))[row * count + n] += by)));
   const again = (column) => {
-    const { name, refs } = column, out = blank(name), others = new Set(refs.map(([other]) => other).filter((other) => found[other]));
-    const many = refs.filter(([other, , over]) => over !== null && found[other]?.length > count ** 2).map(([other]) => other);
+    const { name, refs, jumps } = column, others = new Set(refs.map(([other]) => other).filter((other) => found[other] && !jumps));
+    if (!others.size) return undefined;
+    const out = blank(name), many = refs.filter(([other, , over]) => over !== null && found[other]?.length > count ** 2).map(([other]) => other);
     if (many.length) along(out, column, [...new Set(many)], found, sheet, count);
     for (const other of others) if (!many.includes(other)) chain(out, found[other], (known[`${name} ${other}`] ??= []), column, other, sheet, count);
-    return others.size ? out : undefined;
+    return out;
   };
-  const put = ({ name, kind, jumps }, effects) => {
-    if (kind !== "given" && !jumps && effects) found[name] = effects;
+  const put = ({ name }, effects) => {
+    if (effects) found[name] = effects;
   };
   columns.forEach((column, n) => {
     if (!column.loop) put(column, again(column));
