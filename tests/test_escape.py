@@ -57,6 +57,8 @@ def test_markup_is_escaped_once_and_only_markup_is_trusted() -> None:
         ("~^", r"\textasciitilde{}\textasciicircum{}"),
         ("<|>", r"\textless{}\textbar{}\textgreater{}"),
         ("--", "-{}-{}"),
+        ("--,,,a, b-c,", "-{}-,{},{},a, b-c,{}"),
+        ("\u202f,", r"\,{},{}"),
         ("Ștefan Müller", "Ștefan Müller"),
         ("e\u0301", "é"),
         ("ﬁ", "fi"),

@@ -174,7 +174,7 @@ def test_both_formats_say_the_same(paper: Report) -> None:
     for words in (
         r"\section{The referee}",
         r"\includegraphics[max width=0.85\linewidth]{figures/referee.pdf}",
-        r"$x_{p}$ was truncated,{} not rounded",
+        r"$x_{p}$ was truncated, not rounded",
         "Ledger of errata",
     ):
         assert words in article

@@ -60,9 +60,6 @@ _TEX = {
     '"': r"\textquotedbl{}",
     "`": r"\textasciigrave{}",
     "'": r"\textquotesingle{}",
-    # The second of two would be drawn into a ligature: -- an en dash, ,, a low quotation mark.
-    "-": "-{}",
-    ",": ",{}",
     "\u00a0": "~",
     "\u202f": r"\,",
     "\u2009": r"\,",
@@ -103,6 +100,9 @@ _SYMBOLS = {
     **{chr(0x2070 + digit): f"{{}}^{{{digit}}}" for digit in range(4, 10)},
     **{chr(0x2080 + digit): f"{{}}_{{{digit}}}" for digit in range(10)},
 }
+# Two of them would be drawn as one sign, -- as an en dash and ,, as a low quotation mark. What follows a text
+# is not known here, so behind the last one something stands, too.
+_DOUBLED = re.compile(r"([-,])(?=\1|$)")
 # What the T1 and TS1 encodings of every LaTeX since 2020 hold, so that pdflatex prints it.
 _PRINTABLE = frozenset(
     {chr(code) for code in range(0x20, 0x7F)}
@@ -123,7 +123,8 @@ def tex(text: object) -> Markup:
     """
     if isinstance(text, Markup):
         return text
-    return Markup("".join(_one(character) for character in unicodedata.normalize("NFC", visible(str(text)))))
+    plain = unicodedata.normalize("NFC", visible(str(text)))
+    return Markup(_DOUBLED.sub(r"\1{}", "".join(map(_one, plain))))
 
 
 def _one(character: str) -> str:
