@@ -121,7 +121,7 @@ function writeComputed(element, look, cell) {
 }
 
 function writeInput(element, look, cell) {
-  element.value = cell.printed;
+  setInput(element, cell.printed);
   element.setAttribute("size", Math.max(2, cell.printed.length));
   const box = element.parentElement;
   box.className = cell.ok ? cell.pad : "error";
@@ -133,6 +133,12 @@ function writeInput(element, look, cell) {
     link.className = "code";
     element.after(link);
   }
+}
+
+// In its source, too: a page that a browser stores shows the inputs of its numbers.
+function setInput(element, text) {
+  element.defaultValue = text;
+  element.value = text;
 }
 
 function writeInText(element, cell) {

@@ -85,6 +85,11 @@ class History {
     return this.states[this.place];
   }
 
+  // As many steps as are asked for, up to now.
+  last(count) {
+    return this.states.slice(Math.max(1, this.place + 1 - count), this.place + 1);
+  }
+
   push(state) {
     if (sameState(state, this.now)) return false;
     this.states.splice(this.place + 1, Infinity, state);

@@ -2,25 +2,31 @@
 // as strictly as a file; what does not fit this very issue of the report is left alone, with a word.
 
 const OURS = `loopsheet ${location.pathname} `, MINE = OURS + LIVE.issue, IN_LINK = "#edits=";
+const MOST_STEPS = 50; // edits that can be undone after a reload
 const MOST_MORE = 300; // tests that a link may add: the work grows with the square of their number
 const lasting = { safe: null }; // the state that was saved or copied
 
-// What foreign text holds as a state of this report; null if it is none.
-function readState(read, most = Infinity) {
+// What foreign text holds as states of this report, one after the other; null if it is none.
+function readStates(read, most = Infinity) {
   try {
     const found = JSON.parse(read());
-    if (found.tests.length > most) return null;
-    const names = Object.keys(LIVE.tests[0].cells), parameters = Object.keys(LIVE.parameters);
-    const texts = (from, wanted) => Object.fromEntries(wanted.map((name) => [name, plainText(from[name])]));
-    const tests = found.tests.map(({ label, used, reason, cells }) => {
-      if (!Number.isSafeInteger(label) || label < 1 || label >= 1e9) throw new RangeError("no number of a test");
-      return { label, used: used === true, reason: plainText(reason), cells: texts(cells, names) };
-    });
-    const state = { tests, parameters: texts(found.parameters, parameters) };
-    return enough(state) && new Set(tests.map(({ label }) => label)).size === tests.length ? state : null;
+    return found.length ? found.map((one) => stateIn(one, most)) : null;
   } catch {
     return null;
   }
+}
+
+function stateIn(found, most) {
+  if (found.tests.length > most) throw new RangeError("too many tests");
+  const names = Object.keys(LIVE.tests[0].cells), parameters = Object.keys(LIVE.parameters);
+  const texts = (from, wanted) => Object.fromEntries(wanted.map((name) => [name, plainText(from[name])]));
+  const tests = found.tests.map(({ label, used, reason, cells }) => {
+    if (!Number.isSafeInteger(label) || label < 1 || label >= 1e9) throw new RangeError("no number of a test");
+    return { label, used: used === true, reason: plainText(reason), cells: texts(cells, names) };
+  });
+  const state = { tests, parameters: texts(found.parameters, parameters) };
+  if (!enough(state) || new Set(tests.map(({ label }) => label)).size < tests.length) throw new RangeError("no such tests");
+  return state;
 }
 
 function plainText(text) {
@@ -39,21 +45,44 @@ function remembering(action) {
   }
 }
 
-function keepState(state, edited) {
+function keepStates(edited) {
+  const states = JSON.stringify(edited ? page.history.last(MOST_STEPS) : []);
+  byId("live-issued").dataset.edits = states;
   const done = remembering((memory) => {
-    if (edited) memory.setItem(MINE, JSON.stringify(state));
+    if (edited) memory.setItem(MINE, states);
     else memory.removeItem(MINE);
     return true;
   });
   if (edited && !done) note("This browser keeps no edits of this page. Save them, or copy a link to them, before you close it.");
 }
 
+// A browser that stores the page as it stands stores edited numbers, and what scripts put beside them. Such a page has
+// with it what was issued, and the edits: read again, it begins with the one and goes on from the others.
+function unstored() {
+  const stored = byId("live-issued"), main = byId("main");
+  if (stored) {
+    main.replaceChildren(stored.content.cloneNode(true));
+    document.documentElement.removeAttribute("data-edited");
+    return;
+  }
+  const issued = make("template", { id: "live-issued" });
+  issued.content.append(...main.cloneNode(true).childNodes);
+  byId("live-dock").before(issued); // read before this script is
+}
+
+// Takes edits that were kept as text, each a step that can be undone; nothing if they cannot be read.
+function takeUp(text) {
+  const states = readStates(() => text);
+  for (const state of states ?? []) page.history.push(state);
+  return states;
+}
+
 function recall() {
+  const { edits } = byId("live-issued").dataset;
+  if (edits && takeUp(edits)) note("The edits are those of the page that was stored. Undo leads back.");
   const own = remembering((memory) => memory.getItem(MINE));
   if (own) {
-    const state = readState(() => own);
-    if (state) page.history.push(state);
-    note(state ? "Your edits of last time are here again." : "What this browser kept of your edits cannot be read; it was not used.");
+    note(takeUp(own) ? "Your edits of last time are here again." : "What this browser kept of your edits cannot be read; it was not used.");
   } else if (remembering((memory) => Object.keys(memory).some((key) => key.startsWith(OURS)))) {
     // They stay where they are.
     note("This browser keeps edits of another issue of this report. They are not used in this one.");
@@ -63,7 +92,7 @@ function recall() {
 
 // What another window of this very report keeps is shown here too: neither then writes over the other.
 function followOther({ key, newValue }) {
-  const state = key !== MINE ? null : newValue ? readState(() => newValue) : page.history.issued;
+  const state = key !== MINE ? null : newValue ? readStates(() => newValue)?.at(-1) : page.history.issued;
   if (!state || sameState(state, page.history.now)) return;
   page.history.push(state);
   show();
@@ -79,10 +108,11 @@ function linkTo(state) {
 }
 
 function ofLink(text) {
-  return readState(() => {
+  const states = readStates(() => {
     const bytes = Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (one) => one.charCodeAt(0));
-    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+    return `[${new TextDecoder("utf-8", { fatal: true }).decode(bytes)}]`;
   }, LIVE.tests.length + MOST_MORE);
+  return states?.at(-1) ?? null;
 }
 
 // Whether the address carries edits that were taken. They are taken once: what is edited then lasts by itself.

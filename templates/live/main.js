@@ -123,7 +123,7 @@ function show() {
   if (edited) writePage(page.look, wasEdited ? before : null);
   else restore();
   for (const word of page.stale) word.hidden = !edited;
-  keepState(now, edited);
+  keepStates(edited);
   drawSoon();
   writeToolbar(edited);
   writePanel(page.look);
@@ -198,6 +198,7 @@ function announce(before, after) {
 // --- the beginning ---------------------------------------------------------------------------------------
 
 function begin() {
+  unstored();
   const state = { tests: LIVE.tests, parameters: LIVE.parameters };
   page.history = new History(state);
   page.look = lookAt(state, null);

@@ -94,8 +94,9 @@ class Table {
     const test = this.editable ? look.state.tests.find((one) => String(one.label) === index) : null;
     if (test) {
       row.classList.toggle("excluded", !test.used);
-      row.querySelector("[data-use]").checked = test.used;
-      row.querySelector("[data-reason]").value = test.reason;
+      const use = row.querySelector("[data-use]");
+      use.checked = use.defaultChecked = test.used;
+      setInput(row.querySelector("[data-reason]"), test.reason);
     }
     const boxes = all("[data-cell]", row);
     for (let n = 0; n < boxes.length; n++) {
@@ -119,7 +120,7 @@ function writeLeftOut(element, text) {
   element.setAttribute("data-status", "");
   element.classList.remove("changed", "added");
   if (element.tagName === "INPUT") {
-    element.value = text;
+    setInput(element, text);
     element.parentElement.className = "";
     element.parentElement.querySelector("a.code")?.remove();
   } else {

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import driving
+import html5lib
 import pytest
 from driving import Live
 from playwright.sync_api import Dialog
@@ -104,6 +105,84 @@ def test_edits_are_there_after_a_reload(open_page: Open, copied: Path) -> None:
     reload(live)
     assert as_issued(live)
     assert live.text("live-note") == ""
+
+
+def test_edits_are_undone_one_by_one_after_a_reload(open_page: Open, copied: Path) -> None:
+    live = open_page(copied)
+    for column, text in (("x_p", "29.80"), ("v", "2.941"), ("e", "0.513")):
+        live.type(column, 2, text)
+    reload(live)
+    seen = [live.text("live-banner")]
+    for _ in range(3):
+        live.click("live-undo")
+        seen.append(live.text("live-banner"))
+    assert [re.sub(" from .*", "", text) for text in seen] == [
+        *("Edited: 3 inputs differ", "Edited: 2 inputs differ", "Edited: 1 input differs", ""),
+    ]
+    assert as_issued(live)
+
+
+def stored(live: Live, path: Path) -> Path:
+    """The page as a browser stores it: not the file that it read, but what stands in the window."""
+    path.write_text(live.page.content(), encoding="utf-8")
+    return path
+
+
+def opened(open_page: Open, path: Path) -> Live:
+    """A stored page, whose policy refuses the widths that scripts had set and set again."""
+    live = open_page(path)
+    live.errors[:] = [error for error in live.errors if not error.startswith("Applying inline style")]
+    return live
+
+
+def test_a_page_that_a_browser_stored_goes_on_from_its_edits(
+    open_page: Open, copied: Path, tmp_path: Path
+) -> None:
+    issued = open_page(copied).cells()
+    live = open_page(copied)
+    edit(live)
+    other = opened(open_page, stored(live, tmp_path / "stored.html"))
+    assert "page that was stored" in other.text("live-note")
+    assert other.cells() == live.cells()
+    assert (other.around(), other.paths("loops")) == (live.around(), live.paths("loops"))
+    assert other.page.locator("#live-panel").count() == 1
+    other.type("v", 1, "2.4")
+    again = opened(open_page, stored(other, tmp_path / "again.html"))
+    assert again.input("v", 1).input_value() == "2.4"
+    again.click("live-undo")
+    assert again.cells() == live.cells()
+    again.click("live-reset")
+    assert again.cells() == issued
+    assert as_issued(again)
+    assert (live.errors, other.errors, again.errors) == ([], [], [])
+
+
+def test_a_page_that_was_stored_as_issued_is_as_issued(open_page: Open, copied: Path, tmp_path: Path) -> None:
+    live = open_page(copied)
+    other = opened(open_page, stored(live, tmp_path / "stored.html"))
+    assert as_issued(other)
+    assert other.cells() == live.cells()
+    for selector in ("#live-panel", "[data-copy]", "[data-remove]"):
+        assert other.page.locator(selector).count() == live.page.locator(selector).count()
+
+
+def test_a_stored_page_shows_the_inputs_of_its_numbers_without_a_script(
+    open_page: Open, copied: Path, tmp_path: Path
+) -> None:
+    """As readers of mails and archives do, which run none."""
+    live = open_page(copied)
+    edit(live)
+    page = html5lib.parse(stored(live, tmp_path / "stored.html").read_text(encoding="utf-8"))
+    tag = "{http://www.w3.org/1999/xhtml}"
+    (main,) = page.iter(f"{tag}main")
+    inputs = [one for one in main.iter(f"{tag}input") if one.get("data-cell")]
+    of = {(one.get("data-cell"), one.get("data-index")): one.get("value") for one in inputs}
+    assert of == {
+        (cell, index): live.input(cell, index).input_value() for cell, index in of if cell is not None
+    }
+    assert (of["x_p", "2"], of["beta", ""], of["v", "6"]) == ("29.80", "1.40", "5.50")
+    used = [one.get("data-use") for one in main.iter(f"{tag}input") if one.get("checked") is not None]
+    assert used == ["1", "2", "4", "5", "6"]
 
 
 def test_what_was_said_of_edits_goes_with_the_next(open_page: Open, copied: Path) -> None:
