@@ -50,6 +50,18 @@ def test_edit_recalculates_every_cell_as_numpy_does(live: Live, open_page: Open,
     assert live.cell("alpha", "1-2").title == "as issued: 1.258"
 
 
+def test_the_banner_says_what_has_no_value_now(live: Live) -> None:
+    live.type("x_p", 3, "lost")
+    differs = "Edited: 1 input differs from the report as issued."
+    assert live.text("live-banner") == f"{differs} Without a value now: x_p[3], and what needs it."
+    live.click("live-undo")
+    live.type("beta", "", "none")
+    gone = "alpha_eiv, C_eiv, chi2_eiv, alpha_mean and 5 more"
+    assert live.text("live-banner") == f"{differs} Without a value now: {gone}."
+    live.type("beta", "", "1.4")
+    assert live.text("live-banner") == differs
+
+
 def test_figures_are_drawn_again(live: Live) -> None:
     drawn = "#figure-loops svg.picture"
     assert live.page.locator(drawn).count() == 0  # the issued picture was drawn by another program
