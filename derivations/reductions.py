@@ -50,13 +50,13 @@ class OrderStatistic(ExprWithLimits):  # type: ignore[misc] # sympy has no types
     word: ClassVar[str]
 
     def _eval_is_real(self) -> bool | None:
-        return self.function.is_real  # type: ignore[no-any-return]
+        return taken_of(self).is_real  # type: ignore[no-any-return]
 
     def _eval_is_positive(self) -> bool | None:
-        return True if self.function.is_positive else None
+        return True if taken_of(self).is_positive else None
 
     def _eval_is_nonnegative(self) -> bool | None:
-        return True if self.function.is_nonnegative else None
+        return True if taken_of(self).is_nonnegative else None
 
 
 class Median(OrderStatistic):
@@ -79,6 +79,8 @@ class Least(OrderStatistic):
 
 class Member(Function):  # type: ignore[misc] # sympy has no types
     """One where a row belongs to a group, nought elsewhere: a factor that leaves a sum the group's own terms.
+
+    What is taken by order has it as a mark of the same: the terms are those of the group alone.
 
     Parameters
     ----------

@@ -288,13 +288,14 @@ def mean(formula: Any, *, of: Any = None) -> Expr:
     return _body().mean(formula, of)
 
 
-def median(formula: Any) -> Expr:
-    """The median over all rows, or all pairs; of an even number, the mean of the two in the middle.
+def median(formula: Any, *, of: Any = None) -> Expr:
+    """The median over all rows, or all pairs, or the rows of each group; as :func:`total`.
 
-    The greatest and the least are written as in Python: in the body of a method `max(x)` and `min(x)` are
-    taken over the rows of a column, `max(a, b)` and `min(a, b)` of several formulas.
+    Of an even number it is the mean of the two in the middle. The greatest and the least are written as in
+    Python: in the body of a method `max(x)` and `min(x)` are taken over the rows of a column, and
+    `max(x, of=specimen)` over those of each group; `max(a, b)` and `min(a, b)` are of several formulas.
     """
-    return _body().ordered(Median, formula)
+    return _body().ordered(Median, formula, of)
 
 
 def count(formula: Any = 0, *, of: Any = None) -> Expr:
@@ -312,7 +313,8 @@ def count(formula: Any = 0, *, of: Any = None) -> Expr:
 def groups(by: str, *, rows: str = "", index: str = "g", size: str = "groups", example: str = "") -> Any:
     """Take the rows that have one word in a column as a group: ``specimen = groups("specimen")``.
 
-    With ``of=specimen`` a sum, a mean or a count runs over the rows of each group. What is computed of it has
+    With ``of=specimen`` a sum, a mean, a median, a count, the greatest or the least runs over the rows of
+    each group. What is computed of it has
     a value for each group, in the order in which their words first appear, and its mean, its sum or a fit
     runs over the groups.
 

@@ -216,24 +216,29 @@ class MethodBody(dict[str, Any]):
         self, of_several: type[Expr], over_rows: type[OrderStatistic], *formulas: Any, of: Any = None
     ) -> Expr:
         """Of several formulas or of a list, of what is in it; of one formula, over all rows or pairs."""
-        if of is not None:
-            raise SheetError(
-                f"{over_rows.word}() is taken over all rows: of={of!s} is for sums, means and counts"
-            )
         if len(formulas) != 1:
+            if of is not None:
+                raise SheetError(
+                    f"{over_rows.word}() of several formulas is of each row: it has no of={of!s}"
+                )
             return of_several(*map(exact, formulas))
         (one,) = formulas
-        return of_several(*map(exact, one)) if isinstance(one, Iterable) else self.ordered(over_rows, one)
+        return of_several(*map(exact, one)) if isinstance(one, Iterable) else self.ordered(over_rows, one, of)
 
-    def ordered(self, taken: type[OrderStatistic], formula: Any) -> Expr:
-        """What is taken over all rows, or all pairs, by their order."""
+    def ordered(self, taken: type[OrderStatistic], formula: Any, of: Any = None) -> Expr:
+        """What is taken over all rows, or all pairs, or the rows of each group, by their order."""
         cell = exact(formula)
+        terms = cell if of is None else self._of_a_group(cell, of)
         over = self.axis_of(cell)
         if over is None:
             raise SheetError(f"{taken.word}() is taken over rows, and {cell} is the same for all of them")
         if not isinstance(cell, Indexed):
             raise SheetError(f"{taken.word}() is of a column, not of {cell}: let(...) that be one first")
-        return taken(cell, (over.index, 1, over.size))
+        if of in self.groups and over is of:
+            raise SheetError(
+                f"{cell} is one number of each {of.row}: {taken.word}() of={of} has no rows to choose from"
+            )
+        return taken(terms, (over.index, 1, over.size))
 
     def total(self, formula: Any, *more: Any, of: Any = None) -> Expr:
         """The sum over all rows, or over those of each group; of a list, of what is in it."""
@@ -295,6 +300,10 @@ class MethodBody(dict[str, Any]):
 
     def _of_groups(self, formula: Any, of: Any) -> Sum:
         """The sum over the rows of each group."""
+        return Sum(self._of_a_group(formula, of), (self.axis.index, 1, self.axis.size))
+
+    def _of_a_group(self, formula: Any, of: Any) -> Expr:
+        """A formula of a row where that belongs to a group."""
         if of not in self.groups:
             raise SheetError(f"of={of} is none of what groups() returned")
         formula = exact(formula)
@@ -303,9 +312,9 @@ class MethodBody(dict[str, Any]):
         rows = self._rows_of(formula)
         if not set(rows) <= {self.axis, of}:
             raise SheetError(
-                f"{formula} names {listing([axis.name for axis in rows])}, not the rows of a {of.row}"
+                f"{formula} names {listing([axis.name for axis in rows])}, not the rows of one {of.row}"
             )
-        return Sum(formula * member(of.members), (self.axis.index, 1, self.axis.size))
+        return formula * member(of.members)
 
     def _number_of_groups(self, formula: Any, of: Any) -> Expr:
         """How many rows each group has; of a formula, in how many of them it has a value."""
@@ -323,7 +332,7 @@ class MethodBody(dict[str, Any]):
     def _of_rows(self, formula: Any, over: Axis) -> Indexed:
         """A formula for rows, or pairs of them, as a column of its own."""
         own = f"of_{over.name}_{sum(column.axis == over for column in self.columns.values()) + 1}"
-        found: Indexed = self._aside(own, f"of a {over.row}", formula).cell
+        found: Indexed = self._aside(own, f"term of each {over.row}", formula).cell
         return found
 
     def _aside(self, name: str, meaning: str, formula: Any) -> Column:

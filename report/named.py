@@ -139,9 +139,9 @@ class Named:
                     column.name,
                 )
             taken = f"{column.name}: a {expression.word}" if isinstance(expression, OrderStatistic) else ""
-            if taken and not isinstance(expression.function, Indexed):
+            if taken and not isinstance(taken_of(expression), Indexed):
                 raise SheetError(
-                    f"{taken} is of the cells of a column, not of {expression.function}; "
+                    f"{taken} is of the cells of a column, not of {taken_of(expression)}; "
                     "give that a column of its own",
                     column.name,
                 )

@@ -30,6 +30,9 @@ class Variance(Method, source="ISO 5725-2", headline="between within F R2 s apar
     s = let(sqrt(within / (count(y) - count(level))), "scatter, pooled", like=y)
     apart = let(max(level) - min(level), "range of the means", like=y)
     middle = let(sum(many * level) / count(y) - all_y, "mean of means and mean", like=y)
+    wide = let(max(y, of=instrument) - min(y, of=instrument), "range of an instrument", like=y)
+    widest = let(max(wide), "widest range", like=y)
+    typical = let(median(y, of=instrument), "median of an instrument", like=y)
 """
 FEW = (
     ("A", "1.50"),

@@ -62,6 +62,18 @@ def test_what_groups_share_is_one_error(tmp_path: Path) -> None:
     assert sure["between"][0] == pytest.approx(0.2e-6 * np.sqrt((by_reading**2).sum()), rel=1e-12)
 
 
+def test_what_is_taken_by_order_is_taken_in_each_group(tmp_path: Path) -> None:
+    rows = (*grouped.FEW, ("B", "2.50"), ("A", "9.75"), ("C", "3.00"))
+    report = Study(grouped.write(tmp_path, rows, more='[uncertainty]\ny = "u = 0.2 mm"\n')).computed
+    sure = report.uncertain().u
+    assert report.values.value["wide"] == pytest.approx([8.5e-3, 0.5e-3, 0.5e-3], rel=1e-14)
+    assert report.values.value["typical"] == pytest.approx([1.625e-3, 2.5e-3, 3.25e-3], rel=1e-15)
+    assert sure["typical"] == pytest.approx([0.2e-3 / 2**0.5, 0.2e-3, 0.2e-3], rel=1e-12)
+    assert sure["wide"] == pytest.approx([0.2e-3 * 2**0.5] * 3, rel=1e-12)
+    assert report.values.scalar("widest") == pytest.approx(8.5e-3, rel=1e-14)
+    assert main(["check", str(tmp_path)]) == 0
+
+
 def test_a_reading_that_is_missing_is_left_out(tmp_path: Path) -> None:
     rows = tuple((word, "" if n == 2 else y) for n, (word, y) in enumerate(grouped.FEW))
     code = grouped.METHOD.replace("    instrument =", '    x = measured("mm", "another")\n    instrument =')
@@ -72,6 +84,8 @@ def test_a_reading_that_is_missing_is_left_out(tmp_path: Path) -> None:
     report = Study(folder).report
     assert report.values.value["many"].tolist() == [2, 2, 2]
     assert report.values.value["level"] == pytest.approx([1.375e-3, 2.5e-3, 3.375e-3], rel=1e-15)
+    assert report.values.value["wide"] == pytest.approx([0.25e-3, 0.5e-3, 0.25e-3], rel=1e-14)
+    assert report.values.value["typical"] == pytest.approx([1.375e-3, 2.5e-3, 3.375e-3], rel=1e-15)
     assert main(["check", str(folder)]) == 0
 
 
@@ -154,7 +168,10 @@ def test_numbers_are_no_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]
         ("z = let(y - level, 'both')", "one formula names readings or instruments: take a mean"),
         ("z = let(mean(y - mean(y, of=instrument), of=instrument), 'nested')", "let(...) that be one first"),
         ("z = let(mean(y, of='instrument'), 'text')", "of=instrument is none of what groups() returned"),
-        ("z = let(max(y, of=instrument), 'most')", "max() is taken over all rows"),
+        ("z = let(max(2 * y, of=instrument), 'most')", "max() is of a column, not of 2*y[k]"),
+        ("z = let(max(level, of=instrument), 'most')", "level[g] is one number of each instrument"),
+        ("z = let(max(y, 2 * y, of=instrument), 'most')", "of several formulas is of each row"),
+        ("z = let(median(y, of='instrument'), 'text')", "of=instrument is none of what groups() returned"),
         ("reading = groups('reading')", "rows already"),
         ("again = groups('instrument')", "rows already"),
         ("two = groups('a word')", "needs names"),

@@ -40,8 +40,9 @@ class Layout:
 
     @cached_property
     def groups(self) -> list[slice]:
-        """Of rows in groups, those of each."""
-        assert self.starts is not None
+        """Of rows in groups, those of each; of others, all together."""
+        if self.starts is None:
+            return [slice(0, self.size)]
         ends = [*self.starts.tolist(), self.size]
         return [slice(*each) for each in pairwise(ends)]
 

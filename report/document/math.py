@@ -247,16 +247,21 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
         text = ""
         for index, low, high in expr.limits:
             text += rf"\sum_{{{self._print(index)}={self._print(low)}}}^{{{self._print(high)}}} "
-        if (member := member_of(expr)) is not None:
-            row, group = map(self._print, member.args)
-            text = rf"\sum_{{{row} \in {group}}} "
+        if within := self._in_group(expr):
+            text = rf"\sum_{{{within}}} "
         return text + self._body(taken_of(expr))
+
+    def _in_group(self, expr: Sum | OrderStatistic) -> str:
+        """Which rows it is of, if it is of those of a group."""
+        member = member_of(expr)
+        return "" if member is None else r" \in ".join(map(self._print, member.args))
 
     def _print_OrderStatistic(self, expr: OrderStatistic) -> str:
         runs = ", ".join(
             " \\le ".join(map(self._print, (low, index, high))) for index, low, high in expr.limits
         )
-        return rf"\underset{{{runs}}}{{\mathrm{{{expr.word}}}}} \, {self._body(expr.function)}"
+        runs = self._in_group(expr) or runs
+        return rf"\underset{{{runs}}}{{\mathrm{{{expr.word}}}}} \, {self._body(taken_of(expr))}"
 
     def _print_Integral(self, expr: Integral) -> str:
         text, ends = "", ""

@@ -174,7 +174,11 @@ class _Scope:
             else:
                 self.totals[RowOrder(total.terms, axis, Str(total.word))] = name
                 term = self.printer.doprint(self.plain(total.terms, "q"))
-                self.head.append(f"      const {name} = {_BY_ORDER[total.word].format(f'k.{axis}', term)};")
+                taken = _BY_ORDER[total.word]
+                if isinstance(total.over, MemberAxis):
+                    self.of_groups.add(name)
+                    taken = f"ofGroups({{0}}, a.{axis}.starts, (kept) => {taken.format('kept', '{1}')})"
+                self.head.append(f"      const {name} = {taken.format(f'k.{axis}', term)};")
         self.head += self.passes(waiting)
 
     def passes(self, sums: dict[Expr, Symbol]) -> list[str]:

@@ -183,11 +183,12 @@ class _Spread(Numbers):
         """A row that rounding may exchange with one that is taken counts as that one does."""
         value, summed = self.values.value[name][rows], self.summed(node)
         room = LIMIT * EPS * self.total(name, self.weighed(self.whole))[rows]
-        ordered = np.sort(value[summed])
-        taken = ordered[list(places(node.word, ordered.size))] if ordered.size else ordered
         found: Array = np.zeros(value.size)
-        for one in taken.tolist():
-            found += (np.abs(value - one) <= room) / taken.size
+        for own in self.groups(node):
+            ordered = np.sort(value[own][summed[own]])
+            taken = ordered[list(places(node.word, ordered.size))] if ordered.size else ordered
+            for one in taken.tolist():
+                found[own] += (np.abs(value[own] - one) <= room[own]) / taken.size
         return np.where(summed, found, 0.0)
 
 

@@ -304,7 +304,10 @@ class _Along(Along):
         if not node.by_order:
             return found
         rows = self.chain.named(node, slope)
-        shares = _shares(self.cells.value[by].where(self.cells.sure[by]).take(rows), node.word)
+        assert node.over is not None
+        terms = self.cells.value[by].where(self.cells.sure[by]).take(rows)
+        each = [_shares(terms[own], node.word) for own in self.chain.layouts[node.over].groups]
+        shares = Intervals(*(np.concatenate([getattr(one, end) for one in each]) for end in ("low", "high")))
         return shares * found  # type: ignore[no-any-return]
 
     def ended(self, node: Local) -> None:

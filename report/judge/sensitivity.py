@@ -159,8 +159,17 @@ class Numbers(Along):
             self.entries[..., cells.entries] = np.where(dead, 0.0, self.entries[..., cells.entries])
 
     def share(self, node: Local, name: str, rows: Numbered) -> Array:
-        """How much of the change of each row counts by its place: rows with one value share it."""
+        """How much of the change of each row counts by its place, in its group if rows stand in groups."""
         value = np.where(self.summed(node), self.values.value[name][..., rows], np.inf)
+        return np.concatenate([self._shared(node, value[..., own]) for own in self.groups(node)], axis=-1)
+
+    def groups(self, node: Local) -> list[slice]:
+        """Where the rows of each group stand, of which something is taken."""
+        assert node.over is not None
+        return self.chain.layouts[node.over].groups
+
+    def _shared(self, node: Local, value: Array) -> Array:
+        """The same of the rows of one group: rows with one value share it."""
         ordered, number = np.sort(value, axis=-1), np.isfinite(value).sum(axis=-1, keepdims=True)
         found: Array = np.zeros(value.shape)
         taken = places(node.word, number) if value.size else ()

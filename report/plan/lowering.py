@@ -131,13 +131,12 @@ class Lowering:
         if isinstance(expression, REDUCTIONS):
             over = self.sheet.algebra.over(expression)
             name = Symbol(over.name)
+            terms = taken_of(expression)
             if isinstance(expression, OrderStatistic):
-                found = RowOrder(
-                    self.plain(expression.function, column, over, unknown), name, Str(expression.word)
-                )
+                found = RowOrder(self.plain(terms, column, over, unknown), name, Str(expression.word))
                 self._written[found] = expression
                 return found
-            number, terms = taken_of(expression).as_coeff_Mul()
+            number, terms = terms.as_coeff_Mul()
             found = RowSum(self.plain(terms, column, over, unknown), name)
             more, alone = found.as_coeff_Mul()
             own = expression.function / number / more

@@ -73,6 +73,11 @@ function totals(kept, count, terms, starts) {
   return Array.from(new Float64Array(count), (_, n) => every.map((sums) => sums[n]));
 }
 
+// What is taken of the rows of each group, all others left out.
+function ofGroups(kept, starts, take) {
+  return starts.slice(1).map((end, group) => take(kept.map((own, row) => own && row >= starts[group] && row < end)));
+}
+
 // The middle of the terms of the rows that are kept; of an even number, the mean of the two there.
 function median(kept, term) {
   const all = new Float64Array(kept).map((_, row) => term(row)).filter((_, row) => kept[row]).sort(), { length } = all;
