@@ -120,7 +120,7 @@ def test_check_counts_what_prints_the_same_in_any_notation(tmp_path: Path, check
     published(tmp_path, f"H.1,l,1,{text},mm")
     code, out = check()
     assert code == 0
-    assert "published  1 value: 1 print the same, 0 differ as is known\n" in out
+    assert "published  1 value: 1 prints the same, 0 differ as is known\n" in out
     assert "->" not in out
 
 
@@ -272,7 +272,7 @@ def test_what_has_no_value_is_not_excused_by_the_others(tmp_path: Path, check: C
     assert told == [(True, False)] * 2 + [(bool(expected), bool(expected))] * 2
     assert "T y[2] cannot be checked: #INPUT! y[2] needs a[2]: " in found["y[2]"]["message"]
     said = (
-        "4 values: 1 print the same, 0 differ as is known, 1 comes out of other inputs that print as given, "
+        "4 values: 1 prints the same, 0 differ as is known, 1 comes out of other inputs that print as given, "
     )
     assert f"published  {said}2 cannot be checked\n" in check()[1]
 

@@ -346,11 +346,11 @@ class Oil(Method):
 @pytest.mark.parametrize(
     ("published", "word", "failed", "summary"),
     [
-        ("104.22,", EXACT, 0, "1 value: 1 print the same"),
+        ("104.22,", EXACT, 0, "1 value: 1 prints the same"),
         ("104.40,", WITHIN, 3, "1 differs within the stated uncertainties alone\n"),
         ("104.50,", WITHIN, 3, "1 differs within the stated uncertainties alone\n"),
         ("104.60,", UNREACHABLE, 3, "0 print the same, 0 differ as is known\n"),
-        ("104.40,differs", WITHIN, 0, "1 differ as is known"),
+        ("104.40,differs", WITHIN, 0, "1 differs as is known"),
     ],
 )
 def test_an_error_of_arithmetic_is_none_of_measurement(

@@ -252,7 +252,7 @@ class Said:
         same, differing, missing = (
             sum(one.verdict == word for one in found) for word in ("same", "differs", "not-checkable")
         )
-        said = f"Of {len(found)} published values, {_come(same)}"
+        said = f"Of {len(found)} published value{'s' * (len(found) > 1)}, {_come(same)}"
         said += f" and {differing} differ{'s' * (differing == 1)}" if differing else ""
         said += f"; {missing} could not be compared" if missing else ""
         link = Link("section", "published", ("Each is shown beside its recomputation.",))
@@ -268,7 +268,7 @@ class Said:
             again, of = far.comparison.again, f" of {far.row}" if far.row else ""
             beside = f" units, {again} against the published {far.printed.text}{of}"
             off = "; the furthest is off by ", Number(far.distance, signed=True), beside
-        come = f": of {len(group.pairs)} values {_come(group.same)}"
+        come = f": of {len(group.pairs)} value{'s' * (len(group.pairs) > 1)} {_come(group.same)}"
         return Strong((group.source,)), *title, come, *off, "."
 
     # --- the referee

@@ -127,10 +127,13 @@ def _print(report: Report, found: Sequence[Check]) -> None:
     within = sum(c.verdict == "differs" and c.word == WITHIN and not c.as_expected for c in every)
     missing = sum(c.verdict == "not-checkable" and not c.published.expect for c in every)
     if every:
-        said = [f"{same} print the same", f"{known} differ as is known"]
-        come, differ = ("comes" if other == 1 else "come"), ("differs" if within == 1 else "differ")
-        said += [f"{other} {come} out of other inputs that print as given"] * bool(other)
-        said += [f"{within} {differ} within the stated uncertainties alone"] * bool(within)
+
+        def they(number: int, verb: str) -> str:
+            return f"{number} {verb}{'s' * (number == 1)}"
+
+        said = [f"{they(same, 'print')} the same", f"{they(known, 'differ')} as is known"]
+        said += [f"{they(other, 'come')} out of other inputs that print as given"] * bool(other)
+        said += [f"{they(within, 'differ')} within the stated uncertainties alone"] * bool(within)
         said += [f"{missing} cannot be checked"] * bool(missing)
         print(f"published  {len(every)} value{'s' * (len(every) != 1)}: {', '.join(said)}")
     for comparison in every:

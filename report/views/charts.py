@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -53,6 +54,10 @@ ROOM = 0.25
 """How far beyond what lines span the frame may go for the sake of points, in shares of it."""
 CORNERS, FEWEST = 800, 12
 """Corners of all lines of a series together, and of each at least."""
+LETTERS = 95
+"""How many letters have room beside one another in a picture."""
+LETTERS_UP = 4.5
+"""How many have room upright, for each centimetre of its height."""
 MARGINS = (0.06, 0.1)
 
 
@@ -186,7 +191,7 @@ def draw(report: Report, chart: Chart) -> Figure:
     for axis, scale, (unit, *_) in zip("xy", words.scales(chart), units, strict=True):
         axes.set(
             **{
-                f"{axis}label": mathtext(scale.titled(unit)),
+                f"{axis}label": _titled(mathtext(scale.titled(unit)), axis, chart.height),
                 f"{axis}scale": "log" if axis in chart.log else "linear",
             }
         )
@@ -239,6 +244,22 @@ def mathtext(letters: Letters) -> str:
     return text.replace("$$", "")
 
 
+def _in_columns(texts: Sequence[str]) -> int:
+    """In how many columns the entries of a legend have room, which it fills one after the other."""
+
+    def room(ncols: int) -> int:
+        """In letters; a sign before each text is as wide as four."""
+        return sum(4 + max(map(len, column)) for column in np.array_split(texts, ncols))
+
+    return next((ncols for ncols in (len(texts), 2) if room(ncols) < LETTERS), 1)
+
+
+def _titled(text: str, axis: str, height: float) -> str:
+    """The title of an axis in lines that are no longer than the axis."""
+    most = LETTERS if axis == "x" else round(LETTERS_UP * height)
+    return "\n".join(wrap(text, most, break_long_words=False, break_on_hyphens=False))
+
+
 class _Picture:
     """A chart being drawn; all numbers are in the units of its axes."""
 
@@ -277,9 +298,7 @@ class _Picture:
             elif own:
                 (self.points if series.style == "points" else self.lines)(series, own)
         if len(self.keys) > 1 or any(key.get_marker() == "^" for key in self.keys):
-            texts = [str(key.get_label()) for key in self.keys]
-            room = sum(map(len, texts)) + 4 * len(texts)  # in letters; a sign before each is as wide as four
-            ncols = len(texts) if room < 95 else 2 if len(texts[0]) < 48 else 1
+            ncols = _in_columns([str(key.get_label()) for key in self.keys])
             self.figure.legend(
                 handles=self.keys, loc="outside upper left", ncols=ncols, handlelength=1.5, columnspacing=1
             )

@@ -49,7 +49,7 @@ function writeTally(found) {
   if (!element) return;
   const count = (verdict) => found.filter((one) => one.verdict === verdict).length;
   const differing = count("differs"), unchecked = count("no value"), surprises = found.filter((one) => one.finding).length;
-  const parts = [`Of ${found.length} published values, ${comes(count("same"))} out as printed`];
+  const parts = [`Of ${found.length} published value${found.length > 1 ? "s" : ""}, ${comes(count("same"))} out as printed`];
   if (differing) parts.push(` and ${differing} ${differing === 1 ? "differs" : "differ"}`);
   if (unchecked) parts.push(`; ${unchecked} could not be compared`);
   const sentences = [`${parts.join("")}. `, element.querySelector("a")];
@@ -74,6 +74,6 @@ function writeGroup(place, rows, called, found) {
   const off = furthest && same < found.length
     ? `; the furthest is off by ${distanceText(furthest.distance)} units, ${furthest.again} against the published ${furthest.text}${of}`
     : "";
-  const text = `${node.data.slice(0, node.data.indexOf(start))}${start}s ${comes(same)} out as printed${off}.`;
+  const text = `${node.data.slice(0, node.data.indexOf(start))}${start}${rows.length > 1 ? "s" : ""} ${comes(same)} out as printed${off}.`;
   if (node.data !== text) node.data = text;
 }
