@@ -267,7 +267,8 @@ def fit(observed: Any, model: Any, *, u: Any = None, label: str = "", figures: b
     figures : bool
         Whether points and curve, and the residuals, are figures of the report.
     """
-    return _said(FitLine(observed, exact(model), u, label, figures))
+    weights = u if u is None or isinstance(u, str) else exact(u)
+    return _said(FitLine(observed, exact(model), weights, label, figures))
 
 
 def total(formula: Any, *, of: Any = None) -> Expr:

@@ -386,7 +386,8 @@ class MethodBody(dict[str, Any]):
         """All columns: the sums and counts that one result rests on leave out the same rows.
 
         Those are rows in which what one of them, or what is computed from them, asks for has no value; what
-        rests on a sum itself cannot be asked.
+        rests on a sum itself cannot be asked. As a sum has one value, results that share it are of the
+        same rows.
         """
         sheet = Sheet(tuple(self.columns.values()))
         below = {c.name: {c.name, *(each.name for each in sheet.ancestors(c))} for c in sheet.columns}
@@ -396,8 +397,14 @@ class MethodBody(dict[str, Any]):
         sums = {name for name, axes in over.items() if axes}
         rows = [c for c in sheet.columns if c.axis and not sums & below[c.name]]
 
+        bound: list[set[str]] = []  # names of which those in one set rest on sums that they share
+        for names in below.values():
+            if names & sums:
+                apart = [each for each in bound if not each & names & sums]
+                bound = [*apart, names.union(*(each for each in bound if each not in apart))]
+
         def asked(total: Column) -> Iterator[Column]:
-            together = set[str]().union(*(names for names in below.values() if total.name in names))
+            together = next(names for names in bound if total.name in names)
             return (c for c in rows if c.axis in over[total.name] and c.name in together)
 
         # What a fit may lack (its scatter, with as many rows as unknowns) is asked for where a line names it.

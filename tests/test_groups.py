@@ -74,6 +74,24 @@ def test_what_is_taken_by_order_is_taken_in_each_group(tmp_path: Path) -> None:
     assert main(["check", str(tmp_path)]) == 0
 
 
+def test_a_decision_is_drawn_where_rows_stand_in_groups(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    more = '[uncertainty]\ny = "u = 0.2 mm"\n[limits]\ns = "<= 0.5 mm"\n'
+    folder = grouped.write(tmp_path, more=more)
+    assert main(["budget", "s", str(folder), "--draws", "20000"]) == 0
+    told = capsys.readouterr().out
+    found = re.search(r"Monte Carlo, 20000 draws: median ([\d.]+) mm, u = ([\d.]+) mm", told)
+    assert found is not None
+    rng = np.random.default_rng(3)
+    drawn = np.array([float(y) for _, y in grouped.FEW]) + rng.normal(0, 0.2, (20000, 7))
+    own = [np.array([n for n, (word, _) in enumerate(grouped.FEW) if word == each]) for each in "ABC"]
+    squares = sum(((drawn[:, at] - drawn[:, at].mean(axis=1, keepdims=True)) ** 2).sum(axis=1) for at in own)
+    s = np.sqrt(squares / 4)
+    assert [float(each) for each in found.groups()] == pytest.approx([np.median(s), s.std()], rel=0.02)
+    assert "by 20000 draws" in told
+
+
 def test_a_reading_that_is_missing_is_left_out(tmp_path: Path) -> None:
     rows = tuple((word, "" if n == 2 else y) for n, (word, y) in enumerate(grouped.FEW))
     code = grouped.METHOD.replace("    instrument =", '    x = measured("mm", "another")\n    instrument =')

@@ -208,6 +208,24 @@ def test_sums_of_a_result_and_what_is_counted_beside_them_are_of_the_same_rows(t
     assert float(report["mean_x"]) == pytest.approx(np.mean([1, 2, 3, 4, 6]))
 
 
+def test_results_that_share_a_sum_are_of_the_same_rows(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of a mean of rows 2 to 4 and one of all rows, the product was of neither."""
+    more = ("c = measured", "a_m = let(mean(a)", "b_m = let(mean(b)", "c_m = let(mean(c)")
+    texts = ('("mm", "third")', ', "of a")', ', "of b")', ', "of c")')
+    lines = [*map("{}{}".format, more, texts), 'P = let(a_m * b_m, "one")', 'Q = let(a_m * c_m, "other")']
+    code = "\n    ".join(
+        [METHOD.partition("    both")[0].rstrip().replace("mean_a mean_both", "P Q"), *lines, ""]
+    )
+    table = "a [mm],b [mm],c [mm]\n1.0,,1.0\n2.0,2.0,3.0\n5.0,1.0,1.0\n5.0,1.0,1.0\n"
+    folder = readings(tmp_path / "r", table, '[expected]\n"b[1]" = "lost"\n', code)
+    values = Study(folder).computed.values
+    assert [1e6 * values.scalar(name) for name in "PQ"] == pytest.approx([4 * 4 / 3, 4 * 5 / 3], rel=1e-14)
+    assert main(["check", str(folder)]) == 0
+    assert len(re.findall(r"^engine ", capsys.readouterr().out, re.MULTILINE)) >= 1
+
+
 def test_every_engine_counts_alike(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = "x [m],y [m]\n1,2.1\n2,3.9\n3,\n4,8.2\n,9\n6,12.1\n"
     main(["check", str(readings(tmp_path / "r", table, code=SUMS))])

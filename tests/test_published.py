@@ -134,7 +134,7 @@ def test_one_number_without_an_index_is_judged(
     published(tmp_path, f"H.1,{cell},,{value},K")
     code, out = check()
     assert code == bool(verdict)
-    assert f"published  1 value: {0 if verdict else 1} print the same" in out
+    assert f"published  1 value: {'0 print' if verdict else '1 prints'} the same" in out
     assert verdict in out
 
 

@@ -184,7 +184,7 @@ class InGroups:
         return _joined([own.number for own in self.groups])
 
     def _each(self, terms: Any) -> Iterator[tuple[Kept | KeptIntervals, Any]]:
-        has_rows = np.shape(terms)[-1:] == (self.size,)
+        has_rows = getattr(terms, "shape", ())[-1:] == (self.size,)  # of intervals, too
         for own, where in zip(self.groups, self.where, strict=True):
             yield own, terms[..., where] if has_rows else terms
 

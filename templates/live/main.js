@@ -4,9 +4,8 @@ const page = {
   history: null, look: null, issued: null, tables: [], kept: [], stale: [], loose: [], places: null, marked: [], panel: null, hadMissing: false,
 };
 
-function lookAt(state, issued) {
-  return new Look(new Trace(PROGRAM, LIVE.columns, computeSheet(PROGRAM, LIVE.columns, state, LIVE.groups)), state, issued);
-}
+const lookAt = (state, issued) =>
+  new Look(new Trace(PROGRAM, LIVE.columns, computeSheet(PROGRAM, LIVE.columns, state, LIVE.groups)), state, issued);
 
 const say = (sentence) => {
   byId("live-said").textContent = sentence;
@@ -178,23 +177,10 @@ function writeFigures(look) {
 function writeToolbar(edited) {
   const { history } = page, count = differences(history.now, history.issued);
   const differ = count === 1 ? "1 input differs" : `${count} inputs differ`;
-  const what = `Edited: ${count ? differ : `the order of the ${ROWS} differs`} from the report as issued.`;
-  byId("live-banner").textContent = edited ? what + lost(page.look) : "";
+  byId("live-banner").textContent = edited ? `Edited: ${count ? differ : `the order of the ${ROWS} differs`} from the report as issued.${lost(page.look)}` : "";
   byId("live-reset").disabled = !edited;
   byId("live-undo").disabled = history.place === 0;
   byId("live-redo").disabled = history.place === history.states.length - 1;
-}
-
-// Which results had a value as issued and have none now; if none, which other cells, and so all that needs them.
-function lost({ trace }) {
-  const was = page.issued.trace, gone = LIVE.headline.filter((name) => was.isOk(name, 0) && !trace.isOk(name, 0));
-  const begun = trace.errors.filter(({ name, row }) => {
-    const before = was.row(name, trace.index(name, row));
-    return !LIVE.columns[name].of && (before < 0 || was.isOk(name, before)); // an input, not its uncertainty as well
-  });
-  const what = gone.length ? gone : begun.map(({ name, row }) => trace.address(name, row)), more = what.length - MOST_DRAWN;
-  if (!what.length) return "";
-  return ` Without a value now: ${what.slice(0, MOST_DRAWN).join(", ")}${more > 0 ? ` and ${more} more` : ""}${gone.length ? "" : ", and what needs it"}.`;
 }
 
 // One sentence about the result, for those who cannot see it change.

@@ -35,6 +35,18 @@ function writePanel(look) {
   results.scrollTop = scrollTop;
 }
 
+// Which results had a value as issued and have none now; if none, which other cells, and so all that needs them.
+function lost({ trace }) {
+  const was = page.issued.trace, gone = LIVE.headline.filter((name) => was.isOk(name, 0) && !trace.isOk(name, 0));
+  const begun = trace.errors.filter(({ name, row }) => {
+    const before = was.row(name, trace.index(name, row));
+    return !LIVE.columns[name].of && (before < 0 || was.isOk(name, before)); // an input, not its uncertainty as well
+  });
+  const what = gone.length ? gone : begun.map(({ name, row }) => trace.address(name, row)), more = what.length - MOST_DRAWN;
+  if (!what.length) return "";
+  return ` Without a value now: ${what.slice(0, MOST_DRAWN).join(", ")}${more > 0 ? ` and ${more} more` : ""}${gone.length ? "" : ", and what needs it"}.`;
+}
+
 function placePanel() {
   if (!page.panel) return;
   const around = page.panel.parentElement, table = around.querySelector(".table table");
