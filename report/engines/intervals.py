@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from . import elementary
 
-__all__ = ["Intervals", "whole"]
+__all__ = ["Intervals", "joined", "whole"]
 
 Array = NDArray[np.float64]
 
@@ -157,6 +157,13 @@ def _written(number: float) -> Intervals:
     """A number of a program."""
     exact = not np.isfinite(number) or number.is_integer()
     return Intervals(number, number) if exact else Intervals(_below(number), _above(number))
+
+
+def joined(parts: Sequence[Intervals]) -> Intervals:
+    """Those of all parts beside one another, along the last dimension."""
+    return Intervals(
+        *(np.concatenate([getattr(part, end) for part in parts], axis=-1) for end in ("low", "high"))
+    )
 
 
 def whole(shape: tuple[int, ...]) -> Intervals:

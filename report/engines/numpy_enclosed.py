@@ -8,14 +8,14 @@ of the sums, with what rounding may have done to them, is intervals again.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .intervals import Intervals, whole
+from .intervals import Intervals, joined, whole
 from .isolation import Isolated, isolate
 from .kernels import Array, Enclosing
 from .numpy_rows import KeptBetween, KeptIntervals
@@ -108,7 +108,7 @@ class EnclosedRows:
         blocks = [slice(n, n + each) for n in range(0, max(len(rows), 1), each)]
         found = [self._block(rows[block], low[block], high[block]) for block in blocks]
         values, slopes, hopeless = zip(*found, strict=True)
-        return _joined(values), _joined(slopes), np.concatenate(hopeless)
+        return joined(values), joined(slopes), np.concatenate(hopeless)
 
     def _block(self, rows: NDArray[np.intp], low: Array, high: Array) -> tuple[Intervals, Intervals, Mask]:
         middle = low if self.by_points else low + (high - low) / 2
@@ -161,7 +161,3 @@ class EnclosedRows:
         except TypeError:  # intervals do not know some function
             parts = (whole((1,)), whole((1,)), np.zeros(1))
         return [Intervals.of(part).broadcast((len(rows), 1))[:, 0] for part in parts]
-
-
-def _joined(parts: Sequence[Intervals]) -> Intervals:
-    return Intervals(*(np.concatenate([getattr(part, end) for part in parts]) for end in ("low", "high")))

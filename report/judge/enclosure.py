@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cells.layout import Layout, rows_of
-from ..engines.intervals import Intervals, whole
+from ..engines.intervals import Intervals, joined, whole
 from ..engines.numpy import Program
 from ..engines.numpy_enclosed import EnclosedRows
 from ..engines.numpy_root import RootProgram
@@ -304,11 +304,8 @@ class _Along(Along):
         if not node.by_order:
             return found
         rows = self.chain.named(node, slope)
-        assert node.over is not None
         terms = self.cells.value[by].where(self.cells.sure[by]).take(rows)
-        each = [_shares(terms[own], node.word) for own in self.chain.layouts[node.over].groups]
-        shares = Intervals(*(np.concatenate([getattr(one, end) for one in each]) for end in ("low", "high")))
-        return shares * found  # type: ignore[no-any-return]
+        return joined([_shares(terms[own], node.word) for own in self.groups(node)]) * found  # type: ignore[no-any-return]
 
     def ended(self, node: Local) -> None:
         """What may have no value may have any derivative by what it rests on."""

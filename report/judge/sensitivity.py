@@ -67,6 +67,11 @@ class Along:
                         self.whole[..., self.chain.scalars[node.name] - self.chain.number, :] = own[..., 0, :]
         return self
 
+    def groups(self, node: Local) -> list[slice]:
+        """Where the rows of each group stand, of which something is taken."""
+        assert node.over is not None
+        return self.chain.layouts[node.over].groups
+
     def slope(self, node: Local, slope: Slope) -> Any:
         """The values of a slope (..., rows); nothing where a sum leaves a row out."""
         raise NotImplementedError
@@ -162,11 +167,6 @@ class Numbers(Along):
         """How much of the change of each row counts by its place, in its group if rows stand in groups."""
         value = np.where(self.summed(node), self.values.value[name][..., rows], np.inf)
         return np.concatenate([self._shared(node, value[..., own]) for own in self.groups(node)], axis=-1)
-
-    def groups(self, node: Local) -> list[slice]:
-        """Where the rows of each group stand, of which something is taken."""
-        assert node.over is not None
-        return self.chain.layouts[node.over].groups
 
     def _shared(self, node: Local, value: Array) -> Array:
         """The same of the rows of one group: rows with one value share it."""

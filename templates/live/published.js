@@ -49,7 +49,7 @@ function writeTally(found) {
   if (!element) return;
   const count = (verdict) => found.filter((one) => one.verdict === verdict).length;
   const differing = count("differs"), unchecked = count("no value"), surprises = found.filter((one) => one.finding).length;
-  const parts = [`Of ${found.length} published value${found.length > 1 ? "s" : ""}, ${comes(count("same"))} out as printed`];
+  const parts = [`Of ${plural(found.length, "published value")}, ${comes(count("same"))} out as printed`];
   if (differing) parts.push(` and ${differing} ${differing === 1 ? "differs" : "differ"}`);
   if (unchecked) parts.push(`; ${unchecked} could not be compared`);
   const sentences = [`${parts.join("")}. `, element.querySelector("a")];
@@ -63,7 +63,7 @@ function writeTally(found) {
 
 // The line that sums up one table of the source: rewritten behind its title.
 function writeGroup(place, rows, called, found) {
-  const element = all("#published > ul > li")[place], start = `: of ${rows.length} value`;
+  const element = all("#published > ul > li")[place], start = `: of ${plural(rows.length, "value")}`;
   const node = element && Array.from(element.childNodes).find((one) => one.nodeType === Node.TEXT_NODE && one.data.includes(start));
   if (!node) return;
   while (node.nextSibling) node.nextSibling.remove();
@@ -74,6 +74,6 @@ function writeGroup(place, rows, called, found) {
   const off = furthest && same < found.length
     ? `; the furthest is off by ${distanceText(furthest.distance)} units, ${furthest.again} against the published ${furthest.text}${of}`
     : "";
-  const text = `${node.data.slice(0, node.data.indexOf(start))}${start}${rows.length > 1 ? "s" : ""} ${comes(same)} out as printed${off}.`;
+  const text = `${node.data.slice(0, node.data.indexOf(start))}${start} ${comes(same)} out as printed${off}.`;
   if (node.data !== text) node.data = text;
 }
