@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from functools import cached_property
 from typing import Any
@@ -209,6 +209,12 @@ class Values:
                 layout = self.layouts[axis.name]
                 found[axis.name] = layout.labels[np.argsort(layout.rows[axis.of.index_name]), 0].tolist()
         return found
+
+    def of_batch(self, block: slice) -> Values:
+        """Those of a part of the only dimension of a batch."""
+        value = {name: own[block] if own.ndim > 1 else own for name, own in self.value.items()}
+        status = {name: own[block] if own.ndim > 1 else own for name, own in self.status.items()}
+        return replace(self, value=value, status=status)
 
     def labels(self, column: Column) -> list[tuple[int, ...]]:
         """How the rows of a column are called; one empty label for a scalar."""

@@ -7,7 +7,8 @@ What cancels between two ways cancels.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
@@ -22,6 +23,9 @@ from .chain import Chain, Numbered, Pattern
 __all__ = ["Along", "Numbers"]
 
 Array = NDArray[np.float64]
+
+AT_ONCE = 1 << 22
+"""Entries."""
 
 
 class Along:
@@ -118,13 +122,29 @@ class Numbers(Along):
     def __init__(self, chain: Chain, values: Values) -> None:
         batch = np.broadcast_shapes(*(own.shape[:-1] for own in values.value.values()))
         super().__init__(chain, np.zeros, batch)
-        self.values, self.parts = values, parts(chain.made.program, values, chain.laid)
+        self.values = values
         self.odd = {name for name, codes in values.status.items() if codes.any()}
         self.kept = {
             column.name: rows_kept(chain.laid.named[column.name], chain.layouts, values.status)
             for column in values.sheet.columns
             if self.odd and values.sheet.summed_axes(column)
         }
+
+    @cached_property
+    def parts(self) -> dict[str, Array]:
+        """What the slopes are made of."""
+        return parts(self.chain.made.program, self.values, self.chain.laid)
+
+    def go(self) -> Self:
+        """Take all steps, of a long batch for as many sheets at once as a processor's cache holds."""
+        some = max(1, AT_ONCE // self.chain.length)
+        if len(self.batch) != 1 or self.batch[0] <= some:
+            return super().go()
+        for first in range(0, self.batch[0], some):
+            block = slice(first, first + some)
+            own = Numbers(self.chain, self.values.of_batch(block)).go()
+            self.entries[block], self.whole[block] = own.entries, own.whole
+        return self
 
     def at(self, cells: Sequence[tuple[str, int]]) -> Array:
         """The derivatives of some cells by the sources of the chain.
@@ -140,11 +160,15 @@ class Numbers(Along):
             In SI; NaN for a cell without a value, and where nothing is known.
         """
         found: Array = self.derivatives(self.chain.cells(cells), len(cells))
+        for n, odd in self.without_value(cells):
+            found[..., n, :] = np.where(odd[..., None], np.nan, found[..., n, :])
+        return found
+
+    def without_value(self, cells: Sequence[tuple[str, int]]) -> Iterator[tuple[int, NDArray[np.bool_]]]:
+        """Which of some cells may have no value, and where in the batch they have none (...,)."""
         for n, (name, row) in enumerate(cells):
             if name in self.odd:
-                odd = self.values.status[name][..., row, None] != Status.OK
-                found[..., n, :] = np.where(odd, np.nan, found[..., n, :])
-        return found
+                yield n, self.values.status[name][..., row] != Status.OK
 
     def slope(self, node: Local, slope: Slope) -> Array:
         """Those of what is taken by order count for the rows that it takes."""

@@ -95,7 +95,9 @@ class Spread:
         if self.sources and SecondOrder.is_small(values, self.sources):
             self._program = self._program or Program.of(values.sheet)
             root = root_of(len(self.sources), self._pairs)
-            self.second = SecondOrder(self._chain, values, self._program, self.sources, root, self._by_source)
+            weights = np.zeros((size, len(self.sources)))
+            np.add.at(weights, (self._by, np.array([n for n, *_ in moves])), self._u)
+            self.second = SecondOrder(self._chain, values, self._program, self.sources, root, weights)
 
     def _lies_as(self, other: Spread) -> bool:
         """Whether all rows stand where those of another do, so that the same ways lead between cells."""

@@ -7,7 +7,7 @@ changes are taken from sheets that are computed a little to either side.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,9 +72,8 @@ class SecondOrder:
     sources : sequence of ErrorSource
     root : float array (sources, sources)
         What makes the errors of independent ones: its product with its transpose is their correlation matrix.
-    by_source : callable
-        Takes derivatives by the given numbers (..., cells, numbers); returns those by the sources, in
-        standard uncertainties (..., cells, sources).
+    weights : float array (numbers, sources)
+        By how much a standard uncertainty of each source moves the numbers that derivatives are taken by.
     """
 
     def __init__(
@@ -84,10 +83,9 @@ class SecondOrder:
         program: Program,
         sources: Sequence[ErrorSource],
         root: Array,
-        by_source: Callable[[Array], Array],
+        weights: Array,
     ) -> None:
-        self.sources, self.root, self.by_source = sources, root, by_source
-        self._mixed = not np.array_equal(root, np.eye(len(sources)))
+        self.sources, self.root, self.weights = sources, root, weights @ root
         own = np.array([s.law.kurtosis if s.law else _FOURTH.get(s.shape, 3.0) for s in sources])
         leans = np.array([s.law.skewness if s.law else 0.0 for s in sources])
         alone = np.count_nonzero(root, axis=0) == 1  # what is mixed of several is taken as normal
@@ -110,6 +108,10 @@ class SecondOrder:
         """What rests on a function that has a corner: near it, derivatives jump."""
         beside = _beside(values, program, sources, root)
         self._along = Numbers(chain, beside).go()
+        with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
+            self._through = self._along.whole @ self.weights
+        """The derivatives of computed scalars by the errors (steps, scalars, errors)."""
+        self._uses = (self._through != 0).any(axis=0)
         moved = other_rows(beside, values)
         self.torn = {
             column.name
@@ -149,16 +151,14 @@ class SecondOrder:
             near to its own, has it of sums over other rows, or rests on what is taken by order; and where
             terms that count come from a function with corners.
         """
-        beside, first = map(self._independent, (self.by_source(self._along.at(cells)), first))
-        # The cells of a row rest on few of all sources, of which there may be some hundreds.
-        used = np.flatnonzero((beside != 0).any(axis=(0, 1)) | (first != 0).any(axis=0))
-        up, down = (half[np.ix_(used, np.arange(len(cells)), used)] for half in np.split(beside, 2))
-        first, fourth, third_moment = first[:, used], self.fourth[used], self.third[used]
         with np.errstate(all="ignore"):
-            # [cell, i, j]: by source i and source j, and by i and twice by j
-            second = np.moveaxis(up - down, 0, -1) / (2 * STEP)
-            third = np.moveaxis(up - 2 * first + down, 0, -1) / STEP**2
-            itself = np.eye(used.size, dtype=bool)
+            used, up, down = self._nearby(cells)
+            first = np.take_along_axis(first @ self.root, used, axis=1)
+            fourth, third_moment = self.fourth[used][:, None, :], self.third[used][:, None, :]
+            # [cell, i, j]: by error i and error j, and by i and twice by j
+            second = np.swapaxes(up - down, 1, 2) / (2 * STEP)
+            third = np.swapaxes(up - 2 * first[:, None, :] + down, 1, 2) / STEP**2
+            itself = np.eye(used.shape[1], dtype=bool)
             bends = second**2 * np.where(itself, (fourth - 1) / 4, 1 / 2)
             turns = first[:, :, None] * third * np.where(itself, fourth / 3, 1.0)
             turns += first[:, :, None] * second * np.where(itself, third_moment, 0.0)
@@ -172,9 +172,55 @@ class SecondOrder:
             found: Array = np.where(unknown | sharp, np.nan, np.where(little, 0.0, more))
         return found
 
-    def _independent(self, derivatives: Array) -> Array:
-        """Derivatives by the independent errors that the sources are made of."""
-        return derivatives @ self.root if self._mixed else derivatives
+    def _nearby(self, cells: Sequence[tuple[str, int]]) -> tuple[NDArray[np.intp], Array, Array]:
+        """The independent errors that some cells rest on, and derivatives a step up and down along each.
+
+        Returns
+        -------
+        integer array (cells, errors)
+            Their numbers. Cells that rest on fewer than others have some on which they do not rest.
+        float arrays (cells, errors, errors)
+            At [cell, i, j] a step along i, by j.
+        """
+        along, half = self._along, len(self.sources)
+        pattern = along.chain.cells(cells)
+        direct = pattern.by < len(self.weights)
+        rows, by, at = pattern.rows[direct], pattern.by[direct], pattern.entries[direct]
+        place = _places(rows)
+        entries = np.zeros((len(cells), place.max(initial=-1) + 1), dtype=np.intp)
+        weights = np.zeros((*entries.shape, half))
+        entries[rows, place], weights[rows, place] = at, self.weights[by]
+        rows, by, at = pattern.rows[~direct], pattern.by[~direct], pattern.entries[~direct]
+        scalars = by - len(self.weights)
+        uses = (weights != 0).any(axis=1)
+        np.logical_or.at(uses, rows, self._uses[scalars])
+        used = np.argsort(~uses, axis=1, kind="stable")[:, : uses.sum(axis=1).max(initial=0)]
+        weights = np.take_along_axis(weights, used[:, None, :], axis=2)
+        # The rows of a column name the same scalars: all of them at once, along every error.
+        named, which = np.unique(scalars, return_inverse=True)
+        by_scalars = np.zeros((2 * half, len(cells), named.size))
+        by_scalars[:, rows, which] = along.entries[:, at]
+        through, cell = by_scalars @ self._through[:, named], np.arange(len(cells))[:, None, None]
+
+        def beside(step: NDArray[np.intp]) -> Array:
+            step = step[:, :, None]
+            own = along.entries[step, entries[:, None, :]] @ weights
+            found: Array = own + through[step, cell, used[:, None, :]]
+            return found
+
+        up, down = beside(used), beside(half + used)
+        for n, odd in along.without_value(cells):
+            up[n, odd[used[n]]] = down[n, odd[half + used[n]]] = np.nan
+        return used, up, down
+
+
+def _places(rows: NDArray[np.intp]) -> NDArray[np.intp]:
+    """The place of each entry among those of its row."""
+    order = np.argsort(rows, kind="stable")
+    first = np.searchsorted(rows[order], rows[order])
+    found = np.empty_like(order)
+    found[order] = np.arange(order.size) - first
+    return found
 
 
 def _has_corner(column: Column) -> bool:
