@@ -18,7 +18,7 @@ from statistics import NormalDist
 from typing import TYPE_CHECKING
 
 from ...derivations.unit_text import UnitError, parse_unit
-from ..distribution import Error, Shape
+from ..distribution import DIVISORS, Error, Shape
 from ..quantity import Bounds, behind, span
 from .number_text import NumberError, read_number
 
@@ -45,6 +45,8 @@ __all__ = [
 ]
 
 EXAMPLE = "U = 0.03, k = 2"
+MOST_K = 64
+"""No factor is larger: that of one degree of freedom is 64 for 99 %."""
 SCATTER = "scatter"
 SHAPES = {
     "rect": Shape.RECTANGULAR,
@@ -100,6 +102,11 @@ class _Part:
     table: str = ""
     draws: Draws | None = None
     """In SI, from the table of that name."""
+
+    @property
+    def share(self) -> float:
+        """What of the number itself its standard uncertainty is, or a part of that."""
+        return float(self.relative / self.divisor) / DIVISORS[self.shape]
 
     def of(self, printed: Printed, sample: str) -> Error:
         """The error of a number; what has no unit of its own has the number's."""
@@ -418,9 +425,17 @@ def _keys(fields: list[tuple[str, int]], allowed: set[str]) -> Iterator[tuple[st
         except NumberError:
             raise StatementError("LS431", field, start, "behind the sign stands a number") from None
         whole = number.denominator == 1
-        fits = {"p": 0 < number < 1, "n": number >= 2 and whole and not percent}
+        fits = {
+            "p": 0 < number < 1,
+            "n": number >= 2 and whole and not percent,
+            "k": 0 < number <= MOST_K and not percent,
+        }
         if not fits.get(name, number > 0 and not percent):
-            hints = {"p": "a probability is between 0 and 1, or 95 %", "n": "two readings or more"}
+            hints = {
+                "p": "a probability is between 0 and 1, or 95 %",
+                "n": "two readings or more",
+                "k": "k is 2 or 3, say, and hardly more; a coverage probability is p = 95 %",
+            }
             raise StatementError("LS431", field, start, hints.get(name, "it must be greater than 0"))
         seen.add(name)
         yield name, number

@@ -121,10 +121,10 @@ class Stated:
         )
 
     @staticmethod
-    def again(error: Error, unit: str) -> StatedErrors | None:
+    def again(said: str, unit: str, shape: Shape) -> StatedErrors | None:
         """What the text behind a number says; None if it is no statement that stands alone."""
         try:
-            return read_statement(error.said, parse_unit(unit), error.shape)
+            return read_statement(said, parse_unit(unit), shape)
         except StatementError:
             return None
 

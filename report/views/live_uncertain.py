@@ -123,7 +123,7 @@ def _stated(said: Any, sample: str) -> list[dict[str, Any]]:
 
 def _error(report: Report, printed: Printed, error: Error) -> dict[str, Any]:
     """An error of one number; what its own text says in shares of it follows an edit, all else stays."""
-    said = report.inputs.uncertainty.again(error, printed.unit)
+    said = report.inputs.uncertainty.again(error.said, printed.unit, error.shape)
     part = _stated(said, "")[0] if said else {}
     sizes = part if "share" in part or "digits" in part else {"u": error.u}
     return sizes | _kind(error.shape, error.dof, error.said, error.sample)

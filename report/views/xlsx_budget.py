@@ -1,8 +1,9 @@
 """The worksheet of uncertainty budgets: of every result, as EA-4/02 lays them out, in live formulas.
 
 Estimates are cells of the sheet; standard uncertainties, degrees of freedom and distributions may be changed.
-Only sensitivities are numbers as issued, for a spreadsheet has no derivatives; so is what is told of a sum of
-errors that are not all normal, for it does not convolve. Where sources were edited it says what it takes.
+How readings scatter and what is a share of a number follow those cells, too. Only sensitivities are numbers
+as issued, for a spreadsheet has no derivatives; so is what is told of a sum of errors that are not all
+normal, for it does not convolve. Where sources were edited it says what it takes.
 """
 
 from __future__ import annotations
@@ -14,10 +15,11 @@ from typing import Any
 
 from ..cells.grid import CellBlock, Grid, checked
 from ..distribution import DOMINANT, Shape
+from ..inputs.stated import SCATTER
 from ..quantity import behind
 from ..result.numbers import rounded
 from ..result.result import Report
-from ..result.uncertain import Budget, Contribution
+from ..result.uncertain import Budget, Contribution, ErrorSource
 from .xlsx_limits import MOST_DOF, SHAPES, as_issued, write_limits
 from .xlsx_style import Style, height, number_format
 
@@ -34,6 +36,8 @@ _COLUMNS = (
     ("contribution", 15),
     ("share of the variance", 12),
 )
+_NONE = 1e-12
+"""Of an uncertainty, what is left of it besides a share is this small where nothing is."""
 _UNLIMITED = 10.0**15
 """Stands for infinitely many degrees of freedom."""
 _DOF = '[>=1000000000]"∞";General'
@@ -108,12 +112,14 @@ class _Written:
             style.formula(sheet, row, 1, f"={allowed}", block.place.of(each.estimate), style("number"))
         style.text(sheet, row, 2, block.unit, "unit")
         style.text(sheet, row, 4, source.shape.value, "input")
-        dof = min(source.dof, _UNLIMITED)
-        sheet.write_number(row, 5, dof, style("input", _DOF))
+        dof, size, number = min(source.dof, _UNLIMITED), self.size(row, each), ""
+        if source.said == SCATTER:
+            size, number = (f"{what}({self.readings(source)})" for what in ("=STDEV", "=COUNT"))
+        self.number(row, 5, number and f"{number}-1", dof, _DOF)
         contribution = each.u / self.scale
         if source.u:
             u = source.u / scale
-            sheet.write_number(row, 3, u, style("input", number_format(report.sure(name, source.u))))
+            self.number(row, 3, size, u, number_format(report.sure(name, source.u)))
             sheet.write_number(
                 row, 6, contribution / u, style("number", number_format(rounded(contribution / u, 4)))
             )
@@ -124,6 +130,28 @@ class _Written:
         formula = f"=H{row + 1}*(H{row + 1}{self.correlated(row)})/$B${self.last + 3}^2"
         style.formula(sheet, row, 8, formula, each.share, style("number", "0.0%"))
 
+    def number(self, row: int, column: int, formula: str, now: float, form: str) -> None:
+        """A number that follows others; without a formula one that may be changed."""
+        if formula:
+            self.style.formula(self.sheet, row, column, formula, now, self.style("number", form))
+        else:
+            self.sheet.write_number(row, column, now, self.style("input", form))
+
+    def readings(self, source: ErrorSource) -> str:
+        """The cells of the readings that an error is estimated from."""
+        return self.grid[checked(source.moves[0][0])].place.range()
+
+    def size(self, row: int, each: Contribution) -> str:
+        """The formula of a standard uncertainty of which a share of the estimate is a part; else nothing."""
+        source, block = each.source, self.grid[each.source.moves[0][0]]
+        place, said = block.place, self.report.inputs.uncertainty.again(source.said, block.unit, source.shape)
+        if not (said and said.parts[0].share and source.u and each.estimate is not None and not place.zero):
+            return ""
+        share, estimate = said.parts[0].share, abs(place.of(each.estimate))
+        fixed = source.u / float(place.scale) - share * estimate
+        more = f"{fixed:+.15g}" if abs(fixed) > _NONE * share * estimate else ""
+        return f"={share:.15g}*ABS(B{row + 1}){more}"
+
     def correlated(self, row: int) -> str:
         """What correlated sources add to a contribution."""
         rows = self.rows
@@ -131,7 +159,7 @@ class _Written:
         for pair, r in self.budget.correlations.items():
             first, second = (rows[name] for name in pair)
             if row in (first, second):
-                told += f"+({r:.15f})*H{(second if row == first else first) + 1}"
+                told += f"+({self.coefficient(pair, r)})*H{(second if row == first else first) + 1}"
         return told
 
     @property
@@ -275,9 +303,17 @@ class _Written:
         """What correlated pairs of sources add to the variance."""
         rows = self.rows
         return "".join(
-            f"+2*({r:.15f})*H{rows[one] + 1}*H{rows[other] + 1}"
+            f"+2*({self.coefficient((one, other), r)})*H{rows[one] + 1}*H{rows[other] + 1}"
             for (one, other), r in self.budget.correlations.items()
         )
+
+    def coefficient(self, pair: tuple[str, str], r: float) -> str:
+        """A correlation coefficient; that of paired readings follows them."""
+        known = {each.source.name: each.source for each in self.budget.contributions}
+        sources = [known[name] for name in pair]
+        if self.report.inputs.uncertainty.paired and all(each.said == SCATTER for each in sources):
+            return f"CORREL({','.join(map(self.readings, sources))})"
+        return f"{r:.15f}"
 
     def factor(self, own: str, at: Mapping[str, str], budget: Budget) -> str:
         """The coverage factor: of the shape of a source that dominates, else of t or normal.

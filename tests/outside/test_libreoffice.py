@@ -348,3 +348,52 @@ def test_a_budget_is_recalculated_to_the_same(require: Callable[..., str], tmp_p
         assert {at: again[at] for at in told} == told
         decided |= {value for value in told.values() if value in set(Decision)}
     assert decided == set(Decision)
+
+
+READINGS = """from loopsheet import Method, given, let, mean, measured
+
+
+class Readings(Method):
+    V = measured("V", "a voltage")
+    W = measured("V", "another, read at the same time")
+    S = given("V", "what a shunt adds")
+    D = let(mean(V) - 2 * mean(W) + S, "what is sought")
+"""
+
+
+def test_uncertainties_of_an_edited_workbook_follow_its_readings(
+    require: Callable[..., str], tmp_path: Path
+) -> None:
+    """How readings scatter, how they correlate, and what is a share of a number, as a rebuild has them."""
+    voltages = [(5.007, 9.663), (4.994, 9.639), (5.005, 9.640), (4.990, 9.685), (4.999, 9.678)]
+
+    def delivered(name: str, first: float, shunt: float) -> spreadsheets.Delivered:
+        folder = tmp_path / name
+        folder.mkdir()
+        rows = "".join(
+            f"{n},{v},{w}\n" for n, (v, w) in enumerate([(first, voltages[0][1]), *voltages[1:]], 1)
+        )
+        (folder / "workbook.py").write_text(READINGS, encoding="utf-8")
+        (folder / "d.csv").write_text(f"test,V [V],W [V]\n{rows}", encoding="utf-8")
+        (folder / "report.toml").write_text(
+            f'workbook = "workbook.py"\n[parameters]\nS = "{shunt} V, u = 0.05 % of reading + 1 mV"\n'
+            '[measurements]\nfile = "d.csv"\n[uncertainty]\npaired = ["V", "W"]\n',
+            encoding="utf-8",
+        )
+        return spreadsheets.deliver(folder)
+
+    before, after = delivered("before", 5.007, 4.0), delivered("after", 5.057, 9.0)
+    edited = before.edited({("V", 0): 5.057, ("S", 0): 9.0})
+    soffice = require("soffice", "libreoffice")
+    read = spreadsheets.recalculate(soffice, tmp_path / "office", {"edited": edited})["edited"]["uncertainty"]
+    expected = spreadsheets.cells_of(after.content)["uncertainty"]
+    stale = spreadsheets.cells_of(before.content)["uncertainty"]
+    sizes = {
+        str(said): (read[cell], number, stale[cell])
+        for at, said in expected.items()
+        if at.startswith("A") and isinstance(number := expected.get(cell := f"B{at[1:]}"), float | int)
+    }
+    for name in ("value", "standard uncertainty u", "coverage factor k", "expanded uncertainty U"):
+        again, now, then = sizes[name]
+        assert again == pytest.approx(now, rel=1e-9)
+        assert now != pytest.approx(then, rel=1e-6) or name == "coverage factor k"
