@@ -50,8 +50,8 @@ recovery, a, asked, pressure, n, over, deceleration = _WORDS.plain(
 LV, LE = _WORDS["ln_v"], _WORDS["ln_e"]
 
 
-def _define(number: str, of: Symbol, value: object, because: str = "definition", part: str = "") -> Equation:
-    return Equation(number, (of, value), because, Kind.DEFINITION, _WORDS[of.name].meaning, part, defines=of)
+def _define(number: str, of: Symbol, value: object, because: str = "definition") -> Equation:
+    return Equation(number, (of, value), because, Kind.DEFINITION, _WORDS[of.name].meaning, defines=of)
 
 
 # The straight line through the logarithms is that of the log-log fit, here of restitution over speed.

@@ -41,9 +41,9 @@ class Material:
 
     # --- names and numbers
 
-    def latex(self, name: str, index: str = "") -> str:
+    def latex(self, name: str) -> str:
         """LaTeX of a cell's name."""
-        return name_latex(name, self.names, index)
+        return name_latex(name, self.names)
 
     def head(self, column: Column) -> Head:
         """The head of a column, without what its numbers need."""
@@ -77,10 +77,10 @@ class Material:
         rows = zip(cells, figures, texts, self.report.marks.of(name), strict=True)
         return head, tuple(Item(cell, head, figure, text, mark) for cell, figure, text, mark in rows)
 
-    def item(self, name: str, index: Iterable[int] = ()) -> Item:
-        """One cell."""
-        row = self.report.values.row(self.report.sheet[name], tuple(index))
-        return self.items(name)[1][row]
+    def item(self, name: str) -> Item:
+        """The cell of a column that has one."""
+        (only,) = self.items(name)[1]
+        return only
 
     def count(self, axis: str) -> int:
         """How many rows an axis has."""

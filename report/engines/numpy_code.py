@@ -13,7 +13,7 @@ from sympy.printing.numpy import NumPyPrinter
 
 from ..plan.nodes import RowOrder, RowSum, taken_over
 from ..sheet import SheetError
-from .kernels import SAME, Kernel
+from .kernels import Kernel
 
 __all__ = ["ArrayPrinter", "kernel", "printed", "text_of", "write"]
 
@@ -148,18 +148,16 @@ def _opposite(expressions: Sequence[Any]) -> dict[Expr, Expr]:
     return found
 
 
-def kernel(expressions: Sequence[Basic], functions: Any = SAME) -> Kernel:
+def kernel(expressions: Sequence[Basic]) -> Kernel:
     """Print expressions in plain symbols as one function of these, sorted by name.
 
     Parameters
     ----------
     expressions : sequence of Basic
         What the function returns, in order.
-    functions : module
-        What it calls: :data:`SAME`, or NumPy.
     """
     totals = taken_over(expressions)
     axes = {Symbol(axis) for axis in totals}
     arguments = sorted(set().union(*(e.free_symbols for e in expressions)) - axes, key=str)
     names = tuple(argument.name for argument in arguments)
-    return Kernel(names, totals, write(arguments, totals, expressions), functions)
+    return Kernel(names, totals, write(arguments, totals, expressions))

@@ -29,9 +29,7 @@ Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
 
 
-def bounds(
-    sheet: Sheet, layouts: Mapping[str, Layout], value: Mapping[str, Array], made: Made | None = None
-) -> dict[str, Array]:
+def bounds(sheet: Sheet, layouts: Mapping[str, Layout], value: Mapping[str, Array]) -> dict[str, Array]:
     """Bound the rounding error of every cell.
 
     Parameters
@@ -40,8 +38,6 @@ def bounds(
     layouts : mapping of axis name to Layout
     value : mapping of column name to float array (rows,)
         All columns in SI; NaN where a cell has no value.
-    made : Made, optional
-        Of the sheet, if it was made before.
 
     Returns
     -------
@@ -49,7 +45,7 @@ def bounds(
         In SI and units of eps, at least the cell's own size; infinite where nothing is known, NaN where
         the cell has no value.
     """
-    made = made or Made.of(sheet, True)
+    made = Made.of(sheet, True)
     status = {name: np.where(np.isnan(each), Status.INPUT, Status.OK) for name, each in value.items()}
     sources, number = {}, 0
     for node in made.nodes:

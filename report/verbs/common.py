@@ -62,10 +62,10 @@ def keeping_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--timing", action="store_true", help="tell at the end where the time went")
 
 
-def result_argument(parser: argparse.ArgumentParser, name: str = "out") -> None:
+def result_argument(parser: argparse.ArgumentParser) -> None:
     """Take what `build` wrote, as :func:`~loopsheet.report.inputs.folders.result` does; else ``out``."""
     said = "what 'build' wrote, or the FOLDER that it was built from (default: out)"
-    parser.add_argument(name, metavar=name.upper(), nargs="?", type=named, help=said)
+    parser.add_argument("out", metavar="OUT", nargs="?", type=named, help=said)
 
 
 def source_argument(parser: argparse.ArgumentParser) -> None:

@@ -60,18 +60,16 @@ def relates(row: str) -> bool:
     return row.startswith("=")
 
 
-def block(sides: Sequence[Terms], room: float = TEXT_WIDTH) -> Typeset:
+def block(sides: Sequence[Terms]) -> Typeset:
     """Break an equation into lines, before a relation or between the terms of a sum.
 
     Parameters
     ----------
     sides : sequence of terms
         Of the equation, or one relation: from :meth:`~loopsheet.report.document.math.MathPrinter.sides`.
-    room : float
-        How wide a line may be, in letters.
     """
     whole = " = ".join(join(side) for side in sides)
-    if width(whole) <= room or (len(sides) == 1 and len(sides[0]) == 1):
+    if width(whole) <= TEXT_WIDTH or (len(sides) == 1 and len(sides[0]) == 1):
         return Typeset("", (whole,))
     first = join(sides[0])
     left = first if len(sides) > 1 and width(first) <= _SHORT else ""
@@ -90,9 +88,9 @@ def block(sides: Sequence[Terms], room: float = TEXT_WIDTH) -> Typeset:
         for number, piece in enumerate(pieces):
             # A chain of equalities has one a line; the zero of "... = 0" stays where the line ends.
             chained = len(sides) > 2 and place > 1 - bool(left)
-            fits = bool(rows) and width(left) + width(rows[-1]) + width(" ".join(pieces)) <= room
+            fits = bool(rows) and width(left) + width(rows[-1]) + width(" ".join(pieces)) <= TEXT_WIDTH
             fresh = not rows or (number == 0 and place > 0 and (chained or not (fits or left)))
-            if fresh or width(left) + width(rows[-1]) + width(piece) + 1 > room:
+            if fresh or width(left) + width(rows[-1]) + width(piece) + 1 > TEXT_WIDTH:
                 rows.append(piece)
             else:
                 rows[-1] += " " + piece

@@ -28,9 +28,9 @@ SHAPES = {shape.value: f'"{shape.value}"' for shape in (*_SHARES, *_LAWS)}
 CHANCE = "0.00%"
 
 
-def as_issued(cell: str, at: float, value: float, unless: str = "NA()") -> str:
+def as_issued(cell: str, at: float, value: float) -> str:
     """A number that is known where a cell is as it was issued, and not when somebody has changed it."""
-    return f"IF(ABS({cell}-({at:.15f}))<0.000001,{value:.15f},{unless})" if math.isfinite(at) else "0"
+    return f"IF(ABS({cell}-({at:.15f}))<0.000001,{value:.15f},NA())" if math.isfinite(at) else "0"
 
 
 class _Written:

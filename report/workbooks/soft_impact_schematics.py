@@ -62,19 +62,19 @@ def _closed(compression: Expr, restitution: Expr, x: Array, back: Array) -> tupl
     return Branch(x, force(compression, x, C=coefficient)), Branch(back, force(restitution, back))
 
 
-def lankarani(samples: int = SAMPLES) -> tuple[Branch, Branch]:
+def lankarani() -> tuple[Branch, Branch]:
     """Equation (2): both branches as they stand in its cases."""
     # The author's own form: evaluated, the cases lose the second, whose domain lies in the first's.
     up, down = (case.expr.xreplace({model.C_LN: model.C}) for case in model.eq2.members[-1].args)
     x_m, x_p = SCHEMATIC["x_m"], SCHEMATIC["x_p"]
-    return _closed(up, down, np.linspace(0.0, x_m, samples), np.linspace(x_p, x_m, samples))
+    return _closed(up, down, np.linspace(0.0, x_m, SAMPLES), np.linspace(x_p, x_m, SAMPLES))
 
 
-def hysteresis(samples: int = SAMPLES) -> tuple[Branch, Branch, Branch, Branch]:
+def hysteresis() -> tuple[Branch, Branch, Branch, Branch]:
     """Equation (3) up and down without friction, and the loop that friction widens."""
     x_m, x_p = SCHEMATIC["x_m"], SCHEMATIC["x_p"]
     # Denser towards x_m, where the loop with friction turns round.
-    s = np.sin(np.linspace(0.0, np.pi / 2, samples))
+    s = np.sin(np.linspace(0.0, np.pi / 2, SAMPLES))
     x, back = s * x_m, x_p + s * (x_m - x_p)
     up, down = _closed(model.law_c.value, model.law_r.value, x, back)
     share = _friction_share(s)
