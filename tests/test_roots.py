@@ -21,6 +21,7 @@ from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.engines.numpy_root import RootProgram
+from loopsheet.report.engines.numpy_steps import RootRows
 from loopsheet.report.engines.roots import derivatives, hoist, householder, magnitude, step
 from loopsheet.report.plan.nodes import RowSum
 from loopsheet.report.sheet import Root, Sheet
@@ -228,10 +229,18 @@ def settled(program: RootProgram, values: tuple[Array, Array, Array, Array], ste
     beta, v, e, x_p = values
     named = {"beta": beta, "v_i": v[:, 0], "v_j": v[:, 1], "e_i": e[:, 0], "e_j": e[:, 1]}
     named |= {"x_p_i": x_p[:, 0], "x_p_j": x_p[:, 1]}
-    with np.errstate(all="ignore"):
-        fewer = replace(program, steps=steps)
-        found = fewer.solve(named, {}, (len(beta),))
-    return int(np.count_nonzero(found.status == Status.OK)), found.bisected
+    bisected = []
+
+    def counted(rows: RootRows, left: Array, *ends: Array) -> Array:
+        bisected.append(left.size)
+        return bisect(rows, left, *ends)
+
+    bisect = RootRows._bisect
+    with np.errstate(all="ignore"), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(RootRows, "_bisect", counted)
+        patch.setattr(RootProgram, "_several", lambda *_: {})  # those of rows with two roots do not count
+        found = replace(program, steps=steps).solve(named, {}, (len(beta),))
+    return int(np.count_nonzero(found.status == Status.OK)), sum(bisected)
 
 
 def test_the_steps_settle_all_but_a_few_rows_and_the_others_are_bisected() -> None:

@@ -40,8 +40,6 @@ class FoundRoots:
     several : mapping of position to tuple of float
         For ambiguous rows, the values of all roots, increasing; for undecided ones, the ends of the part of
         the unknown's interval where it was not decided.
-    bisected : int
-        How many rows the steps did not settle.
     unknown : float array
         Where the equation vanishes; anything where there is not one root.
     """
@@ -49,7 +47,6 @@ class FoundRoots:
     value: Array
     status: NDArray[np.uint8]
     several: Mapping[int, tuple[float, ...]]
-    bisected: int
     unknown: Array
 
 
@@ -162,9 +159,9 @@ class RootProgram:
             cells = EnclosedRows(counted_by, thin, self.terms_of, masks, shape)
             stretches, doubts = self._isolated(ends, cells, odd)
         if len(stretches) == 1 and not doubts and stretches[0].crosses.all():
-            found, bisected = rows.narrow(stretches[0], ends[_START], stretches[0].crosses)
+            found = rows.narrow(stretches[0], ends[_START], stretches[0].crosses)
             value = rows.call(self.value, found)
-            return FoundRoots(value, np.zeros(shape, dtype=np.uint8), {}, bisected, found)
+            return FoundRoots(value, np.zeros(shape, dtype=np.uint8), {}, found)
         doubtful = np.zeros(odd.size, dtype=bool)
         doubtful[list(doubts)] = True
         # One sign change a stretch at most: the stretches that cross are the roots.
@@ -181,13 +178,13 @@ class RootProgram:
         )
         # Rows have their only root in different stretches; one stretch for all keeps the steps vectorised.
         only = Stretch(left, right, after, alone)
-        found, bisected = rows.narrow(only, ends[_START], alone)
+        found = rows.narrow(only, ends[_START], alone)
         value = np.where(alone, rows.call(self.value, found), np.nan)
         several: dict[int, tuple[float, ...]] = {}
         if len(shape) == 1:
             several |= self._several(stretches, rows, ends[_START], status == Status.TWOROOTS)
             several |= {row: doubts[row] for row in np.flatnonzero(status == Status.UNDECIDED).tolist()}
-        return FoundRoots(value, status.astype(np.uint8), several, bisected, found)
+        return FoundRoots(value, status.astype(np.uint8), several, found)
 
     def _stretches(self, ends: Sequence[Array], rows: RootRows) -> tuple[list[Stretch], Mask]:
         """The stretches between turning points, and where the equation has no sign at one of their ends."""
@@ -240,7 +237,7 @@ class RootProgram:
             which = np.flatnonzero(stretch.crosses & ambiguous)
             if which.size:
                 own, part = rows.only(which), stretch.only(which)
-                root, _ = own.narrow(part, np.broadcast_to(start, rows.shape)[which], part.crosses)
+                root = own.narrow(part, np.broadcast_to(start, rows.shape)[which], part.crosses)
                 for row, value in zip(which.tolist(), own.call(self.value, root).tolist(), strict=True):
                     found[row].append(value)
         return {row: tuple(sorted(roots)) for row, roots in found.items()}

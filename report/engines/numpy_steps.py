@@ -93,28 +93,23 @@ class RootRows:
         ]
         return RootRows(self.program, fewer, self.totals, which.shape)
 
-    def narrow(self, stretch: Stretch, start: Array, wanted: Mask) -> tuple[Array, int]:
-        """The unknown in its bracket, and how many of the wanted rows had to be bisected."""
+    def narrow(self, stretch: Stretch, start: Array, wanted: Mask) -> Array:
+        """The unknown in its bracket, of the wanted rows."""
         here, settled = self._quickly(stretch, start)
-        if settled.all():
-            return here, 0
         rest = wanted & ~settled
         if not rest.any():
-            return here, 0
+            return here
         bracket = stretch.left, stretch.right, np.sign(stretch.after)
         return self._again(rest, here, RootRows._carefully, *bracket, start)
 
-    def _again(
-        self, some: Mask, here: Array, find: Callable[..., tuple[Array, int]], *given: Array
-    ) -> tuple[Array, int]:
+    def _again(self, some: Mask, here: Array, find: Callable[..., Array], *given: Array) -> Array:
         """What is found of some rows alone, beside what others have."""
         if self.totals:
-            found, count = find(self, *given)
-            return np.where(some, found, here), count
+            return np.where(some, find(self, *given), here)
         which, here = np.flatnonzero(some), here.copy()
         own = (np.broadcast_to(each, self.shape).reshape(-1)[which] for each in given)
-        here.reshape(-1)[which], count = find(self.only(which), *own)
-        return here, count
+        here.reshape(-1)[which] = find(self.only(which), *own)
+        return here
 
     def _quickly(self, stretch: Stretch, start: Array) -> tuple[Array, Mask]:
         """Steps that nobody watches, and where they led to a root: near to it, and inside the bracket."""
@@ -147,7 +142,7 @@ class RootRows:
         settled: Mask = np.abs(left) <= NOISE * terms
         return settled
 
-    def _carefully(self, left: Array, right: Array, rising: Array, start: Array) -> tuple[Array, int]:
+    def _carefully(self, left: Array, right: Array, rising: Array, start: Array) -> Array:
         """Steps that stay inside the bracket, and bisection where they do not settle a row."""
         here = np.where((start > left) & (start < right), start, (left + right) / 2)
         done = np.zeros(here.shape, dtype=bool)
@@ -167,16 +162,16 @@ class RootRows:
             if done.all():
                 break
         rest = ~self._settled(here)
-        return self._again(rest, here, RootRows._bisect, left, right, rising) if rest.any() else (here, 0)
+        return self._again(rest, here, RootRows._bisect, left, right, rising) if rest.any() else here
 
-    def _bisect(self, left: Array, right: Array, rising: Array) -> tuple[Array, int]:
+    def _bisect(self, left: Array, right: Array, rising: Array) -> Array:
         """Halve brackets until no double lies between their ends; NaN where the equation has no sign."""
         while True:
             # Not (left + right)/2, which may overflow.
             middle = left + (right - left) / 2
             inside = (middle > left) & (middle < right)
             if not inside.any():
-                return right, right.size
+                return right
             side = self.call(self.program.at, middle) * rising
             left = np.where(inside & (side <= 0), middle, left)
             right = np.where(inside & (side > 0), middle, np.where(inside & np.isnan(side), np.nan, right))
