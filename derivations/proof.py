@@ -56,15 +56,15 @@ def check_step(step: Step, vocabulary: Vocabulary = NO_WORDS) -> StepProof:
         system = prepare(step, vocabulary)
         outcome = examine(system, step.claim.label)
         if outcome.counterexample is not None:
-            found = StepProof(step, ProofStatus.REFUTED, outcome.points, outcome.worst, False)
+            found = StepProof(step, ProofStatus.REFUTED, outcome.points, outcome.worst)
             return replace(found, counterexample=outcome.counterexample, sides=outcome.sides)
         if outcome.points < POINTS:
             raise Refused(f"only {outcome.points} points of its domain were evaluated")
         if not system.residual_is_zero():
             raise Refused("the numbers agree, but the residual was not reduced to zero")
     except (Refused, NotEvaluable) as problem:
-        return StepProof(step, ProofStatus.UNDECIDED, 0, 0.0, False, why=str(problem))
-    return StepProof(step, ProofStatus.PROVED, outcome.points, outcome.worst, True)
+        return StepProof(step, ProofStatus.UNDECIDED, 0, 0.0, why=str(problem))
+    return StepProof(step, ProofStatus.PROVED, outcome.points, outcome.worst)
 
 
 def _check_print(step: Step, vocabulary: Vocabulary) -> tuple[ProofStatus, str]:

@@ -43,7 +43,6 @@ class StepProof:
     points: int
     worst: float
     """Largest relative residual over the points."""
-    symbolic: bool
     counterexample: Mapping[str, str] = field(default_factory=dict)
     sides: tuple[str, str] = ("", "")
     """Both sides of the claim at the counterexample."""

@@ -62,8 +62,8 @@ def test_engines(small: Report) -> None:
 def test_proofs(small: Report) -> None:
     (claim,) = small.ledger.equations()
     step = Step(claim, (), (), "put in")
-    wrong = StepProof(step, ProofStatus.REFUTED, 20, 1.0, False, {"l": "1"}, ("1", "2"))
-    right = StepProof(step, ProofStatus.PROVED, 20, 0.0, True)
+    wrong = StepProof(step, ProofStatus.REFUTED, 20, 1.0, {"l": "1"}, ("1", "2"))
+    right = StepProof(step, ProofStatus.PROVED, 20, 0.0)
     proofs = (
         Proof(claim, ProofStatus.DEFINITION),
         Proof(claim, ProofStatus.REFUTED, (right, wrong), "misprinted"),
