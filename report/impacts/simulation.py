@@ -53,8 +53,6 @@ class Impact:
         Until the force is zero for good, and until the greatest approach.
     loss : float
         The area of the loop: the work of the force over the whole impact.
-    balance : float
-        What work and kinetic energy miss of the energy at impact, over that.
     time, approach, speed, force : array of shape (steps,)
         The course of it, where the integration stepped.
     failure : str
@@ -68,7 +66,6 @@ class Impact:
     duration: float = math.nan
     compression: float = math.nan
     loss: float = math.nan
-    balance: float = math.nan
     time: NDArray[np.float64] | None = None
     approach: NDArray[np.float64] | None = None
     speed: NDArray[np.float64] | None = None
@@ -183,7 +180,6 @@ class _Course:
             duration=second * over,
             compression=second * compression,
             loss=energy * float(self.state[2]),
-            balance=abs(float(self.state[1] ** 2 / 2 + self.state[2]) - 0.5) * 2,
             time=second * time,
             approach=self.depth * states[0],
             speed=self.speed * states[1],
