@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,7 @@ from ..uncertainty.propagation import Spread
 __all__ = ["COVERAGE", "Array", "Campaign", "Unknown"]
 
 Array = NDArray[np.float64]
+T = TypeVar("T")
 
 COVERAGE = 2.0
 """How many standard uncertainties a number may be off (JCGM 100:2008, 6.3.3)."""
@@ -200,6 +201,13 @@ class Campaign:
     def shared(self) -> dict[Any, Any]:
         """What all problems of a program share: its cells over what prints as given, and their graph."""
         return {}
+
+    def once(self, what: tuple[Any, ...], make: Callable[[], T]) -> T:
+        """Something that is shared, made when it is first asked for."""
+        if what not in self.shared:
+            self.shared[what] = make()
+        found: T = self.shared[what]
+        return found
 
     def unknowns(self, sheet: Sheet, cut: Sequence[str], asked: Sequence[str] = ()) -> Iterator[Unknown]:
         """The given cells that are not exact; free ones without their print. A missing datum stays missing.

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -252,13 +252,16 @@ class Problem:
 
         It counts where more digits are published than doubles keep through the calculation.
         """
-        known, key, own = self.campaign.shared, ("rounded", *self._printed), self.campaign.values
-        if key not in known:
+        own = self.campaign.values
+
+        def lacking() -> dict[str, Array]:
             start = np.array([own.value[u.column][..., u.row].item() for u in self.unknowns])
-            here = self._values(start[None])
-            lacks = {name: own.value[name] - here.value[name][0] for name in here.value if name in own.value}
-            known[key] = {name: np.nan_to_num(each) for name, each in lacks.items()}
-        return known[key]  # type: ignore[no-any-return]
+            here = self._values(start[None]).value
+            return {
+                name: np.nan_to_num(own.value[name] - here[name][0]) for name in here if name in own.value
+            }
+
+        return self.campaign.once(("rounded", *self._printed), lacking)
 
     def _cells(self, points: Array, plain: Values) -> Array:
         found = np.empty((len(points), len(self.published)))
@@ -282,10 +285,9 @@ class Problem:
 
     def at(self, point: Array) -> Here:
         """The published cells at a point. Most searches begin at what is printed: that is computed once."""
-        points, known, key = point[None], self.campaign.shared, self._printed
-        values = known.get(key) if np.array_equal(point, self.box.start) else self._values(points)
-        if values is None:
-            values = known[key] = self._values(points)
+        points, printed = point[None], np.array_equal(point, self.box.start)
+        make = partial(self._values, points)
+        values = self.campaign.once(self._printed, make) if printed else make()
         return Here(point, self._cells(points, values)[0], values)
 
     @property
@@ -320,20 +322,18 @@ class Problem:
 
     def _along(self, here: Here) -> Numbers:
         """What all derivatives at a point are made of; at what is printed they are made once."""
-        known, key = self.campaign.shared, ("along", *self._printed)
-        if here.values is not known.get(self._printed):
+
+        def make() -> Numbers:
             return Numbers(self._chain, here.values).go()
-        if key not in known:
-            known[key] = Numbers(self._chain, here.values).go()
-        return known[key]  # type: ignore[no-any-return]
+
+        printed = self.campaign.shared.get(self._printed)
+        return self.campaign.once(("along", *self._printed), make) if here.values is printed else make()
 
     @property
     def _chain(self) -> Chain:
         """What the cells of the sheet rest on."""
-        known, key = self.campaign.shared, ("chain", *self.asked_of)
-        if key not in known:
-            known[key] = Chain(self.made, self.campaign.values.layouts, self.sources)
-        return known[key]  # type: ignore[no-any-return]
+        layouts = self.campaign.values.layouts
+        return self.campaign.once(("chain", *self.asked_of), lambda: Chain(self.made, layouts, self.sources))
 
     def witness(self, point: Array) -> tuple[Witness, ...]:
         """A point in words."""
@@ -377,10 +377,8 @@ class Problem:
     @cached_property
     def touched(self) -> NDArray[np.bool_]:
         """Whether a published cell rests on an unknown (published, unknowns), by the sheet's own graph."""
-        known, key = self.campaign.shared, ("rests", *self.asked_of)
-        if key not in known:
-            known[key] = self._rests()
-        found = [known[key][name][:, row] for name, row in self.places]
+        rests = self.campaign.once(("rests", *self.asked_of), self._rests)
+        found = [rests[name][:, row] for name, row in self.places]
         return np.array(found).reshape(-1, len(self.unknowns))
 
     def _rests(self) -> dict[str, NDArray[np.bool_]]:
