@@ -18,7 +18,7 @@ from .machine.background import Background, Later
 from .machine.provenance import processor, sources
 from .machine.staging import put, staged
 from .machine.timing import timed
-from .messages.errors import UsageError, close, diagnose, listing
+from .messages.errors import UsageError, unknown
 from .stages import Step, book, refereed_values, refuse_too_many_rows, silent
 from .study import Recipe, Study
 from .views import FORMATS, ON_REQUEST
@@ -46,11 +46,7 @@ def parse_formats(words: str) -> tuple[str, ...]:
     wanted = [word.strip() for word in words.split(",") if word.strip()]
     for word in wanted or [words]:
         if word not in FORMATS:
-            known = close(word, FORMATS)
-            hint = f"did you mean '{known}'?" if known else ""
-            raise UsageError(
-                diagnose("LS604", kind="format", text=word, known=listing(FORMATS), suggestion=hint)
-            )
+            raise unknown("format", word, FORMATS)
     return tuple(f for f in FORMATS if f in wanted)
 
 

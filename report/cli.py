@@ -112,7 +112,7 @@ def _parser() -> argparse.ArgumentParser:
 def _parse(arguments: Sequence[str]) -> argparse.Namespace:
     """Read the command line; a word that is not known is answered with the nearest."""
     from .inputs.folders import is_report, written
-    from .messages.errors import UsageError, diagnose, listing, suggest
+    from .messages.errors import UsageError, diagnose, listing, suggest, unknown
 
     words = [word for word in arguments if not word.startswith("-")]  # no option before the verb takes a word
     if words and words[0] not in VERBS:
@@ -127,9 +127,7 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
         )
     options, left = _parser().parse_known_args(arguments)
     if left and left[0].startswith("-"):
-        hint = suggest(left[0], options.options)
-        known = listing(options.options)
-        raise UsageError(diagnose("LS604", kind="option", text=left[0], known=known, suggestion=hint))
+        raise unknown("option", left[0], options.options)
     if left:
         raise _wrong(f"'{left[0]}' is a word too many", f"loopsheet {options.verb}")
     return options

@@ -32,6 +32,8 @@ __all__ = [
     "render",
     "render_all",
     "suggest",
+    "unknown",
+    "wrong",
 ]
 
 
@@ -601,6 +603,18 @@ class OutputError(LoopsheetError):
 
 class UsageError(LoopsheetError):
     """A word of the command line is not known."""
+
+
+def wrong(reason: str, known: str) -> UsageError:
+    """What is raised where options do not go together, or say what cannot be meant."""
+    return UsageError(diagnose("LS614", reason=reason, known=known))
+
+
+def unknown(kind: str, text: str, known: Iterable[str], most: int = 12) -> UsageError:
+    """What is raised of a word that is none of those that are known, with the nearest of them."""
+    names = list(known)
+    told = listing(names, most)
+    return UsageError(diagnose("LS604", kind=kind, text=text, known=told, suggestion=suggest(text, names)))
 
 
 class UnknownWorkbook(LookupError):

@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _refuse_too_few(draws: int | None, level: float) -> None:
-    from ..messages.errors import UsageError, diagnose
+    from ..messages.errors import wrong
     from ..uncertainty.monte_carlo import BEYOND, least
 
     if draws is not None and draws < (number := least(level)):
@@ -63,7 +63,7 @@ def _refuse_too_few(draws: int | None, level: float) -> None:
         known = (
             f"at least {number}, of which some {BEYOND} lie beyond each end; 1000000 is usual (JCGM 101, 7.2)"
         )
-        raise UsageError(diagnose("LS614", reason=reason, known=known))
+        raise wrong(reason, known)
 
 
 def _told(study: Study, address: str, form: str, level: str, draws: str, seed: str) -> tuple[str, bool]:

@@ -11,7 +11,6 @@ from .common import FINDINGS, OK, Progress, count, folder_argument, format_argum
 
 if TYPE_CHECKING:
     from ..impacts.drops import Drops
-    from ..messages.errors import UsageError
     from ..result.result import Report
     from ..study import Study
 
@@ -104,7 +103,7 @@ def _made(study: Study, report: Report, options: argparse.Namespace) -> str:
     from ..impacts.card import Unreachable
     from ..impacts.codes import CODES
     from ..impacts.source import SOURCES
-    from ..messages.errors import UsageError, diagnose, listing
+    from ..messages.errors import UsageError, diagnose, listing, wrong
     from ..views.card import FORMATS
     from ..views.checks import lines
 
@@ -117,10 +116,10 @@ def _made(study: Study, report: Report, options: argparse.Namespace) -> str:
     if options.code in SOURCES:
         return _law(study, report, drops, options, [*lines(report.oddities), *left_out])
     if options.model is not None:
-        raise _wrong(f"--model says nothing to --for {options.code}", f"--for {listing(SOURCES)}")
+        raise wrong(f"--model says nothing to --for {options.code}", f"--for {listing(SOURCES)}")
     code = CODES[options.code] if options.code in CODES else contacts_of(report)[options.code]
     if options.sweep is not None and options.format != "text":
-        raise _wrong(f"--format {options.format} says nothing to --sweep", "leave --format out")
+        raise wrong(f"--format {options.format} says nothing to --sweep", "leave --format out")
     try:
         asked = Asked("--", **{name: _read(options, name) for name in _NUMBERS})
         asked.check([code], drops)
@@ -130,7 +129,7 @@ def _made(study: Study, report: Report, options: argparse.Namespace) -> str:
             return swept(code, drops, drop, asked, options.sweep, study.step)
         made = card(code, drops, drop, report.title, asked)
     except NotTogether as error:
-        raise _wrong(error.reason, error.known) from error
+        raise wrong(error.reason, error.known) from error
     except Unreachable as error:
         raise UsageError(diagnose("LS625", text=code.title, reason=error)) from error
     return FORMATS[options.format](replace(made, notes=(*made.notes, *left_out), oddities=report.oddities))
@@ -141,7 +140,7 @@ def _law(study: Study, report: Report, drops: Drops, options: argparse.Namespace
     from ..cards import Asked, NotTogether, contacts_of, drop_at, swept
     from ..impacts.card import Unreachable
     from ..impacts.source import SOURCES, identified, modelled
-    from ..messages.errors import UsageError, diagnose
+    from ..messages.errors import UsageError, diagnose, wrong
 
     names = [name for name in ("E", "nu", "R") if getattr(options, name) is not None]
     at_speed = options.code == "table" or options.model is not None
@@ -149,14 +148,14 @@ def _law(study: Study, report: Report, drops: Drops, options: argparse.Namespace
     names += ["format"] if options.format != "text" else []
     names += ["sweep"] if options.sweep is not None and options.code != "table" else []
     if names:
-        raise _wrong(f"--{names[0]} says nothing to --for {options.code}", f"leave --{names[0]} out")
+        raise wrong(f"--{names[0]} says nothing to --for {options.code}", f"leave --{names[0]} out")
     model = None if options.model is None else contacts_of(report)[options.model]
     if model is None and not drops.has_curve:
         raise UsageError(diagnose("LS624", text="the folder", reason="no loading curve was found"))
     try:
         drop = drop_at(drops, Asked("--", _read(options, "speed")))
     except NotTogether as error:
-        raise _wrong(error.reason, error.known) from error
+        raise wrong(error.reason, error.known) from error
     try:
         if options.sweep is not None:
             return swept(model, drops, drop, Asked(), options.sweep, study.step)
@@ -170,17 +169,12 @@ def _read(options: argparse.Namespace, name: str) -> float | None:
     """Read the number of an option, in SI; None if it was not given."""
     from ..inputs.cards import NUMBERS
     from ..inputs.planned import read_numbers
+    from ..messages.errors import wrong
 
     text = getattr(options, name)
     if text is None:
         return None
     found = read_numbers(text, f"--{name}", ";", NUMBERS[name], _NUMBERS[name])
     if len(found) != 1:
-        raise _wrong(f"--{name} '{text}' is not one number", f"--{name} '1 {_NUMBERS[name]}'")
+        raise wrong(f"--{name} '{text}' is not one number", f"--{name} '1 {_NUMBERS[name]}'")
     return found[0]
-
-
-def _wrong(reason: str, known: str) -> UsageError:
-    from ..messages.errors import UsageError, diagnose
-
-    return UsageError(diagnose("LS614", reason=reason, known=known))

@@ -57,7 +57,7 @@ def _accept(options: argparse.Namespace) -> int:
     """Write the known differences of a folder, show what was written, and print what is left to find."""
     from ..inputs.folders import PAPER, report_folder
     from ..machine.staging import replaced
-    from ..messages.errors import UsageError, diagnose
+    from ..messages.errors import wrong
     from ..referee.accepting import accepted
     from ..result.findings import checks
     from ..stages import compared
@@ -67,7 +67,7 @@ def _accept(options: argparse.Namespace) -> int:
     if not options.accept or folder == PAPER or not reason.isprintable():
         known = "loopsheet check --accept --reason 'a sentence' FOLDER"
         said = "--accept needs a FOLDER of your own, --reason a sentence and --accept"
-        raise UsageError(diagnose("LS614", reason=said, known=known))
+        raise wrong(said, known)
     with Progress(sys.stderr) as progress:
         report = Study(folder, step=progress).refereed
     if report.every_comparison:

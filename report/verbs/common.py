@@ -198,7 +198,7 @@ def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
     UsageError
         There is no such column or row.
     """
-    from ..messages.errors import UsageError, diagnose, listing, suggest
+    from ..messages.errors import UsageError, diagnose, listing, unknown
 
     found = parts(address)
     if found is None:
@@ -206,9 +206,7 @@ def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
         raise UsageError(diagnose("LS604", kind="cell", text=address, known=known, suggestion=""))
     name, index = found
     if name not in report.sheet:
-        names = [column.name for column in report.sheet.columns]
-        known, hint = listing(names, most=60), suggest(name, names)
-        raise UsageError(diagnose("LS604", kind="cell", text=name, known=known, suggestion=hint))
+        raise unknown("cell", name, report.sheet.by_name, most=60)
     column = report.sheet[name]
     labels = report.values.labels(column)
     if not index:

@@ -21,7 +21,6 @@ from .common import (
 
 if TYPE_CHECKING:
     from ..inputs.inputs import Inputs
-    from ..messages.errors import UsageError
     from ..result.design import Needed, Planned
     from ..result.result import Report
     from ..study import Study
@@ -74,19 +73,15 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _refuse_what_does_not_fit(options: argparse.Namespace) -> None:
+    from ..messages.errors import wrong
+
     for one, other in (("best", "between"), ("want", "of")):
         if (getattr(options, one) is None) != (getattr(options, other) is None):
-            raise _wrong(f"--{one} and --{other} go together", "give both, or neither")
+            raise wrong(f"--{one} and --{other} go together", "give both, or neither")
     if options.best is not None and options.speeds is not None:
-        raise _wrong("--best looks for the speeds that --speeds gives", "give one of the two")
+        raise wrong("--best looks for the speeds that --speeds gives", "give one of the two")
     if options.best is not None and not 2 <= options.best <= MOST:
-        raise _wrong(f"--best {options.best} is no number of tests to look for", f"from 2 to {MOST}")
-
-
-def _wrong(reason: str, known: str) -> UsageError:
-    from ..messages.errors import UsageError, diagnose
-
-    return UsageError(diagnose("LS614", reason=reason, known=known))
+        raise wrong(f"--best {options.best} is no number of tests to look for", f"from 2 to {MOST}")
 
 
 def _told(study: Study, options: argparse.Namespace) -> tuple[str, bool]:
@@ -139,7 +134,7 @@ def _planner(
 
     from ..cells.address import parts
     from ..inputs.planned import read_numbers, read_u
-    from ..messages.errors import UsageError, diagnose
+    from ..messages.errors import UsageError, diagnose, wrong
     from ..stages import computing
     from ..uncertainty.design import Planner
 
@@ -148,7 +143,7 @@ def _planner(
         raise UsageError(diagnose("LS618", text=inputs.workbook.name))
     if gaps := [name for name, column in inputs.measured.items() if None in column]:
         test = inputs.tests[inputs.measured[gaps[0]].index(None)]
-        raise _wrong(f"test {test} has no {gaps[0]}", "say in a column 'left out' why it takes no part")
+        raise wrong(f"test {test} has no {gaps[0]}", "say in a column 'left out' why it takes no part")
     design = inputs.workbook.design(report.sheet)
     address = options.cell or inputs.workbook.headline[0]
     found = parts(address)
@@ -162,7 +157,7 @@ def _planner(
         ends = read_numbers(options.between, "--between", "..", own, unit)
         if len(ends) != 2 or not ends[0] < ends[1]:
             reason = f"--between '{options.between}' is no range"
-            raise _wrong(reason, "a range is two numbers that rise: '2 m/s .. 6 m/s'")
+            raise wrong(reason, "a range is two numbers that rise: '2 m/s .. 6 m/s'")
         choice = ends[0], ends[1]
         first = planner.equal(options.best, choice)
     else:
@@ -173,7 +168,7 @@ def _planner(
             else (read_numbers(text, "--speeds", ",", own, unit))
         )
         if len(choice) > MOST_PLANNED:
-            raise _wrong(f"--speeds plans {len(choice)} tests", f"at most {MOST_PLANNED} are planned at once")
+            raise wrong(f"--speeds plans {len(choice)} tests", f"at most {MOST_PLANNED} are planned at once")
         first = list(choice)
     planned = replace(report, values=compute(planner.inputs_of(first)).values)
     return replace(planner, cell=(column.name, find_one(planned, address)[1])), choice
@@ -182,7 +177,7 @@ def _planner(
 def _needed(planner: Planner, report: Report, planned: Inputs, options: argparse.Namespace) -> Needed | None:
     from ...derivations.unit_text import UnitError, parse_unit
     from ..inputs.planned import known, read_numbers
-    from ..messages.errors import UsageError, diagnose, listing, suggest
+    from ..messages.errors import unknown, wrong
     from ..quantity import Bounds
     from ..workbook import Measured
 
@@ -190,11 +185,7 @@ def _needed(planner: Planner, report: Report, planned: Inputs, options: argparse
         return None
     names = known(planned)
     if options.of not in names:
-        wrong, hint = options.of, suggest(options.of, names)
-        told = diagnose(
-            "LS604", kind="column or parameter", text=wrong, known=listing(names), suggestion=hint
-        )
-        raise UsageError(told)
+        raise unknown("column or parameter", options.of, names)
     try:
         unit = parse_unit(report.shown[planner.cell[0]].unit).text
     except UnitError:
@@ -202,5 +193,5 @@ def _needed(planner: Planner, report: Report, planned: Inputs, options: argparse
     wanted = Measured("--want", unit, "a standard uncertainty", Bounds(low=0, low_open=True))
     found = read_numbers(options.want, "--want", ",", wanted, unit)
     if len(found) != 1:
-        raise _wrong(f"--want '{options.want}' is not one number", "--want 0.005")
+        raise wrong(f"--want '{options.want}' is not one number", "--want 0.005")
     return planner.needed(options.of, found[0], planned)

@@ -29,7 +29,7 @@ def run(options: argparse.Namespace) -> int:
     from ..archive import scaffold
     from ..inputs.folders import written
     from ..messages.diagnostics import visible
-    from ..messages.errors import UnknownWorkbook, UsageError, diagnose, listing, suggest
+    from ..messages.errors import UnknownWorkbook, unknown
     from ..which_workbook import find_workbook
     from ..workbooks import SHIPPED
 
@@ -42,13 +42,9 @@ def run(options: argparse.Namespace) -> int:
         workbook = find_workbook(*((code.name, code.parent, content) if code else (name, Path())))
     except UnknownWorkbook as error:
         names = [*SHIPPED, *sorted(path.stem for path in METHODS.glob("*.py"))]
-        known, hint = listing(names), suggest(name, names)
-        raise UsageError(
-            diagnose("LS604", kind="workbook", text=name, known=known, suggestion=hint)
-        ) from error
+        raise unknown("workbook", name, names) from error
     if options.ci and options.ci not in scaffold.CI:
-        known, hint = listing(scaffold.CI), suggest(options.ci, scaffold.CI)
-        raise UsageError(diagnose("LS604", kind="service", text=options.ci, known=known, suggestion=hint))
+        raise unknown("service", options.ci, scaffold.CI)
     folder = Path(options.folder)
     for path in scaffold.new(folder, workbook, options.ci, content):
         print(visible(str(path)))
