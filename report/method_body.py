@@ -263,16 +263,18 @@ class MethodBody(dict[str, Any]):
         """How many rows there are, where it stands; of a formula, in how many rows it has a value."""
         over = self.axis_of(formula)
         if of is not None:
-            return self._number_of_groups(formula, of)
+            every, over, by = self._of_groups(1, of), over and self.axis, f"_by_{of.row}"
+        else:
+            every, by = (over or self.axis).size, ""
         if over is None:
-            return self.axis.size
+            return every
         is_cell = isinstance(formula, Indexed) and formula.indices == (over.index,)
         cell = formula if is_cell else self._of_rows(formula, over)
-        name = f"count_of_{cell.base.name}"
+        name = f"count_of_{cell.base.name}{by}"
         if name not in self.columns:
-            column = self._aside(name, f"{over.name} with a value", over.size)
+            column = self._aside(name, f"{over.name} with a value", every)
             self.columns[name] = replace(column, alongside=(self.columns[cell.base.name],))
-        return self.columns[name].symbol
+        return self.columns[name].cell
 
     def grouped(self, by: str, name: str, index: str, size: str, example: str) -> GroupAxis:
         """The groups of the rows that have one word in a column."""
@@ -315,19 +317,6 @@ class MethodBody(dict[str, Any]):
                 f"{formula} names {listing([axis.name for axis in rows])}, not the rows of one {of.row}"
             )
         return formula * member(of.members)
-
-    def _number_of_groups(self, formula: Any, of: Any) -> Expr:
-        """How many rows each group has; of a formula, in how many of them it has a value."""
-        found = self._of_groups(1, of)
-        if self.axis_of(formula) is None:
-            return found
-        is_cell = isinstance(formula, Indexed) and formula.indices == (self.axis.index,)
-        cell = formula if is_cell else self._of_rows(formula, self.axis)
-        name = f"count_of_{cell.base.name}_by_{of.row}"
-        if name not in self.columns:
-            column = self._aside(name, f"{self.axis.name} with a value", found)
-            self.columns[name] = replace(column, alongside=(self.columns[cell.base.name],))
-        return self.columns[name].cell
 
     def _of_rows(self, formula: Any, over: Axis) -> Indexed:
         """A formula for rows, or pairs of them, as a column of its own."""
