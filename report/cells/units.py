@@ -27,25 +27,7 @@ class DimensionMismatch(SheetError):
 
 
 def dimension_of_unit(text: str, exponents: Mapping[str, Expr] | None = None) -> Dimension:
-    """Read a unit such as ``kg/m^3``, ``m/s^2`` or ``N/m^alpha``.
-
-    Parameters
-    ----------
-    text : str
-        Unit names of SI, multiplied by ``*`` and divided by ``/``, raised by ``^`` to a number or a name.
-    exponents : mapping of str to Expr
-        What the names in exponents stand for.
-
-    Raises
-    ------
-    DimensionMismatch
-        Names the unit or the exponent that is not known.
-
-    Examples
-    --------
-    >>> dimension_of_unit("N*s/m") == dimension_of_unit("kg/s")
-    True
-    """
+    """As :func:`~.dimensions.dimension_of_unit` of the derivations, whose error is one of the sheet here."""
     try:
         return dimensions.dimension_of_unit(text, exponents)
     except DimensionError as problem:
