@@ -74,7 +74,7 @@ def as_markdown(
     report: Report, budget: Budget, drawn: Distributed | None = None, limited: Sequence[Conformity] = ()
 ) -> str:
     """The same for a pull request."""
-    rows = [[md.cell(text) for text in _row(report, budget, each)] for each in budget.contributions]
+    rows = [md.told(_row(report, budget, each)) for each in budget.contributions]
     told = "".join(
         f"\n{md.cell(note)}\n" for note in (*notes(report, budget), *_of_draws(report, budget, drawn))
     )

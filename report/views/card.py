@@ -29,11 +29,9 @@ def as_text(card: Card) -> str:
 def as_markdown(card: Card) -> str:
     """The same for a pull request."""
     head = "\n\n".join(map(md.cell, (*words.head(card), *lines(card.oddities))))
-    tables = [[list(words.TYPED), *words.typed(card)], [*words.returned(card)], [*words.rows(card)]]
-    typed, returned, rows = (
-        md.table([md.cell(text) for text in first], ([md.cell(text) for text in row] for row in others))
-        for first, *others in tables
-    )
+    tables = [words.TYPED, *words.typed(card)], words.returned(card), words.rows(card)
+    told = (map(md.told, rows) for rows in tables)
+    typed, returned, rows = (md.table(header, others) for header, *others in told)
     said = "".join(f"\n{md.cell(note)}\n" for note in card.notes)
     return f"{head}\n\n{typed}\n{md.code(card.snippet)}\n\n{returned}\n{rows}{said}".rstrip()
 

@@ -117,8 +117,8 @@ def as_text(plan: Planned) -> str:
 
 def as_markdown(plan: Planned) -> str:
     """The same for a pull request."""
-    tests = md.table(list(map(md.cell, _header(plan))), (list(map(md.cell, row)) for row in _rows(plan)))
-    parts = md.table(_PARTS, ([md.cell(text) for text in row] for row in _parts(plan)))
+    tests = md.table(md.told(_header(plan)), map(md.told, _rows(plan)))
+    parts = md.table(_PARTS, map(md.told, _parts(plan)))
     said = "".join(f"\n{md.cell(line)}\n" for line in _said(plan))
     told = md.cell(sentence(plan.report, plan.budget))
     return f"{md.cell(_curve(plan))}\n\n{tests}\n{told}\n\n{parts}{said}".rstrip()

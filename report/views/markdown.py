@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from .escape import visible
 
-__all__ = ["cell", "code", "table"]
+__all__ = ["cell", "code", "table", "told"]
 
 _MEANS_SOMETHING = re.compile(r"([\\`*_\[\]<>|~$])")
 
@@ -32,6 +32,11 @@ def code(text: object) -> str:
     fence = "`" * (max(map(len, re.findall("`+", plain)), default=0) + 1)
     pad = " " if plain.startswith("`") or plain.endswith("`") else ""
     return f"{fence}{pad}{plain}{pad}{fence}" if plain else ""
+
+
+def told(texts: Iterable[object]) -> list[str]:
+    """The cells of a row of texts that came from elsewhere."""
+    return [*map(cell, texts)]
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

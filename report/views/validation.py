@@ -90,7 +90,7 @@ def as_markdown(record: Validation) -> str:
     parts = []
     for block in _blocks(record):
         if isinstance(block, _Table):
-            parts.append(md.table(block.header, [[md.cell(text) for text in row] for row in block.rows]))
+            parts.append(md.table(block.header, map(md.told, block.rows)))
         elif isinstance(block, str):
             parts.append(f"{md.cell(block)}\n")
         else:
