@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..distribution import MOST_DOF
 from ..result.uncertain import ErrorSource
 
 __all__ = ["effective", "of_sum", "with_correlated"]
@@ -30,15 +31,18 @@ def effective(u: float, contributions: Array, dof: Sequence[float]) -> float:
     Returns
     -------
     float
-        Rounded to two decimals, then truncated: 8.999 is 9, 8.99 is 8. At least 1; infinite if all are.
+        Rounded to two decimals, then truncated: 8.999 is 9, 8.99 is 8. At least 1; infinite if all are, or
+        where those that are not contribute next to nothing.
 
     Examples
     --------
     >>> effective(5.0, np.array([3.0, 4.0]), [4.0, math.inf])
     30.0
+    >>> effective(5.0, np.array([1e-4, 5.0]), [4.0, math.inf])
+    inf
     """
     below = sum(c**4 / n for c, n in zip((contributions / u).tolist(), dof, strict=True)) if u > 0 else 0.0
-    return float(max(1, math.floor(round(1 / below, 2)))) if below > 0 else math.inf
+    return float(max(1, math.floor(round(1 / below, 2)))) if below * MOST_DOF > 1 else math.inf
 
 
 def of_sum(

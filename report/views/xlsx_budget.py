@@ -14,13 +14,13 @@ from dataclasses import replace
 from typing import Any
 
 from ..cells.grid import CellBlock, Grid, checked
-from ..distribution import DOMINANT, Shape
+from ..distribution import DOMINANT, MOST_DOF, Shape
 from ..inputs.stated import SCATTER
 from ..quantity import behind
 from ..result.numbers import rounded
 from ..result.result import Report
 from ..result.uncertain import Budget, Contribution, ErrorSource
-from .xlsx_limits import MOST_DOF, SHAPES, as_issued, write_limits
+from .xlsx_limits import SHAPES, as_issued, write_limits
 from .xlsx_style import Style, height, number_format
 
 __all__ = ["write_budgets"]

@@ -7,14 +7,12 @@ from collections.abc import Callable
 from typing import Any
 
 from ..cells.grid import Place
-from ..distribution import Shape
+from ..distribution import MOST_DOF, Shape
 from ..result.uncertain import Conformity, Decision
 from .xlsx_style import Style
 
-__all__ = ["MOST_DOF", "SHAPES", "as_issued", "write_limits"]
+__all__ = ["SHAPES", "as_issued", "write_limits"]
 
-MOST_DOF = 10**9
-"""Degrees of freedom that every spreadsheet's t distribution takes."""
 NONE = "none"
 _SHARES = {
     Shape.RECTANGULAR: "MIN(ABS({z})/SQRT(3),1)",

@@ -84,7 +84,7 @@ class Sure {
       found.delete(samples[n]);
       return dof && own > 0 ? (own / u ** 2) ** 2 / dof : 0;
     }));
-    return below ? Math.max(1, Math.floor(Math.round(100 / below) / 100)) : Infinity;
+    return below > 1e-9 ? Math.max(1, Math.floor(Math.round(100 / below) / 100)) : Infinity;
   }
 
   // From the sum of the errors, where they are not all normal or t; as a rebuild tells it (uncertainty/convolution.py).
