@@ -52,9 +52,17 @@ class Named:
 
     def summed(self, column: Column) -> tuple[Axis, ...]:
         """The axes that its rule takes something over, or counts rows of that it looks at."""
-        over = {self.over(total) for each in column.expressions for total in each.atoms(*REDUCTIONS)}
-        over |= {other.axis for other in column.alongside if other.axis in self.counted(column)}
-        return tuple(axis for axis in self.axes if axis in over)
+        if column.name not in self._summed:
+            over = {self.over(total) for each in column.expressions for total in each.atoms(*REDUCTIONS)}
+            if column.alongside:
+                counted = self.counted(column)
+                over |= {other.axis for other in column.alongside if other.axis in counted}
+            self._summed[column.name] = tuple(axis for axis in self.axes if axis in over)
+        return self._summed[column.name]
+
+    @cached_property
+    def _summed(self) -> dict[str, tuple[Axis, ...]]:
+        return {}
 
     def beside(self, column: Column, other: Column) -> Axis | None:
         """The axis along which the sums of a column look at another, if they do."""
@@ -251,8 +259,10 @@ def _counting(expression: Basic) -> set[Basic]:
     """The symbols that an expression names, but where its sums end."""
     if isinstance(expression, REDUCTIONS):
         return _counting(taken_of(expression))
+    if expression.has(*REDUCTIONS):  # sympy takes long for the free symbols of what has sums in it
+        return set().union(*map(_counting, expression.args))
     found: set[Basic] = expression.free_symbols
-    return set().union(*map(_counting, expression.args)) if expression.has(*REDUCTIONS) else found
+    return found
 
 
 def _grouped(axis: Axis) -> tuple[Axis, ...]:
