@@ -198,7 +198,7 @@ def _made(
         # to be in order.
         proving = None if study.are_proved() else running.enter_context(Background(_proofs, study.recipe))
         refereeing = None
-        if study.inputs.published:
+        if not study.is_refereed():
             refereeing = running.enter_context(Background(_refereed, study.recipe, Later()))
         formats = _possible(study.prepared, formats, tell)
         if long := cost.told(study.prepared.sheet, study.prepared.layouts, formats):
@@ -222,10 +222,10 @@ def _made(
         study.step("drawing the figures")
         with timed("figures"):
             pictures = _pictures(study, finished, formats)
-        if refereeing is not None:
+        if study.inputs.published:
             study.step("refereeing what was published")
             with timed("waiting for the referee"):
-                referee, comparisons = refereeing.result()
+                referee, comparisons = _refereed_here(study) if refereeing is None else refereeing.result()
             finished = replace(finished, referee=referee, comparisons=comparisons)
             with timed("figures"):
                 pictures |= _pictures(study, finished, formats, finished.workbook.figures)
@@ -249,9 +249,17 @@ def _refereed(recipe: Recipe, plain: Later[tuple[Any, ...]]) -> tuple[Referee, t
     from .cells.values import Values
     from .referee import judging  # noqa: F401 - takes long, and needs no values
 
-    made = Study.of(recipe).prepared
+    study = Study.of(recipe)
+    made = study.prepared
     made = replace(made, inputs=made.check_cells())
-    return refereed_values(made, Values(made.sheet, made.layouts, *plain.wait()))
+    values = Values(made.sheet, made.layouts, *plain.wait())
+    return refereed_values(made, values, keep=study.kept)
+
+
+def _refereed_here(study: Study) -> tuple[Referee, tuple[Comparison, ...]]:
+    """What is known of it from before."""
+    found = study.computed
+    return refereed_values(replace(study.prepared, inputs=found.inputs), found.values, keep=study.kept)
 
 
 def _of_a_crate(out: Path, folder: Path) -> dict[Path, str]:

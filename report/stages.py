@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..derivations.unit_text import UnitError as NotAUnit
 from ..derivations.unit_text import of_differences, parse_unit
@@ -55,14 +55,25 @@ __all__ = [
 
 Step = Callable[[str], None]
 """Told what is begun, for whoever watches."""
+Keep = Callable[[str, Callable[[], Any]], Any]
+"""Gives data of a name that is made now or was made before."""
 
 EXACTLY = 20_000
 """Up to so many cells, a sheet is evaluated at 50 digits, which takes .3 ms a cell, and its values are those,
 correctly rounded; of a larger one, some of its tests are."""
 
 
+VERDICTS = "verdicts"
+"""Under which name it is kept what the referee found."""
+
+
 def silent(_: str) -> None:
     """Nobody watches."""
+
+
+def made_anew(_: str, make: Callable[[], Any]) -> Any:
+    """Nothing is kept."""
+    return make()
 
 
 def prepared(inputs: Inputs, ledger: Callable[[], Ledger]) -> Prepared:
@@ -253,7 +264,7 @@ def _agreements(report: Report, values: Values, every: bool) -> tuple[Agreement,
     return engines.compare_all(judge, Case(values.sheet, labels, made.data, values, written))
 
 
-def refereed(report: Report, step: Step = silent) -> Report:
+def refereed(report: Report, step: Step = silent, keep: Keep = made_anew) -> Report:
     """The report with every published value judged: whether the printed inputs can yield it.
 
     Parameters
@@ -261,21 +272,23 @@ def refereed(report: Report, step: Step = silent) -> Report:
     report : Report
     step : callable
         Told what is begun.
+    keep : callable
+        Gives what is made of the folder of the report, made now or before.
     """
     from .referee.uncertain import compare_uncertainties
 
-    found, comparisons = refereed_values(Prepared(report.inputs, report.sheet), report.values, step)
+    found, comparisons = refereed_values(Prepared(report.inputs, report.sheet), report.values, step, keep)
     uncertain = compare_uncertainties(report.inputs, report.values, step)
     return replace(report, referee=found, comparisons=comparisons, comparisons_u=uncertain)
 
 
 def refereed_values(
-    made: Prepared, values: Values, step: Step = silent
+    made: Prepared, values: Values, step: Step = silent, keep: Keep = made_anew
 ) -> tuple[Referee, tuple[Comparison, ...]]:
     """The same of values alone: the verdicts, and every published value with its own."""
     from . import referee
     from .kept_sheet import of_shipped
-    from .referee.judging import referee as judge
+    from .referee import kept as verdicts
 
     workbook, given = made.inputs.workbook, made.inputs.given
 
@@ -288,7 +301,12 @@ def refereed_values(
         found: dict[str, list[str]] = of_shipped(workbook, given, "numbers of equations", numbers)
         return found
 
-    found = judge(made.sheet, made.inputs, values, made.data, step, known)
+    def judge() -> Any:
+        from .referee.judging import referee as judge
+
+        return verdicts.as_data(judge(made.sheet, made.inputs, values, made.data, step, known), made.inputs)
+
+    found = verdicts.of_data(keep(VERDICTS, judge), made.inputs)
     return found, referee.refereed(
         referee.compare(made.inputs.published, values, made.inputs.expected), found
     )

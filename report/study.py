@@ -176,7 +176,11 @@ class Study:
     @_part("referee")
     def refereed(self) -> Report:
         """All cells, and every published value judged."""
-        return stages.refereed(self.computed, self.step)
+        return stages.refereed(self.computed, self.step, self.kept)
+
+    def is_refereed(self) -> bool:
+        """Whether it is known already what the referee finds, or nothing is published."""
+        return not self.inputs.published or self.kept(stages.VERDICTS, None) is not None
 
     @_part("page program")
     def program(self) -> str:

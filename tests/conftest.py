@@ -236,7 +236,7 @@ def unrefereed() -> Iterator[None]:
     from loopsheet.report import build, referee, stages
     from loopsheet.report.result.verdict import Referee
 
-    def unasked(made: Any, values: Any, *_: object) -> Any:
+    def unasked(made: Any, values: Any, *_: object, **__: object) -> Any:
         return Referee(), referee.compare(made.inputs.published, values)
 
     with without("a referee") as patch:

@@ -6,14 +6,16 @@ import errno
 import hashlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
-from small_report import end_gauge
+from small_report import FILES, end_gauge
 
 from loopsheet.report import stages
 from loopsheet.report.cli import main
@@ -23,6 +25,8 @@ from loopsheet.report.machine.provenance import versions
 from loopsheet.report.machine.timing import Timing
 from loopsheet.report.messages.errors import InputError
 from loopsheet.report.own_workbook import follows_from_its_bytes
+from loopsheet.report.referee import judging
+from loopsheet.report.result.verdict import Referee
 from loopsheet.report.study import Study
 from loopsheet.report.verification import verify
 
@@ -316,12 +320,48 @@ def test_verify_believes_nothing_that_is_kept(
     def fail(*_: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr(stages, "evaluated", fail)
-    assert build()[0] == 0
     from loopsheet.report.which_workbook import find_workbook
 
-    with pytest.raises(MemoryError):
-        verify(tmp_path / "gauge" / "out", None, find=find_workbook)
+    for module, name in ((judging, "referee"), (stages, "evaluated")):
+        with monkeypatch.context() as patch:
+            patch.setattr(module, name, fail)
+            assert build()[0] == 0
+            with pytest.raises(MemoryError):
+                verify(tmp_path / "gauge" / "out", None, find=find_workbook)
+
+
+def test_what_the_referee_found_is_kept_of_the_same_bytes_alone(
+    tmp_path: Path, cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And it is what was found: a published value off by one slip, in a folder with stated uncertainties."""
+    asked, judge = [], judging.referee
+
+    def counted(*given: Any) -> Referee:
+        asked.append(judge(*given))
+        return asked[-1]
+
+    monkeypatch.setattr(judging, "referee", counted)
+    stated = "\n[uncertainty]\nd = 'u = 5 nm, dof = 9'\n"
+    slipped = "source,cell,index,value,unit\nH.1,l,1,50.000383,mm\nH.1,l,2,50.000827,mm\n"
+    folder, copy = tmp_path / "gauge", tmp_path / "elsewhere" / "gauge"
+    folder.mkdir()
+    end_gauge(folder, slipped, report=FILES["report.toml"] + stated)
+    shutil.copytree(folder, copy)
+    first, again, there = Study(folder).refereed, Study(folder).refereed, Study(copy).refereed
+    (found,) = asked
+    assert found.joint is not None
+    assert found.joint.worst is not None
+    assert any(witness.printed is not None for witness in found.joint.witness)
+    assert found.explanations or found.slips
+    assert first.referee == again.referee == there.referee == found
+    assert there.referee.joint is not None
+    assert there.referee.joint.worst is there.inputs.published[0]
+    (folder / "published.csv").write_text(slipped.replace("383", "838"))
+    right = Study(folder).refereed.referee
+    assert right == asked[-1] != found
+    (folder / "published.csv").write_text(slipped)
+    assert Study(folder).refereed.referee == found
+    assert len(asked) == 2
 
 
 @pytest.mark.skipif(not hasattr(os, "getuid") or os.getuid() != 0, reason="only root can be two users")
