@@ -193,6 +193,14 @@ def require() -> Callable[..., str]:
 
 
 @pytest.fixture
+def chdir() -> Iterator[Callable[[Path], None]]:
+    """Go somewhere until the test ends; `monkeypatch` could, too, but what it patches is made anew."""
+    before = Path.cwd()
+    yield os.chdir
+    os.chdir(before)
+
+
+@pytest.fixture
 def gauge(tmp_path: Path) -> Path:
     """A small report folder in an otherwise empty one."""
     folder = tmp_path / "gauge"

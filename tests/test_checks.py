@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -85,9 +86,9 @@ def test_github() -> None:
 
 
 def test_github_names_files_from_where_the_command_runs(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, chdir: Callable[[Path], None]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
+    chdir(tmp_path)
     inside, outside = (tmp_path / "f" / "p.csv").as_posix(), "/elsewhere/p.csv"
     found = [Check("published", "x", False, "m", Location(path, 1, 1)) for path in (inside, outside)]
     lines = as_github(found, "t", {}).splitlines()

@@ -148,9 +148,9 @@ def test_wrong_words_are_answered_with_what_was_meant(
     said: str,
     capsys: pytest.CaptureFixture[str],
     tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    chdir: Callable[[Path], None],
 ) -> None:
-    monkeypatch.chdir(tmp_path)
+    chdir(tmp_path)
     assert main(arguments) == 2
     captured = capsys.readouterr()
     assert said in captured.err
@@ -268,11 +268,11 @@ def test_an_unexpected_difference_is_a_finding_in_every_format(
 
 
 def test_wrong_input_is_told_in_the_format_that_a_machine_reads(
-    campaign: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    campaign: Path, chdir: Callable[[Path], None], capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = campaign / "measurements.csv"
     path.write_text(path.read_text().replace("0.512", "abc"))
-    monkeypatch.chdir(campaign)
+    chdir(campaign)
     assert main(["check", ".", "--format", "github"]) == 2
     captured = capsys.readouterr()
     assert captured.out.startswith(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -156,17 +157,17 @@ def test_a_manifest_that_leads_out_of_the_folder_is_refused(out: Path) -> None:
 
 
 def test_a_crate_is_built_again_from_itself(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, chdir: Callable[[Path], None], capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Far from where it was made, with the workbook and all that its report.toml names."""
     (tmp_path / "gauge").mkdir()
     folder = end_gauge(tmp_path / "gauge")
-    monkeypatch.chdir(folder)
+    chdir(folder)
     assert main(["build", "--to", "json"]) == 0
     assert main(["crate", "--date", "2026-03-31", "--license", "MIT"]) == 0
     archive = (folder / "out").rename(tmp_path / "archive")
     shutil.rmtree(folder)
-    monkeypatch.chdir(archive)
+    chdir(archive)
     inputs = {path.name: path.read_bytes() for path in (archive / "inputs").iterdir()}
     assert inputs == {name: text.encode() for name, text in FILES.items()}
     capsys.readouterr()

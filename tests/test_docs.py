@@ -128,9 +128,9 @@ def different(expected: str, found: str) -> str:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 @pytest.mark.usefixtures("keeping")
 def test_a_page_tells_what_happens(
-    page: Path, require: Callable[..., str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    page: Path, require: Callable[..., str], tmp_path: Path, chdir: Callable[[Path], None]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
+    chdir(tmp_path)
     text = page.read_text(encoding="utf-8")
     if "$ loopsheet check\n" in text:
         require("node")
@@ -150,9 +150,9 @@ def test_a_page_tells_what_happens(
     ],
 )
 def test_a_page_that_tells_something_else_is_seen(
-    page: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    page: str, said: str, tmp_path: Path, chdir: Callable[[Path], None]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
+    chdir(tmp_path)
     assert said in different(page, followed(page))
 
 

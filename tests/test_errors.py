@@ -407,9 +407,9 @@ def test_the_catalogue_the_cases_and_the_messages_have_the_same_codes() -> None:
 
 @pytest.mark.parametrize("code", CASES)
 def test_a_finding_reads_as_written_in_messages(
-    code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    code: str, tmp_path: Path, chdir: Callable[[Path], None]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
+    chdir(tmp_path)
     with pytest.raises(LoopsheetError) as caught:
         CASES[code]()
     assert [finding.code for finding in caught.value.diagnostics] == [code]  # one problem, one message
@@ -422,8 +422,8 @@ def test_a_finding_reads_as_written_in_messages(
     assert shown == messages()[code]
 
 
-def test_the_case_without_mistakes_has_no_finding(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_the_case_without_mistakes_has_no_finding(tmp_path: Path, chdir: Callable[[Path], None]) -> None:
+    chdir(tmp_path)
     campaign()
 
 

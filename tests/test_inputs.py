@@ -69,9 +69,9 @@ Reader = Callable[..., Inputs]
 
 
 @pytest.fixture
-def read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Reader:
+def read(tmp_path: Path, chdir: Callable[[Path], None]) -> Reader:
     """Give a function that writes a folder and reads it."""
-    monkeypatch.chdir(tmp_path)
+    chdir(tmp_path)
 
     def write_and_load(toml: str = TOML, csv: str | bytes = CSV, published: str | None = None) -> Inputs:
         for name, text in {"report.toml": toml, "measurements.csv": csv, "published.csv": published}.items():

@@ -192,9 +192,9 @@ def test_what_python_makes_of_typed_numbers_is_what_was_typed() -> None:
     assert [exact(each) for each in made[4:]] == made[4:]
 
 
-def test_points_and_lines_are_declared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_points_and_lines_are_declared(tmp_path: Path, chdir: Callable[[Path], None]) -> None:
     """Every point is in the frame, however far from the line; page and workbook draw the same chart."""
-    monkeypatch.chdir(tmp_path)
+    chdir(tmp_path)
     assert main(["new", "line", "--workbook", "line"]) == 0
     report = Study(Path("line")).report
     fit, left = report.workbook.charts
@@ -417,9 +417,9 @@ def test_a_file_of_two_methods_is_refused(tmp_path: Path, capsys: pytest.Capture
     ],
 )
 def test_a_folder_to_begin_with(
-    name: str, known: dict[str, float], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str, known: dict[str, float], tmp_path: Path, chdir: Callable[[Path], None]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
+    chdir(tmp_path)
     assert main(["new", "one", "--workbook", name]) == 0
     assert main(["new", "other", "--workbook", "one/workbook.py"]) == 0
     both = [Path(folder) for folder in ("one", "other")]

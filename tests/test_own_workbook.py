@@ -7,6 +7,7 @@ import os
 import py_compile
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -26,9 +27,9 @@ RAN = "from pathlib import Path\nPath(__file__).with_name('ran').touch()\n"
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path, chdir: Callable[[Path], None]) -> Path:
     """A report folder with a workbook of its own, as a user in the folder above it would name it."""
-    monkeypatch.chdir(tmp_path)
+    chdir(tmp_path)
     Path("gauge").mkdir()
     return end_gauge(Path("gauge"))
 

@@ -86,10 +86,10 @@ def test_the_files_are_these(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("where", [".", "deep/down/campaign", "empty"])
 def test_the_folder_is_read_without_findings(
-    where: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    where: str, tmp_path: Path, chdir: Callable[[Path], None]
 ) -> None:
     (tmp_path / "here").mkdir()
-    monkeypatch.chdir(tmp_path / "here")
+    chdir(tmp_path / "here")
     Path("empty").mkdir() if where == "empty" else None
     inputs = load(new(Path(where), WORKBOOK)[0].parent, lambda *_: WORKBOOK)
     assert inputs.tests == (1, 2)
@@ -120,9 +120,9 @@ def test_without_an_example_there_is_a_header(tmp_path: Path) -> None:
     [("", "campaign", "campaign"), ("campaign", "campaign", "campaign"), (".git", "two words/paper", ".")],
 )
 def test_a_workflow_is_where_github_reads_it(
-    made: str, name: str, root: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    made: str, name: str, root: str, tmp_path: Path, chdir: Callable[[Path], None]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
+    chdir(tmp_path)
     if made:
         Path(made).mkdir()
     written = new(Path(name), WORKBOOK, "github")

@@ -15,9 +15,9 @@ Findings = Callable[..., list[str]]
 
 
 @pytest.fixture
-def read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Reader:
+def read(tmp_path: Path, chdir: Callable[[Path], None]) -> Reader:
     """Give a function that writes a folder and reads it."""
-    monkeypatch.chdir(tmp_path)
+    chdir(tmp_path)
 
     def write_and_load(toml: str = TOML, csv: str = CSV, published: str = "") -> Inputs:
         for name, text in {"report.toml": toml, "measurements.csv": csv, "published.csv": published}.items():

@@ -4,7 +4,6 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
 from driving import Live
 from test_docs import DOCS
 
@@ -12,7 +11,7 @@ from loopsheet.report.cli import main
 
 
 def test_the_edit_of_the_guide(
-    open_page: Callable[..., Live], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    open_page: Callable[..., Live], tmp_path: Path, chdir: Callable[[Path], None]
 ) -> None:
     text = " ".join((DOCS / "guide.md").read_text(encoding="utf-8").split())
     said = re.search(
@@ -21,7 +20,7 @@ def test_the_edit_of_the_guide(
     )
     assert said
     swing, typed, stood, before, after = said.groups()
-    monkeypatch.chdir(tmp_path)
+    chdir(tmp_path)
     assert main(["new", "pendulum", "--workbook", "formula"]) == 0
     assert main(["build", "pendulum", "--to", "html"]) == 0
     live = open_page(tmp_path / "pendulum" / "out" / "report.html")
