@@ -143,14 +143,19 @@ def foreign_code() -> None:
     load(Path(), refuse)
 
 
-def grouped_by_numbers() -> None:
-    def in_groups(*_: object) -> Workbook:
-        return replace(WORKBOOK, groups=("place",))
+def grouped(by: str) -> Callable[[], None]:
+    def write() -> None:
+        words = iter(by)
+        table = re.sub(r"(?m)^(?=\d)", lambda _: f"{next(words)},", CSV).replace("test,", "place,test,")
+        for name, text in {
+            "report.toml": TOML,
+            "measurements.csv": table,
+            "published.csv": PUBLISHED,
+        }.items():
+            Path(name).write_text(text)
+        load(Path(), lambda *_: replace(WORKBOOK, groups=("place",)))
 
-    table = re.sub(r"(?m)^(\d)", r"7,\1", CSV).replace("test,", "place,test,")
-    for name, text in {"report.toml": TOML, "measurements.csv": table, "published.csv": PUBLISHED}.items():
-        Path(name).write_text(text)
-    load(Path(), in_groups)
+    return write
 
 
 def load_a_file() -> None:
@@ -316,7 +321,8 @@ CASES: dict[str, Callable[[], None]] = {
     "LS317": toml(
         "[published]", '[measurements.taken]\nx_p = { from = "values.json", cell = "x_p" }\n[published]'
     ),
-    "LS318": grouped_by_numbers,
+    "LS318": grouped("77"),
+    "LS319": grouped("Bb"),
     "LS401": csv("2.940", "2.9 40"),
     "LS402": csv("2.940", '"2,940"'),
     "LS403": csv("2,2.940", ",2.940"),

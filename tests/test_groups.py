@@ -250,3 +250,35 @@ def test_a_large_table_is_judged_by_some_of_its_rows(tmp_path: Path) -> None:
     some = part(report.inputs, report.values, 300)
     assert 4 < len(some.tests) < 400
     assert set(some.groups("instrument").items()) >= {(1, 1), (40, 40), (41, 1)}
+
+
+def test_a_word_in_another_case_is_no_other_group(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = tuple(("a" if n == 2 else word, y) for n, (word, y) in enumerate(grouped.FEW))
+    assert main(["check", str(grouped.write(tmp_path, rows))]) == 2
+    told = capsys.readouterr().err
+    assert "LS319" in told
+    assert "instrument is 'a', and 'A' in line 2" in told
+    assert "measurements.csv:4:3" in told
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("B40", "B4O", "B40"), ":3:3: instrument: 'B4O' (reading 2) is nearly 'B40' (readings 1 and 3)"),
+        (("S01", "S02", "S1"), ":4:3: instrument: 'S1' (reading 3) is nearly 'S01' (reading 1)"),
+        (("Aldrich", "Aldrich", "Aldrch"), ":4:3: instrument: 'Aldrch' (reading 3) is nearly 'Aldrich'"),
+        (
+            ("steel", "setel", "steel"),
+            ":3:3: instrument: 'setel' (reading 2) is nearly 'steel' (readings 1 and",
+        ),
+        (("B40", "B41", "B40", "B4", "B400"), ""),
+        (("A1", "A2", "A1", "A11", "A12"), ""),
+        (("butane", "butene", "butane", "batchA", "batchB", "CO2", "C2"), ""),
+        (("plant", "planet"), ""),
+    ],
+)
+def test_a_word_that_is_nearly_another_is_told(words: tuple[str, ...], said: str, tmp_path: Path) -> None:
+    rows = tuple((word, str(1.25 + n / 8)) for n, word in enumerate((*words, "other", "other")))
+    found = {each.kind: each for each in Study(grouped.write(tmp_path, rows)).computed.oddities}["words"]
+    assert found.note == ("warning" if said else "")
+    assert said in found.sentence

@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from ..quantity import Printed
     from ..workbook import Workbook
     from .number_text import Declared
+    from .spelling import Alike
 
 __all__ = ["Find", "Inputs", "PublishedValue", "check_cells", "load"]
 
@@ -117,6 +118,8 @@ class Inputs:
         The columns of words that come along; nothing is computed from them.
     texts : mapping of int to mapping of str to str
         The row of each test as it stands, by column; that of one that is left out stands with it.
+    alike : tuple of Alike
+        Words by which rows belong together, and that may be others misspelt.
     cards : AskedCards
         For which simulation codes the report tells what to type into them.
     """
@@ -144,6 +147,7 @@ class Inputs:
     heads: Mapping[str, str] = field(default_factory=dict)
     texts: Mapping[int, Mapping[str, str]] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+    alike: tuple[Alike, ...] = ()
     cards: AskedCards = field(default_factory=AskedCards)
 
     @property
@@ -366,6 +370,7 @@ class _Reader:
             heads=measurements.heads,
             texts=measurements.texts,
             remarks=measurements.remarks,
+            alike=measurements.alike,
             cards=cards,
         )
         if self.findings.found:

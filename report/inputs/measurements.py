@@ -13,6 +13,7 @@ from ..distribution import Error
 from ..messages.errors import Findings, close
 from .csvtable import CsvRow, CsvTable, Field, is_number, match_columns, read_table
 from .number_text import NumberError, read_printed, read_value
+from .spelling import Alike, alike, same
 from .taken import Taken, alone
 
 if TYPE_CHECKING:
@@ -81,7 +82,8 @@ class Measurements:
 
     What is left out stands apart from them. A unit is that of a column or, called ``u(x_p)``, of its
     uncertainties. The heads are the first line as it stands, the texts the rows of the tests, by column.
-    Remarks are columns of words, which only come along.
+    Remarks are columns of words, which only come along. Some words that say which rows belong together may be
+    others misspelt: alike.
     """
 
     tests: tuple[int, ...]
@@ -91,6 +93,7 @@ class Measurements:
     heads: dict[str, str] = field(default_factory=dict)
     texts: dict[int, dict[str, str]] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+    alike: tuple[Alike, ...] = ()
 
     def beside(self, taken: Mapping[str, Taken], order: Iterable[str]) -> Measurements:
         """The same with columns that were taken from other reports, all in the order of their names."""
@@ -193,8 +196,12 @@ def read_measurements(
         at = table.end_of_header() if table.total == 0 else _last(table)
         findings.add("LS310", at, count=count)
     used = [row for place, row in enumerate(table.rows) if place not in gone]
+    near: list[Alike] = []
     for name in (name for name in groups if name in places):
-        _check_words(table, [row.fields[places[name]] for row in table.rows], name, findings)
+        fields = [row.fields[places[name]] for row in table.rows]
+        _check_words(table, fields, name, findings)
+        if len(tests) == len(fields):
+            near += _alike(table, dict(zip(tests, fields, strict=True)), name, findings)
     values: dict[str, tuple[Printed | None, ...]] = {}
     units: dict[str, str] = {}
     of_u: dict[str, ParsedUnit | None] = {}
@@ -255,7 +262,7 @@ def read_measurements(
     )
     lines = dict(zip(taken, map(texts, used), strict=True))
     first = {name: table.header[place].text for name, place in places.items()}
-    return Measurements(taken, values, units, left_out, first, lines, remarks)
+    return Measurements(taken, values, units, left_out, first, lines, remarks, tuple(near))
 
 
 def _refuse_nothing(
@@ -284,6 +291,23 @@ def _check_words(table: CsvTable, fields: Sequence[Field], name: str, findings: 
             findings.add("LS403", table.at(each), name=name, allowed="a word", suggestion=hint)
     if fields and all(is_number(each.text) for each in fields if each.text):
         findings.add("LS318", table.at(fields[0]), name=name, text=fields[0].text)
+
+
+def _alike(table: CsvTable, fields: Mapping[int, Field], name: str, findings: Findings) -> Iterator[Alike]:
+    """Words that may be others misspelt; those that differ as nobody means it are refused."""
+    rows: dict[str, list[int]] = {}
+    for test, each in fields.items():
+        if each.text:
+            rows.setdefault(each.text, []).append(test)
+    first: dict[str, str] = {}
+    for word in sorted(rows, key=lambda each: -len(rows[each])):
+        if (other := first.setdefault(same(word), word)) != word:
+            at, line = table.at(fields[rows[word][0]]), table.at(fields[rows[other][0]]).line
+            findings.add("LS319", at, name=name, text=word, other=other, line=line)
+    yield from (
+        Alike(name, word, tuple(rows[word]), other, tuple(rows[other]), table.at(fields[rows[word][0]]))
+        for word, other in alike(rows)
+    )
 
 
 def _remarks(

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["names", "oddities"]
 
 DATA, LIMIT, UNCERTAINTY, SQUARES, GROUPS = "data", "limit", "uncertainty", "squares", "groups"
-CONSTANTS = "constants"
+CONSTANTS, WORDS = "constants", "words"
 EXPECTED, LEFT_OUT = "expected", "left out"
 """The kinds of these checks."""
 CELLS, ROWS, RESULT = "cells", "rows", "result"
@@ -62,6 +62,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
             *(each.name for each in workbook.curves),
         ],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
+        WORDS: list(workbook.groups),
         CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
         CLAIM: [claim.label for claim in workbook.claims],
         EXPECTED: [expectation.address for expectation in inputs.expected],
@@ -130,6 +131,7 @@ class _Oddities:
         yield from (self.of_squares(each) for each in self.report.workbook.squares if each.asked)
         yield from map(self.of_curve, self.report.workbook.curves)
         yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
+        yield from map(self.of_words, self.inputs.workbook.groups)
         yield from (self.of_constants(*each) for each in _adjusted(self.sheet, self.inputs))
         yield from self.of_expectations()
         yield from self.of_left_out()
@@ -362,10 +364,26 @@ class _Oddities:
         if not rest:
             said = f"{shared.name}: every {row} is in a group"
             return Check(GROUPS, shared.name, True, said, self.inputs.place)
-        rows = row if len(rest) == 1 else self.rows
-        which = f"{rows} {_some(list(map(str, rest)))} {'is' if len(rest) == 1 else 'are'}"
+        which = f"{self.numbered(rest)} {'is' if len(rest) == 1 else 'are'}"
         said = f"{shared.name}: {which} in no group of it, and so without it; a group may be of one {row}"
         return Check(GROUPS, shared.name, True, said, self.inputs.place, note="warning")
+
+    def of_words(self, column: str) -> Check:
+        """Whether a word by which rows belong together may be another one misspelt."""
+        found = [each for each in self.inputs.alike if each.column == column]
+        if not found:
+            return Check(WORDS, column, True, f"{column}: no word is nearly another", self.inputs.place)
+        told = [
+            f"'{word}' ({self.numbered(rows)}) is nearly '{other}' ({self.numbered(others)})"
+            for _, word, rows, other, others, _ in found
+        ]
+        said = f"{column}: {_some(told)}: is that misspelt? Each word is a group of its own"
+        return Check(WORDS, column, True, said, found[0].at, note="warning")
+
+    def numbered(self, rows: Sequence[int]) -> str:
+        """``run 2``, ``runs 1 and 3``."""
+        row = self.inputs.workbook.row if len(rows) == 1 else self.rows
+        return f"{row} {_some(list(map(str, rows)))}"
 
     def of_constants(self, cell: str, constants: Sequence[str]) -> Check:
         """That a result rests on constants whose errors are not independent."""

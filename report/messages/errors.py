@@ -225,6 +225,12 @@ CATALOGUE: dict[str, Entry] = {
         "words, the same for all rows that belong together",
         "put a letter before each number: S{text}",
     ),
+    "LS319": Entry(
+        "one group in two words",
+        "{name} is '{text}', and '{other}' in line {line}: they differ in case or blanks alone",
+        "one word for all rows that belong together",
+        "write '{other}'; if they are two groups, words that differ in a letter or number",
+    ),
     "LS401": Entry(
         "not a number",
         "{name} is not a number: '{text}'",

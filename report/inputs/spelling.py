@@ -1,0 +1,79 @@
+"""Words of a column that may be one word, misspelt."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from ..messages.errors import Location
+
+__all__ = ["Alike", "alike", "same"]
+
+_AS_DRAWN = str.maketrans("OoIl", "0011")
+_ZEROS = re.compile(r"(?<![0-9.,])0+(?=[0-9])")
+_SHORTEST = 5
+"""In shorter words one letter more is another word."""
+
+
+class Alike(NamedTuple):
+    """A word that may be another one misspelt, with the rows of both."""
+
+    column: str
+    word: str
+    rows: tuple[int, ...]
+    other: str
+    others: tuple[int, ...]
+    at: Location
+    """Where the word stands first."""
+
+
+def same(word: str) -> str:
+    """What a word has in common with those that differ from it in case, blanks or the form of a sign alone.
+
+    >>> same("b 40") == same("B40"), same("B40") == same("B41")
+    (True, False)
+    """
+    return "".join(unicodedata.normalize("NFKC", word).casefold().split())
+
+
+def alike(rows: Mapping[str, Sequence[int]]) -> Iterator[tuple[str, str]]:
+    """Words that may be one, that of fewer rows (or the later one) first.
+
+    They look the same (``B4O`` and ``B40``, ``S01`` and ``S1``); or one stands in a single row and the other
+    in several, and they differ by a small letter more within the word, or by two that are exchanged. Other
+    numbers and other letters tell rows apart (``A1`` and ``A2``, ``butane`` and ``butene``).
+
+    Parameters
+    ----------
+    rows : mapping of str to sequence of int
+        The rows of each word, in the order of the table.
+
+    Examples
+    --------
+    >>> list(alike({"Aldrich": [1, 2], "Aldrcih": [3], "B40": [4, 5], "B4O": [6], "B41": [7]}))
+    [('B4O', 'B40'), ('Aldrcih', 'Aldrich')]
+    >>> list(alike({"A1": [1, 2], "A2": [3], "butane": [5, 6], "butene": [7], "CO2": [8], "C2": [9]}))
+    []
+    """
+    for seen in (lambda word: word.translate(_AS_DRAWN), lambda word: _ZEROS.sub("", word)):
+        first: dict[str, str] = {}
+        for word in rows:
+            if (other := first.setdefault(seen(word), word)) != word:
+                yield (word, other) if len(rows[word]) <= len(rows[other]) else (other, word)
+    of = {slip: word for word, own in rows.items() if len(own) > 1 for slip in _slips(word)}
+    for word in (word for word, own in rows.items() if len(own) == 1):
+        if other := of.get(word) or next((each for each in _slips(word) if len(rows.get(each, ())) > 1), ""):
+            yield word, other
+
+
+def _slips(word: str) -> Iterator[str]:
+    """A word without one of the small letters within it, and with two of them exchanged."""
+    if len(word) < _SHORTEST:
+        return
+    for place in range(1, len(word) - 1):
+        if re.fullmatch(r"[^\W\d_]{3}", near := word[place - 1 : place + 2]) and near.islower():
+            yield word[:place] + word[place + 1 :]
+            yield word[:place] + word[place + 1] + word[place] + word[place + 2 :]
