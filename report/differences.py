@@ -11,9 +11,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import mpmath
-from sympy import Expr, Float, Indexed, Rational, Symbol
+from sympy import Expr, Float, Indexed, Integer, Rational, Symbol
+from sympy.concrete.expr_with_limits import ExprWithLimits
 
 from ..derivations.evaluation import UNDEFINED, NotEvaluable, Tape
+from ..derivations.reductions import Member
 from .axis import Axis
 from .column import Column, Formula, shown_in
 from .named import name_of
@@ -62,7 +64,11 @@ def _moved(formula: Expr, columns: Mapping[str, Column]) -> tuple[Expr, bool]:
 
 def _moves(moved: Expr, axis: Axis, rows: int) -> bool:
     """Whether the value is seen to move, at drawn values of all cells."""
+    moved = moved.replace(Member, lambda *_: Integer(1))  # one group of all rows
     moved = moved.xreplace({number: Rational(str(number)) for number in moved.atoms(Float)})
+    moved = moved.xreplace(
+        {last: Integer(rows) for each in moved.atoms(ExprWithLimits) for _, _, last in each.limits}
+    )
     cells = moved.atoms(Indexed)
     columns = sorted({cell.base.label for cell in cells}, key=str)
     scalars = sorted(moved.free_symbols - {*cells, *columns, axis.size, axis.index, _MOVE}, key=str)

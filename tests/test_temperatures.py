@@ -291,6 +291,29 @@ def test_a_temperature_keeps_its_zero(tmp_path: Path, line: str) -> None:
     assert report.shown["x"].unit == "degC"
 
 
+@pytest.mark.parametrize(
+    ("formula", "unit", "refused"),
+    [
+        ("mean(T, of=bath)", "degC", False),
+        ("max(T, of=bath)", "degC", False),
+        ("mean(T, of=bath) + mean(T - T_ref)", "degC", False),
+        ("mean(T, of=bath) - T_ref", "degC", True),
+        ("max(T, of=bath) - min(T, of=bath)", "degC", True),
+    ],
+)
+def test_a_mean_of_a_group_is_a_temperature(
+    tmp_path: Path, formula: str, unit: str, refused: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code = TURNS.format(line=f'bath = groups("bath")\n    x = let({formula}, "x", "{unit}")')
+    toml = 'title = "T"\nworkbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
+    table = "reading,bath,T [degC]\n1,A,20.0\n2,A,21.5\n3,B,30.5\n"
+    folder = gas.folder(tmp_path, toml, table, code.replace("given, let", "given, groups, let"))
+    assert main(["show", "x", str(folder)]) == 2 * refused
+    told = "".join(capsys.readouterr())
+    assert ("x is a difference" in told) == refused
+    assert refused or "[degC]" in told
+
+
 def test_a_root_is_a_difference_or_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     line = 'x = unknown()\nx = root({}, 0, "x", "degC", low={}, high={})'
     assert main(["build", str(turned(tmp_path / "a", line.format("x - (m - T_ref)", -100, 100)))]) == 2
