@@ -241,6 +241,11 @@ def test_published_values_of_groups_are_refereed(tmp_path: Path, capsys: pytest.
     (folder / "published.csv").write_text(said + rows.replace("2.50", "2.61"), encoding="utf-8")
     assert main(["check", str(folder)]) == 1
     assert "level[2]" in capsys.readouterr().out
+    (folder / "published.csv").write_text(said + rows.replace("level,2", "level,B"), encoding="utf-8")
+    assert main(["check", str(folder)]) == 2
+    told = capsys.readouterr().err
+    assert "not an index: 'B'" in told
+    assert "'loopsheet show level FOLDER' lists" in told
 
 
 def test_a_large_table_is_judged_by_some_of_its_rows(tmp_path: Path) -> None:
@@ -282,3 +287,20 @@ def test_a_word_that_is_nearly_another_is_told(words: tuple[str, ...], said: str
     found = {each.kind: each for each in Study(grouped.write(tmp_path, rows)).computed.oddities}["words"]
     assert found.note == ("warning" if said else "")
     assert said in found.sentence
+
+
+def test_a_table_of_names_alone_has_no_reading(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(grouped.write(tmp_path, ()))]) == 2
+    told = capsys.readouterr().err
+    assert told.count("error[") == 1
+    assert "LS310" in told
+    assert "the table has no reading" in told
+
+
+def test_over_how_many_readings_a_mean_is_is_told_where_that_is_expected(tmp_path: Path) -> None:
+    code = grouped.METHOD.replace("    instrument =", '    x = measured("mm", "another")\n    instrument =')
+    rows = tuple((word, "" if n == 2 else y, "1.0") for n, (word, y) in enumerate(grouped.FEW))
+    more = '[expected]\n"y[3]" = "not taken"\n'
+    report = Study(grouped.write(tmp_path, rows, "instrument,y [mm],x [mm]", code, more)).computed
+    (told,) = (each for each in report.oddities if (each.kind, each.name) == ("data", "rows"))
+    assert (told.word, told.message[-36:]) == ("expected", "over 6 of 7 readings, as is expected")

@@ -285,12 +285,13 @@ def expecting(folder: Path, texts: Texts, *lines: str) -> Path:
 def test_what_is_expected_of_a_test_is_no_finding_and_the_reason_is_told(tmp_path: Path) -> None:
     found = checks(expecting(tmp_path, SLIPPED, '"test 2" = "the dial was read in cm"'))
     assert all(check.passed for check in found.values())
-    (said,) = told(tmp_path)
+    rows, said = told(tmp_path)
     assert said.startswith(
         "expected: test 2, the dial was read in cm: alpha[1-2] has no value (#NOROOT!), alpha[2-3] has no"
     )
     assert found["data cells"].message.endswith(", as is expected")
-    assert found["data rows"].message == "rows are left out as is expected"
+    assert rows == f"expected: {found['data rows'].message}"
+    assert "alpha_mean, alpha_median, x_ref and F_ref are over 6 of 10 pairs" in rows
 
 
 def test_what_is_expected_of_a_cell_is_of_no_other(tmp_path: Path) -> None:
@@ -420,7 +421,8 @@ def test_build_tells_what_is_expected_and_ends_well(
     assert main(["build", str(folder), "--out", str(tmp_path / "out"), "--to", "json"]) == 0
     assert "expected: " in capsys.readouterr().out.splitlines()[-2]
     values = json.loads((tmp_path / "out" / "values.json").read_text())
-    (odd,) = values["oddities"]
+    rows, odd = values["oddities"]
+    assert rows["sentence"].endswith(", as is expected")
     assert (odd["kind"], odd["name"], odd["word"]) == ("expected", "test 2", "expected")
     assert "read in cm" in odd["sentence"]
 

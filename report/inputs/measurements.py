@@ -165,9 +165,8 @@ def read_measurements(
     heads = [read_head(table, field, columns, findings) for field in table.header]
     names = [head.name if head else "" for head in heads]
     # Where rows are called specimens, a column 'specimen' has their numbers, or else their names.
-    has_names = called in names and not any(
-        is_number(row.fields[names.index(called)].text) for row in table.rows
-    )
+    numbers = [is_number(row.fields[names.index(called)].text) for row in table.rows if called in names]
+    has_names = bool(numbers) and not any(numbers)
     if "test" not in names and called not in columns and not has_names:
         names = ["test" if name == called else name for name in names]
     names = [_not_here(table, n, name, elsewhere, findings) for n, name in enumerate(names)]
@@ -192,9 +191,11 @@ def read_measurements(
     gone = {place for place, reason in enumerate(reasons) if reason.text}
     total = table.total - len(gone)
     if total < 2:
-        count = ("no test" if total == 0 else "one test only") + " that is not left out" * bool(gone)
+        count = (f"no {called}" if total == 0 else f"one {called} only") + " that is not left out" * bool(
+            gone
+        )
         at = table.end_of_header() if table.total == 0 else _last(table)
-        findings.add("LS310", at, count=count)
+        findings.add("LS310", at, count=count, row=called)
     used = [row for place, row in enumerate(table.rows) if place not in gone]
     near: list[Alike] = []
     for name in (name for name in groups if name in places):

@@ -25,6 +25,11 @@ __all__ = ["COLUMNS", "Pin", "PublishedValue", "check_published", "read_publishe
 _REQUIRED = tuple(name for name, column in PUBLISHED.items() if column.required)
 _OPTIONAL = tuple(name for name, column in PUBLISHED.items() if not column.required)
 COLUMNS = (*_REQUIRED, *_OPTIONAL)
+_AS_DATE = "a spreadsheet may have turned 1-2 into a date: format the column as text"
+_AS_WORD = (
+    "rows and groups stand by their numbers here, which 'loopsheet show {} FOLDER' lists beside their words"
+)
+_DATE = re.compile(r"^[0-9]|[0-9][-./ ]|[-./ ][0-9]")
 _INDEX = re.compile(r"[1-9][0-9]{0,8}(?:-[1-9][0-9]{0,8})?")
 _EXPECT = ("", "differs")
 _ARROW = " -> "
@@ -164,7 +169,8 @@ def _value(table: CsvTable, fields: Mapping[str, Field], findings: Findings) -> 
         unread.add("cell")
     index = fields["index"]
     if index.text and not _INDEX.fullmatch(index.text):
-        findings.add("LS501", table.at(index), text=index.text)
+        hint = _AS_DATE if _DATE.search(index.text) else _AS_WORD.format(fields["cell"].text)
+        findings.add("LS501", table.at(index), text=index.text, suggestion=hint)
         unread.add("index")
     words = {name: " ".join(fields[name].text.split()) if name in fields else "" for name in _OPTIONAL}
     if words["expect"] not in _EXPECT:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..axis import MemberAxis
 from ..cells.marks import Margin, MarkCount, margins
 from ..cells.values import Cell, Status
 from ..messages.diagnostics import Check, Location
@@ -195,22 +196,26 @@ class _Oddities:
     def of_rows(self) -> Check:
         """Whether all sums, means and fits are over all rows."""
         found: dict[str, list[str]] = {}
+        foreseen: dict[str, list[str]] = {}
+        members = {each.name: each.of.name for each in self.sheet.axes if isinstance(each, MemberAxis)}
         for name in self.first(self.values.counted):
             for axis, rows in self.values.counted[name].items():
-                over = f"over {rows} of {self.values.layouts[axis].size} {axis}"
+                over = f"over {rows} of {self.values.layouts[axis].size} {members.get(axis, axis)}"
                 cells = (cell for cell in self.values.cells(name) if cell.value is not None)
                 expected = [self.follows(cell, f"is {over}") for cell in cells]
-                if not all(expected):
-                    found.setdefault(over, []).extend(self.leading_to(name))
-        told = ((over, self.first(dict.fromkeys(names))) for over, names in found.items())
+                if expected:
+                    which = foreseen if all(expected) else found
+                    which.setdefault(over, []).extend(self.leading_to(name))
+        told = ((over, self.first(dict.fromkeys(names))) for over, names in (found or foreseen).items())
         said = "; ".join(f"{_some(n)} {'is' if len(n) == 1 else 'are'} {over}" for over, n in told)
-        if not said:
-            said = (
-                "rows are left out as is expected"
-                if self.failed or self.values.counted
-                else "sums, means and fits are over all rows"
-            )
-        return Check(DATA, ROWS, not found, said, self.inputs.place)
+        if found:
+            return Check(DATA, ROWS, False, said, self.inputs.place)
+        if said and not self.failed.open and any(self.met.values()):  # nobody else tells of it
+            return Check(DATA, ROWS, True, f"{said}, as is expected", self.inputs.place, note="expected")
+        said = "sums, means and fits are over all rows"
+        if self.failed or self.values.counted:
+            said = "rows are left out as is expected"
+        return Check(DATA, ROWS, True, said, self.inputs.place)
 
     def of_result(self) -> Check:
         """Whether every cell of the result has a value."""

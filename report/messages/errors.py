@@ -189,7 +189,7 @@ CATALOGUE: dict[str, Entry] = {
         "export the table again as comma-separated values, with a decimal point",
     ),
     "LS309": Entry("no header", "the first line holds numbers instead of the names of columns", "{known}"),
-    "LS310": Entry("fewer than two tests", "the table has {count}", "at least two tests, one a row"),
+    "LS310": Entry("fewer than two tests", "the table has {count}", "at least two rows, one for each {row}"),
     "LS311": Entry(
         "doubled test number",
         "{name} {text} is there twice, first in line {first}",
@@ -341,8 +341,8 @@ CATALOGUE: dict[str, Entry] = {
     "LS501": Entry(
         "not an index",
         "not an index: '{text}'",
-        "1-2 for a pair, 3 for a test, nothing for a single number",
-        "a spreadsheet may have turned 1-2 into a date: format the column as text",
+        "1-2 for a pair, 3 for a row or group by its number, nothing for a single number",
+        "{suggestion}",
     ),
     "LS502": Entry("unknown expectation", "expect is '{text}'", "nothing, or 'differs'", "{suggestion}"),
     "LS504": Entry(
