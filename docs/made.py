@@ -18,7 +18,7 @@ from loopsheet.report.files.values import Result
 from loopsheet.report.inputs import about, keys
 from loopsheet.report.messages.errors import CATALOGUE, GROUPS
 from loopsheet.report.method import Method
-from loopsheet.report.method_body import FUNCTIONS
+from loopsheet.report.method_lines import FUNCTIONS
 from loopsheet.report.verbs import VERBS
 
 MESSAGES = Path(__file__).parent.parent / "tests" / "hostile" / "messages.txt"

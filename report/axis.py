@@ -5,6 +5,7 @@ Nothing here knows a model, a number or an output.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -92,6 +93,10 @@ class Axis:
     def is_given(self) -> bool:
         """Whether its rows come with the data."""
         return not self.parents
+
+    def grouped(self, axes: Iterable[Axis]) -> Iterator[MemberAxis]:
+        """Those of some index sets that have its rows in groups: a formula on it may name a row's group."""
+        return (each for each in axes if isinstance(each, MemberAxis) and each.of == self)
 
     @property
     def repeats(self) -> str | None:

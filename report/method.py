@@ -28,7 +28,8 @@ from ..derivations.vocabulary import Quantity, Vocabulary, spelt
 from .charts import BLUE, VERMILION, Chart, Drawn, Series
 from .column import Column, SheetError
 from .messages.errors import listing
-from .method_body import ComputedLine, Declaration, FitLine, InputLine, MethodBody, UnknownLine, exact
+from .method_body import MethodBody
+from .method_lines import ComputedLine, Declaration, FitLine, InputLine, UnknownLine, exact
 from .named import name_of
 from .quantity import Bounds, behind
 from .sheet import Sheet

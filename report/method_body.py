@@ -3,165 +3,45 @@
 from __future__ import annotations
 
 import itertools
-import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from sympy import Add, Expr, Float, Function, Indexed, Max, Min, Rational, Sum, Symbol, sympify
-from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
+from sympy import Add, Expr, Float, Indexed, Max, Min, Rational, Sum, Symbol, sympify
 
 from ..derivations.equation import Derivation, Equation, Kind, Ledger
 from ..derivations.grounds import says
 from ..derivations.reductions import REDUCTIONS, Greatest, Least, Member, OrderStatistic
-from ..derivations.unit_text import (
-    ParsedUnit,
-    UnitError,
-    coherent,
-    of_differences,
-    parse_open,
-)
+from ..derivations.unit_text import of_differences
 from .axis import Axis, GroupAxis, MemberAxis, PairAxis
 from .cells.units import named_unit_of, unit_of
-from .column import Column, Formula, Given, Root, SheetError, shown_in
+from .column import Column, Formula, Given, Reference, Root, SheetError, shown_in
 from .differences import is_difference
 from .fitted import DeclaredFit, told_apart
 from .messages.errors import listing
+from .method_lines import (
+    ComputedLine,
+    Declaration,
+    FitLine,
+    InputLine,
+    UnknownLine,
+    exact,
+    in_si,
+    size_of,
+    stated_unit,
+    unit_in_si,
+    with_unit,
+)
 from .named import member, name_of, references, summed_over
-from .quantity import Bounds
 from .sheet import Sheet
 from .workbook import Claimed, Curve, FigureSpec, Measured, Parameter, TableSpec
 
-__all__ = [
-    "FUNCTIONS",
-    "ComputedLine",
-    "Declaration",
-    "FitLine",
-    "InputLine",
-    "MethodBody",
-    "UnknownLine",
-    "exact",
-]
+__all__ = ["MethodBody"]
 
-
-FUNCTIONS = (
-    *("exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh"),
-    *("Abs", "Max", "Min"),
-)
-"""Besides powers; as sympy calls them."""
 _EXTREMES = {"max": (Max, Greatest), "min": (Min, Least)}
 """By their names in a body: of several formulas, and over the rows of one."""
-_NO_ALGEBRA = "{what} is taken over the rows of each group, of which no proof is known: claim it without"
-
-
-@dataclass(frozen=True)
-class Declaration:
-    """What a line of the body says; its name comes with the assignment."""
-
-    meaning: str
-    unit: str
-    column: Mapping[str, Any]
-
-    def __post_init__(self) -> None:
-        for what, text in (("meaning", self.meaning), ("unit", self.unit)):
-            if not isinstance(text, str):
-                raise SheetError(f"a {what} is a text in quotes, not {text!r}")
-
-
-@dataclass(frozen=True)
-class InputLine(Declaration):
-    """What is given or measured."""
-
-    bounds: Bounds = field(default_factory=Bounds)
-    default: str | None = None
-    is_measured: bool = False
-    example: str = ""
-    is_constant: bool = False
-
-
-@dataclass(frozen=True)
-class ComputedLine(Declaration):
-    """What a formula computes, or a root is sought for."""
-
-    sides: tuple[Expr, ...] = ()  # of a definition the last alone
-    label: str = ""
-    because: str = ""
-    ends: Mapping[str, Any] | None = None  # of a root: the interval that it lies in, and where it is begun
-
-
-@dataclass(frozen=True)
-class UnknownLine(Declaration):
-    """What a root or a fit will find."""
-
-    start: Expr | None = None
-
-
-@dataclass(frozen=True)
-class FitLine:
-    """A model whose unknowns make a sum of squares least."""
-
-    observed: Any
-    model: Expr
-    u: Any
-    label: str
-    figures: bool
-
-
-def _size(name: str, unit: str) -> ParsedUnit:
-    try:
-        return parse_open(unit)
-    except UnitError as error:
-        hint = f"; {error.suggestion}" if error.suggestion else ""
-        kind = "is unknown" if error.code == "LS421" else "cannot be read"
-        raise SheetError(f"{name}: the unit {error.text!r} {kind}{hint}", name) from None
-
-
-def _unit(size: ParsedUnit) -> dict[str, Any]:
-    """The unit of a column, in SI, and the one that it is shown in, if that is another."""
-    si = coherent(size)
-    return {"unit": si} if si == size.text else {"unit": si, "display": size.text}
-
-
-def _in_si(place: Expr, size: ParsedUnit) -> Expr:
-    """A number in a unit, in SI; what names quantities is in SI."""
-    return place * Rational(size.scale) + Rational(size.zero) if place.is_number else place
-
-
-def _stated_unit(name: str, unit: str) -> dict[str, Any]:
-    return _unit(_size(name, unit)) if unit else {}
-
-
-def _with_unit(name: str, sought: UnknownLine) -> UnknownLine:
-    """The parameter of a fit with its unit, if that is stated, and its start in SI."""
-    start = sought.start
-    if start is not None and sought.unit:
-        start = _in_si(start, _size(name, sought.unit))
-    return replace(sought, column={**_stated_unit(name, sought.unit), **sought.column}, start=start)
-
-
-def exact(formula: Any) -> Expr:
-    """A formula with decimal fractions as they were typed: 0.27027... was 1/3.7, 0.30000000000000004 0.3."""
-    if isinstance(formula, str):
-        raise SheetError(f"{formula!r} is a text: a formula stands there without quotes")
-    formula = sympify(formula)
-    if not isinstance(formula, Expr) or formula.has(
-        ImaginaryUnit, NaN, Infinity, NegativeInfinity, ComplexInfinity
-    ):
-        raise SheetError(f"{formula} is no formula of real numbers")
-    for part in formula.atoms(Function):
-        if part.func.__name__ not in FUNCTIONS and not isinstance(part, Member):
-            known = ", ".join(sorted(FUNCTIONS))
-            raise SheetError(f"{part.func} is none of the functions that every engine has: {known}")
-    typed = {}
-    for number in formula.atoms(Float) - {Float(0)}:
-        own, value = repr(float(number)), float(number)
-        for of, text in ((value, f"{value:.12g}"), (1 / value, f"{1 / value:.12g}")):
-            if len(text) + 4 < len(own) and math.isclose(float(text), of, rel_tol=1e-15):
-                typed[number] = Rational(text) if of == value else 1 / Rational(text)
-                break
-    found: Expr = formula.xreplace(typed)
-    return found
+_NO_ALGEBRA = "{what} is of rows in groups, of which no proof is known: claim it without"
 
 
 def _numbers(*names: str) -> Iterator[Symbol]:
@@ -248,6 +128,7 @@ class MethodBody(dict[str, Any]):
             raise SheetError("sum(...) is of one formula, over the rows, or of a list, sum([a, b])")
         if isinstance(formula, Iterable):
             return Add(*map(exact, formula))
+        formula = self._of_one_row(exact(formula))
         over = self.axis_of(formula) or self.axis
         if over is not self.axis and not isinstance(formula, Indexed):
             formula = self._of_rows(formula, over)
@@ -308,18 +189,49 @@ class MethodBody(dict[str, Any]):
         """A formula of a row where that belongs to a group."""
         if of not in self.groups:
             raise SheetError(f"of={of} is none of what groups() returned")
-        formula = exact(formula)
-        if formula.has(Member):
-            raise SheetError(f"{formula} is taken over the rows of each group: let(...) that be one first")
+        formula = self._without_groups(exact(formula))
         rows = self._rows_of(formula)
-        if not set(rows) <= {self.axis, of}:
+        if not set(rows) <= {self.axis, *self.groups}:
             raise SheetError(
                 f"{formula} names {listing([axis.name for axis in rows])}, not the rows of one {of.row}"
             )
         return formula * member(of.members)
 
+<<<<<<< HEAD
+=======
+    def _of_one_row(self, formula: Any) -> Any:
+        """A formula, in which what is taken over the rows of each group is a column if it is of one row."""
+        return self._without_groups(formula) if self.axis in self._rows_of(formula) else formula
+
+    def _without_groups(self, formula: Any) -> Any:
+        """A formula with columns for what is taken in it over the rows of each group."""
+        if not formula.has(Member):
+            return formula
+        over = self.axis_of(formula)
+        if over in self.groups:
+            number, taken = formula.as_coeff_Mul()
+            return number * self._of_rows(taken, over)
+        return formula.func(*map(self._without_groups, formula.args))
+
+    def _number_of_groups(self, formula: Any, of: Any) -> Expr:
+        """How many rows each group has; of a formula, in how many of them it has a value."""
+        found = self._of_groups(1, of)
+        if self.axis_of(formula) is None:
+            return found
+        is_cell = isinstance(formula, Indexed) and formula.indices == (self.axis.index,)
+        cell = formula if is_cell else self._of_rows(formula, self.axis)
+        name = f"count_of_{cell.base.name}_by_{of.row}"
+        if name not in self.columns:
+            column = self._aside(name, f"{self.axis.name} with a value", found)
+            self.columns[name] = replace(column, alongside=(self.columns[cell.base.name],))
+        return self.columns[name].cell
+
+>>>>>>> 5436ae5 (Let a formula of rows name what there is of the row's group)
     def _of_rows(self, formula: Any, over: Axis) -> Indexed:
-        """A formula for rows, or pairs of them, as a column of its own."""
+        """A formula for rows, or pairs or groups of them, as a column of its own."""
+        for column in (self.columns[each] for each in self.aside):
+            if isinstance(column.rule, Formula) and column.rule.equation.members[-1] == formula:
+                return column.cell
         own = f"of_{over.name}_{sum(column.axis == over for column in self.columns.values()) + 1}"
         found: Indexed = self._aside(own, f"term of each {over.row}", formula).cell
         return found
@@ -332,8 +244,13 @@ class MethodBody(dict[str, Any]):
         return column
 
     def axis_of(self, *formulas: Any) -> Axis | None:
-        """The rows that formulas have a value for each of; None for a single number."""
+        """The rows that formulas have a value for each of; None for a single number.
+
+        What names a row and what there is of groups has a value for each row: of its group.
+        """
         found = self._rows_of(*formulas)
+        if self.axis in found:
+            found = [axis for axis in found if axis not in self.groups]
         if len(found) > 1 and not self.groups:
             raise SheetError(
                 "one formula names a row and a pair of rows: say first(...) or second(...) of which"
@@ -346,11 +263,21 @@ class MethodBody(dict[str, Any]):
             )
         return found[0] if found else None
 
+    def _named_in(self, *formulas: Any) -> Iterator[Reference]:
+        sums = summed_over([*self.axes, *(axis.members for axis in self.groups)])
+        return (cell for formula in formulas for cell in references(formula, sums))
+
+    def _is_grouped(self, *formulas: Expr) -> bool:
+        """Whether formulas are of the rows of a group, or of the group of a row: algebra knows neither."""
+        words = {axis.index_name for axis in self.groups}
+        within = any(cell.over == self.axis and cell.index in words for cell in self._named_in(*formulas))
+        both = {self.axis, *self.groups}.intersection(self._rows_of(*formulas))
+        return within or len(both) > 1 or any(formula.has(Member) for formula in formulas)
+
     def _rows_of(self, *formulas: Any) -> list[Axis]:
         """All rows that formulas name."""
         every = [sympify(formula) for formula in formulas]
-        sums = summed_over([*self.axes, *(axis.members for axis in self.groups)])
-        cells = (cell for formula in every for cell in references(formula, sums))
+        cells = self._named_in(*every)
         named = {cell.index for cell in cells if cell.over is None}
         named |= {str(told.args[1]) for formula in every for told in formula.atoms(Member)}
         return [axis for axis in self.axes if not named.isdisjoint(axis.named)]
@@ -365,9 +292,12 @@ class MethodBody(dict[str, Any]):
         return partial(self._of_member, first), partial(self._of_member, second)
 
     def _of_member(self, member: Symbol, formula: Any) -> Expr:
+        formula = exact(formula)
         if self.axis_of(formula) != self.axis:
             raise SheetError(f"{formula} has no value for each row, of which a pair has two")
-        found: Expr = exact(formula).subs(self.axis.index, member)
+        if self._is_grouped(formula):
+            formula = self._of_rows(formula, self.axis)
+        found: Expr = formula.subs(self.axis.index, member)
         return found
 
     @property
@@ -449,7 +379,7 @@ class MethodBody(dict[str, Any]):
 
     def _input(self, name: str, said: Declaration) -> Column:
         assert isinstance(said, InputLine)
-        size = _size(name, said.unit)
+        size = size_of(name, said.unit)
         if size.zero and said.column["positive"]:
             raise SheetError(f"{name}: above which zero? say low=..., in {said.unit}", name)
         bounds = said.bounds.within(size.scale, size.zero)
@@ -463,7 +393,12 @@ class MethodBody(dict[str, Any]):
         rule = Given("measured" if said.is_measured else "parameter")
         axis = self.axis if said.is_measured else None
         return Column(
-            name, axis, rule, meaning=said.meaning, **_unit(size), **{**said.column, "positive": positive}
+            name,
+            axis,
+            rule,
+            meaning=said.meaning,
+            **unit_in_si(size),
+            **{**said.column, "positive": positive},
         )
 
     def _number(self) -> str:
@@ -478,12 +413,15 @@ class MethodBody(dict[str, Any]):
         if not isinstance(said.observed, Indexed):
             raise SheetError(f"{name}: {said.observed} is no column over the rows: let(...) it be one", name)
         sought = {
-            symbol: _with_unit(each, announced)
+            symbol: with_unit(each, announced)
             for each, announced in self.announced.items()
             if each not in self.columns and (symbol := Symbol(each, real=True)) in said.model.free_symbols
         }
         sought = {symbol: self._begun(announced, str(symbol)) for symbol, announced in sought.items()}
         rows = self.axis_of(said.observed) or self.axis
+        for formula in (said.model, said.u):
+            if isinstance(formula, Expr) and self._is_grouped(formula, said.observed):
+                raise SheetError(f"{name}: {formula} is of rows in groups, which no fit takes", name)
         found = DeclaredFit(
             name, rows, self.columns, said.observed, said.model, sought, said.u,
             said.label or self._number(), self.own,
@@ -531,7 +469,7 @@ class MethodBody(dict[str, Any]):
         self, left: Expr, right: Expr, meaning: str, because: str, from_: Sequence[Any] | None, label: str
     ) -> None:
         """Put a claim into the ledger, with what it is to be derived from."""
-        if any(side.has(Member) for side in (left, right)):
+        if self._is_grouped(left, right):
             raise SheetError(_NO_ALGEBRA.format(what=f"'{meaning}'"))
         found = self._premises((left, right) if from_ is None else from_, meaning, everything=from_ is None)
         row = Symbol("i", integer=True, positive=True)
@@ -555,7 +493,7 @@ class MethodBody(dict[str, Any]):
         )  # as long as both have one unit
         self.claims.append(Claimed(equation.label, meaning, self.axis_of(left, right), left, right))
         for premise, unknown in found:
-            if any(side.has(Member) for side in premise.members):
+            if self._is_grouped(*premise.members):
                 raise SheetError(_NO_ALGEBRA.format(what=f"{unknown}, on which '{meaning}' rests,"))
         premises, unknowns = zip(*found, strict=True) if found else ((), ())
         self.entries.append(Derivation.of(equation, premises, unknowns, "Put in what the quantities are."))
@@ -585,9 +523,10 @@ class MethodBody(dict[str, Any]):
         return list(found.values())
 
     def _computed(self, name: str, said: ComputedLine) -> Column:
+        said = replace(said, sides=tuple(map(self._of_one_row, said.sides)))
         named = {symbol for side in said.sides for symbol in side.free_symbols}
         axis = self.axis_of(*said.sides)
-        unit = _stated_unit(name, said.unit)
+        unit = stated_unit(name, said.unit)
         column = Column(name, axis, Given(), meaning=said.meaning, **{**unit, **said.column})
         sides = said.sides if said.ends else (column.cell, *said.sides)
         kind = Kind.ASSUMPTION if said.ends else Kind.DEFINITION
@@ -600,9 +539,9 @@ class MethodBody(dict[str, Any]):
                 )
             if self.announced.get(name) not in (None, UnknownLine("", "", {"latex": ""})):
                 raise SheetError(f"{name} = unknown() is enough: root(...) says what {name} is", name)
-            size = _size(name, said.unit)
+            size = size_of(name, said.unit)
             places = {
-                each: _in_si(place, size) for each, place in said.ends.items() if isinstance(place, Expr)
+                each: in_si(place, size) for each, place in said.ends.items() if isinstance(place, Expr)
             }
             rule = Root(equation, equation, column.symbol, column.symbol, **{**said.ends, **places})
             return self._as_difference(replace(column, rule=rule), said_so=True)

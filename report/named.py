@@ -47,7 +47,8 @@ class Named:
 
     def maps(self, axis: Axis) -> dict[Symbol, Axis]:
         """For every index that may be used in a formula on an axis, the axis whose rows it names."""
-        groups = (each for each in self.axes if isinstance(each, GroupAxis) and each.members == axis)
+        rows = (axis, *_grouped(axis))
+        groups = (each for each in self.axes if isinstance(each, GroupAxis) and each.members.of in rows)
         return axis.maps | {each.index: each for each in groups}
 
     def summed(self, column: Column) -> tuple[Axis, ...]:

@@ -166,7 +166,7 @@ class _Own:
 
 def _hint(error: BaseException) -> str:
     """What helps who wrote a line that fails; what a sheet complains of says it itself."""
-    from .method_body import FUNCTIONS
+    from .method_lines import FUNCTIONS
 
     match error:
         case SheetError():

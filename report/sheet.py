@@ -278,7 +278,7 @@ class Sheet:
             on, other = summed or column.axis, self.by_name[name]
             if index is None or on is None:
                 return Reference(other.symbol, summed)
-            return Reference(other[next(i for i in on.maps if i.name == index)], summed)
+            return Reference(other[next(i for i in self.algebra.maps(on) if i.name == index)], summed)
 
         return partly(Reference, {"name": name, "index": index, "over": summed}, whole)
 

@@ -33,6 +33,9 @@ class Variance(Method, source="ISO 5725-2", headline="between within F R2 s apar
     wide = let(max(y, of=instrument) - min(y, of=instrument), "range of an instrument", like=y)
     widest = let(max(wide), "widest range", like=y)
     typical = let(median(y, of=instrument), "median of an instrument", like=y)
+    off = let(y / level, "reading by the mean of its instrument")
+    farthest = let(max(off), "farthest reading")
+    again = let(sum((y - mean(y, of=instrument)) ** 2), "squares within instruments, by readings", "mm^2")
 """
 FEW = (
     ("A", "1.50"),

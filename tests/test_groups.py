@@ -183,8 +183,14 @@ def test_numbers_are_no_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("z = let(y - level, 'both')", "one formula names readings or instruments: take a mean"),
-        ("z = let(mean(y - mean(y, of=instrument), of=instrument), 'nested')", "let(...) that be one first"),
+        (
+            "other = groups('day', index='h', size='days'); z = let(mean(y, of=other) - level, 'both')",
+            "one formula names instruments or days: take a mean",
+        ),
+        (
+            "first, second = pairs(); z = let(first(y) - level, 'of which')",
+            "one formula names instruments or pairs: take a mean",
+        ),
         ("z = let(mean(y, of='instrument'), 'text')", "of=instrument is none of what groups() returned"),
         ("z = let(max(2 * y, of=instrument), 'most')", "max() is of a column, not of 2*y[k]"),
         ("z = let(max(level, of=instrument), 'most')", "level[g] is one number of each instrument"),
@@ -198,6 +204,9 @@ def test_numbers_are_no_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]
             "g is the instrument's number: call that otherwise, index='...' in groups()",
         ),
         ("claim(sum(many * level), sum(y), 'all')", "of which no proof is known"),
+        ("claim(sum(off) * all_y, sum(y), 'false', from_=[off])", "of which no proof is known"),
+        ("x = unknown('x'); f = fit(y, x * level)", "f: x*level[g] is of rows in groups, which no fit takes"),
+        ("claim(off * level, y, 'true', from_=[off])", "of which no proof is known"),
     ],
 )
 def test_what_is_refused_of_groups(line: str, said: str) -> None:

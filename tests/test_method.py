@@ -20,7 +20,7 @@ from loopsheet.derivations.reductions import Greatest, Least, Median
 from loopsheet.report.cli import main
 from loopsheet.report.column import Formula, Root, SheetError
 from loopsheet.report.engines.numpy import evaluate
-from loopsheet.report.method_body import exact
+from loopsheet.report.method_lines import exact
 from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.monte_carlo import draw

@@ -24,7 +24,8 @@ class Layout:
     size : int
         How many rows.
     rows : mapping of str to integer array (size,)
-        For each index that formulas may use, by what it is called, the row it names, from 0.
+        For each index that formulas may use, by what it is called, the row it names, from 0: its own, those
+        that it is made of, the groups that it belongs to.
     ordinals : mapping of str to float array (size,)
         Running numbers that formulas use as values, from 1.
     labels : integer array (size, parts)
@@ -95,7 +96,8 @@ def lay_out(
             members = layouts[axis.members.name]
             layouts[axis.name] = _given(axis, members.labels[members.starts, 0].tolist())
         else:
-            layouts[axis.name] = _given(axis, labels[axis.name])
+            groups = {each.group_name: labels[each.name] for each in axis.grouped(sheet.axes)}
+            layouts[axis.name] = _given(axis, labels[axis.name], groups)
     return layouts
 
 
@@ -104,9 +106,10 @@ def how_large(sheet: Sheet, layouts: Mapping[str, Layout]) -> int:
     return sum(1 if column.axis is None else layouts[column.axis.name].size for column in sheet.columns)
 
 
-def _given(axis: Axis, labels: Sequence[int]) -> Layout:
-    own = np.arange(len(labels))
-    return Layout(len(labels), {axis.index_name: own}, {}, np.asarray(labels, dtype=np.int64).reshape(-1, 1))
+def _given(axis: Axis, labels: Sequence[int], groups: Mapping[str, Sequence[int]] | None = None) -> Layout:
+    rows = {index: np.unique(numbers, return_inverse=True)[1] for index, numbers in (groups or {}).items()}
+    rows[axis.index_name] = np.arange(len(labels))
+    return Layout(len(labels), rows, {}, np.asarray(labels, dtype=np.int64).reshape(-1, 1))
 
 
 @cache
@@ -146,9 +149,9 @@ def _counted(axis: CountedAxis) -> Layout:
 def _members(axis: MemberAxis, parent: Layout, groups: Sequence[int]) -> Layout:
     numbers = np.asarray(groups, dtype=np.int64)
     own = np.argsort(numbers, kind="stable")
-    _, starts, group = np.unique(numbers[own], return_index=True, return_inverse=True)
+    _, starts = np.unique(numbers[own], return_index=True)
     rows = {index: named[own] for index, named in parent.rows.items()}
-    rows |= {axis.index_name: np.arange(own.size), axis.group_name: group}
+    rows[axis.index_name] = np.arange(own.size)
     labels = np.hstack([numbers[own].reshape(-1, 1), parent.labels[own]])
     return Layout(own.size, rows, {}, labels, starts)
 

@@ -287,8 +287,8 @@ def _references(sheet: Sheet, column: Column) -> Iterable[str]:
         yield f"{reference.name} {reference.index or ''} {over}".rstrip()
 
 
-def _axis(axis: Axis) -> str:
-    entry: dict[str, str | int] = {"name": axis.name, "kind": "given", "index": str(axis.index)}
+def _axis(axis: Axis, sheet: Sheet) -> str:
+    entry: dict[str, Any] = {"name": axis.name, "kind": "given", "index": str(axis.index)}
     if isinstance(axis, PairAxis):
         entry |= {"kind": "pairs", "of": axis.of.name, "first": str(axis.first), "second": str(axis.second)}
         chosen = JavaScriptPrinter().doprint(axis.chosen)
@@ -296,11 +296,13 @@ def _axis(axis: Axis) -> str:
     if isinstance(axis, RepeatAxis):
         entry |= {"kind": "repeat", "of": axis.of.name, "step": str(axis.step), "count": axis.count}
     if isinstance(axis, MemberAxis):
-        entry |= {"kind": "members", "of": axis.of.name, "group": axis.group_name}
+        entry |= {"kind": "members", "of": axis.of.name}
     if isinstance(axis, GroupAxis):
         entry |= {"kind": "groups", "of": axis.members.name}
     if isinstance(axis, CountedAxis):
         entry |= {"kind": "counted", "step": str(axis.step), "number": axis.number}
+    if groups := {each.group_name: each.name for each in axis.grouped(sheet.axes)}:
+        entry["groups"] = groups
     return json.dumps(entry)
 
 
@@ -350,7 +352,7 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
         if column.name in begun:
             parts.append(f"start: {_kernels(sheet, plan, begun[column.name])}")
         columns.append(f"  {{{', '.join(parts)}}}")
-    axes = ", ".join(map(_axis, sheet.axes))
+    axes = ", ".join(_axis(axis, sheet) for axis in sheet.axes)
     fixed = json.dumps({name: [value] for name, value in (constants or {}).items()})
     listed = ",\n".join(columns)
     settle = " settle,\n" if sheet.loops else ""

@@ -35,7 +35,6 @@ function layOut(axis, layouts, labels, data) {
     for (const index of Object.keys(parent.rows)) rows[index] = own.map((row) => parent.rows[index][row]);
     size = own.length;
     starts = [...own.keys(), size].filter((row) => group[own[row]] !== group[own[row - 1]]);
-    rows[axis.group] = own.map((_, row) => starts.findLastIndex((start) => start <= row));
     label = (row) => [group[own[row]], ...parent.labels[own[row]]];
   } else if (axis.kind === "groups") {
     size = parent.starts.length - 1;
@@ -46,6 +45,10 @@ function layOut(axis, layouts, labels, data) {
   } else {
     size = labels[axis.name].length;
     label = (row) => [labels[axis.name][row]];
+    for (const index in axis.groups) {
+      const group = labels[axis.groups[index]], every = [...new Set(group)].sort((a, b) => a - b);
+      rows[index] = group.map((number) => every.indexOf(number));
+    }
   }
   const own = (rows[axis.index] = new Int32Array(size).map((_, row) => row));
   let named; // What rows are called is asked for seldom, and of the largest set hardly ever.

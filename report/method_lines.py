@@ -1,0 +1,149 @@
+"""The lines of a method: what each declares, its formula as it was typed, and its unit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from sympy import Expr, Float, Function, Rational, sympify
+from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
+
+from ..derivations.reductions import Member
+from ..derivations.unit_text import ParsedUnit, UnitError, coherent, parse_open
+from .column import SheetError
+from .quantity import Bounds
+
+__all__ = [
+    "FUNCTIONS",
+    "ComputedLine",
+    "Declaration",
+    "FitLine",
+    "InputLine",
+    "UnknownLine",
+    "exact",
+    "in_si",
+    "size_of",
+    "stated_unit",
+    "unit_in_si",
+    "with_unit",
+]
+
+
+FUNCTIONS = (
+    *("exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh"),
+    *("Abs", "Max", "Min"),
+)
+"""Besides powers; as sympy calls them."""
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """What a line of the body says; its name comes with the assignment."""
+
+    meaning: str
+    unit: str
+    column: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        for what, text in (("meaning", self.meaning), ("unit", self.unit)):
+            if not isinstance(text, str):
+                raise SheetError(f"a {what} is a text in quotes, not {text!r}")
+
+
+@dataclass(frozen=True)
+class InputLine(Declaration):
+    """What is given or measured."""
+
+    bounds: Bounds = field(default_factory=Bounds)
+    default: str | None = None
+    is_measured: bool = False
+    example: str = ""
+    is_constant: bool = False
+
+
+@dataclass(frozen=True)
+class ComputedLine(Declaration):
+    """What a formula computes, or a root is sought for."""
+
+    sides: tuple[Expr, ...] = ()  # of a definition the last alone
+    label: str = ""
+    because: str = ""
+    ends: Mapping[str, Any] | None = None  # of a root: the interval that it lies in, and where it is begun
+
+
+@dataclass(frozen=True)
+class UnknownLine(Declaration):
+    """What a root or a fit will find."""
+
+    start: Expr | None = None
+
+
+@dataclass(frozen=True)
+class FitLine:
+    """A model whose unknowns make a sum of squares least."""
+
+    observed: Any
+    model: Expr
+    u: Any
+    label: str
+    figures: bool
+
+
+def size_of(name: str, unit: str) -> ParsedUnit:
+    """A unit that a line states, read."""
+    try:
+        return parse_open(unit)
+    except UnitError as error:
+        hint = f"; {error.suggestion}" if error.suggestion else ""
+        kind = "is unknown" if error.code == "LS421" else "cannot be read"
+        raise SheetError(f"{name}: the unit {error.text!r} {kind}{hint}", name) from None
+
+
+def unit_in_si(size: ParsedUnit) -> dict[str, Any]:
+    """The unit of a column, in SI, and the one that it is shown in, if that is another."""
+    si = coherent(size)
+    return {"unit": si} if si == size.text else {"unit": si, "display": size.text}
+
+
+def in_si(place: Expr, size: ParsedUnit) -> Expr:
+    """A number in a unit, in SI; what names quantities is in SI."""
+    return place * Rational(size.scale) + Rational(size.zero) if place.is_number else place
+
+
+def stated_unit(name: str, unit: str) -> dict[str, Any]:
+    """The same, if there is one."""
+    return unit_in_si(size_of(name, unit)) if unit else {}
+
+
+def with_unit(name: str, sought: UnknownLine) -> UnknownLine:
+    """The parameter of a fit with its unit, if that is stated, and its start in SI."""
+    start = sought.start
+    if start is not None and sought.unit:
+        start = in_si(start, size_of(name, sought.unit))
+    return replace(sought, column={**stated_unit(name, sought.unit), **sought.column}, start=start)
+
+
+def exact(formula: Any) -> Expr:
+    """A formula with decimal fractions as they were typed: 0.27027... was 1/3.7, 0.30000000000000004 0.3."""
+    if isinstance(formula, str):
+        raise SheetError(f"{formula!r} is a text: a formula stands there without quotes")
+    formula = sympify(formula)
+    if not isinstance(formula, Expr) or formula.has(
+        ImaginaryUnit, NaN, Infinity, NegativeInfinity, ComplexInfinity
+    ):
+        raise SheetError(f"{formula} is no formula of real numbers")
+    for part in formula.atoms(Function):
+        if part.func.__name__ not in FUNCTIONS and not isinstance(part, Member):
+            known = ", ".join(sorted(FUNCTIONS))
+            raise SheetError(f"{part.func} is none of the functions that every engine has: {known}")
+    typed = {}
+    for number in formula.atoms(Float) - {Float(0)}:
+        own, value = repr(float(number)), float(number)
+        for of, text in ((value, f"{value:.12g}"), (1 / value, f"{1 / value:.12g}")):
+            if len(text) + 4 < len(own) and math.isclose(float(text), of, rel_tol=1e-15):
+                typed[number] = Rational(text) if of == value else 1 / Rational(text)
+                break
+    found: Expr = formula.xreplace(typed)
+    return found
