@@ -110,6 +110,8 @@ class LeastSquares:
         Of the equations of the fit, ``(H.13)``: they are its parts.
     own : iterator of str
         The numbers of equations that only lead there.
+    rows : str
+        Which rows these are, in words, if there is such a fit of others as well.
 
     Attributes
     ----------
@@ -135,10 +137,11 @@ class LeastSquares:
         size: Symbol,
         number: str,
         own: Iterator[str],
+        rows: str = "",
     ) -> None:
         self.called, self.observed, self.model = called, observed, model
         self.parameters, self.words = tuple(parameters), tuple(parameters.values())
-        self.index, self.size, self.number, self.own = index, size, number, own
+        self.index, self.size, self.number, self.own, self.rows = index, size, number, own, rows
         self.count = len(self.parameters)
         self.slopes = tuple(diff(model, each) for each in self.parameters)
         self.linear = not any(slope.has(*self.parameters) for slope in self.slopes)
@@ -238,7 +241,8 @@ class LeastSquares:
         because: str = "",
         **more: Any,
     ) -> Equation:
-        return Equation(number, members, because or "definition", kind, title, conditions=self.enough, **more)
+        because = f"{because or 'definition'}{self.rows and ', '}{self.rows}"
+        return Equation(number, members, because, kind, title, conditions=self.enough, **more)
 
     def _definitions(self, *cells: Expr) -> Iterator[Pair]:
         """Those of some quantities, and what they are solved for; of data there are none."""

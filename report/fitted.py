@@ -10,17 +10,17 @@ from functools import cached_property
 from itertools import combinations
 from typing import Any
 
-from sympy import Abs, Expr, Indexed, Integer, Min, Rational, Symbol, diff
+from sympy import Abs, Expr, Indexed, IndexedBase, Integer, Min, Rational, Sum, Symbol, diff
 
 from ..derivations.least_squares import FitQuantity, LeastSquares
 from ..derivations.reductions import Greatest, Least
 from ..derivations.unit_text import parse_open
 from ..derivations.vocabulary import spelt
-from .axis import Axis, CountedAxis
+from .axis import Axis, CountedAxis, GroupAxis, RepeatAxis
 from .cells.units import named_unit_of
 from .charts import VERMILION, Chart, Series, drawn
 from .column import Column, Formula, Given, Iterated, SheetError
-from .named import name_of
+from .named import member, name_of
 from .quantity import Bounds
 from .workbook import Curve, FigureSpec, sentence_case
 
@@ -57,6 +57,9 @@ class DeclaredFit:
         Of its equations.
     own : iterator of str
         Numbers of those that only lead there.
+    of : GroupAxis or None
+        Whose rows have a fit each. What is proved of one holds for each: its columns are those of one fit,
+        with sums over the rows of a group.
 
     Attributes
     ----------
@@ -66,6 +69,8 @@ class DeclaredFit:
         The columns that only lead there, and stated uncertainties, which no table shows.
     curve : Curve
         What tells whether the model describes the rows.
+    given : mapping of str to int
+        How many points each of several curves has in figures.
     letters : tuple of str
         The columns that are printed by letters of the fit's own, such as s.
     """
@@ -81,7 +86,9 @@ class DeclaredFit:
         u: Any,
         number: str,
         own: Iterator[str],
+        of: GroupAxis | None = None,
     ) -> None:
+        self._of, self.given = of, dict[str, int]()
         self._axis, self._known, self._model, self._observed = axis, known, model, known[name_of(observed)]
         if not sought:
             raise SheetError(f"the model of {name} names no unknown: write a = unknown('...') above", name)
@@ -101,9 +108,15 @@ class DeclaredFit:
             stated = [_stated(self._observed)]
             u = stated[0].cell
         words = {each: said.meaning or str(each) for each, said in sought.items()}
+        rows = f"of the {axis.size_name} {axis.name} of each {of.row}" if of else ""
         self._fit = fit = LeastSquares(
-            name, observed, model, self._observed.meaning, words, u, axis.index, axis.size, number, own
+            name, observed, model, self._observed.meaning, words, u, axis.index, axis.size, number, own, rows
         )
+        if of and not fit.linear:
+            raise SheetError(
+                f"the model of {name} is not linear: of each {of.row} there are fits of linear models alone",
+                name,
+            )
         lost = [str(each) for each, said in sought.items() if said.start is None and not fit.linear]
         if lost:
             raise SheetError(
@@ -119,7 +132,7 @@ class DeclaredFit:
         made = {column.name: column for column in stated}
         for each, said in sought.items():
             unit = {"unit": "" if fit.linear else "1", **said.column}
-            made[str(each)] = Column(str(each), None, Given(), meaning=words[each], positive=False, **unit)
+            made[str(each)] = Column(str(each), of, Given(), meaning=words[each], positive=False, **unit)
         self._weighed, self._shown = u is not None, {f"s_{each}": f"like {each}" for each in sought}
         self._latex = self._printed([made[str(each)] for each in sought])
         parts = (*fit.results, *fit.helpers)
@@ -132,7 +145,12 @@ class DeclaredFit:
                 )
                 made[part.name] = replace(column, rule=rule)
                 continue
-            column = replace(column, rule=Formula(part.equation), requires=part.needs)
+            equation, needs = part.equation, part.needs
+            if of:
+                put = self._put(*equation.members, *(condition for condition, _ in needs))
+                equation = equation.at(put)
+                needs = tuple((condition.xreplace(put), says) for condition, says in needs)
+            column = replace(column, rule=Formula(equation), requires=needs)
             made[part.name] = replace(column, unit=column.unit or named_unit_of({**known, **made}, column))
         # Another fit of the same column may have declared them.
         new = [column for column in stated if known.get(column.name) != column]
@@ -146,6 +164,17 @@ class DeclaredFit:
         if name not in names:
             raise AttributeError(f"{name} is nothing that a fit has: there are {', '.join(names)}")
         return next(column.cell for column in self.columns if column.name == names[name])
+
+    def _put(self, *formulas: Any) -> dict[Any, Expr]:
+        """What stands in formulas of one fit for that of each group: its numbers, and sums over its rows."""
+        if self._of is None:
+            return {}
+        own = {part.cell for part in (*self._fit.results, *self._fit.helpers) if part.cell.is_Symbol}
+        within, over = member(self._of.members), (self._axis.index, 1, self._axis.size)
+        put: dict[Any, Expr] = {cell: IndexedBase(cell)[self._of.index] for cell in own}
+        put[self._fit.size] = Sum(within, over)
+        totals = set[Sum]().union(*(formula.atoms(Sum) for formula in formulas))
+        return put | {each: Sum(each.function * within, over) for each in totals}
 
     def _printed(self, parameters: Iterable[Column]) -> dict[str, str]:
         """LaTeX of the results."""
@@ -170,7 +199,7 @@ class DeclaredFit:
         latex = self._latex.get(part.name, part.latex)
         symbol = part.cell.base.label if rows else part.cell
         more: dict[str, Any] = {"is_u": part.name.startswith("s_"), "spare": part.name == names["s"]}
-        axis, positive = self._axis if rows else None, bool(symbol.is_positive)
+        axis, positive = self._axis if rows else self._of, bool(symbol.is_positive)
         return Column(part.name, axis, Given(), "", part.title, latex, like, positive=positive, **more)
 
     @property
@@ -192,14 +221,24 @@ class DeclaredFit:
             Symbol(f"{called}_{each}", integer=True, positive=True) for each in ("row", "points", "point")
         )
         straight = diff(self._model, over.cell, 2) == 0
-        axis = CountedAxis(f"{called}_curve", row, size, step, 2 if straight else POINTS)
+        number: Any = 2 if straight else POINTS
+        name, counts = f"{called}_curve", tuple[Column, ...]()
+        axis: Axis = CountedAxis(name, row, size, step, number)
+        if self._of:  # a curve each
+            count = Column(f"{called}_each", None, Given("chart"), meaning="points of each curve", exact=True)
+            axis = RepeatAxis(name, row, size, of=self._of, step=step, count=count.name)
+            self.given[count.name], number, counts = number, count.symbol, (count,)
         low, high = (taken(over.cell, (self._axis.index, 1, self._axis.size)) for taken in (Least, Greatest))
         first, last = (end + way * BEYOND * Min(high - low, Abs(end)) for way, end in ((-1, low), (1, high)))
-        x = (first * (axis.number - step) + last * (step - 1)) / (axis.number - 1)
+        x = (first * (number - step) + last * (step - 1)) / (number - 1)
         y = self._rows[0]
         across = drawn(f"{axis.name}_x", axis, x, over.unit, over.meaning, display=f"like {over.name}")
-        value = self._model.xreplace({over.cell: across[row]})
-        return across, drawn(f"{axis.name}_y", axis, value, own.unit, y.meaning, display=f"like {own.name}")
+        value = self._model.xreplace({over.cell: across[row], **self._put()})
+        return (
+            *counts,
+            across,
+            drawn(f"{axis.name}_y", axis, value, own.unit, y.meaning, display=f"like {own.name}"),
+        )
 
     def figures(self, number: int) -> Iterator[FigureSpec]:
         """Points and curve, and what is left over; over the column that the model names, if it is one."""
@@ -209,8 +248,10 @@ class DeclaredFit:
         def points(up: Column) -> Series:
             return Series(over.name, up.name, up.meaning, "points", bars=True)
 
-        across, up = self.traced or (over, fitted)
+        *_, across, up = self.traced or (over, fitted)
         curve = Series(across.name, up.name, fitted.meaning, "line", VERMILION)
+        if self._of and self.traced:
+            curve = replace(curve, label="fit of %s", each=True)
         for n, up, more, with_it in (
             (number, own, (curve,), ", with the fit"),
             (number + 1, residual, (), ""),

@@ -246,7 +246,9 @@ def root(
     return _said(ComputedLine(meaning, unit, column, sides, label, because, ends))
 
 
-def fit(observed: Any, model: Any, *, u: Any = None, label: str = "", figures: bool = True) -> Any:
+def fit(
+    observed: Any, model: Any, *, u: Any = None, label: str = "", figures: bool = True, of: Any = None
+) -> Any:
     """Declare a fit by least squares: it finds the unknowns that its model names.
 
     Of ``line = fit(...)`` there are ``line.fitted`` and ``line.residual`` of each row, ``line.S``, the sum of
@@ -267,9 +269,12 @@ def fit(observed: Any, model: Any, *, u: Any = None, label: str = "", figures: b
         The number of its equations, ``(H.13)``, which get letters.
     figures : bool
         Whether points and curve, and the residuals, are figures of the report.
+    of : optional
+        What :func:`groups` returned: the rows of each group have a fit of their own, so that each parameter,
+        its standard uncertainty, ``line.S`` and ``line.s`` have a value for each group. The model is linear.
     """
     weights = u if u is None or isinstance(u, str) else exact(u)
-    return _said(FitLine(observed, exact(model), weights, label, figures))
+    return _said(FitLine(observed, exact(model), weights, label, figures, of))
 
 
 def total(formula: Any, *, of: Any = None) -> Expr:
@@ -553,7 +558,7 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
     if not entries:
         raise SheetError(f"{name} computes nothing: it has no let(...), no root(...) and no fit(...)", name)
     columns = body.whole
-    sheet, curves = Sheet(columns), Drawn(tuple(body.drawn))
+    sheet, curves = Sheet(columns), Drawn(tuple(body.drawn), body.drawn_given)
     Sheet((*columns, *curves.columns))  # a name that both have is told now
     used = {each.name for c in columns for each in sheet.precedents(c) if each.name != c.name}
     scalars = (c.name for c in columns if c.axis is None and c.equation)

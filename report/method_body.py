@@ -73,6 +73,7 @@ class MethodBody(dict[str, Any]):
         self.examples: dict[str, str] = {}
         self.figures: list[FigureSpec] = []
         self.drawn: list[Column] = []  # what figures alone ask for
+        self.drawn_given: dict[str, int] = {}
         self.tables: list[TableSpec] = []
         self.announced: dict[str, UnknownLine] = {}
         self.constants: list[str] = []
@@ -197,8 +198,6 @@ class MethodBody(dict[str, Any]):
             )
         return formula * member(of.members)
 
-<<<<<<< HEAD
-=======
     def _of_one_row(self, formula: Any) -> Any:
         """A formula, in which what is taken over the rows of each group is a column if it is of one row."""
         return self._without_groups(formula) if self.axis in self._rows_of(formula) else formula
@@ -213,20 +212,6 @@ class MethodBody(dict[str, Any]):
             return number * self._of_rows(taken, over)
         return formula.func(*map(self._without_groups, formula.args))
 
-    def _number_of_groups(self, formula: Any, of: Any) -> Expr:
-        """How many rows each group has; of a formula, in how many of them it has a value."""
-        found = self._of_groups(1, of)
-        if self.axis_of(formula) is None:
-            return found
-        is_cell = isinstance(formula, Indexed) and formula.indices == (self.axis.index,)
-        cell = formula if is_cell else self._of_rows(formula, self.axis)
-        name = f"count_of_{cell.base.name}_by_{of.row}"
-        if name not in self.columns:
-            column = self._aside(name, f"{self.axis.name} with a value", found)
-            self.columns[name] = replace(column, alongside=(self.columns[cell.base.name],))
-        return self.columns[name].cell
-
->>>>>>> 5436ae5 (Let a formula of rows name what there is of the row's group)
     def _of_rows(self, formula: Any, over: Axis) -> Indexed:
         """A formula for rows, or pairs or groups of them, as a column of its own."""
         for column in (self.columns[each] for each in self.aside):
@@ -419,34 +404,40 @@ class MethodBody(dict[str, Any]):
         }
         sought = {symbol: self._begun(announced, str(symbol)) for symbol, announced in sought.items()}
         rows = self.axis_of(said.observed) or self.axis
+        if said.of is not None and (said.of not in self.groups or rows != self.axis):
+            raise SheetError(f"{name}: of={said.of} is none of what groups() returned, or has no {rows.name}")
         for formula in (said.model, said.u):
             if isinstance(formula, Expr) and self._is_grouped(formula, said.observed):
                 raise SheetError(f"{name}: {formula} is of rows in groups, which no fit takes", name)
         found = DeclaredFit(
             name, rows, self.columns, said.observed, said.model, sought, said.u,
-            said.label or self._number(), self.own,
+            said.label or self._number(), self.own, said.of,
         )  # fmt: skip
         for column in found.columns:
             if column.name in self.columns:
                 raise SheetError(f"{column.name} is declared twice: {name} has one of that name, too", name)
             self.columns[column.name] = column
-        for column in sorted(found.columns, key=lambda each: each.axis is None):  # scatter rests on residuals
+        for column in sorted(found.columns, key=lambda each: each.axis != rows):  # scatter rests on residuals
             said_so = Symbol(column.name, real=True) in sought
             self.columns[column.name] = self._as_difference(column, said_so)
         self.entries += found.entries
         self.aside += found.aside
         self.of_fits |= {column.name: Symbol(column.name, real=True) in sought for column in found.columns}
-        self.curves.append(found.curve)
         self.fits.append(found)
-        self.inputs = [
-            replace(each, scatter=found.curve.scatter)
-            if isinstance(each, Measured) and each.name == name_of(said.observed)
-            else each
-            for each in self.inputs
-        ]
+        if said.of is None:
+            self.curves.append(found.curve)
+            self.inputs = [
+                replace(each, scatter=found.curve.scatter)
+                if isinstance(each, Measured) and each.name == name_of(said.observed)
+                else each
+                for each in self.inputs
+            ]
+        for symbol in sought:  # of each group, it is no longer the same for all
+            super().__setitem__(symbol.name, self.columns[symbol.name].cell)
         if said.figures:
             self.figures += found.figures(len(self.figures) + 1)
             self.drawn += found.traced
+            self.drawn_given |= found.given
         return found
 
     def _begun(self, sought: UnknownLine, name: str) -> UnknownLine:

@@ -89,6 +89,7 @@ class FitLine:
     u: Any
     label: str
     figures: bool
+    of: Any = None
 
 
 def size_of(name: str, unit: str) -> ParsedUnit:

@@ -6,6 +6,8 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 DATA: dict[str, dict[str, Any]] = tomllib.loads(
     (Path(__file__).resolve().parent / "strd" / "variance.toml").read_text(encoding="utf-8")
 )
@@ -37,6 +39,21 @@ class Variance(Method, source="ISO 5725-2", headline="between within F R2 s apar
     farthest = let(max(off), "farthest reading")
     again = let(sum((y - mean(y, of=instrument)) ** 2), "squares within instruments, by readings", "mm^2")
 """
+RATES = """
+from loopsheet import Method, fit, groups, let, measured, unknown
+
+class Rates(Method, headline="spread"):
+    "Rates over two catalysts."
+    x = measured("1", "inverse temperature")
+    y = measured("1", "logarithm of the rate")
+    catalyst = groups("catalyst")
+    a = unknown("intercept")
+    b = unknown("slope")
+    line = fit(y, a + b * x, of=catalyst)
+    spread = let(max(b) - min(b), "range of the slopes")
+    scaled = let(line.residual / line.s, "residual in scatters of its catalyst")
+"""
+RATES_HEAD = "catalyst,x [1],y [1]"
 FEW = (
     ("A", "1.50"),
     ("B", "2.25"),
@@ -74,3 +91,12 @@ def certified(name: str, path: Path) -> Path:
         (f"I{group}", y) for turn in zip(*each, strict=True) for group, y in enumerate(turn, start=1)
     )
     return write(path, rows)
+
+
+def rates(seed: int, groups: int = 3, number: int = 17) -> tuple[tuple[str, ...], ...]:
+    """Readings about a line for each of some catalysts, which take turns as the dice fall."""
+    dice = np.random.default_rng(seed)
+    own = dice.permutation(np.arange(number) % groups)
+    x = dice.uniform(1, 3, number)
+    y = 2 + own - (1 + own) * x + dice.normal(0, 0.05, number)
+    return tuple((f"C{n}", f"{a:.3f}", f"{b:.3f}") for n, a, b in zip(own, x, y, strict=True))

@@ -40,3 +40,18 @@ def test_an_edited_workbook_is_what_numpy_makes_of_it(
     assert spreadsheets.compare(delivered, other, read[name]).wrong
     has_value = {cell.label for cell in values.cells("level") if cell.value is not None}
     assert has_value == ({(1,), (3,)} if "without" in name else {(1,), (2,), (3,)})
+
+
+def test_an_edited_workbook_fits_each_group_again(
+    require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    soffice, folder = require("soffice", "libreoffice"), tmp_path_factory.mktemp("rates")
+    delivered = spreadsheets.deliver(
+        grouped.write(folder / "few", grouped.rates(1), grouped.RATES_HEAD, grouped.RATES)
+    )
+    edits: spreadsheets.Edits = {("y", 4): -0.512, ("x", 2): None}
+    read = spreadsheets.recalculate(soffice, folder, {"edited": delivered.edited(edits)})
+    values = delivered.values(edits)
+    found = spreadsheets.compare(delivered, values, read["edited"])
+    assert (found.wrong, found.cells > 60) == ([], True)
+    assert spreadsheets.compare(delivered, delivered.values({}), read["edited"]).wrong

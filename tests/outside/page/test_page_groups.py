@@ -11,6 +11,7 @@ import pytest
 from driving import Live
 
 from loopsheet.report.build import build
+from loopsheet.report.cells.values import Values
 from loopsheet.report.study import Study
 
 
@@ -24,7 +25,7 @@ def opened(folder: Path, open_page: Callable[..., Live]) -> Live:
     return open_page(folder / "out" / "report.html")
 
 
-def rebuilt(folder: Path, *edits: tuple[str, str]) -> object:
+def rebuilt(folder: Path, *edits: tuple[str, str]) -> Values:
     table = folder / "measurements.csv"
     text = table.read_text(encoding="utf-8")
     for old, new in edits:
@@ -74,3 +75,29 @@ def test_no_row_is_added_whose_group_nobody_told(open_page: Callable[..., Live],
     live = opened(folder, open_page)
     assert live.page.locator("#live-add").count() == 0
     assert "with the word of its group" in (live.page.locator("p.add").text_content() or "")
+
+
+def test_an_edited_reading_moves_the_line_of_its_group(
+    open_page: Callable[..., Live], tmp_path: Path
+) -> None:
+    folder = grouped.write(tmp_path, grouped.rates(1), grouped.RATES_HEAD, grouped.RATES)
+    live = opened(folder, open_page)
+    issued = Study(folder).computed.values
+    old, new = grouped.rates(1)[4][2], "-0.512"
+    live.type("y", 5, new)
+    again = rebuilt(folder, (f",{old}\n", f",{new}\n"))
+    # What is left of a difference of larger numbers is as sure as these are.
+    lefts = [cell for cell in live.cells() if cell.name == "line_residual"]
+    cells = [cell for cell in live.cells() if cell.name not in ("line_residual", "scaled")]
+    fitted = dict(zip(again.labels(again.sheet["line_fitted"]), again.value["line_fitted"], strict=True))
+    for cell in lefts:
+        label = (int(cell.index),)
+        known = again.cell("line_residual", label).value
+        assert float(cell.value) == pytest.approx(known, rel=0, abs=1e-13 * abs(fitted[label]))
+    assert len(lefts) == len(fitted)
+    assert "line_S" in {cell.name for cell in cells}
+    assert driving.differences(cells, again) == []
+    assert driving.differences(cells, issued) != []
+    words = [row[0] for row in grouped.rates(1)]
+    moved = again.value["b"] != issued.value["b"]
+    assert moved.tolist() == [word == words[4] for word in dict.fromkeys(words)]

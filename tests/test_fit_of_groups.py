@@ -1,0 +1,112 @@
+"""A fit of the rows of each group: its parameters are columns of the groups."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import grouped
+import numpy as np
+import pytest
+
+import loopsheet
+from loopsheet.report import method
+from loopsheet.report.build import build
+from loopsheet.report.cli import main
+from loopsheet.report.column import SheetError
+from loopsheet.report.study import Study
+
+METHOD, HEAD, drawn = grouped.RATES, grouped.RATES_HEAD, grouped.rates
+Rows = tuple[tuple[str, ...], ...]
+
+
+def alone(rows: Rows, word: str) -> Rows:
+    return tuple(row for row in rows if row[0] == word)
+
+
+@pytest.mark.parametrize(("seed", "groups"), [(1, 3), (2, 4), (3, 1)])
+def test_each_group_has_the_line_of_its_rows_alone(tmp_path: Path, seed: int, groups: int) -> None:
+    rows = drawn(seed, groups)
+    stated = '[uncertainty]\nx = "exact"\ny = "u = 0.05"\n'
+    report = Study(grouped.write(tmp_path, rows, HEAD, METHOD, stated)).computed
+    values, sure = report.values.value, report.uncertain().u
+    for place, word in enumerate(dict.fromkeys(row[0] for row in rows)):
+        x, y = np.array([row[1:] for row in alone(rows, word)], dtype=float).T
+        (b, a), by_scatter = np.polyfit(x, y, 1, cov=True)
+        found = [values[name][place] for name in ("a", "b", "s_a", "s_b")]
+        known = [a, b, *np.sqrt(np.diagonal(by_scatter)[::-1])]
+        assert found == pytest.approx(known, rel=1e-11)
+        left = y - a - b * x
+        assert values["line_S"][place] == pytest.approx((left**2).sum(), rel=1e-10)
+        of_rows = [n for n, row in enumerate(rows) if row[0] == word]
+        assert values["line_residual"][of_rows] == pytest.approx(left, abs=1e-12)
+        assert sure["b"][place] == pytest.approx(0.05 / np.sqrt(((x - x.mean()) ** 2).sum()), rel=1e-11)
+
+
+def test_it_is_the_fit_without_groups_where_there_is_one(tmp_path: Path) -> None:
+    rows = drawn(4, 1)
+    code = METHOD.replace(", of=catalyst", "").replace("max(b) - min(b)", "b")
+    both = [
+        Study(grouped.write(tmp_path / name, rows, HEAD, text)).computed.values.value
+        for name, text in {"each": METHOD, "all": code}.items()
+    ]
+    for name in ("a", "b", "s_a", "s_b", "r_a_b", "line_s", "line_S", "line_fitted", "scaled"):
+        assert both[0][name].tolist() == both[1][name].tolist(), name
+
+
+def test_every_engine_fits_each_group(
+    tmp_path: Path, require: Callable[..., str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    require("node")
+    require("soffice")
+    stated = '[uncertainty]\ny = "u = 0.05"\n'
+    assert main(["check", str(grouped.write(tmp_path, drawn(1), HEAD, METHOD, stated))]) == 0
+    told = capsys.readouterr().out
+    assert re.findall(r"engine +(\w+) .* at most [\d.]+ eps", told) == ["numpy", "JavaScript", "xlsx"]
+    assert re.search(r"proofs +(\d+) of \1 equations stand", told)
+
+
+def test_a_group_of_too_few_rows_has_no_line_and_others_have(tmp_path: Path) -> None:
+    rows = (("few", "1.5", "2.5"), *drawn(1))
+    values = Study(grouped.write(tmp_path, rows, HEAD, METHOD)).computed.values
+    before = Study(grouped.write(tmp_path / "before", rows[1:], HEAD, METHOD)).computed.values
+    assert "2 parameters take 2 rows or more" in values.cell("b", (1,)).reason
+    assert values.numbers("b")[1:] == before.numbers("b")
+    assert values.numbers("line_residual") == [None, *before.numbers("line_residual")]
+
+
+def test_its_weights_are_those_that_are_stated(tmp_path: Path) -> None:
+    rows = tuple((*row, f"{0.03 + 0.01 * (n % 3):.2f}") for n, row in enumerate(drawn(6)))
+    code = METHOD.replace("of=catalyst", 'u="stated", of=catalyst')
+    values = Study(grouped.write(tmp_path, rows, f"{HEAD},u(y) [1]", code)).computed.values.value
+    for place, word in enumerate(dict.fromkeys(row[0] for row in rows)):
+        x, y, u = np.array([row[1:] for row in rows if row[0] == word], dtype=float).T
+        known = np.polyfit(x, y, 1, w=1 / u)[::-1]
+        assert [values[name][place] for name in "ab"] == pytest.approx(known, rel=1e-11)
+
+
+def test_the_report_has_a_line_for_each(tmp_path: Path) -> None:
+    folder = grouped.write(tmp_path, drawn(1), HEAD, METHOD)
+    build(Study(folder), tmp_path / "out", ("html",))
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "fit of each catalyst" in page
+    assert "of the n readings of each catalyst" in page
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        (
+            "a + b * x",
+            "a + x ** b",
+            "not linear: of each catalyst there are fits of linear models",
+        ),
+        ("of=catalyst", "of='catalyst'", "of=catalyst is none of what groups() returned"),
+        ("fit(y, a", "fit(mean(y, of=catalyst), a", "is no column over the rows"),
+        ("a + b * x", "a + b * mean(x, of=catalyst)", "is of rows in groups, which no fit takes"),
+    ],
+)
+def test_what_is_refused_of_a_fit_of_groups(old: str, new: str, said: str) -> None:
+    assert METHOD.count(old) == 1
+    code = METHOD.replace(old, new).replace("Method, fit", "Method, fit, mean")
+    with pytest.raises(SheetError, match=re.escape(said)):
+        exec(code, {**vars(method), **vars(loopsheet)})
