@@ -16,10 +16,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .laws import Law
 
-__all__ = ["DIVISORS", "DOMINANT", "LEVEL", "MOST_DOF", "PARTS", "SHARES", "Error", "Shape"]
+__all__ = ["DIVISORS", "DOMINANT", "LEVEL", "MOST_DOF", "PARTS", "SCATTER", "SHARES", "Error", "Shape"]
 
 LEVEL = 0.95
 """The coverage probability that is stated where nobody asks for another; 0.9545 is another one."""
+SCATTER = "scatter"
+"""How it is stated that a column of readings has their own standard deviation."""
 MOST_DOF = 10**9
 """More degrees of freedom are as good as infinitely many, and no spreadsheet takes them."""
 DOMINANT = 0.3

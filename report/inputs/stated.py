@@ -18,7 +18,7 @@ from statistics import NormalDist
 from typing import TYPE_CHECKING
 
 from ...derivations.unit_text import UnitError, parse_unit
-from ..distribution import DIVISORS, Error, Shape
+from ..distribution import DIVISORS, SCATTER, Error, Shape
 from ..quantity import Bounds, behind, span
 from .number_text import NumberError, read_number
 
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 __all__ = [
     "EXAMPLE",
     "LARGEST",
-    "SCATTER",
     "SHAPES",
     "Conventions",
     "Of",
@@ -47,7 +46,6 @@ __all__ = [
 EXAMPLE = "U = 0.03, k = 2"
 MOST_K = 64
 """No factor is larger: that of one degree of freedom is 64 for 99 %."""
-SCATTER = "scatter"
 SHAPES = {
     "rect": Shape.RECTANGULAR,
     "rectangular": Shape.RECTANGULAR,

@@ -32,7 +32,7 @@ from .keys import ANY, fixed
 from .number_text import NumberError, read_number
 from .parameters import wrong_type
 from .readings import correlations_of, read_paired
-from .stated import SCATTER, SHAPES, Conventions, Of, StatedErrors, StatementError, read_statement
+from .stated import SHAPES, Conventions, Of, StatedErrors, StatementError, read_statement
 
 if TYPE_CHECKING:
     from ..distribution import Error, Shape

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cells.values import Values
+from ..distribution import SCATTER
 from ..engines.numpy import Program
 from ..inputs.inputs import Inputs
-from ..inputs.stated import SCATTER
 from ..judge.chain import Made
 from ..quantity import Bounds, Printed, there
 from ..result.verdict import Witness

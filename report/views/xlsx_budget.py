@@ -14,8 +14,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..cells.grid import CellBlock, Grid, checked
-from ..distribution import DOMINANT, MOST_DOF, Shape
-from ..inputs.stated import SCATTER
+from ..distribution import DOMINANT, MOST_DOF, SCATTER, Shape
 from ..quantity import behind
 from ..result.numbers import rounded
 from ..result.result import Report
