@@ -113,6 +113,21 @@ def test_what_is_refused_and_where(text: str, culprit: str, start: int) -> None:
     assert (found.code, found.text, found.start) == ("LS431", culprit, start)
 
 
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("3 % of reading, normal", "if it is a standard uncertainty, write u = 3 % of reading; else a shape"),
+        ("+-0.1 mm, normal, k = 1", "if it is a standard uncertainty, write u = 0.1 mm; else a shape"),
+        ("+-0.1, rect", "a shape stands behind the size, without a comma: +-0.1 rect"),
+    ],
+)
+def test_a_shape_behind_a_comma_is_told_where_it_stands(text: str, hint: str) -> None:
+    with pytest.raises(StatementError) as refused:
+        read_statement(text, MM)
+    assert refused.value.text == text.split(", ")[1]
+    assert refused.value.suggestion.startswith(hint)
+
+
 def test_percent_of_a_pure_number_is_not_guessed() -> None:
     for unit, size in (("%", "0.5"), ("percent", "0.5"), ("1", "0.005"), ("ppm", "5000")):
         of = parse_unit(unit)

@@ -300,6 +300,12 @@ def _part(text: str, start: int, unit: ParsedUnit, bare: Shape | None, of: Of) -
     absolute, relative, digits = _amount(size, start + begins, unit)
     cut = [(field, place) for field, place in others if name in _CUT and _END.match(field)]
     others = [each for each in others if each not in cut]
+    for field, place in others:
+        if field in SHAPES and not begin:
+            hint = f"a shape stands behind the size, without a comma: {first} {field}"
+            if SHAPES[field] is Shape.NORMAL:
+                hint = f"if it is a standard uncertainty, write u = {size.strip()}; else {hint}, k = 2"
+            raise StatementError("LS431", field, place, hint)
     keys = dict(_keys(others, _KEYS[name] if begin else _LIMIT_KEYS))
     shape, divisor = _meant(first, start, name, word and SHAPES[word["shape"]], keys, bare)
     dof = float(keys.get("dof", keys["n"] - 1 if name == "s" else inf))
