@@ -360,7 +360,9 @@ class MethodBody(dict[str, Any]):
             words[pairs.size_name] = "the number of pairs", "size='...' in pairs()"
         for own, (said, there) in words.items():
             if own == name or own in self.columns:
-                raise SheetError(f"{own} is {said}: call that otherwise, {there}", own)
+                raise SheetError(
+                    f"{own} is {said}: call that otherwise, {there}, or take another name than {own}", own
+                )
 
     def _input(self, name: str, said: Declaration) -> Column:
         assert isinstance(said, InputLine)

@@ -134,7 +134,7 @@ def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     [
         (
             'x = measured("m", "w"); k = given("1", "w")',
-            "k is the reading's number: call that otherwise, ind",
+            "call that otherwise, index='...' behind (Method, or take another name than k",
         ),
         (
             'n = given("1", "w"); x = measured("m", "w")',
