@@ -53,16 +53,18 @@ class Named:
 
     def summed(self, column: Column) -> tuple[Axis, ...]:
         """The axes that its rule takes something over, or counts rows of that it looks at."""
-        if column.name not in self._summed:
+        own, found = self._summed.get(column.name, (None, ()))
+        if own is not column:
             over = {self.over(total) for each in column.expressions for total in each.atoms(*REDUCTIONS)}
             if column.alongside:
                 counted = self.counted(column)
                 over |= {other.axis for other in column.alongside if other.axis in counted}
-            self._summed[column.name] = tuple(axis for axis in self.axes if axis in over)
-        return self._summed[column.name]
+            found = tuple(axis for axis in self.axes if axis in over)
+            self._summed[column.name] = column, found
+        return found
 
     @cached_property
-    def _summed(self) -> dict[str, tuple[Axis, ...]]:
+    def _summed(self) -> dict[str, tuple[Column, tuple[Axis, ...]]]:
         return {}
 
     def beside(self, column: Column, other: Column) -> Axis | None:

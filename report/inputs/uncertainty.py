@@ -25,6 +25,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ...derivations.unit_text import parse_unit
+from ..distribution import SCATTER
 from ..messages.errors import listing, suggest
 from ..quantity import there
 from ..workbook import Measured
