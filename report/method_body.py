@@ -515,8 +515,15 @@ class MethodBody(dict[str, Any]):
                 left += [equation.value] if everything else []
         return list(found.values())
 
+    def _aside_of(self, unknown: str, side: Expr) -> Expr:
+        """A side of an equation, as a column if it names the group of a row, and not what is sought."""
+        named = {each.name for each in side.atoms(Symbol)}
+        return self._of_rows(side, self.axis) if self._is_grouped(side) and unknown not in named else side
+
     def _computed(self, name: str, said: ComputedLine) -> Column:
         said = replace(said, sides=tuple(map(self._of_one_row, said.sides)))
+        if said.ends:  # a proof finds no point where a row and its group stand in one equation
+            said = replace(said, sides=tuple(self._aside_of(name, side) for side in said.sides))
         named = {symbol for side in said.sides for symbol in side.free_symbols}
         axis = self.axis_of(*said.sides)
         unit = stated_unit(name, said.unit)

@@ -126,3 +126,12 @@ def test_it_is_told_of_which_group(tmp_path: Path, capsys: pytest.CaptureFixture
     assert main(["why", "level[2]", str(folder)]) == 0
     used = capsys.readouterr().out
     assert ("off[2]" in used, "off[6]" in used, "off[1]" in used) == (True, True, False)
+
+
+def test_a_root_names_the_group_of_its_row(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    more = '    q = unknown()\n    q = root(q**3 + q, y / level, "root", low=0, high=5)\n'
+    code = (grouped.METHOD + more).replace("import total, unknown", "import root, total, unknown")
+    folder = grouped.write(tmp_path, code=code)
+    assert main(["check", str(folder)]) == 0, capsys.readouterr().out
+    values = Study(folder).computed.values.value
+    assert values["q"] ** 3 + values["q"] == pytest.approx(values["off"], rel=1e-14)
