@@ -17,7 +17,7 @@ from loopsheet.derivations.unit_text import parse_unit
 from loopsheet.report.cli import main
 from loopsheet.report.distribution import DIVISORS, Shape
 from loopsheet.report.inputs.inputs import Inputs, load
-from loopsheet.report.inputs.limits import Guard, Limits
+from loopsheet.report.inputs.limits import Guard, Limits, of_every_row
 from loopsheet.report.inputs.number_text import read_printed
 from loopsheet.report.messages.errors import Location
 from loopsheet.report.result.uncertain import Budget, Conformity, Decision
@@ -392,3 +392,9 @@ def test_the_report_tells_it_in_every_form(tmp_path: Path, capsys: pytest.Captur
     assert "does not conform: it lies outside of the tolerance limits (at most 1.2, guard" in first
     assert re.search(r"<span class=sure>±\s[\d.]+ \(k\s=\s[\d.]+\)</span>", first)
     assert page.count("22.49 to 22.71") == 2  # the acceptance limits, there and in their table
+
+
+def test_limits_of_a_column_are_of_each_row_that_has_none_of_its_own() -> None:
+    limits = [Limits(cell, None, None, Guard(), Location()) for cell in ("E", "E[2]", "m", "x")]
+    cells = {"E": ("K", {(1,), (2,), (3,)}), "m": ("g", {()})}
+    assert [each.address for each in of_every_row(limits, cells)] == ["E[1]", "E[3]", "E[2]", "m", "x"]

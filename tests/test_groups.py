@@ -313,3 +313,38 @@ def test_over_how_many_readings_a_mean_is_is_told_where_that_is_expected(tmp_pat
     report = Study(grouped.write(tmp_path, rows, "instrument,y [mm],x [mm]", code, more)).computed
     (told,) = (each for each in report.oddities if (each.kind, each.name) == ("data", "rows"))
     assert (told.word, told.message[-36:]) == ("expected", "over 6 of 7 readings, as is expected")
+
+
+@pytest.mark.parametrize(
+    ("shift", "said"),
+    [
+        ({"A": 0.0, "B": 0.0}, "y: readings scatter as much about the mean of their own instrument"),
+        ({"A": 0.0, "B": 9.0}, '"u = 0.089 mm, dof = 4" says so'),
+    ],
+)
+def test_readings_scatter_about_the_means_of_their_groups(
+    shift: dict[str, float], said: str, tmp_path: Path
+) -> None:
+    """Of readings at several places the standard deviation of all is none of one of them."""
+    read = [("A", 1.5), ("A", 1.6), ("A", 1.7), ("B", 1.55), ("B", 1.6), ("B", 1.7)]
+    rows = tuple((word, f"{value + shift[word]:.2f}") for word, value in read)
+    report = Study(grouped.write(tmp_path, rows, more='[uncertainty]\ny = "scatter"\n')).computed
+    (found,) = (check for check in report.oddities if check.kind == "scatter")
+    assert found.name == "y"
+    assert said in found.message
+    assert found.note == ("warning" if shift["B"] else "")
+    own = [np.array([value for word, value in read if word == which]) for which in "AB"]
+    pooled = np.sqrt(sum(((each - each.mean()) ** 2).sum() for each in own) / 4)
+    assert f"{pooled:.2g}" == "0.089"
+
+
+def test_a_row_is_found_by_its_word(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = str(grouped.write(tmp_path))
+    for row in ("2", "B"):
+        assert main(["show", f"level[{row}]", folder]) == 0
+    by_number, by_word = capsys.readouterr().out.split("level  ")[1:]
+    assert by_number == by_word
+    assert main(["show", "y[C]", folder]) == 0  # every reading of it
+    assert re.findall(r"y\[\d\]", capsys.readouterr().out) == ["y[5]", "y[7]"]
+    assert main(["show", "level[D]", folder]) == 2
+    assert "1, 2 or 3; or A, B or C" in capsys.readouterr().err

@@ -27,7 +27,7 @@ from .cards import AskedCards, read_cards
 from .draws import read_draws
 from .expected import Expectation, check_expected, read_expected
 from .groups import groups, words
-from .limits import Limits, check_limits, read_limits
+from .limits import Limits, check_limits, of_every_row, read_limits
 from .measurements import MODES, LeftOut, Measurements, read_measurements
 from .number_text import NumberError, read_printed
 from .parameters import read_parameters, wrong_type
@@ -291,14 +291,15 @@ def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[
     kept = replace(
         inputs,
         expected=tuple(each for each in inputs.expected if not rests_on_gone(*each.cell)),
-        limits=tuple(each for each in inputs.limits if not rests_on_gone(*each.cell)),
+        limits=tuple(each for each in of_every_row(inputs.limits, cells) if not rests_on_gone(*each.cell)),
         published=tuple(value for value in inputs.published if value not in aside),
         published_u=tuple(value for value in inputs.published_u if value not in aside),
         aside=aside,
     )
     findings = Findings()
     check_expected(kept.expected, kept.tests, cells, findings, inputs.workbook.row)
-    check_limits(kept.limits, cells, findings)
+    written = {each.at: each for each in reversed(kept.limits)}  # what is wrong with a line is told once
+    check_limits([*reversed(written.values())], cells, findings)
     check_published((*kept.published, *kept.published_u), kept.free_at, cells, findings)
     findings.check()
     return kept

@@ -2,6 +2,7 @@
 
 [limits]
 alpha_mean = "1.25 .. 1.35"              # or "<= 1.35", ">= 1.25"; with a unit where the cell has one
+x_p = "20 .. 45 um"                      # of every row that has none of its own
 "x_p[1]" = "22 .. 24 um"
 "x_p[2]" = "22 .. 24 um, guard = 0.2 um" # a rule of its own
 
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
     from ..quantity import Printed
     from .tables import TomlTables
 
-__all__ = ["Guard", "Limits", "check_limits", "read_limits"]
+__all__ = ["Guard", "Limits", "check_limits", "of_every_row", "read_limits"]
 
 SECTION, RULE = "limits", "rule"
 EXAMPLE = "1.25 .. 1.35"
@@ -228,6 +229,28 @@ def _level(text: str) -> float:
     if not _LEVELS[0] <= number <= _LEVELS[1]:
         raise StatementError("LS442", text, 0, "a level is a probability from 1 % to 99.9999 %")
     return float(number)
+
+
+def of_every_row(
+    limits: Sequence[Limits], cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]]
+) -> Iterator[Limits]:
+    """Limits of cells: those of a column are of each of its rows that has none of its own.
+
+    Parameters
+    ----------
+    limits : sequence of Limits
+    cells : mapping of str to (str, collection of tuple of int)
+        As for :func:`check_limits`.
+    """
+    own = {each.cell for each in limits}
+    for each in limits:
+        name, index = each.cell
+        rows = cells[name][1] if name in cells else ()
+        if index or () in rows or not rows:
+            yield each
+        else:
+            every = [row for row in sorted(rows) if (name, row) not in own]
+            yield from (replace(each, address=address(name, row)) for row in every)
 
 
 def check_limits(

@@ -14,6 +14,7 @@ import numpy as np
 from ..axis import MemberAxis
 from ..cells.marks import Margin, MarkCount, margins
 from ..cells.values import Cell, Status
+from ..distribution import SCATTER
 from ..messages.diagnostics import Check, Location
 from ..quantity import behind
 from ..result.chi_square import RARE, freedom, head, tail, tied
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["names", "oddities"]
 
 DATA, LIMIT, UNCERTAINTY, SQUARES, GROUPS = "data", "limit", "uncertainty", "squares", "groups"
-CONSTANTS, WORDS = "constants", "words"
+CONSTANTS, WORDS, SCATTERS = "constants", "words", "scatter"
 EXPECTED, LEFT_OUT = "expected", "left out"
 """The kinds of these checks."""
 CELLS, ROWS, RESULT = "cells", "rows", "result"
@@ -64,6 +65,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
         ],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
         WORDS: list(workbook.groups),
+        SCATTERS: [name for name, _ in _scattering(sheet, inputs)],
         CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
         CLAIM: [claim.label for claim in workbook.claims],
         EXPECTED: [expectation.address for expectation in inputs.expected],
@@ -94,6 +96,18 @@ def _adjusted(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, list[str]]]:
         pairs = map(frozenset, combinations(sorted(own), 2))
         if any(pair not in map(frozenset, inputs.uncertainty.correlations) for pair in pairs):
             yield name, sorted(own)
+
+
+def _scattering(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, MemberAxis]]:
+    """The columns whose scatter is stated, with the groups of their rows, if these are of one kind."""
+    for name, stated in inputs.uncertainty.columns.items():
+        found = [
+            axis
+            for axis in sheet.axes
+            if isinstance(axis, MemberAxis) and name in sheet and axis.of == sheet[name].axis
+        ]
+        if len(found) == 1 and any(part.said == SCATTER for part in stated.parts):
+            yield name, found[0]
 
 
 def oddities(report: Report) -> tuple[Check, ...]:
@@ -133,6 +147,7 @@ class _Oddities:
         yield from map(self.of_curve, self.report.workbook.curves)
         yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
         yield from map(self.of_words, self.inputs.workbook.groups)
+        yield from (self.of_scatter(*each) for each in _scattering(self.sheet, self.inputs))
         yield from (self.of_constants(*each) for each in _adjusted(self.sheet, self.inputs))
         yield from self.of_expectations()
         yield from self.of_left_out()
@@ -384,6 +399,26 @@ class _Oddities:
         ]
         said = f"{column}: {_some(told)}: is that misspelt? Each word is a group of its own"
         return Check(WORDS, column, True, said, found[0].at, note="warning")
+
+    def of_scatter(self, name: str, axis: MemberAxis) -> Check:
+        """Whether readings that stand in groups scatter about one mean as about those of their groups."""
+        layout = self.values.layouts[axis.name]
+        value = self.values.value[name][layout.rows[axis.of.index_name]]
+        groups = [own[np.isfinite(own)] for own in (value[rows] for rows in layout.groups)]
+        every, number = np.concatenate(groups), sum(own.size > 0 for own in groups)
+        dof, within = every.size - number, sum(own.size * float(np.var(own)) for own in groups if own.size)
+        whole = float(np.std(every, ddof=1)) if every.size > 1 else 0.0
+        about = f"about the mean of their own {axis.by}"
+        if whole**2 * dof <= REACH**2 * within:
+            said = f"{name}: {self.rows} scatter as much {about} as about that of all"
+            return Check(SCATTERS, name, True, said, self.inputs.place)
+        unit = behind(self.report.shown[name].unit)
+        size, own = (self.report.sure(name, each).text + unit for each in (whole, math.sqrt(within / dof)))
+        said = (
+            f"{name}: {SCATTER} is {size}, of all {self.rows} about one mean; {about} they scatter by {own}: "
+        )
+        said += f'"u = {own}, dof = {dof}" says so'
+        return Check(SCATTERS, name, True, said, self.inputs.place, note="warning")
 
     def numbered(self, rows: Sequence[int]) -> str:
         """``run 2``, ``runs 1 and 3``."""

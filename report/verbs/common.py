@@ -193,6 +193,8 @@ def find_one(report: Report, address: str) -> tuple[Column, tuple[int, ...]]:
 def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
     """The column of an address such as ``alpha[1-2]``, and the rows that it names: all without an index.
 
+    A row has its number, and the word by which it is known, if there is one: several may have the same.
+
     Raises
     ------
     UsageError
@@ -211,12 +213,16 @@ def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
     labels = report.values.labels(column)
     if not index:
         return column, labels
-    wanted = [label for label in labels if index_text(label) == index]
+    words = report.words(column)
+    numbered = [label for label in labels if index_text(label) == index]
+    wanted = numbered or [label for label in labels if words.get(label) == index]
     if not wanted:
         for each in report.inputs.left_out:
             if str(each.test) in index.split("-"):
                 said = f"{report.workbook.row} {each.test}"
                 raise UsageError(diagnose("LS627", each.at, text=address, row=said, reason=each.reason))
         known = listing([index_text(label) for label in labels])
+        if words:
+            known += f"; or {listing(dict.fromkeys(words.values()))}"
         raise UsageError(diagnose("LS604", kind=f"row of {name}", text=index, known=known, suggestion=""))
     return column, wanted

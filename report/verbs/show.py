@@ -56,7 +56,6 @@ def _plan(report: Report, address: str) -> str:
 
 def _lines(report: Report, column: Column, labels: Collection[tuple[int, ...]]) -> Iterator[str]:
     from ...derivations.text import text_of_equation
-    from ..axis import GroupAxis
 
     name = column.name
     yield f"{name}  {column.meaning}  [{report.shown[name].unit}]  {column.source}"
@@ -71,15 +70,7 @@ def _lines(report: Report, column: Column, labels: Collection[tuple[int, ...]]) 
     if name in report.inputs.taken:  # what was computed has those that its uncertainty tells
         texts = [figure.plain if figure else "" for figure in report.figures(name)]
     given = dict(zip(every, texts, strict=True)) if len(texts) == len(every) else {}
-    inputs, over = report.inputs, column.axis
-    names = {
-        label: f"{inputs.rows[label[0]][name]}  "
-        for name in inputs.naming
-        for label in (every if over is not None and over.is_given else ())
-    }
-    if isinstance(over, GroupAxis):
-        every_word = inputs.words(over.row)
-        names = {label: f"{every_word[label[0] - 1]}  " for label in every}
+    names = {label: f"{word}  " for label, word in report.words(column).items()}
     wide = max(map(len, names.values()), default=0)
     nothing = [0.0] * len(every)
     uncertain = report.uncertain().u.get(name, nothing)
