@@ -304,3 +304,8 @@ def test_build_warns_of_older_numbers_that_it_takes(apart: Path, capsys: pytest.
     assert warnings() == told  # of what was kept, too
     build(apart / "ball")
     assert warnings() == []
+
+
+def test_a_report_that_is_not_built_yet_is_told_how(apart: Path) -> None:
+    folder(apart, TAKING + DENSITY, taken(V="V") | WATER | {"m": '{ from = "none/values.json", cell = "m" }'})
+    assert "'loopsheet build' of its folder writes it" in refused(apart)[1]

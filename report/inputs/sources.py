@@ -118,7 +118,8 @@ def read_bytes(
     except PermissionError as error:
         findings.add("LS106", at, text=name, reason=error.strerror)
     except (OSError, ValueError, RuntimeError):  # also names too long, with a NUL, or a ring of links
-        findings.add("LS104", at, text=name, suggestion=suggest(name, _siblings(path)))
+        built = "'loopsheet build' of its folder writes it" if path.name == "values.json" else ""
+        findings.add("LS104", at, text=name, suggestion=suggest(name, _siblings(path)) or built)
     return None
 
 
