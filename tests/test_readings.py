@@ -74,6 +74,16 @@ def test_two_samples_are_two(made: Made) -> None:
     assert 4 < found.dof < 8
 
 
+def test_what_is_one_estimate_stands_together(made: Made) -> None:
+    """What most of it comes from: all readings of V, not the first of them."""
+    budget = spread(made('V = "scatter"\nI = "scatter"\nphi = "exact"')).budget("Z", 0)
+    told = [({each.source.moves[0][0] for each in own}, len(own)) for own in budget.estimates]
+    assert told == [({"V"}, 5), ({"I"}, 5)]
+    shares = [sum(each.share for each in own) for own in budget.estimates]
+    of_v, of_i = ((stdev(x) / sum(x)) ** 2 for x in (V, I))
+    assert shares == pytest.approx([of_v / (of_v + of_i), of_i / (of_v + of_i)], rel=1e-9)
+
+
 def test_one_estimate_for_a_column_is_one_estimate(made: Made) -> None:
     """Stated once for all rows: its degrees of freedom do not add up with the rows."""
     found = spread(made('V = "u = 0.004, dof = 6"\nI = "exact"\nphi = "exact"'))

@@ -383,15 +383,19 @@ class Tables:
 
     def _largest(self, budget: Budget) -> Inlines:
         """The sources with the largest shares of the variance."""
-        told = [
-            self._source(each) for each in budget.contributions[:MOST_SOURCES] if each.share >= LEAST_SHARE
-        ]
+        every = [(own, sum(each.share for each in own)) for own in budget.estimates]
+        told = [self._source(own, share) for own, share in every[:MOST_SOURCES] if share >= LEAST_SHARE]
         if budget.second:
             told.append((f"second order\u00a0{_percent(budget.second / budget.u**2)}",))
         return joined(told, ", ")
 
-    def _source(self, each: Contribution) -> Inlines:
-        return Code(each.source.name), f"\u00a0{_percent(each.share)}"
+    def _source(self, own: Sequence[Contribution], share: float) -> Inlines:
+        """A source; of readings that are one estimate all together."""
+        first, number = own[0].source, len(own)
+        axis = self.report.sheet[first.moves[0][0]].axis
+        if number == 1 or axis is None:
+            return Code(first.name), f"\u00a0{_percent(share)}"
+        return Code(first.moves[0][0]), f" ({number}\u00a0{axis.name})\u00a0{_percent(share)}"
 
     # --- what is published
 

@@ -192,6 +192,14 @@ class Budget:
     least: float = -math.inf
 
     @property
+    def estimates(self) -> list[list[Contribution]]:
+        """The contributions, those of one estimate together, as of readings; the largest sum first."""
+        found: dict[str, list[Contribution]] = {}
+        for each in self.contributions:
+            found.setdefault(each.source.sample or f"{each.source.name} alone", []).append(each)
+        return sorted(found.values(), key=lambda own: -abs(sum(each.share for each in own)))
+
+    @property
     def fails(self) -> bool:
         """Whether first order plainly fails: second order makes more of the variance, or U leads too low."""
         if not self.of_second_order:
