@@ -210,7 +210,8 @@ class SecondOrder:
 
         up, down = beside(used), beside(half + used)
         for n, odd in along.without_value(cells):
-            up[n, odd[used[n]]] = down[n, odd[half + used[n]]] = np.nan
+            dead = np.broadcast_to(odd, 2 * half)
+            up[n, dead[used[n]]] = down[n, dead[half + used[n]]] = np.nan
         return used, up, down
 
 
