@@ -55,6 +55,14 @@ __all__ = [
     "unknown",
 ]
 
+_CODATA = {
+    **{"R": "molar gas constant", "N_A": "Avogadro constant", "F": "Faraday constant"},
+    **{"k": "Boltzmann constant", "k_B": "Boltzmann constant", "h": "Planck constant"},
+    **{"c": "speed of light in vacuum", "e": "elementary charge", "g": "standard acceleration of gravity"},
+    **{"G": "Newtonian constant of gravitation", "sigma": "Stefan-Boltzmann constant"},
+}
+"""What constants are called whose letters everybody writes."""
+
 
 def given(
     unit: str,
@@ -120,6 +128,8 @@ def constant(name: str, *, latex: str = "") -> Any:
     from scipy.constants import find, physical_constants
 
     if name not in physical_constants:
+        if name in _CODATA:
+            raise SheetError(f"CODATA calls {name} {_CODATA[name]!r}", name)
         near = dict.fromkeys((*find(name), *difflib.get_close_matches(name, physical_constants, 3)))
         meant = f"; do you mean {listing(list(near)[:5])}?" if near else ""
         raise SheetError(f"CODATA has no {name!r}{meant}", name)

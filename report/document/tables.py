@@ -195,8 +195,9 @@ class Tables:
         inputs, measured = self.report.inputs, any(head.given for head in heads) and axis.is_given
         words = () if not axis.is_given else inputs.remarks if measured else inputs.naming
         names: Mapping[int, Mapping[str, str]] = inputs.rows
+        head = axis.row
         if isinstance(axis, GroupAxis):
-            words = (axis.row,)
+            words, head = (axis.row,), "no."
             names = {n: {axis.row: word} for n, word in enumerate(inputs.words(axis.row), start=1)}
 
         def row(label: tuple[int, ...], items: Iterable[Entry], state: str = "") -> Row:
@@ -212,7 +213,7 @@ class Tables:
         return Table(
             spec.name,
             self.rich(spec.title),
-            (TableColumn((axis.row,)), *map(self._worded, words), *map(_headed, heads)),
+            (TableColumn((head,)), *map(self._worded, words), *map(_headed, heads)),
             (Rows(tuple(shown)),),
             spec.number,
             legend=(*legend, ".", *((" ", *self.rich(spec.note)) if spec.note else ()), *self._known(heads)),
