@@ -30,7 +30,8 @@ SHARED = '[uncertainty.shared.gauge]\nof = "x"\nstated = "u = 0.01 mm"\ngroups =
     ("file", "old", "new", "place", "told"),
     [
         ("report.toml", "", SHARED, "9:10", "the uncertainty of 2 in groups is stated twice"),
-        ("report.toml", "", '[limits]\nx = ">= 1 mm"\n', "7:1", "allowed: x[1], x[2] or x[3]"),
+        ("report.toml", "", '[expected]\nx = "odd"\n', "7:1", "allowed: x[1], x[2] or x[3]"),
+        ("report.toml", "", '[limits]\nx = ">= 1 kg"\n', "7:1", "the limit of x is in 'kg'"),
         ("report.toml", "", '[expected]\n"raeding 3" = "odd"\n', "7:1", "did you mean 'reading 3'?"),
         ("report.toml", "", '[expected]\n"reading 9" = "odd"\n', "7:1", "reading has no index '9'"),
         ("report.toml", "N/mm", "N per mm", "3:13", "write / for per"),
