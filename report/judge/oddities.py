@@ -101,11 +101,8 @@ def _adjusted(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, list[str]]]:
 def _scattering(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, MemberAxis]]:
     """The columns whose scatter is stated, with the groups of their rows, if these are of one kind."""
     for name, stated in inputs.uncertainty.columns.items():
-        found = [
-            axis
-            for axis in sheet.axes
-            if isinstance(axis, MemberAxis) and name in sheet and axis.of == sheet[name].axis
-        ]
+        axis = sheet[name].axis if name in sheet else None
+        found = [*axis.grouped(sheet.axes)] if axis else []
         if len(found) == 1 and any(part.said == SCATTER for part in stated.parts):
             yield name, found[0]
 

@@ -269,7 +269,7 @@ class Report:
             return {label: words[label[0] - 1] for label in labels}
         if axis is None or not axis.is_given or not inputs.naming:
             return {}
-        return {label: inputs.rows[label[0]][inputs.naming[-1]] for label in labels}
+        return {label: inputs.rows[label[0]][inputs.naming[0]] for label in labels}
 
     def in_unit(self, name: str) -> list[float | None]:
         """The cells of a column in the unit that it is shown in; None where there is no value."""
