@@ -120,14 +120,28 @@ function writeUncertain(look) {
     const known = row >= 0 && sureOf(look, name, row), shown = row < 0 ? "–" : look.cell(name, row).text;
     const { texts, from } = known || { texts: [shown, "", "", ""], from: [] };
     texts.forEach((text, n) => setText(line.cells[n + 1], text));
-    const most = from.slice(0, 3).filter(({ share }) => share >= 0.05);
-    line.cells[6].replaceChildren(...most.flatMap(({ called, share }, n) => [n ? ", " : "", make("code", {}, called), `\u00a0${percent(share)}`]));
+    const most = estimates(from).slice(0, 3).filter(({ share }) => share >= 0.05);
+    line.cells[6].replaceChildren(...most.flatMap(({ own: [one, ...more], share }, n) => {
+      const [[column]] = one.moves, rows = more.length ? ` (${more.length + 1}\u00a0${look.trace.declared[column].axis})` : "";
+      return [n ? ", " : "", make("code", {}, rows ? column : one.called), `${rows}\u00a0${percent(share)}`];
+    }));
   }
   for (const told of all(".headline .sure")) {
     const name = told.parentElement.querySelector("[data-cell]").dataset.cell, known = LIVE.shared && sureOf(look, name, 0);
     const unit = LIVE.columns[name].unit === "1" ? [] : ["\u00a0", ...part(name, "unit")], [, , factor, wide] = known ? known.texts : [];
     told.replaceChildren(...(wide ? [`±\u00a0${wide}`, ...unit, ` (k\u00a0=\u00a0${factor})`] : []));
   }
+}
+
+// Errors of one sample together, as one estimate, the largest sum first.
+function estimates(from) {
+  const found = new Map();
+  for (const one of from) {
+    const key = one.sample ?? `${one.called} alone`;
+    found.set(key, [...(found.get(key) ?? []), one]);
+  }
+  const told = [...found.values()].map((own) => ({ own, share: sum(own.map(({ share }) => share)) }));
+  return told.sort((a, b) => Math.abs(b.share) - Math.abs(a.share));
 }
 
 const ADDRESS = /^(\w+)(?:\[(.*)\])?$/;

@@ -9,6 +9,7 @@ import driving
 import pytest
 from driving import Live
 
+from loopsheet.report.cli import main
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 
@@ -167,3 +168,42 @@ def test_input_that_is_refused_has_no_uncertainty(live: Live) -> None:
     live.page.locator("#cell-e-4").click()
     assert not live.page.locator("#bar-sure").is_visible()
     assert uncertain(live)[0].split()[:2] == ["alpha_eiv", live.cell("alpha_eiv").text]
+
+
+MEANS = """from loopsheet import Method, let, mean, measured
+
+
+class Means(Method, headline="D"):
+    V = measured("V", "a voltage")
+    W = measured("V", "another")
+    D = let(mean(V) - mean(W), "their difference")
+"""
+
+
+def test_what_is_one_estimate_stands_together_after_an_edit(open_page: Open, tmp_path: Path) -> None:
+    """What most of it comes from: all readings of V, by one standard uncertainty with degrees of freedom."""
+
+    def written(name: str, first: str) -> Path:
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / "workbook.py").write_text(MEANS, encoding="utf-8")
+        (folder / "d.csv").write_text(
+            f"test,V [V],W [V]\n1,{first},4.1\n2,5.2,4.25\n3,5.1,4.2\n", encoding="utf-8"
+        )
+        (folder / "report.toml").write_text(
+            'workbook = "workbook.py"\n[measurements]\nfile = "d.csv"\n'
+            '[uncertainty]\nV = "u = 1 % of reading, dof = 6"\nW = "u = 0.05 V"\n',
+            encoding="utf-8",
+        )
+        return folder
+
+    folder = written("before", "5.0")
+    assert main(["build", str(folder), "--to", "html", "--out", str(tmp_path / "out")]) == 0
+    live = open_page(tmp_path / "out" / "report.html")
+    issued = uncertain(live)
+    live.type("V", 1, "8.0")
+    edited = uncertain(live)
+    again = Study(written("after", "8.0")).computed
+    assert edited == uncertain(open_page(driving.static(again, tmp_path / "after.html")))
+    assert edited != issued
+    assert "V (3\u00a0readings)" in edited[0]
