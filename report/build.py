@@ -36,7 +36,7 @@ DEFAULT_FORMATS = tuple(each for each in FORMATS if each not in ON_REQUEST)
 
 
 def parse_formats(words: str) -> tuple[str, ...]:
-    """Read ``html,latex``.
+    """Read ``html,latex``; values.json comes with any of them, for what says that it has all numbers.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def parse_formats(words: str) -> tuple[str, ...]:
     for word in wanted or [words]:
         if word not in FORMATS:
             raise unknown("format", word, FORMATS)
-    return tuple(f for f in FORMATS if f in wanted)
+    return tuple(f for f in FORMATS if f in (*wanted, "json"))
 
 
 def formats_again(out: Path) -> tuple[str, ...] | None:

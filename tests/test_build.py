@@ -424,3 +424,10 @@ def test_a_pdf_that_was_built_before_is_built_again(
     if files:
         (tmp_path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
     assert build.formats_again(tmp_path) == formats
+
+
+def test_the_numbers_come_with_any_format(tmp_path):
+    """A page says that values.json has all numbers, and `diff` asks for it."""
+    assert main(["build", str(copy_paper(tmp_path / "own")), "--out", str(tmp_path / "out"), "--to", "latex"]) == 0
+    written = {path.name for path in (tmp_path / "out").iterdir()}
+    assert written >= {"report.tex", "values.json"} and "report.html" not in written

@@ -222,7 +222,7 @@ class Said:
             if budget.name == name and budget.label == () and math.isfinite(budget.factor):
                 _, expanded = self.report.stated(name, budget.value, budget.expanded)
                 factor = f" (k\u00a0=\u00a0{rounded(budget.factor, 3).text})"
-                told = "±\u00a0", Number(expanded), *in_unit(self.report.shown[name].unit), factor
+                told = "U\u00a0=\u00a0", Number(expanded), *in_unit(self.report.shown[name].unit), factor
                 instead = ("; use ", Code(draws_of(budget.cell))) if budget.fails else ()
                 return told, ((budget.doubt, *instead) if budget.doubt else ())
         return (), ()

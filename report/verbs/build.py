@@ -48,8 +48,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--to",
         metavar="FORMATS",
-        help="html, latex, xlsx, json, pdf (default: the first four, but no workbook that is too large; "
-        "pdf where one was built before)",
+        help="html, latex, xlsx, pdf, json; json comes with any (default: all but pdf, which only where one "
+        "was built before, and no workbook that is too large)",
     )
     parser.add_argument(
         "--engines",

@@ -32,7 +32,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     folder_argument(parser)
     out_argument(parser)
     parser.add_argument(
-        "--to", metavar="FORMATS", default="html", help="as for build (default: html); json comes with it"
+        "--to", metavar="FORMATS", default="html", help="as for build (default: html)"
     )
     keeping_arguments(parser)
 
@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
     from ..machine.local_server import Server
     from ..messages.diagnostics import visible
 
-    formats = parse_formats(f"{options.to},json")
+    formats = parse_formats(options.to)
     folder = report_folder(options.folder)
     out = out_of(options, folder)
     try:

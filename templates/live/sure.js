@@ -129,7 +129,7 @@ function writeUncertain(look) {
   for (const told of all(".headline .sure")) {
     const name = told.parentElement.querySelector("[data-cell]").dataset.cell, known = LIVE.shared && sureOf(look, name, 0);
     const unit = LIVE.columns[name].unit === "1" ? [] : ["\u00a0", ...part(name, "unit")], [, , factor, wide] = known ? known.texts : [];
-    told.replaceChildren(...(wide ? [`±\u00a0${wide}`, ...unit, ` (k\u00a0=\u00a0${factor})`] : []));
+    told.replaceChildren(...(wide ? [`U\u00a0=\u00a0${wide}`, ...unit, ` (k\u00a0=\u00a0${factor})`] : []));
   }
 }
 

@@ -156,7 +156,7 @@ class Live:
 
     def around_to_first_order(self) -> list[str]:
         """The same without expanded uncertainties: an edited page does not follow terms of second order."""
-        return [re.sub(r" ± .*?\(k = [\d.]+\)", "", text) for text in self.around()]
+        return [re.sub(r"\s*U\s=\s.*?\(k = [\d.]+\)", "", text) for text in self.around()]
 
     def state(self) -> list[str]:
         """Every character of the report, and what stands in its inputs."""
