@@ -24,12 +24,14 @@ TABLE = "reading,x [mm],y [N]\n1,1.00,2.0\n2,1.10,2.2\n3,1.30,2.7\n"
 FULLER = "reading,x [mm],y [N],z [N]\n1,1.00,2.0,3.0\n2,1.10,2.2,3.3\n"
 TOML = 'workbook = "workbook.py"\n[parameters]\nK = "2.00 N/mm"\n[measurements]\nfile = "measurements.csv"\n'
 SHARED = '[uncertainty.shared.gauge]\nof = "x"\nstated = "u = 0.01 mm"\ngroups = [[1, 2], [2, 3]]\n'
+WORDED = SHARED.replace("[[1, 2], [2, 3]]", '"batch"')
 
 
 @pytest.mark.parametrize(
     ("file", "old", "new", "place", "told"),
     [
         ("report.toml", "", SHARED, "9:10", "the uncertainty of 2 in groups is stated twice"),
+        ("report.toml", "", WORDED.replace("batch", "bathc"), "9:10", "a column of the table: x or y"),
         ("report.toml", "", '[expected]\nx = "odd"\n', "7:1", "allowed: x[1], x[2] or x[3]"),
         ("report.toml", "", '[limits]\nx = ">= 1 kg"\n', "7:1", "the limit of x is in 'kg'"),
         ("report.toml", "", '[expected]\n"raeding 3" = "odd"\n', "7:1", "did you mean 'reading 3'?"),
@@ -67,6 +69,18 @@ def test_a_row_is_expected_to_be_odd_by_its_own_word(tmp_path: Path, row: str) -
         (tmp_path / name).write_text(text, encoding="utf-8")
     oddities = Study(tmp_path).computed.oddities
     assert f"{row}, slipped: x[3] has no value (#INPUT!)" in [check.message for check in oddities]
+
+
+def test_a_column_of_words_tells_which_rows_share_an_error(tmp_path: Path) -> None:
+    table = "reading,batch,x [mm],y [N],left out\n1,B,1.00,2.0,\n2,A,1.05,2.1,\n3,,1.10,2.2,\n4,B,1.30,2.7,\n"
+    files = {"workbook.py": CODE, "measurements.csv": table + "5,A,1.0,2.0,slipped\n"}
+    for name, text in {**files, "report.toml": TOML + WORDED}.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    study = Study(tmp_path)
+    (shared,) = study.inputs.uncertainty.shared
+    assert shared.groups == ((1, 4), (2, 5))
+    (budget,) = study.computed.uncertain().budgets
+    assert {"gauge (readings 1, 4)", "gauge (readings 2, 5)"} <= {one.source.name for one in budget.contributions}
 
 
 def test_an_error_that_rows_share_names_them_by_their_own_word(tmp_path: Path) -> None:

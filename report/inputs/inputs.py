@@ -514,7 +514,7 @@ class _Reader:
         declared = self.workbook.declared if self.workbook else {}
         single = {name: (printed,) for name, printed in parameters.items()}
         numbers = {name: column for name, column in measurements.measured.items() if column}
-        tests = (*measurements.tests, *(each.test for each in measurements.left_out))
+        tests = {**measurements.texts, **{each.test: each.texts for each in measurements.left_out}}
         stated = read_uncertainty(self.tables, numbers | single, declared, tests, self.said)
         parameters = {name: printed for name, (printed,) in stated.of(single).items()}
         left_out = tuple(_with(stated, each, measurements.header_units) for each in measurements.left_out)

@@ -105,7 +105,10 @@ TABLES: dict[tuple[str, ...], dict[str, Key]] = {
     ("uncertainty", "shared", ANY): {
         "of": Key('"x_p"', "The column, or the parameter.", True),
         "stated": Key('"+-0.2 um rect"', "Its size: one error.", True),
-        "groups": Key("[[1, 2], [3, 4, 5]]", "The tests of each group; without it, all tests are one."),
+        "groups": Key(
+            "[[1, 2], [3, 4, 5]]",
+            'The tests of each group, or the column that has its word, `"batch"`; without, all are one.',
+        ),
     },
     ("uncertainty", "correlation"): {
         ANY: Key('"0.3"', 'Of two columns or two parameters: `"v, e"`.'),

@@ -10,7 +10,7 @@ paired = ["V", "I", "phi"]               # repeated readings, together in each r
 [uncertainty.shared."height datum"]      # one error, the same in every test
 of = "x_p"
 stated = "+-0.2 um rect"
-groups = [[1, 2], [3, 4]]                # or the same in the tests of a group
+groups = [[1, 2], [3, 4]]                # or the same in the tests of a group, or of a word: "height"
 
 [uncertainty.correlation]
 "v, e" = "0.3"                           # of the errors of one test
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from ..distribution import Error, Shape
     from ..messages.errors import Location
     from ..quantity import Printed
+    from .groups import Texts
     from .number_text import Declared
     from .tables import TomlTables
 
@@ -146,7 +147,7 @@ def read_uncertainty(
     tables: TomlTables,
     numbers: Numbers,
     declared: Mapping[str, Declared],
-    tests: Collection[int],
+    tests: Texts,
     said: Conventions,
 ) -> Stated:
     """Read the section; what is wrong with it is told where it stands.
@@ -159,7 +160,8 @@ def read_uncertainty(
         What was given, by column and parameter; None where a cell is empty.
     declared : mapping of str to Declared
         What the workbook says of them.
-    tests : collection of int
+    tests : mapping of int to mapping of str to str
+        The rows, by column: a word there may say which of them share an error.
     said : Conventions
         What the folder says of all uncertainties.
     """
@@ -194,7 +196,7 @@ class _Reader:
         tables: TomlTables,
         numbers: Numbers,
         declared: Mapping[str, Declared],
-        tests: Collection[int],
+        tests: Texts,
         said: Conventions,
     ) -> None:
         self.tables, self.declared, self.tests = tables, declared, tests
@@ -302,14 +304,17 @@ class _Reader:
         return SharedError(name, of, statement, groups)
 
     def groups(self, path: tuple[str, ...]) -> tuple[tuple[int, ...], ...] | None:
-        """Lists of tests, of which none stands in two."""
+        """Lists of tests, of which none stands in two; or those that have the same word in a column."""
         written: Any = self.toml.data
         for key in path:
             written = written[key]
+        if isinstance(written, str):
+            return self.of_words(path, written)
         lists = isinstance(written, list) and all(isinstance(group, list) and group for group in written)
         if not written or not lists or not all(type(test) is int for group in written for test in group):
             example = "groups = [[1, 2], [3, 4]]"
-            wrong_type(self.toml, self.findings, path, "a list of lists of tests", example)
+            wanted = "a list of lists of tests, or the name of a column of words"
+            wrong_type(self.toml, self.findings, path, wanted, example)
             return None
         seen: set[int] = set()
         for test in (test for group in written for test in group):
@@ -323,6 +328,19 @@ class _Reader:
                 return None
             seen.add(test)
         return tuple(map(tuple, written))
+
+    def of_words(self, path: tuple[str, ...], column: str) -> tuple[tuple[int, ...], ...] | None:
+        """The tests of each word of a column; where there is none, a test is of no group."""
+        columns = next(iter(self.tests.values()))
+        if column not in columns:
+            known, like = f"a column of the table: {listing(columns)}", suggest(column, columns)
+            at, table = self.toml.value(*path), ".".join(path)
+            self.findings.add("LS203", at, text=column, table=table, known=known, suggestion=like)
+            return None
+        found: dict[str, list[int]] = {}
+        for test, row in self.tests.items():
+            found.setdefault(row[column], []).append(test)
+        return tuple(tuple(tests) for word, tests in found.items() if word)
 
     def correlations(
         self, several: Collection[str], paired: Collection[str]

@@ -31,9 +31,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     folder_argument(parser)
     out_argument(parser)
-    parser.add_argument(
-        "--to", metavar="FORMATS", default="html", help="as for build (default: html)"
-    )
+    parser.add_argument("--to", metavar="FORMATS", default="html", help="as for build (default: html)")
     keeping_arguments(parser)
 
 
