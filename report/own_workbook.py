@@ -175,6 +175,8 @@ def _hint(error: BaseException) -> str:
             return f"write above: from sympy import {name}"
         case NameError():
             return "a name stands for its cell from the line on where it is declared"
+        case ImportError(name="loopsheet"):
+            return f"there are {', '.join(_words())}; max, min and sum are Python's, functions are sympy's"
         case ImportError():
             return "a copy of a shipped workbook imports by full names, as loopsheet.report.sheet"
         case TypeError() if " for ^" in str(error):
@@ -183,6 +185,8 @@ def _hint(error: BaseException) -> str:
             return OF_SYMPY
         case TypeError() if "truth value" in str(error):
             return NO_IF
+        case TypeError() if "_Declaring.__new__" in str(error):
+            return "behind Method: source, headline, rows (as in rows=\"readings\"), index and size"
         case TypeError() if word := re.match(r"(\w+)\(\) (takes|missing|got)", str(error)):
             return _called(word[1])
         case TypeError() if re.search("symbol|Indexed|Symbol", str(error)):
@@ -190,11 +194,18 @@ def _hint(error: BaseException) -> str:
     return "" if isinstance(error, SyntaxError) else _HINT
 
 
+def _words() -> list[str]:
+    """What a method is written with."""
+    from . import method
+
+    return method.__all__
+
+
 def _called(word: str) -> str:
     """How a word of methods is called."""
     from . import method
 
-    if word not in method.__all__:
+    if word not in _words():
         return ""
     said = signature(getattr(method, word))
     plain = [each.replace(annotation=each.empty) for each in said.parameters.values()]

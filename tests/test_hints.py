@@ -37,6 +37,8 @@ WORDED = SHARED.replace("[[1, 2], [2, 3]]", '"batch"')
         ("report.toml", "", '[expected]\n"raeding 3" = "odd"\n', "7:1", "did you mean 'reading 3'?"),
         ("report.toml", "", '[expected]\n"reading 9" = "odd"\n', "7:1", "reading has no index '9'"),
         ("report.toml", "N/mm", "N per mm", "3:13", "write / for per"),
+        ("workbook.py", "import ", "import max, ", "1:1", "max, min and sum are Python's"),
+        ("workbook.py", 'rows="readings"', 'row="reading"', "4:1", 'rows="readings"'),
         ("workbook.py", "K * x", "K * x^2", "10:5", "a power is written x**2"),
         ("workbook.py", '"mm"', '"milimeter"', "7:5", "did you mean 'millimeter'?"),
         ("workbook.py", "", '    q = unknown("nothing")\n', "12:5", "neither a root nor a fit finds it"),
