@@ -186,7 +186,7 @@ def _hint(error: BaseException) -> str:
         case TypeError() if "truth value" in str(error):
             return NO_IF
         case TypeError() if "_Declaring.__new__" in str(error):
-            return "behind Method: source, headline, rows (as in rows=\"readings\"), index and size"
+            return 'behind Method: source, headline, rows (as in rows="readings"), index and size'
         case TypeError() if word := re.match(r"(\w+)\(\) (takes|missing|got)", str(error)):
             return _called(word[1])
         case TypeError() if re.search("symbol|Indexed|Symbol", str(error)):

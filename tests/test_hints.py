@@ -82,7 +82,8 @@ def test_a_column_of_words_tells_which_rows_share_an_error(tmp_path: Path) -> No
     (shared,) = study.inputs.uncertainty.shared
     assert shared.groups == ((1, 4), (2, 5))
     (budget,) = study.computed.uncertain().budgets
-    assert {"gauge (readings 1, 4)", "gauge (readings 2, 5)"} <= {one.source.name for one in budget.contributions}
+    told = {one.source.name for one in budget.contributions}
+    assert {"gauge (readings 1, 4)", "gauge (readings 2, 5)"} <= told
 
 
 def test_an_error_that_rows_share_names_them_by_their_own_word(tmp_path: Path) -> None:
