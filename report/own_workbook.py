@@ -189,8 +189,12 @@ def _hint(error: BaseException) -> str:
             return 'behind Method: source, headline, rows (as in rows="readings"), index and size'
         case TypeError() if word := re.match(r"(\w+)\(\) (takes|missing|got)", str(error)):
             return _called(word[1])
-        case TypeError() if re.search("symbol|Indexed|Symbol", str(error)):
-            return "a name stands for a cell in formulas: it is no number yet, and no list"
+        case TypeError() if re.search(r"'\w+Line'", str(error)):
+            return "what is declared has a line of its own, and a name that stands for it in formulas"
+        case TypeError() if "not callable" in str(error):
+            return "is there a * missing before a parenthesis?"
+        case TypeError() | AttributeError() if re.search("symbol|Indexed|Symbol", str(error)):
+            return "a name stands for a cell in formulas: it is no number yet, and no list; mean(x) is its mean"
     return "" if isinstance(error, SyntaxError) else _HINT
 
 
