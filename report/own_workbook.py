@@ -194,7 +194,7 @@ def _hint(error: BaseException) -> str:
         case TypeError() if "not callable" in str(error):
             return "is there a * missing before a parenthesis?"
         case TypeError() | AttributeError() if re.search("symbol|Indexed|Symbol", str(error)):
-            return "a name stands for a cell in formulas: it is no number yet, and no list; mean(x) is its mean"
+            return "a name stands for a cell in formulas: no number yet, and no list; mean(x) is its mean"
     return "" if isinstance(error, SyntaxError) else _HINT
 
 

@@ -145,7 +145,7 @@ def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         ("c = let(2 * a)", "help: it is let(formula, meaning, unit='', *, label='', because='definition',"),
         (
             'c = let(round(a), "x")',
-            "help: a name stands for a cell in formulas: it is no number yet, and no list",
+            "help: a name stands for a cell in formulas: no number yet, and no list",
         ),
         ('c = let(sum(sorted(a)), "x")', "help: a name stands for a cell in formulas"),
         ("c = let(a, 5)", "a meaning is a text in quotes, not 5"),
