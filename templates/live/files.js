@@ -38,12 +38,16 @@ function withStated(text, [, other, u]) {
   return `${fixedExact(readExact(text), places)}(${u}${"0".repeat(places - decimalsOf(other))})`;
 }
 
-// An empty row is dropped. What was issued stays, for published values may be about it: as a test left out.
+// An empty row is dropped. What was issued stays, for published values may be about it: as a test left out, and at its
+// place, by which rows without numbers are counted.
 function savedTests(state) {
-  const full = state.tests.filter(({ cells }) => Object.values(cells).some(Boolean)), labels = full.map(({ label }) => label);
-  const gone = page.history.issued.tests.filter(({ label }) => !labels.includes(label));
+  const saved = state.tests.filter(({ cells }) => Object.values(cells).some(Boolean));
+  const at = (label) => saved.findIndex((test) => test.label === label);
   const why = ({ label }) => (state.tests.some((test) => test.label === label) ? "its numbers were deleted" : "removed");
-  return [...full, ...gone.map((test) => ({ ...test, used: false, reason: test.reason || why(test) }))];
+  page.history.issued.tests.forEach((test, n, { [n - 1]: before }) => {
+    if (at(test.label) < 0) saved.splice(before ? at(before.label) + 1 : 0, 0, { ...test, used: false, reason: test.reason || why(test) });
+  });
+  return saved;
 }
 
 // The inputs that a build of the files would refuse.

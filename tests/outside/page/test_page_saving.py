@@ -94,6 +94,15 @@ def test_rows_without_numbers_are_saved_without(open_page: Open, tmp_path: Path)
     live.type("x_p", 2, "29.80")
     saved = (live.save(tmp_path / "saved") / "measurements.csv").read_text(encoding="utf-8")
     assert saved.splitlines() == [line.replace("29.7,", "29.80,") for line in own]
+    # What goes stays at its place: limits, expectations and shared errors name a row by its number.
+    for test in (1, 3):
+        live.page.locator(f'[data-remove="{test}"]').click()
+    saved = (live.save(tmp_path / "again") / "measurements.csv").read_text(encoding="utf-8")
+    said = {line: line + ",removed" * (n in (1, 3)) for n, line in enumerate(own)}
+    assert [line.rstrip(",") for line in saved.replace("29.80,", "29.7,").splitlines()] == [
+        f"{own[0]},left out",
+        *(said[line] for line in own[1:]),
+    ]
 
 
 def test_what_no_build_would_take_is_told(live: Live, tmp_path: Path) -> None:
