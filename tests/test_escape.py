@@ -63,8 +63,9 @@ def test_markup_is_escaped_once_and_only_markup_is_trusted() -> None:
         ("e\u0301", "é"),
         ("ﬁ", "fi"),
         ("α", r"\texorpdfstring{\ensuremath{\alpha}}{alpha}"),
-        ("☃", "[U+2603]"),
-        ("Ж", "[U+0416]"),
+        ("☃ Ж", "{}[U+2603] [U+0416]"),
+        ("[12] a*", "{}[12] a*"),
+        ("*", "{}*"),
     ],
 )
 def test_latex(text: str, latex: str) -> None:

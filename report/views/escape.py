@@ -103,6 +103,8 @@ _SYMBOLS = {
 # Two of them would be drawn as one sign, -- as an en dash and ,, as a low quotation mark. What follows a text
 # is not known here, so behind the last one something stands, too.
 _DOUBLED = re.compile(r"([-,])(?=\1|$)")
+# Behind the end of a row, or \item, these would be taken for what it asks for.
+_FIRST = re.compile(r"^(?=\s*[\[*])")
 # What the T1 and TS1 encodings of every LaTeX since 2020 hold, so that pdflatex prints it.
 _PRINTABLE = frozenset(
     {chr(code) for code in range(0x20, 0x7F)}
@@ -124,7 +126,7 @@ def tex(text: object) -> Markup:
     if isinstance(text, Markup):
         return text
     plain = unicodedata.normalize("NFC", visible(str(text)))
-    return Markup(_DOUBLED.sub(r"\1{}", "".join(map(_one, plain))))
+    return Markup(_FIRST.sub("{}", _DOUBLED.sub(r"\1{}", "".join(map(_one, plain)))))
 
 
 def _one(character: str) -> str:
