@@ -8,6 +8,7 @@ __all__ = [
     "claim",
     "constant",
     "count",
+    "derivative",
     "fit",
     "given",
     "groups",

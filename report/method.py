@@ -40,6 +40,7 @@ __all__ = [
     "claim",
     "constant",
     "count",
+    "derivative",
     "fit",
     "given",
     "groups",
@@ -325,6 +326,28 @@ def count(formula: Any = 0, *, of: Any = None) -> Expr:
         As for :func:`total`.
     """
     return _body().number(formula, of)
+
+
+def derivative(formula: Any, by: Any) -> Expr:
+    """The derivative of a formula by a quantity, with all that rests on it put in.
+
+    All other quantities that nothing here is computed from stay as they are. It is a formula, so that
+    ``let(derivative(V, x), "slope")`` has it in every engine.
+
+    Parameters
+    ----------
+    formula : Expr
+        In names of the body.
+    by : Expr
+        What is given, measured or announced; or computed, where nothing else in the formula rests on what
+        that is computed from.
+
+    Raises
+    ------
+    SheetError
+        A root, a fit or a sum over rows rests on it: that has no formula to put in.
+    """
+    return _body().derivative(exact(formula), exact(by))
 
 
 def groups(by: str, *, rows: str = "", index: str = "g", size: str = "groups", example: str = "") -> Any:

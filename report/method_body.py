@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from sympy import Add, Expr, Float, Indexed, Max, Min, Rational, Sum, Symbol, sympify
+from sympy import Add, Dummy, Expr, Float, Indexed, Max, Min, Rational, Sum, Symbol, sympify
 
 from ..derivations.equation import Derivation, Equation, Kind, Ledger
 from ..derivations.grounds import says
@@ -57,6 +57,12 @@ def _typed(formula: Expr) -> Expr:
 def _fractions(*formulas: Expr) -> dict[Expr, Expr]:
     """The decimal fractions in formulas, as fractions."""
     return {each: Rational(repr(float(each))) for formula in formulas for each in formula.atoms(Float)}
+
+
+def _cells(formula: Expr) -> list[Expr]:
+    """What a formula names, cells as a whole."""
+    bases = {part for cell in formula.atoms(Indexed) for part in cell.atoms(Symbol)}
+    return sorted(formula.atoms(Indexed) | (formula.atoms(Symbol) - bases), key=str)
 
 
 class MethodBody(dict[str, Any]):
@@ -157,6 +163,50 @@ class MethodBody(dict[str, Any]):
             column = self._aside(name, f"{over.name} with a value", every)
             self.columns[name] = replace(column, alongside=(self.columns[cell.base.name],))
         return self.columns[name].cell
+
+    def derivative(self, formula: Expr, by: Expr) -> Expr:
+        """The derivative by a quantity, through the formulas of all that rests on it."""
+        if not isinstance(by, Indexed | Symbol):
+            raise SheetError(f"a derivative is taken by what has a name, not by {by}")
+        name, found = name_of(by), formula
+
+        def other() -> list[Expr]:
+            return [cell for cell in _cells(found) if name_of(cell) != name]
+
+        while resting := [cell for cell in other() if self._rests(cell, name)]:
+            for cell in resting:
+                column = self.columns.get(name_of(cell))
+                rule = None if column is None else column.rule
+                if column is None or not isinstance(rule, Formula) or rule.expression.has(*REDUCTIONS):
+                    raise SheetError(f"{cell} rests on {by}, and not by a formula of one row: write it out")
+                place = dict(zip(column.cell.args[1:], cell.args[1:], strict=True))
+                found = found.xreplace({cell: _typed(rule.expression).xreplace(place)})
+        if found.has(*REDUCTIONS):
+            raise SheetError(f"{formula} is taken over rows: write its derivative by {by} out")
+        below = self._inputs(name)
+        for beside in (cell for cell in other() if self._inputs(name_of(cell)) & below):
+            raise SheetError(f"{by} and {beside}, beside it, rest on the same: what stays as it is?")
+        # The second of a pair is not the first.
+        apart = {cell: Dummy(real=True) for cell in _cells(found) if name_of(cell) == name and cell != by}
+        if apart and not found.has(by):
+            raise SheetError(f"{formula} has no {by}: say first(...) or second(...) of a pair")
+        slope: Expr = found.xreplace(apart).diff(by).xreplace({own: cell for cell, own in apart.items()})
+        return slope
+
+    def _rests(self, cell: Expr, on: str) -> bool:
+        """Whether a cell is computed from what a name stands for."""
+        own = name_of(cell)
+        return own == on or any(self._rests(each, on) for each in self._below(own))
+
+    def _inputs(self, name: str) -> set[str]:
+        """What a name rests on that nothing computes."""
+        below = self._below(name)
+        return set[str]().union(*(self._inputs(name_of(each)) for each in below)) if below else {name}
+
+    def _below(self, name: str) -> list[Expr]:
+        """The cells that the rule of a column names."""
+        parts = self.columns[name].expressions if name in self.columns else ()
+        return [each for part in parts for each in _cells(part) if name_of(each) != name]
 
     def grouped(self, by: str, name: str, index: str, size: str, example: str) -> GroupAxis:
         """The groups of the rows that have one word in a column."""
