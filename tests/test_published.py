@@ -112,6 +112,32 @@ def test_an_uncertainty_behind_a_value_is_told_where_it_belongs(
     assert "41.6(2)" not in said
 
 
+def free(folder: Path, *names: str) -> None:
+    toml = folder / "report.toml"
+    line = f"[published]\nfree = {list(names)}"
+    toml.write_text(toml.read_text(encoding="utf-8").replace("[published]", line), encoding="utf-8")
+
+
+@pytest.mark.parametrize(("names", "found"), [((), True), (("l",), True), (("alpha_S",), False)])
+def test_a_published_number_is_not_excused_by_its_own_column_being_free(
+    tmp_path: Path, check: Check, names: tuple[str, ...], found: bool
+) -> None:
+    published(tmp_path, "H.1,l,1,77.001838,mm")
+    free(tmp_path, *names)
+    code, said = check()
+    assert (code, "l[1] prints 77.001838" in said) == ((1, True) if found else (0, False))
+
+
+def test_what_is_measured_is_not_free(tmp_path: Path, check: Check) -> None:
+    shutil.copytree(PAPER, tmp_path, dirs_exist_ok=True)
+    toml = tmp_path / "report.toml"
+    text = toml.read_text(encoding="utf-8").replace('free = ["ball_density"', 'free = ["x_p", "ball_density"')
+    toml.write_text(text, encoding="utf-8")
+    code, said = check()
+    assert code == 2
+    assert "free would set the digits of the table aside" in said
+
+
 # --- what prints the same ----------------------------------------------------------------------------------
 
 

@@ -300,7 +300,7 @@ def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[
     check_expected(kept.expected, kept.tests, cells, findings, inputs.workbook.row)
     written = {each.at: each for each in reversed(kept.limits)}  # what is wrong with a line is told once
     check_limits([*reversed(written.values())], cells, findings)
-    check_published((*kept.published, *kept.published_u), kept.free_at, cells, findings)
+    check_published((*kept.published, *kept.published_u), kept.free_at, cells, kept.measured, findings)
     findings.check()
     return kept
 

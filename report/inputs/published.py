@@ -243,6 +243,7 @@ def check_published(
     published: Sequence[PublishedValue],
     free: Mapping[str, Location],
     cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
+    measured: Collection[str],
     findings: Findings,
 ) -> None:
     """Compare what the published values are values of with the cells of the sheet.
@@ -255,6 +256,8 @@ def check_published(
     cells : mapping of str to (str, collection of tuple of int)
         For each cell its unit and the indices that it has: ``{()}`` for a scalar. A unit that is not
         fixed, such as ``N/m^alpha``, has no other that it converts to.
+    measured : collection of str
+        The columns of the table of measurements.
     findings : Findings
         Where unknown cells and indices go, and units of another dimension.
     """
@@ -262,6 +265,8 @@ def check_published(
         if name not in cells:
             known, suggestion = listing(cells, most=24), suggest(name, cells)
             findings.add("LS505", place, text=name, known=known, suggestion=suggestion)
+        elif name in measured:
+            findings.add("LS510", place, text=name)
     for value in published:
         if findings.full:
             break

@@ -370,6 +370,12 @@ CATALOGUE: dict[str, Entry] = {
         "{known}; its value by its name alone",
         "write what is published of its uncertainty as it stands there, in quotes if it has a comma",
     ),
+    "LS510": Entry(
+        "measured and free",
+        "'{text}' is measured: free would set the digits of the table aside",
+        "what is given or computed, and not printed",
+        "leave it out of free",
+    ),
     "LS601": Entry(
         "output not writable",
         "'{text}' cannot be written: {reason}",
