@@ -12,6 +12,7 @@ import pytest
 from loopsheet.report.cli import main
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.messages.errors import InputError
+from loopsheet.report.result.findings import CONFORMITY, checks
 from loopsheet.report.study import Study
 from loopsheet.report.views import html, latex
 from loopsheet.report.views.checks import FORMATS
@@ -67,6 +68,14 @@ def test_what_rests_on_it_is_set_aside_and_counted(tmp_path: Path) -> None:
     assert report.inputs.expected == ()
     assert list(report.inputs.errata) == [("x_p", 1)]
     assert all(check.kind != "expected" for check in report.oddities)
+
+
+def test_a_limit_of_what_is_left_out_is_a_finding(tmp_path: Path) -> None:
+    """Nobody has shown that it conforms; limits of the whole column are those of the rows that are there."""
+    more = '[limits]\n"x_p[3]" = "<= 40 um"\nx_m = "<= 1 mm"\n'
+    report = Study(campaign(tmp_path / "left", more=more, published=False)).computed
+    failed = [check.message for check in checks(report) if check.kind == CONFORMITY and not check.passed]
+    assert failed == ["no decision on x_p[3] (at most 40 um): it rests on a row that is left out"]
 
 
 def test_a_cell_that_never_was_is_still_a_finding(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from ..messages.errors import suggest
 from ..result import verdict_words as words
 from ..result.agreement import Agreement
 from ..result.chi_square import RARE, SIGNIFICANT, freedom, head, largest, tail, tied
-from ..result.conformity import decision
+from ..result.conformity import decision, undecided
 from ..result.numbers import probability, rounded
 from ..result.statements import statements
 from ..result.uncertain import draws_of
@@ -199,6 +199,7 @@ class Said:
         results = (Headline(tuple(map(self._result, names))),) if names else ()
         decided = self.report.uncertain().conformities if self.report.inputs.limits else ()
         told = tuple(self.rich(decision(self.report, found)) for found in decided)
+        told += tuple(self.rich(f"{undecided(each)}.") for each in self.report.inputs.undecided)
         return (*results, *((Items(told, "decided"),) if told else ()))
 
     def _result(self, name: str) -> HeadlineItem:

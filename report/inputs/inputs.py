@@ -108,8 +108,8 @@ class Inputs:
         Published values that rest on a test that is left out: they are not compared.
     uncertainty : Stated
         What report.toml states of the errors of whole columns, of what they share, and of correlations.
-    limits : tuple of Limits
-        Where cells have to lie.
+    limits, undecided : tuple of Limits
+        Where cells have to lie; those of cells that are missing because a test is left out.
     taken : mapping of str to Taken
         The parameters and measured columns whose numbers were taken from other reports.
     heads : mapping of str to str
@@ -143,6 +143,7 @@ class Inputs:
     uncertainty: Stated = field(default_factory=lambda: Stated({}))
     published_u: tuple[PublishedValue, ...] = ()
     limits: tuple[Limits, ...] = ()
+    undecided: tuple[Limits, ...] = ()
     taken: Mapping[str, Taken] = field(default_factory=dict)
     heads: Mapping[str, str] = field(default_factory=dict)
     texts: Mapping[int, Mapping[str, str]] = field(default_factory=dict)
@@ -288,10 +289,12 @@ def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[
 
     every = (*inputs.published, *inputs.published_u)
     aside = tuple(value for value in every if rests_on_gone(value.columns[0], value.index))
+    undecided = tuple(each for each in inputs.limits if rests_on_gone(*each.cell))
     kept = replace(
         inputs,
         expected=tuple(each for each in inputs.expected if not rests_on_gone(*each.cell)),
-        limits=tuple(each for each in of_every_row(inputs.limits, cells) if not rests_on_gone(*each.cell)),
+        limits=tuple(each for each in of_every_row(inputs.limits, cells) if each not in undecided),
+        undecided=undecided,
         published=tuple(value for value in inputs.published if value not in aside),
         published_u=tuple(value for value in inputs.published_u if value not in aside),
         aside=aside,

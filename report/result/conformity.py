@@ -11,9 +11,10 @@ from .numbers import chance
 from .uncertain import Conformity, Decision
 
 if TYPE_CHECKING:
+    from ..inputs.limits import Limits
     from .result import Report
 
-__all__ = ["accepted", "conforming", "decision", "lines", "probabilities", "risk", "sentence"]
+__all__ = ["accepted", "conforming", "decision", "lines", "probabilities", "risk", "sentence", "undecided"]
 
 
 def sentence(found: Conformity) -> str:
@@ -21,6 +22,11 @@ def sentence(found: Conformity) -> str:
     cell = found.budget.cell
     told = f"{found.decision} on {cell}" if found.decision is Decision.NONE else f"{cell} {found.decision}"
     return f"{told}: {found.because}"
+
+
+def undecided(limits: Limits) -> str:
+    """Of a cell that there is none of."""
+    return f"{Decision.NONE} on {limits.address} ({limits}): it rests on a row that is left out"
 
 
 def lines(report: Report, found: Conformity) -> Iterator[str]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from ..cells.address import address
 from ..messages.diagnostics import Check, Diagnostic, Location
 from . import verdict_words as words
-from .conformity import probabilities, sentence
+from .conformity import probabilities, sentence, undecided
 from .uncertain import Conformity, Decision
 from .verdict import OTHERWISE, UNAMENDED, UNEXPLAINED, UNPINNED, UNREASONED
 
@@ -55,6 +55,10 @@ def checks(report: Report) -> tuple[Check, ...]:
         *of_referee(report),
         *report.oddities,
         *(map(of_limits, report.uncertain().conformities) if report.inputs.limits else ()),
+        *(
+            Check(CONFORMITY, each.address, False, undecided(each), each.at)
+            for each in report.inputs.undecided
+        ),
     )
 
 
