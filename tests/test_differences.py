@@ -237,6 +237,11 @@ def test_a_limit_that_was_moved_is_a_difference(tmp_path: Path, capsys: pytest.C
     assert "check      limits l: 50.0007 to 50.0010 mm: conforms, accepted from 50.0007 to 50.001 mm" in told
     assert "-> 50.0007 to 50.0008 mm: does not conform" in told
     assert main(["diff", str(tmp_path / "wide"), str(tmp_path / "wide")]) == 0
+    assert capsys.readouterr().err == ""
+    with (tmp_path / "wide" / "report.toml").open("a") as file:
+        file.write("# another day\n")
+    assert main(["diff", str(tmp_path / "wide"), str(tmp_path / "wide")]) == 0
+    assert "wide/out is older than what it was built from, report.toml" in capsys.readouterr().err
 
 
 def test_markdown_has_a_table_for_each_kind_and_no_live_text() -> None:

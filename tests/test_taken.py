@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -188,6 +189,13 @@ def refused(at: Path) -> tuple[str, str]:
     (found,) = caught.value.diagnostics
     assert found.at.path.endswith("report.toml")
     return found.code, render(found)
+
+
+def test_a_report_does_not_begin_with_its_own_result(apart: Path) -> None:
+    folder(apart, TAKING + DENSITY, taken(V="V") | WATER | {"m": '{ from = "out/values.json", cell = "m" }'})
+    shutil.copytree(apart / "ball" / "out", apart / "out")
+    code, told = refused(apart)
+    assert (code, "would begin with the last one" in told) == ("LS437", True)
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from ...derivations.unit_text import UnitError, coherent, parse_unit
@@ -22,6 +23,7 @@ from ..cells.address import address, index_text, named
 from ..distribution import PARTS, Error, Shape
 from ..messages.errors import Location, listing, suggest
 from ..quantity import Printed
+from .folders import output
 from .keys import ANY, TABLES
 from .number_text import read_unit_of
 from .parameters import wrong_type
@@ -185,6 +187,11 @@ def open_result(data: bytes, file: Path, name: str, at: Location, findings: Find
     from ..files.manifest import is_as_built
     from ..files.values import Result
 
+    folder = file.parents[len(PurePath(name).parts) - 1]
+    if file.parent.resolve() == output(folder).resolve():
+        reason = "is what this report itself was built to: each build would begin with the last one"
+        findings.add("LS437", at, file=name, reason=reason, known="the values.json of another report")
+        return None
     try:
         found = decoded(data, Result)
     except Malformed as error:

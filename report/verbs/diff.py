@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .common import FINDINGS, OK, count, format_argument, named
+from .common import FINDINGS, OK, count, format_argument, named, told
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ..files.values import Result
 
 HELP = "compare two results number by number"
@@ -31,7 +31,8 @@ def run(options: argparse.Namespace) -> int:
     """Print what is different; exit code 1 if anything is, beyond rounding."""
     from ..archive.differences import compare
     from ..files.values import NAME
-    from ..inputs.folders import result
+    from ..inputs.folders import is_report, result
+    from ..outdated import outdated
     from ..views.differences import FORMATS
 
     before, after = (
@@ -40,6 +41,9 @@ def run(options: argparse.Namespace) -> int:
     names = before.as_posix(), after.as_posix()
     found = compare(_as_built(before), _as_built(after), names=names)
     print(FORMATS[options.format](found, options.most), end="")
+    for word in (options.before, options.after):
+        for line in told(tuple(outdated(Path(word), ()))) if is_report(Path(word)) else ():
+            print(line, file=sys.stderr)
     return FINDINGS if found.any else OK
 
 
