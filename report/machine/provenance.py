@@ -6,6 +6,7 @@ import hashlib
 import os
 import platform
 import sys
+from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 
@@ -35,35 +36,29 @@ def sources(root: Path = ROOT) -> dict[str, str]:
     root : Path
         The folder of the package.
     """
-    counted: set[Path] = set()
-    parts = []
+    parts: dict[str, tuple[tuple[str, Stamp], ...]] = {}
+    counted: set[str] = set()
     for part, places in PARTS.items():
-        own = {file for place in places for file in files(root / place)} - counted
-        counted |= own
-        named = sorted((file.relative_to(root).as_posix(), file) for file in own)
-        parts.append((part, tuple((*each, _stamp(each[1])) for each in named)))
-    return dict(_digests(tuple(parts)))
+        found = (each for place in places for each in _stamped(root / place))
+        parts[part] = tuple(each for each in found if each[0] not in counted)
+        counted.update(file for file, _ in parts[part])
+    return dict(_digests(root, tuple(parts.items())))
 
 
 Stamp = tuple[int, int, int, int]
 """What changes with a file: which it is, when it and what is said of it were changed, its size."""
 
 
-def _stamp(file: Path) -> Stamp:
-    found = file.stat()
-    return found.st_ino, found.st_mtime_ns, found.st_ctime_ns, found.st_size
-
-
 @lru_cache(maxsize=8)
 def _digests(
-    parts: tuple[tuple[str, tuple[tuple[str, Path, Stamp], ...]], ...],
+    root: Path, parts: tuple[tuple[str, tuple[tuple[str, Stamp], ...]], ...]
 ) -> tuple[tuple[str, str], ...]:
     """The sha256 of each part; of files that nobody touched, those of before: they are asked for often."""
     found = []
-    for part, named in parts:
+    for part, stamped in parts:
         total = hashlib.sha256()
-        for name, file, _ in named:
-            content = hashlib.sha256(file.read_bytes()).hexdigest()
+        for name, file in sorted((Path(file).relative_to(root).as_posix(), file) for file, _ in stamped):
+            content = hashlib.sha256(Path(file).read_bytes()).hexdigest()
             total.update(f"{content}  {name}\n".encode())
         found.append((part, total.hexdigest()))
     return tuple(found)
@@ -71,19 +66,28 @@ def _digests(
 
 def files(place: Path) -> set[Path]:
     """The files of a part that a wheel holds, in a folder or the one that is named."""
+    return {Path(file) for file, _ in _stamped(place)}
+
+
+def _stamped(place: Path) -> Iterator[tuple[str, Stamp]]:
+    """The same with their stamps, in one look at each folder: whatever is kept asks for it."""
     if place.is_file():
-        return {place}
-    found = set()
-    for folder, below, names in os.walk(place):
-        below[:] = filter(_is_shipped, below)
-        own = (name for name in names if place.name == "templates" or name.endswith(".py"))
-        found |= {Path(folder, name) for name in filter(_is_shipped, own)}
-    return found
+        yield str(place), _stamp(place.stat())
+        return
+    folders = [str(place)]
+    for folder in folders:
+        with os.scandir(folder) as found:
+            for entry in found:
+                if entry.name.startswith(".") or entry.name == "__pycache__":
+                    continue  # hidden or a cache: no wheel may hold it
+                if entry.is_dir(follow_symlinks=False):
+                    folders.append(entry.path)
+                elif place.name == "templates" or entry.name.endswith(".py"):
+                    yield entry.path, _stamp(entry.stat())
 
 
-def _is_shipped(name: str) -> bool:
-    """Whether it is neither hidden nor a cache: a wheel may hold it."""
-    return not name.startswith(".") and name != "__pycache__"
+def _stamp(found: os.stat_result) -> Stamp:
+    return found.st_ino, found.st_mtime_ns, found.st_ctime_ns, found.st_size
 
 
 def versions() -> dict[str, str]:
