@@ -31,6 +31,9 @@ from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 CAMPAIGNS = ("paper", "2", "3", "10", "40", "in error", "no pair", "falling", "equal", "cards")
 DRAWINGS = tuple(figures.drawings(WORKBOOK))
+FIXED = [each.drawing for each in WORKBOOK.figures if each.fixed]
+PICTURES = [(c, name) for c in CAMPAIGNS for name in DRAWINGS if c == "paper" or name not in FIXED]
+"""Those that show no data once: they are the same files for all campaigns, as is tested below."""
 
 TOML = """
 title = "synthetic"
@@ -96,6 +99,12 @@ def report_of(report: Report, tmp_path_factory: pytest.TempPathFactory) -> Calla
     return report_of
 
 
+@pytest.fixture(scope="session")
+def files_of(report_of: Callable[..., Report]) -> Callable[[str, str], dict[str, bytes]]:
+    """Give `files_of(campaign, name)`: a drawing as SVG and PDF, made once for all tests."""
+    return cache(lambda campaign, name: figures.files(report_of(campaign), name, ["svg", "pdf"]))
+
+
 def texts_of(figure: Figure) -> list[tuple[str, Bbox]]:
     """Every text that is seen, with its place."""
     renderer = FigureCanvasAgg(figure).get_renderer()  # type: ignore[no-untyped-call]
@@ -120,24 +129,20 @@ def texts_of(figure: Figure) -> list[tuple[str, Bbox]]:
 # ------------------------------------------------------------------------------- every campaign draws
 
 
-@pytest.mark.parametrize("name", DRAWINGS)
-@pytest.mark.parametrize("campaign", CAMPAIGNS)
+@pytest.mark.parametrize(("campaign", "name"), PICTURES)
 def test_every_drawing_draws_as_svg_and_pdf(
-    report_of: Callable[..., Report], campaign: str, name: str
+    files_of: Callable[[str, str], dict[str, bytes]], campaign: str, name: str
 ) -> None:
-    report = report_of(campaign)
-    svg = figures.svg(report, name)
+    svg, pdf = (files_of(campaign, name)[form] for form in ("svg", "pdf"))
     root = ElementTree.fromstring(svg)
     assert root.get("width") == f"{16 / 2.54 * 96:.0f}"
     assert len(svg) < 65_000
-    assert set(re.findall(r'https?://[^"]*', svg)) == {"http://www.w3.org/2000/svg"}
-    pdf = figures.pdf(report, name)
+    assert set(re.findall(rb'https?://[^"]*', svg)) == {b"http://www.w3.org/2000/svg"}
     assert pdf.startswith(b"%PDF-")
     assert len(pdf) < 65_000
 
 
-@pytest.mark.parametrize("name", DRAWINGS)
-@pytest.mark.parametrize("campaign", CAMPAIGNS)
+@pytest.mark.parametrize(("campaign", "name"), PICTURES)
 def test_no_text_overlaps_another_or_leaves_the_page(
     report_of: Callable[..., Report], campaign: str, name: str
 ) -> None:
@@ -182,23 +187,23 @@ from loopsheet.report.views import figures
 import sys
 report = Study(PAPER).computed
 for name in figures.drawings(report.workbook):
-    svg, pdf = figures.svg(report, name).encode(), figures.pdf(report, name)
-    print(name, hashlib.sha256(svg).hexdigest(), hashlib.sha256(pdf).hexdigest())
+    files = figures.files(report, name, ["svg", "pdf"])
+    print(name, *(hashlib.sha256(files[form]).hexdigest() for form in ("svg", "pdf")))
 print("pyplot", "matplotlib.pyplot" in sys.modules)
 """
 
 
-@pytest.mark.usefixtures("anew")
 def test_same_bytes_in_another_process_time_zone_and_with_other_settings(
-    report_of: Callable[..., Report], tmp_path: Path
+    files_of: Callable[[str, str], dict[str, bytes]], tmp_path: Path
 ) -> None:
+    """Of what is kept of the paper; tests/outside/test_same_anywhere.py draws with nothing kept."""
     settings = tmp_path / "matplotlibrc"
     settings.write_text("font.size: 21\nlines.linewidth: 7\nsvg.fonttype: none\nsavefig.transparent: True\n")
-    report = report_of("paper")
-    expected = ["pyplot False"]
-    for name in reversed(DRAWINGS):
-        svg, pdf = figures.svg(report, name).encode(), figures.pdf(report, name)
-        expected.insert(0, f"{name} {hashlib.sha256(svg).hexdigest()} {hashlib.sha256(pdf).hexdigest()}")
+    expected = []
+    for name in DRAWINGS:
+        svg, pdf = (hashlib.sha256(files_of("paper", name)[form]).hexdigest() for form in ("svg", "pdf"))
+        expected.append(f"{name} {svg} {pdf}")
+    expected.append("pyplot False")
     other = {"PYTHONHASHSEED": "2", "TZ": "Asia/Tokyo", "MATPLOTLIBRC": str(settings), "LC_ALL": "C"}
     run = subprocess.run(
         [sys.executable, "-W", "error", "-c", DIGEST],
@@ -209,19 +214,21 @@ def test_same_bytes_in_another_process_time_zone_and_with_other_settings(
     assert run.stderr == ""
 
 
-def test_what_is_drawn_once_for_all_shows_no_data(report_of: Callable[..., Report]) -> None:
-    fixed = [each.drawing for each in WORKBOOK.figures if each.fixed]
-    assert fixed == ["hysteresis", "lankarani"]
-    for name in fixed:
-        drawn = {tuple(figures.files(report_of(which), name, ["svg", "pdf"]).items()) for which in CAMPAIGNS}
-        assert len(drawn) == 1, name
+def test_what_is_drawn_once_for_all_shows_no_data(
+    files_of: Callable[[str, str], dict[str, bytes]],
+) -> None:
+    assert FIXED == ["hysteresis", "lankarani"]
+    for name in FIXED:
+        assert len({tuple(files_of(which, name).items()) for which in CAMPAIGNS}) == 1, name
 
 
-def test_a_drawing_as_two_files_is_that_of_each(report_of: Callable[..., Report]) -> None:
+def test_a_drawing_as_two_files_is_that_of_each(
+    report_of: Callable[..., Report], files_of: Callable[[str, str], dict[str, bytes]]
+) -> None:
     for name in DRAWINGS:
         report = report_of("paper")
-        files = figures.files(report, name, ["svg", "pdf"])
-        assert files == {"svg": figures.svg(report, name).encode(), "pdf": figures.pdf(report, name)}
+        svg, pdf = figures.svg(report, name).encode(), figures.pdf(report, name)
+        assert files_of("paper", name) == {"svg": svg, "pdf": pdf}
 
 
 def test_a_drawing_leaves_the_settings_of_matplotlib_alone(report_of: Callable[..., Report]) -> None:
