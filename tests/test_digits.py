@@ -8,7 +8,7 @@ import subprocess
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ from small_report import FILES, end_gauge
 
 from loopsheet.report import stages
 from loopsheet.report.cells.address import index_text
+from loopsheet.report.cells.grid import Grid
 from loopsheet.report.cells.values import Status
 from loopsheet.report.document.material import Material
 from loopsheet.report.document.tables import Tables
@@ -120,8 +121,12 @@ class Shown:
         return found
 
     @cached_property
+    def book(self) -> tuple[Grid, bytes]:
+        return stages.book(self.report)
+
+    @cached_property
     def workbook(self) -> dict[tuple[str, str], str]:
-        grid, content = stages.book(self.report)
+        grid, content = self.book
         book, found = openpyxl.load_workbook(io.BytesIO(content)), {}
         for name in {name for name, _, _ in self.cells()}:
             block = grid[name]
@@ -147,9 +152,15 @@ def as_a_spreadsheet(value: float, form: str) -> str:
     return re.sub(r"e([+-])0*(\d)", lambda found: f"e{found[1].strip('+')}{found[2]}", text)
 
 
-@pytest.fixture(params=CAMPAIGNS.values(), ids=CAMPAIGNS, scope="module")
-def of(request: Any, tmp_path_factory: pytest.TempPathFactory) -> Shown:
-    return Shown(Study(request.param(tmp_path_factory.mktemp("folder"))).computed)
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Shown]:
+    """Give `shown(campaign)`, computed once for all tests."""
+    return cache(lambda name: Shown(Study(CAMPAIGNS[name](tmp_path_factory.mktemp("folder"))).computed))
+
+
+@pytest.fixture(params=CAMPAIGNS, scope="module")
+def of(request: Any, shown: Callable[[str], Shown]) -> Shown:
+    return shown(request.param)
 
 
 def test_page_and_workbook_show_every_cell_alike(of: Shown) -> None:
@@ -236,26 +247,35 @@ def test_a_given_zero_and_what_is_exact_say_nothing_of_digits(tmp_path: Path) ->
     assert report.shown["l"].digits == 4
 
 
-@pytest.mark.parametrize("name", ["paper", "stated", "nothing is certain"])
-def test_libreoffice_shows_what_the_page_shows(
-    name: str, require: Callable[..., str], tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
-) -> None:
-    shown = Shown(Study(CAMPAIGNS[name](tmp_path_factory.mktemp("folder"))).computed)
-    grid, content = stages.book(shown.report)
-    (tmp_path / "report.xlsx").write_bytes(content)
-    profile = f"-env:UserInstallation=file://{tmp_path}/profile"
+BOOKS = ("paper", "stated", "nothing is certain")
+
+
+@pytest.fixture(scope="module")
+def pages(
+    shown: Callable[[str], Shown], require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory
+) -> Path:
+    """What LibreOffice shows of each of these books, as pages, in one run of the program."""
+    folder = tmp_path_factory.mktemp("office")
+    books = [folder / f"{name}.xlsx" for name in BOOKS]
+    for name, book in zip(BOOKS, books, strict=True):
+        book.write_bytes(shown(name).book[1])
+    profile = f"-env:UserInstallation=file://{folder}/profile"
     command = [require("soffice", "libreoffice"), profile, "--headless", "--convert-to", "html", "--outdir"]
-    subprocess.run(
-        [*command, tmp_path, tmp_path / "report.xlsx"], check=True, capture_output=True, timeout=300
-    )
+    subprocess.run([*command, folder, *books], check=True, capture_output=True, timeout=300)
+    return folder
+
+
+@pytest.mark.parametrize("name", BOOKS)
+def test_libreoffice_shows_what_the_page_shows(name: str, shown: Callable[[str], Shown], pages: Path) -> None:
+    of, grid = shown(name), shown(name).book[0]
     texts: list[tuple[float, str]] = []
-    page = html5lib.parse((tmp_path / "report.html").read_bytes(), namespaceHTMLElements=False)
+    page = html5lib.parse((pages / f"{name}.html").read_bytes(), namespaceHTMLElements=False)
     for cell in page.iter("td"):
         if number := cell.get("sdval"):
             texts.append((float(number), "".join(cell.itertext()).strip()))
-    for name, index, text in shown.cells():
+    for name, index, text in of.cells():
         label = tuple(map(int, index.split("-"))) if index else ()
-        value = grid[name].values[shown.report.values.row(shown.report.sheet[name], label)]
+        value = grid[name].values[of.report.values.row(of.report.sheet[name], label)]
         assert isinstance(value, float)
         found = (said for number, said in texts if math.isclose(number, value, rel_tol=1e-11))
         told = {re.sub(r"E\+?(-?)0*(\d)", r"e\1\2", said) for said in found}
