@@ -233,9 +233,25 @@ def issued(tmp_path_factory: pytest.TempPathFactory) -> Path:
     from loopsheet.report import build
     from loopsheet.report.study import Study
 
-    folder = shutil.copytree(PAPER, tmp_path_factory.mktemp("issued") / "steel")
-    build.build(Study(folder), folder / "out")
-    return folder
+    def make(place: Path) -> None:
+        folder = shutil.copytree(PAPER, place / "steel")
+        build.build(Study(folder), folder / "out")
+
+    return once_a_run(tmp_path_factory, "issued", make) / "steel"
+
+
+def once_a_run(tmp_path_factory: pytest.TempPathFactory, name: str, make: Callable[[Path], None]) -> Path:
+    """A folder that is made by the first worker who asks for it; nothing in it may be changed."""
+    place = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        place = place.parent  # which all workers have
+    with (place / f"{name}.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not (place / name).exists():
+            draft = tmp_path_factory.mktemp(name)
+            make(draft)
+            draft.rename(place / name)
+    return place / name
 
 
 @pytest.fixture
