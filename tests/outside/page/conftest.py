@@ -49,13 +49,17 @@ def windows() -> Windows:
 def open_page(browser: Browser, issued: Path, windows: Windows) -> Iterator[Open]:
     """Open a file, the page of the paper without one, in a browser that has no network.
 
-    With `own=True` in a window that is not used again.
+    With `own=True` in a window that is not used again; `at` is how the link ends.
     """
     opened: list[driving.Live] = []
     again: list[tuple[str, Page]] = []
 
     def open_it(
-        path: Path | None = None, own: bool = False, viewport: ViewportSize = SIZE, **options: Any
+        path: Path | None = None,
+        own: bool = False,
+        at: str = "",
+        viewport: ViewportSize = SIZE,
+        **options: Any,
     ) -> driving.Live:
         kind = repr(sorted(options.items()))
         free = [] if own else windows.setdefault(kind, [])
@@ -65,7 +69,7 @@ def open_page(browser: Browser, issued: Path, windows: Windows) -> Iterator[Open
         page.set_viewport_size(viewport)
         live = driving.Live(page, path or issued)
         opened.append(live)
-        live.load()
+        live.load(at)
         return live
 
     yield open_it

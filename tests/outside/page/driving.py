@@ -137,8 +137,9 @@ class Live:
         self.page.on("console", lambda said: said.type == "error" and self.errors.append(said.text))
         self.page.on("request", lambda request: self.requests.append(request.url))
 
-    def load(self) -> None:
-        self.page.goto(self.path.as_uri())
+    def load(self, at: str = "") -> None:
+        """Load it as the link has it that ends so."""
+        self.page.goto(self.path.as_uri() + at)
 
     # what it shows
 

@@ -304,10 +304,7 @@ DAMAGED = {
 
 @pytest.mark.parametrize("kind", DAMAGED)
 def test_a_damaged_link_is_told_and_not_used(open_page: Open, copied: Path, kind: str) -> None:
-    live = open_page(copied)
-    live.page.goto(f"{copied.as_uri()}#edits={issue_of(copied)}.{DAMAGED[kind]()}")
-    live.page.reload()
-    live.page.goto(f"{copied.as_uri()}#edits={issue_of(copied)}.{DAMAGED[kind]()}")
+    live = open_page(copied, at=f"#edits={issue_of(copied)}.{DAMAGED[kind]()}")
     live.page.wait_for_function("() => document.getElementById('live-note').textContent")
     assert "damaged" in live.text("live-note")
     assert as_issued(live)
@@ -319,22 +316,17 @@ def test_a_damaged_link_is_told_and_not_used(open_page: Open, copied: Path, kind
 def test_a_state_is_read_that_says_more_than_it_should(open_page: Open, copied: Path) -> None:
     """What is not asked for goes nowhere; the rest fits."""
     state = state_with(more="x", cells={"v": "2.4", "e": "0.53", "x_p": "23.5", "__proto__": "x"})
-    live = open_page(copied)
-    live.page.goto("about:blank")
-    live.page.goto(f"{copied.as_uri()}#edits={issue_of(copied)}.{encoded(state)}")
+    live = open_page(copied, at=f"#edits={issue_of(copied)}.{encoded(state)}")
     assert live.input("v", 1).input_value() == "2.4"
     assert "more" not in live.page.evaluate("() => Object.values(localStorage).join()")
 
 
 def test_a_link_of_another_issue_is_told_and_not_used(open_page: Open, copied: Path) -> None:
-    live = open_page(copied)
-    live.page.goto("about:blank")
-    live.page.goto(f"{copied.as_uri()}#edits=0123456789abcdef.{encoded(state_with(reason='x'))}")
+    live = open_page(copied, at=f"#edits=0123456789abcdef.{encoded(state_with(reason='x'))}")
     assert "another report, or of another issue of this one" in live.text("live-note")
     assert as_issued(live)
     # An address that is no link of ours is left alone.
-    live.page.goto("about:blank")
-    live.page.goto(f"{copied.as_uri()}#referee")
+    live = open_page(copied, at="#referee")
     assert live.page.url.endswith("#referee")
     assert live.text("live-note") == ""
 
