@@ -5,6 +5,7 @@ import random
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -18,6 +19,7 @@ from loopsheet.report.cli import main
 from loopsheet.report.document.material import Material
 from loopsheet.report.messages.diagnostics import Check
 from loopsheet.report.messages.errors import InputError
+from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.verbs import common
 from loopsheet.report.views import html, latex
@@ -48,9 +50,19 @@ def stated(part: float = 1) -> str:
     return "[uncertainty]\n" + "".join(f'{name} = "u = {part * u:g} {unit}"\n' for name, u, unit in each)
 
 
+def computed(folder: Path) -> Report:
+    """The report of a folder, once as long as its files are the same."""
+    return _computed(folder, tuple((file.name, file.read_bytes()) for file in sorted(folder.glob("*.*"))))
+
+
+@lru_cache(maxsize=1)
+def _computed(folder: Path, _: tuple[tuple[str, bytes], ...]) -> Report:
+    return Study(folder).computed
+
+
 def checks(folder: Path) -> dict[str, Check]:
     """What was checked, by kind and name."""
-    found = Study(folder).computed.oddities
+    found = computed(folder).oddities
     assert len({(check.kind, check.name) for check in found}) == len(found)
     return {f"{check.kind} {check.name}": check for check in found}
 
@@ -106,7 +118,7 @@ def test_of_errors_that_are_tied_nobody_says_how_likely_their_squares_are(tmp_pa
     assert common.told(checks(tmp_path).values()) == [
         "not checked: chi2_eiv: errors are shared or correlated, and its weights leave that out"
     ]
-    text = html.render(Study(tmp_path).computed, {})
+    text = html.render(computed(tmp_path), {})
     assert "Some errors are shared or correlated" in text
     assert "describes these tests within" not in text
 
@@ -200,7 +212,7 @@ def test_of_several_tests_that_may_be_wrong_the_one_that_moves_the_result_most(t
         "warning: alpha: 1 of 10 pairs outside (4)",
         "warning: alpha: 1 of 10 pairs: e rises with the speed",
     ]
-    whole, means = Study(tmp_path).computed.values.scalar("alpha_eiv"), {}
+    whole, means = computed(tmp_path).values.scalar("alpha_eiv"), {}
     for test in (4, 5):
         left = {name: [n for at, n in enumerate(column, 1) if at != test] for name, column in texts.items()}
         report = Study(write(tmp_path / str(test), left)).computed
@@ -232,11 +244,11 @@ def test_a_pair_that_says_nothing_accuses_nobody(tmp_path: Path) -> None:
 
 def remarks(folder: Path) -> list[tuple[str, str, str]]:
     """The cells to look at."""
-    return [(each.cell.address, each.code, each.why) for each in Material(Study(folder).computed).remarks]
+    return [(each.cell.address, each.code, each.why) for each in Material(computed(folder)).remarks]
 
 
 def test_two_tests_are_no_fault_though_no_test_can_be_left_out_of_them(tmp_path: Path) -> None:
-    report = Study(write(tmp_path, TWO)).computed
+    report = computed(write(tmp_path, TWO))
     codes = {
         name: report.values.cell(name).reason for name in ("birge_eiv", "Q_eiv", "u_birge_eiv", "trend_eiv")
     }
@@ -479,12 +491,13 @@ AMBIGUOUS = {"v": ("2.00", "2.76", "3.87"), "e": ("0.500", "0.552", "0.621"), "x
 
 
 def test_each_cause_is_told_of_its_own_cells(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    report = Study(write(tmp_path, AMBIGUOUS)).computed
+    report = computed(write(tmp_path, AMBIGUOUS))
     causes = [cell.why for cell in report.values.errors() if cell.name == "alpha"]
     said = checks(tmp_path)["data cells"].message
     assert len(set(causes)) == 3
     assert all(cause in said for cause in causes)
     monkeypatch.setattr("loopsheet.report.judge.oddities.CAUSES", 1)
+    _computed.cache_clear()
     said = checks(tmp_path)["data cells"].message
     assert "; and 2 other causes" in said
     assert [cause in said for cause in causes] == [True, False, False]
