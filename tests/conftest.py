@@ -338,12 +338,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 LONGEST = (
-    "test_global_fit.py", "test_pytest_plugin.py", "test_browsers.py", "test_page_access.py",
-    "test_libreoffice.py", "test_referee_forged.py", "test_digits.py", "test_environments.py",
-    "test_design.py", "test_kept.py", "test_page_lasting.py", "test_figures.py", "test_hyperformula.py",
-    "test_page_digits.py", "test_open_xml.py", "test_ledger.py", "test_page.py", "test_verify.py",
-    "test_kept_sheet.py", "test_soft_impact_algebra.py", "test_cli.py", "test_engines_random.py",
-    "test_same_anywhere.py", "test_oddities.py", "test_build.py", "test_referee.py", "test_page_layout.py",
+    "test_libreoffice.py", "test_referee_forged.py", "test_environments.py", "test_browsers.py",
+    "test_hyperformula.py", "test_figures.py", "test_digits.py", "test_oddities.py", "test_page_access.py",
+    "test_build.py", "test_cli.py", "test_kept.py", "test_verify.py", "test_page_lasting.py",
+    "test_pytest_plugin.py", "test_design.py", "test_page_digits.py", "test_open_xml.py", "test_ledger.py",
+    "test_page.py", "test_global_fit.py", "test_kept_sheet.py", "test_soft_impact_algebra.py",
+    "test_engines_random.py", "test_same_anywhere.py", "test_referee.py", "test_page_layout.py",
     "test_page_saving.py",
 )  # fmt: skip
 """The files that take longest, as they are measured: begun first, none is left over for a single worker."""
