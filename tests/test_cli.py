@@ -18,8 +18,11 @@ from loopsheet.report import stages
 from loopsheet.report.cli import main
 from loopsheet.report.engines import javascript
 from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.machine.kept import SETTING
 from loopsheet.report.result.result import Report
 from loopsheet.report.verbs import VERBS
+
+pytestmark = pytest.mark.usefixtures("keeping")  # what is patched here makes nothing that others are given
 
 
 def run(*arguments: str, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -302,6 +305,7 @@ def test_our_own_bug_is_told_from_the_users_error(
     def broken(*_: object, **__: object) -> None:
         raise RuntimeError("a wheel came off")
 
+    monkeypatch.setenv(SETTING, "")  # what was shown before is kept, and nothing would be evaluated
     monkeypatch.setattr(stages, "evaluated", broken)
     assert main(["show", "alpha", "paper"]) == 3
     assert "bug: RuntimeError: a wheel came off" in capsys.readouterr().err
