@@ -11,7 +11,7 @@ from __future__ import annotations
 from sympy import Expr, Integer, exp, log, sqrt
 from sympy.core.parameters import evaluate
 
-from .equation import Derivation, Equation, Kind, Step
+from .equation import Derivation, Equation, Kind, Step, define
 from .rebuilt import evaluated
 from .symbols import VOCABULARY
 
@@ -73,27 +73,16 @@ with evaluate(False):
 
     _a1, _a2 = (beta + 1) * E[1] ** 2, (beta + 1) * E[2] ** 2
 
-    log_speeds = Equation(
-        "(L7)",
-        (Lambda, log(V[2] / V[1])),
-        "definition",
-        Kind.DEFINITION,
-        "logarithm of the speed ratio",
-        defines=Lambda,
-    )
+    log_speeds = define("(L7)", Lambda, log(V[2] / V[1]), "logarithm of the speed ratio")
 
-    turning = Equation(
+    turning = define(
         "(L8)",
-        (
-            u_turn,
-            2
-            * (1 - (_a2 - _a1) / (2 * Lambda))
-            / (_a1 + _a2 + sqrt((_a1 - _a2) ** 2 + 2 * _a1 * _a2 * (_a2 - _a1) / Lambda)),
-        ),
-        "where the logarithm of (L6) turns, if it does",
-        Kind.DEFINITION,
+        u_turn,
+        2
+        * (1 - (_a2 - _a1) / (2 * Lambda))
+        / (_a1 + _a2 + sqrt((_a1 - _a2) ** 2 + 2 * _a1 * _a2 * (_a2 - _a1) / Lambda)),
         "turning point",
-        defines=u_turn,
+        "where the logarithm of (L6) turns, if it does",
         conditions=(1 - _a1 * u_turn > 0, 1 - _a2 * u_turn > 0),
     )
 

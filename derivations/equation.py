@@ -19,7 +19,7 @@ from .vocabulary import NO_WORDS, Vocabulary
 if TYPE_CHECKING:
     from sympy import Expr, Rel
 
-__all__ = ["Derivation", "Equation", "Erratum", "Kind", "Ledger", "Step"]
+__all__ = ["Derivation", "Equation", "Erratum", "Kind", "Ledger", "Step", "define"]
 
 
 class Kind(Enum):
@@ -152,6 +152,13 @@ class Equation:
                 return False
             made = made.at(dict(where))
         return set(self.members) <= set(made.members) and set(made.conditions) <= set(self.conditions)
+
+
+def define(
+    number: str, quantity: Expr, value: Expr, title: str, because: str = "definition", **more: Any
+) -> Equation:
+    """Say what a quantity is: an equation that determines it, with `more` that an equation may have."""
+    return Equation(number, (quantity, value), because, Kind.DEFINITION, title, defines=quantity, **more)
 
 
 @dataclass(frozen=True)

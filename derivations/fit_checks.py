@@ -15,7 +15,7 @@ from sympy import Expr, Rational, diff, log, sqrt
 from sympy.core.parameters import evaluate
 
 from . import global_fit as fit
-from .equation import Derivation, Equation, Kind
+from .equation import Derivation, Equation, Kind, define
 from .symbols import VOCABULARY, k
 
 __all__ = [
@@ -46,22 +46,20 @@ FREE = Rational(1, 2**10)
 """What a leverage leaves of 1 is more than rounding from here on: the other tests alone tell a curve."""
 
 with evaluate(False):
-    leverage = Equation(
+    leverage = define(
         "(L54)",
-        (H[k], W[k] * (S_XX * D[k] ** 2 - 2 * S_DX * D[k] * XP[k] + S_DD * XP[k] ** 2) / Delta),
-        "how far the curve follows the test: 0 not at all, 1 wherever it lies",
-        Kind.DEFINITION,
+        H[k],
+        W[k] * (S_XX * D[k] ** 2 - 2 * S_DX * D[k] * XP[k] + S_DD * XP[k] ** 2) / Delta,
         "leverage of a test",
-        defines=H[k],
+        "how far the curve follows the test: 0 not at all, 1 wherever it lies",
     )
 
-    deviation = Equation(
+    deviation = define(
         "(L48)",
-        (Z[k], R[k] * sqrt(W[k] / (1 - H[k]))),
-        "the misfit over its standard deviation, which is smaller where the curve follows the test",
-        Kind.DEFINITION,
+        Z[k],
+        R[k] * sqrt(W[k] / (1 - H[k])),
         "misfit in standard deviations",
-        defines=Z[k],
+        "the misfit over its standard deviation, which is smaller where the curve follows the test",
     )
 
     without = Equation(
@@ -95,40 +93,36 @@ with evaluate(False):
     trend_with_exponent = fit.in_normal_matrix("(L59)", S_TD, T[k] * D[k], "trend and exponent")
     trend_by_depth = fit.in_normal_matrix("(L60)", S_TX, T[k] * XP[k], "trend and force")
 
-    projected = Equation(
+    projected = define(
         "(L61)",
-        (Q, S_TT - (S_XX * S_TD**2 - 2 * S_DX * S_TD * S_TX + S_DD * S_TX**2) / Delta),
-        "what exponent and force do not make up for",
-        Kind.DEFINITION,
+        Q,
+        S_TT - (S_XX * S_TD**2 - 2 * S_DX * S_TD * S_TX + S_DD * S_TX**2) / Delta,
         "normal matrix: trend alone",
-        defines=Q,
+        "what exponent and force do not make up for",
     )
 
-    trend = Equation(
+    trend = define(
         "(L62)",
-        (tau, fit.over_tests(LAM[k] * T[k]) / Q),
-        "the first step of a fit with a third parameter",
-        Kind.DEFINITION,
+        tau,
+        fit.over_tests(LAM[k] * T[k]) / Q,
         "trend of the exponent",
-        defines=tau,
+        "the first step of a fit with a third parameter",
     )
 
-    uncertain_trend = Equation(
+    uncertain_trend = define(
         "(L63)",
-        (u_tau, 1 / sqrt(Q)),
-        "the inverse of the normal matrix, for errors as stated",
-        Kind.DEFINITION,
+        u_tau,
+        1 / sqrt(Q),
         "standard uncertainty of the trend",
-        defines=u_tau,
+        "the inverse of the normal matrix, for errors as stated",
     )
 
-    taken_off = Equation(
+    taken_off = define(
         "(L64)",
-        (X2, tau**2 / u_tau**2),
-        "what the third parameter takes off the sum of squares, by one step",
-        Kind.DEFINITION,
+        X2,
+        tau**2 / u_tau**2,
         "sum of squares of the trend",
-        defines=X2,
+        "what the third parameter takes off the sum of squares, by one step",
     )
 
 # --- why they hold -----------------------------------------------------------------------------------------
@@ -158,13 +152,12 @@ _compression = Equation(
     Kind.DEFINITION,
     "work of compression, differentiated by the trend",
 )
-_peak = Equation(
+_peak = define(
     "",
-    (GAMMA[k], ALPHA * G[k] / XM[k] + log(XM[k] / x_0) ** 2 / 2),
-    "of the logarithm of the force at the maximum approach, which moves itself",
-    Kind.DEFINITION,
+    GAMMA[k],
+    ALPHA * G[k] / XM[k] + log(XM[k] / x_0) ** 2 / 2,
     "maximum force, differentiated by the trend",
-    defines=GAMMA[k],
+    "of the logarithm of the force at the maximum approach, which moves itself",
 )
 _restitution = Equation(
     "",

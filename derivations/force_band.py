@@ -15,7 +15,7 @@ from sympy import Expr, diff, log, sqrt
 from sympy.core.parameters import evaluate
 
 from . import global_fit as fit
-from .equation import Derivation, Equation, Kind
+from .equation import Derivation, Equation, Kind, define
 from .fit_checks import LEDGER as CHECKS
 from .soft_impact import law_c, x
 from .symbols import VOCABULARY, F_of, k
@@ -55,13 +55,12 @@ with evaluate(False):
         defines=DC[k],
     )
 
-    further = Equation(
+    further = define(
         "(L68)",
-        (UN[k], sqrt(UC[k] ** 2 + _A**2 * CP[k] ** 2 / (fit.squares_X.value / fit.n_tests))),
-        "a further test scatters about the curve as the tests do in the mean, by their weights",
-        Kind.DEFINITION,
+        UN[k],
+        sqrt(UC[k] ** 2 + _A**2 * CP[k] ** 2 / (fit.squares_X.value / fit.n_tests)),
         "standard deviation of the force of a further test",
-        defines=UN[k],
+        "a further test scatters about the curve as the tests do in the mean, by their weights",
     )
 
 # --- why they hold -----------------------------------------------------------------------------------------
@@ -72,7 +71,7 @@ _by_alpha, _by_F_0 = diff(_force, ALPHA) / _force, F_0 * diff(_force, F_0) / _fo
 
 
 def _covariance(own: Expr, value: Expr, name: str, because: str = "of the same inverse") -> Equation:
-    return Equation("", (own, value), because, Kind.DEFINITION, name, defines=own)
+    return define("", own, value, name, because)
 
 
 _INVERSE = "the inverse of the normal matrix, whose unknowns are alpha and -ln(F_0)/(alpha + 1)"

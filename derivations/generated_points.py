@@ -5,7 +5,7 @@ from __future__ import annotations
 from sympy import Max, Sum, Symbol
 from sympy.core.parameters import evaluate
 
-from .equation import Equation, Kind
+from .equation import Equation, Kind, define
 from .reductions import Median
 from .symbols import VOCABULARY, p, s
 
@@ -31,22 +31,20 @@ x, x_top, N, x_ref, F_ref, alpha_mean, alpha_median = VOCABULARY.plain(
 n_pairs = Symbol("n_pairs", integer=True, positive=True)
 
 with evaluate(False):
-    top = Equation(
+    top = define(
         "(L10)",
-        (x_top, Max(XM[1], XM[2])),
-        "the paper generates points up to the pair's largest approach",
-        Kind.DEFINITION,
+        x_top,
+        Max(XM[1], XM[2]),
         "largest approach of the pair",
-        defines=x_top,
+        "the paper generates points up to the pair's largest approach",
     )
 
-    abscissa = Equation(
+    abscissa = define(
         "(L11)",
-        (x, x_top * s / N),
-        "equally spaced up to the largest approach; the paper does not say how many",
-        Kind.DEFINITION,
+        x,
+        x_top * s / N,
         "abscissae of the generated points",
-        defines=x,
+        "equally spaced up to the largest approach; the paper does not say how many",
     )
 
     mean = Equation(
@@ -65,22 +63,20 @@ with evaluate(False):
         "median exponent",
     )
 
-    x_scale = Equation(
+    x_scale = define(
         "(L22)",
-        (x_ref, Sum(XTOP[p], (p, 1, n_pairs)) / n_pairs),
-        "a typical approach, so that logarithms are taken of pure numbers; any would do",
-        Kind.DEFINITION,
+        x_ref,
+        Sum(XTOP[p], (p, 1, n_pairs)) / n_pairs,
         "reference approach",
-        defines=x_ref,
+        "a typical approach, so that logarithms are taken of pure numbers; any would do",
     )
 
-    F_scale = Equation(
+    F_scale = define(
         "(L23)",
-        (F_ref, Sum(CP[p], (p, 1, n_pairs)) / n_pairs),
-        "a typical force; any would do",
-        Kind.DEFINITION,
+        F_ref,
+        Sum(CP[p], (p, 1, n_pairs)) / n_pairs,
         "reference force",
-        defines=F_ref,
+        "a typical force; any would do",
     )
 
 ENTRIES = (top, abscissa, mean, middle, x_scale, F_scale)

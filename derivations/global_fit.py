@@ -16,7 +16,7 @@ from dataclasses import replace
 from sympy import Expr, Function, Integer, Max, Piecewise, Rational, Sum, Symbol, diff, exp, log, sqrt
 from sympy.core.parameters import evaluate
 
-from .equation import Derivation, Equation, Kind, Step
+from .equation import Derivation, Equation, Kind, Step, define
 from .soft_impact import LEDGER as PAPER
 from .soft_impact import ratio_step, v, x_m, x_m_of_test
 from .symbols import VOCABULARY, k
@@ -86,37 +86,32 @@ def over_tests(terms: Expr) -> Expr:
 def in_normal_matrix(number: str, own: Symbol, slopes: Expr, name: str) -> Equation:
     """An entry of the normal matrix: the product of two changes of the depth, by weight."""
     value = over_tests(W[k] * slopes)
-    return Equation(
-        number, (own, value), "definition", Kind.DEFINITION, f"normal matrix: {name}", defines=own
-    )
+    return define(number, own, value, f"normal matrix: {name}")
 
 
 with evaluate(False):
-    depth_scale = Equation(
+    depth_scale = define(
         "(L29)",
-        (x_0, over_tests(XO[k]) / n_tests),
-        "a depth within the data: the force there is known best",
-        Kind.DEFINITION,
+        x_0,
+        over_tests(XO[k]) / n_tests,
         "mean imprint depth",
-        defines=x_0,
+        "a depth within the data: the force there is known best",
     )
 
-    speed_scale = Equation(
+    speed_scale = define(
         "(L30)",
-        (v_0, over_tests(VO[k]) / n_tests),
-        "a speed within the data, where the search begins",
-        Kind.DEFINITION,
+        v_0,
+        over_tests(VO[k]) / n_tests,
         "mean impact speed",
-        defines=v_0,
+        "a speed within the data, where the search begins",
     )
 
-    coefficient = Equation(
+    coefficient = define(
         "(L31)",
-        (C, F_0 / x_0**ALPHA),
-        "the curve has the force F_0 at the mean depth",
-        Kind.DEFINITION,
+        C,
+        F_0 / x_0**ALPHA,
         "coefficient by the force at the mean depth",
-        defines=C,
+        "the curve has the force F_0 at the mean depth",
     )
 
     approach = Equation(
@@ -159,22 +154,20 @@ with evaluate(False):
         defines=BE[k],
     )
 
-    weight = Equation(
+    weight = define(
         "(L37)",
-        (W[k], 1 / (UX[k] ** 2 + (BV[k] * UV[k]) ** 2 + (BE[k] * UE[k]) ** 2)),
-        "the variance of a measured depth beside the one that follows from speed and restitution",
-        Kind.DEFINITION,
+        W[k],
+        1 / (UX[k] ** 2 + (BV[k] * UV[k]) ** 2 + (BE[k] * UE[k]) ** 2),
         "weight of a test",
-        defines=W[k],
+        "the variance of a measured depth beside the one that follows from speed and restitution",
     )
 
-    misfit = Equation(
+    misfit = define(
         "(L38)",
-        (R[k], XO[k] - XP[k] - BV[k] * (VO[k] - V[k]) - BE[k] * (EO[k] - E[k])),
-        "how far the measured depth lies beside it, along the tangent at the adjusted point",
-        Kind.DEFINITION,
+        R[k],
+        XO[k] - XP[k] - BV[k] * (VO[k] - V[k]) - BE[k] * (EO[k] - E[k]),
         "misfit of a test",
-        defines=R[k],
+        "how far the measured depth lies beside it, along the tangent at the adjusted point",
     )
 
     multiplier = Equation(
@@ -203,67 +196,60 @@ with evaluate(False):
     products = in_normal_matrix("(L51)", S_DX, D[k] * XP[k], "exponent and force")
     squares_X = in_normal_matrix("(L52)", S_XX, XP[k] ** 2, "force")
 
-    determinant = Equation(
+    determinant = define(
         "(L53)",
-        (Delta, S_DD * S_XX - S_DX**2),
-        "zero if a larger exponent does to every depth what a smaller force does",
-        Kind.DEFINITION,
+        Delta,
+        S_DD * S_XX - S_DX**2,
         "determinant of the normal matrix",
-        defines=Delta,
+        "zero if a larger exponent does to every depth what a smaller force does",
     )
 
-    exponent = Equation(
+    exponent = define(
         "(L42)",
-        (G_alpha, over_tests(LAM[k] * D[k])),
-        "half the slope of the sum of squares, downwards; where that is least, it is zero",
-        Kind.DEFINITION,
+        G_alpha,
+        over_tests(LAM[k] * D[k]),
         "global fit: exponent",
-        defines=G_alpha,
+        "half the slope of the sum of squares, downwards; where that is least, it is zero",
     )
 
-    force = Equation(
+    force = define(
         "(L43)",
-        (G_F, over_tests(LAM[k] * XP[k])),
-        "the same by the force, times alpha + 1; where the sum of squares is least, it is zero",
-        Kind.DEFINITION,
+        G_F,
+        over_tests(LAM[k] * XP[k]),
         "global fit: force",
-        defines=G_F,
+        "the same by the force, times alpha + 1; where the sum of squares is least, it is zero",
     )
 
-    squares = Equation(
+    squares = define(
         "(L44)",
-        (chi2, Piecewise((over_tests(LAM[k] * R[k]), n_tests > 2), (Integer(0), True))),
-        "the squares of a test's deviations, each over its variance, add up to this; two have none",
-        Kind.DEFINITION,
+        chi2,
+        Piecewise((over_tests(LAM[k] * R[k]), n_tests > 2), (Integer(0), True)),
         "global fit: sum of squares",
-        defines=chi2,
+        "the squares of a test's deviations, each over its variance, add up to this; two have none",
     )
 
-    by_adjusted = Equation(
+    by_adjusted = define(
         "(L45)",
-        (u_alpha, sqrt(S_XX / Delta)),
-        "the inverse of the normal matrix at the adjusted points, for errors as stated",
-        Kind.DEFINITION,
+        u_alpha,
+        sqrt(S_XX / Delta),
         "standard uncertainty of the exponent by the adjusted points",
-        defines=u_alpha,
+        "the inverse of the normal matrix at the adjusted points, for errors as stated",
     )
 
-    birge = Equation(
+    birge = define(
         "(L46)",
-        (R_B, sqrt(over_tests(LAM[k] * R[k]) / (n_tests - 2))),
-        "how many times larger the deviations are than the standard uncertainties say",
-        Kind.DEFINITION,
+        R_B,
+        sqrt(over_tests(LAM[k] * R[k]) / (n_tests - 2)),
         "Birge ratio",
-        defines=R_B,
+        "how many times larger the deviations are than the standard uncertainties say",
     )
 
-    by_scatter = Equation(
+    by_scatter = define(
         "(L47)",
-        (u_B, u_alpha * R_B),
-        "how far the tests scatter about the curve, whatever their standard uncertainties say",
-        Kind.DEFINITION,
+        u_B,
+        u_alpha * R_B,
         "standard uncertainty of the exponent by the scatter",
-        defines=u_B,
+        "how far the tests scatter about the curve, whatever their standard uncertainties say",
     )
 
     _ln_v, _ln_x = log(VO[k] / v_0), log(XO[k] / x_0)
@@ -271,22 +257,18 @@ with evaluate(False):
     """How far the speeds are apart."""
     _mean_e2 = over_tests(EO[k] ** 2) / n_tests
 
-    first_exponent = Equation(
+    first_exponent = define(
         "(L49)",
-        (
-            alpha_0,
-            Max(
-                2 * speeds / over_tests(_ln_v * _ln_x),
-                Rational(3, 2),
-                Rational(6, 5) * (beta + 1) * _mean_e2,
-            )
-            - 1,
-        ),
+        alpha_0,
+        Max(
+            2 * speeds / over_tests(_ln_v * _ln_x),
+            Rational(3, 2),
+            Rational(6, 5) * (beta + 1) * _mean_e2,
+        )
+        - 1,
+        "first exponent of the search",
         "depths rise with the speed to the power 2/(alpha + 1), if the restitution is the same; a test "
         "of the mean restitution has to leave an imprint",
-        Kind.DEFINITION,
-        "first exponent of the search",
-        defines=alpha_0,
     )
 
 # --- what leads there --------------------------------------------------------------------------------------
@@ -317,7 +299,7 @@ on_curve: Expr = depth.sides[1].xreplace({XM[k]: approach.sides[1]})
 
 def _slope(of: Expr, by: Expr, name: str) -> Equation:
     because = f"derivative of the imprint depth by the {name}"
-    return Equation("", (of, diff(on_curve, by)), "definition", Kind.DEFINITION, because, defines=of)
+    return define("", of, diff(on_curve, by), because)
 
 
 _depth_of = Function("x_p")(V[k], E[k])

@@ -10,7 +10,7 @@ from __future__ import annotations
 from sympy import Integer, Sum, Symbol, diff, exp, log
 from sympy.core.parameters import evaluate
 
-from .equation import Derivation, Equation, Kind, Step
+from .equation import Derivation, Equation, Kind, Step, define
 from .normal_equation import normal_equation
 from .symbols import VOCABULARY, q
 
@@ -59,31 +59,13 @@ _normal_alpha = normal_equation(
 with evaluate(False):
     # The straight line through the logarithms.
 
-    log_x = Equation(
-        "(L13)",
-        (X[q], log(x[q] / x_ref)),
-        "definition",
-        Kind.DEFINITION,
-        "logarithm of the approach",
-        defines=X[q],
-    )
+    log_x = define("(L13)", X[q], log(x[q] / x_ref), "logarithm of the approach")
 
-    log_F = Equation(
-        "(L14)",
-        (Y[q], log(F[q] / F_ref)),
-        "definition",
-        Kind.DEFINITION,
-        "logarithm of the force",
-        defines=Y[q],
-    )
+    log_F = define("(L14)", Y[q], log(F[q] / F_ref), "logarithm of the force")
 
-    mean_X = Equation(
-        "(L15)", (Xmean, Sum(X[q], _all) / size), "definition", Kind.DEFINITION, "mean of X", defines=Xmean
-    )
+    mean_X = define("(L15)", Xmean, Sum(X[q], _all) / size, "mean of X")
 
-    mean_Y = Equation(
-        "(L16)", (Ymean, Sum(Y[q], _all) / size), "definition", Kind.DEFINITION, "mean of Y", defines=Ymean
-    )
+    mean_Y = define("(L16)", Ymean, Sum(Y[q], _all) / size, "mean of Y")
 
     # Deviations from the mean, not raw sums: N Sum(XY) - Sum(X) Sum(Y) cancels.
     alpha_log = Equation(

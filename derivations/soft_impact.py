@@ -12,7 +12,7 @@ from sympy.core.parameters import evaluate
 
 from . import alpha_root, errata, generated_points, pair_curve, power_law_fit
 from .alpha_root import Lambda, log_speeds, logarithm, reciprocal, root_form, starting_value, turning, u
-from .equation import Derivation, Equation, Kind, Ledger, Step
+from .equation import Derivation, Equation, Kind, Ledger, Step, define
 from .generated_points import F_scale, N, abscissa, mean, n_pairs, top, x_scale, x_top
 from .symbols import VOCABULARY, F_LN_of, F_of, k
 
@@ -42,13 +42,8 @@ half = Rational(1, 2)
 # --- definitions and assumptions of the paper ----------------------------------------------------------
 
 with evaluate(False):
-    eq1 = Equation(
-        "(1)",
-        (e, -(v_n2 / v_n1)),
-        "definition of the coefficient of restitution",
-        Kind.DEFINITION,
-        "coefficient of restitution",
-        defines=e,
+    eq1 = define(
+        "(1)", e, -(v_n2 / v_n1), "coefficient of restitution", "definition of the coefficient of restitution"
     )
 
     eq2 = Equation(
@@ -135,14 +130,7 @@ with evaluate(False):
         title="work of restitution",
     )
 
-    eq8 = Equation(
-        "(8)",
-        (m_red, m_1 * m_2 / (m_1 + m_2)),
-        "definition of the reduced mass",
-        Kind.DEFINITION,
-        "reduced mass",
-        defines=m_red,
-    )
+    eq8 = define("(8)", m_red, m_1 * m_2 / (m_1 + m_2), "reduced mass", "definition of the reduced mass")
 
     continuity = Equation(
         "",
@@ -255,7 +243,7 @@ with evaluate(False):
 
     ball_mass = Equation("(L1)", (m_1, rho * pi * d**3 / 6), "volume of a ball", title="mass of the ball")
 
-    mass_ratio = Equation("", (mu, m_1 / m_2), "definition", Kind.DEFINITION, "mass ratio", defines=mu)
+    mass_ratio = define("", mu, m_1 / m_2, "mass ratio")
 
     immobile = Equation(
         "",

@@ -8,12 +8,12 @@ of an indentation, P = k d^n; the rest is this project's own.
 
 from __future__ import annotations
 
-from sympy import Integer, Rational, Symbol, log, pi, simplify, sqrt
+from sympy import Expr, Integer, Rational, Symbol, log, pi, simplify, sqrt
 from sympy.core.parameters import evaluate
 
 from .. import power_law_fit as line
 from .. import soft_impact as paper
-from ..equation import Derivation, Equation, Kind
+from ..equation import Derivation, Equation, Kind, define
 from ..global_fit import n_tests, over_tests
 from ..symbols import VOCABULARY as PAPER
 from ..symbols import k, q
@@ -50,8 +50,8 @@ recovery, a, asked, pressure, n, over, deceleration = _WORDS.plain(
 LV, LE = _WORDS["ln_v"], _WORDS["ln_e"]
 
 
-def _define(number: str, of: Symbol, value: object, because: str = "definition") -> Equation:
-    return Equation(number, (of, value), because, Kind.DEFINITION, _WORDS[of.name].meaning, defines=of)
+def _define(number: str, of: Symbol, value: Expr, because: str = "definition") -> Equation:
+    return define(number, of, value, _WORDS[of.name].meaning, because)
 
 
 # The straight line through the logarithms is that of the log-log fit, here of restitution over speed.

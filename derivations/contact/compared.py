@@ -12,7 +12,7 @@ from string import ascii_lowercase
 
 from sympy import Expr, Matrix, Symbol, sqrt
 
-from ..equation import Equation, Kind
+from ..equation import Equation, define
 from ..global_fit import n_tests, over_tests
 from ..symbols import VOCABULARY as PAPER
 from ..symbols import k
@@ -63,15 +63,7 @@ def compared(model: ContactModel, number: str) -> Compared:
     ) -> Quantity:
         said = f"{meaning}: {model.title}"
         own = Quantity(f"{name}_{model.name}", said, unit, latex, (least, 0.5), least > 0)
-        made[own] = Equation(
-            number,
-            (own.symbol, value),
-            "definition",
-            Kind.DEFINITION,
-            said,
-            next(letters),
-            defines=own.symbol,
-        )
+        made[own] = define(number, own.symbol, value, said, part=next(letters))
         return own
 
     without = dict(model.left_out) or _without(model)

@@ -23,7 +23,7 @@ from __future__ import annotations
 from sympy import Integral, Rational, Symbol, log
 from sympy.core.parameters import evaluate
 
-from ..equation import Derivation, Equation, Kind, Ledger, Step
+from ..equation import Derivation, Equation, Kind, Ledger, Step, define
 from ..vocabulary import Quantity, Vocabulary
 from . import damping
 from .quantities import SHARED
@@ -97,30 +97,23 @@ with evaluate(False):
         "restitution with internal friction",
     )
 
-    recovery = Equation(
-        "",
-        (delta, x_m - x_p),
-        "definition, the approach that the restitution takes back",
-        Kind.DEFINITION,
-        "elastic recovery",
-        defines=delta,
+    recovery = define(
+        "", delta, x_m - x_p, "elastic recovery", "definition, the approach that the restitution takes back"
     )
-    share_c = Equation(
+    share_c = define(
         "(L203)",
-        (s_c, 2 * (c_c - log(1 + c_c)) / c_c**2),
-        "below 1, and 1 without damping",
-        Kind.DEFINITION,
+        s_c,
+        2 * (c_c - log(1 + c_c)) / c_c**2,
         "elastic share of compression",
-        defines=s_c,
+        "below 1, and 1 without damping",
     )
-    share_r = Equation(
+    share_r = define(
         "(L204)",
-        (s_r, 2 * (-c_r * e - log(1 - c_r * e)) / (c_r * e) ** 2),
-        "above 1, and 1 without damping",
-        Kind.DEFINITION,
+        s_r,
+        2 * (-c_r * e - log(1 - c_r * e)) / (c_r * e) ** 2,
         "elastic share of restitution",
+        "above 1, and 1 without damping",
         conditions=(_parts,),
-        defines=s_r,
     )
     elastic_c = Equation(
         "(L205)",
@@ -169,29 +162,26 @@ with evaluate(False):
     )
 
     # --- the three works of the loop ---------------------------------------------------------------------
-    damping_c = Equation(
+    damping_c = define(
         "",
-        (W_c, m_red * v_0**2 * Integral(c_c * w**2 / (1 + c_c * w), (w, 0, 1))),
-        "the damping of (L201) over the way of compression, variables separated",
-        Kind.DEFINITION,
+        W_c,
+        m_red * v_0**2 * Integral(c_c * w**2 / (1 + c_c * w), (w, 0, 1)),
         "work of the damping in compression",
-        defines=W_c,
+        "the damping of (L201) over the way of compression, variables separated",
     )
-    damping_r = Equation(
+    damping_r = define(
         "",
-        (W_r, m_red * v_0**2 * Integral((1 - w) ** 2 / w, (w, g, 1)) / c_r**2),
-        "the damping of (L202) over the way of restitution, variables separated, w its factor",
-        Kind.DEFINITION,
+        W_r,
+        m_red * v_0**2 * Integral((1 - w) ** 2 / w, (w, g, 1)) / c_r**2,
         "work of the damping in restitution",
-        defines=W_r,
+        "the damping of (L202) over the way of restitution, variables separated, w its factor",
     )
-    between = Equation(
+    between = define(
         "",
-        (W_p, S_c - S_r),
-        "the area between the elastic parts of both branches",
-        Kind.DEFINITION,
+        W_p,
+        S_c - S_r,
         "work between the elastic parts",
-        defines=W_p,
+        "the area between the elastic parts of both branches",
     )
     friction_c = Equation(
         "(L211)", (W_c, (1 - s_c) * _energy), "integrated", title="internal friction in compression"
@@ -219,14 +209,7 @@ with evaluate(False):
     )
 
     # --- what tests of speed, restitution and imprint do not tell ------------------------------------------
-    undamped_c = Equation(
-        "",
-        (C_u, C / s_c),
-        "another material",
-        Kind.DEFINITION,
-        "compression without damping",
-        defines=C_u,
-    )
+    undamped_c = define("", C_u, C / s_c, "compression without damping", "another material")
     undamped_r = Equation(
         "(L215)",
         (beta_u + 1, (beta + 1) * s_r / s_c),

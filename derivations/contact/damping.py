@@ -22,7 +22,7 @@ from __future__ import annotations
 from sympy import Expr, Integer, Integral, Rational, Symbol, log, pi, sqrt
 from sympy.core.parameters import evaluate
 
-from ..equation import Derivation, Equation, Kind, Ledger, Step
+from ..equation import Derivation, Equation, Kind, Ledger, Step, define
 from ..vocabulary import Quantity, Vocabulary
 
 # fmt: off
@@ -92,13 +92,12 @@ with evaluate(False):
         Kind.ASSUMPTION,
         "compression with damping",
     )
-    left = Equation(
+    left = define(
         "",
-        (g, 1 - c * e_o),
-        "(L101) at the speed of rebound; the force does not pull, so it is positive",
-        Kind.DEFINITION,
+        g,
+        1 - c * e_o,
         "factor of the damping at separation",
-        defines=g,
+        "(L101) at the speed of rebound; the force does not pull, so it is positive",
     )
     rebound = Equation(
         "",
@@ -107,14 +106,7 @@ with evaluate(False):
         Kind.ASSUMPTION,
         "restitution with damping",
     )
-    work = Equation(
-        "",
-        (W, Integral(K * x**n, (x, 0, x_m))),
-        "definition",
-        Kind.DEFINITION,
-        "work of the elastic part",
-        defines=W,
-    )
+    work = define("", W, Integral(K * x**n, (x, 0, x_m)), "work of the elastic part")
     work_compression = Equation(
         "(L102)",
         (W, m_red * v_0**2 * (c - log(1 + c)) / c**2),
@@ -228,13 +220,12 @@ with evaluate(False):
         Kind.ASSUMPTION,
         "balance of compression by Flores",
     )
-    mean_flores = Equation(
+    mean_flores = define(
         "(L109)",
-        (J, Integral(y**n * sqrt(1 - y**2), (y, 0, 1))),
-        "mean rate of a linear spring's path, weighted with the force",
-        Kind.DEFINITION,
+        J,
+        Integral(y**n * sqrt(1 - y**2), (y, 0, 1)),
         "path of a linear spring",
-        defines=J,
+        "mean rate of a linear spring's path, weighted with the force",
     )
 
     tsuji = Equation(
@@ -245,13 +236,12 @@ with evaluate(False):
         Kind.ASSUMPTION,
         "damping of discrete elements",
     )
-    damping_ratio = Equation(
+    damping_ratio = define(
         "(L118)",
-        (zeta, -log(e) / sqrt(pi**2 + log(e) ** 2)),
-        "of a linear spring with a dashpot that may pull, and of (L117)",
-        Kind.DEFINITION,
+        zeta,
+        -log(e) / sqrt(pi**2 + log(e) ** 2),
         "damping ratio for an e",
-        defines=zeta,
+        "of a linear spring with a dashpot that may pull, and of (L117)",
     )
 
     def _member(

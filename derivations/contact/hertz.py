@@ -10,7 +10,7 @@ from __future__ import annotations
 from sympy import Expr, Integer, Integral, Rational, beta, pi, sqrt
 from sympy.core.parameters import evaluate
 
-from ..equation import Derivation, Equation, Kind
+from ..equation import Derivation, Equation, Kind, define
 from ..vocabulary import Quantity, Vocabulary
 from .model import ContactModel
 from .quantities import SHARED
@@ -72,17 +72,14 @@ def unloads(peak: Expr, x_m: Expr, x_p: Expr) -> Expr:
 
 
 with evaluate(False):
-    modulus = Equation(
+    modulus = define(
         "(L121)",
-        (E_star, 1 / ((1 - nu_1**2) / E_1 + (1 - nu_2**2) / E_2)),
-        "both bodies give way",
-        Kind.DEFINITION,
+        E_star,
+        1 / ((1 - nu_1**2) / E_1 + (1 - nu_2**2) / E_2),
         "modulus of the contact",
-        defines=E_star,
+        "both bodies give way",
     )
-    radius = Equation(
-        "(L122)", (R, d / 2), "a ball on a plane", Kind.DEFINITION, "radius of the ball", defines=R
-    )
+    radius = define("(L122)", R, d / 2, "radius of the ball", "a ball on a plane")
     pressure = Equation(
         "(L123)",
         (p_0, 2 * E_star * a / (pi * R)),
@@ -98,14 +95,7 @@ with evaluate(False):
         Kind.ASSUMPTION,
         "force of Hertz's pressure",
     )
-    stiffness = Equation(
-        "(L125)",
-        (K, Rational(4, 3) * E_star * sqrt(R)),
-        "definition",
-        Kind.DEFINITION,
-        "stiffness of Hertz's contact",
-        defines=K,
-    )
+    stiffness = define("(L125)", K, Rational(4, 3) * E_star * sqrt(R), "stiffness of Hertz's contact")
     force = Equation(
         "(L126)", (F, K * x**hertz), "the pressure summed over the contact", title="Hertz's force"
     )
@@ -130,13 +120,12 @@ with evaluate(False):
         title="greatest force of an elastic impact",
         defines=peak,
     )
-    lasting = Equation(
+    lasting = define(
         "(L129)",
-        (t, 2 * lasts(hertz) * x_m / v),
-        "the approach divided by its rate, summed back and forth (DLMF 5.12.1)",
-        Kind.DEFINITION,
+        t,
+        2 * lasts(hertz) * x_m / v,
         "duration of an elastic impact",
-        defines=t,
+        "the approach divided by its rate, summed back and forth (DLMF 5.12.1)",
     )
     elastic = Equation(
         "(L130)", (e_H, Integer(1)), "nothing is lost", Kind.ASSUMPTION, "restitution of an elastic impact",

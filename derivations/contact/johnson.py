@@ -8,7 +8,7 @@ from __future__ import annotations
 from sympy import Integer, Integral, Rational, atan, diff, pi, sqrt
 from sympy.core.parameters import evaluate
 
-from ..equation import Derivation, Equation, Kind
+from ..equation import Derivation, Equation, Kind, define
 from ..vocabulary import Quantity, Vocabulary
 from . import hertz
 from .model import ContactModel
@@ -74,13 +74,12 @@ with evaluate(False):
         "depth of first yield",
         defines=zeta,
     )
-    pressure_at_yield = Equation(
+    pressure_at_yield = define(
         "(L137)",
-        (p_Y, Y / difference.members[1]),
-        "the difference reaches the yield strength (Tresca, and von Mises on the axis)",
-        Kind.DEFINITION,
+        p_Y,
+        Y / difference.members[1],
         "pressure at first yield",
-        defines=p_Y,
+        "the difference reaches the yield strength (Tresca, and von Mises on the axis)",
     )
     approach_at_yield = Equation(
         "(L138)",
@@ -97,14 +96,7 @@ with evaluate(False):
         defines=v_Y,
     )
 
-    beyond = Equation(
-        "(L171)",
-        (faster, v / v_Y),
-        "definition",
-        Kind.DEFINITION,
-        "impact speed over that of first yield",
-        defines=faster,
-    )
+    beyond = define("(L171)", faster, v / v_Y, "impact speed over that of first yield")
 
     # --- fully plastic -------------------------------------------------------------------------------------
     crater = Equation(
@@ -159,13 +151,12 @@ with evaluate(False):
         title="imprint of a fully plastic impact",
         defines=x_p,
     )
-    lasting = Equation(
+    lasting = define(
         "(L150)",
-        (t, hertz.duration(x_m, x_p, e_J, Integer(1))),
-        "the way of each branch divided by its rate, summed (DLMF 5.12.1)",
-        Kind.DEFINITION,
+        t,
+        hertz.duration(x_m, x_p, e_J, Integer(1)),
         "duration of a fully plastic impact",
-        defines=t,
+        "the way of each branch divided by its rate, summed (DLMF 5.12.1)",
     )
     by_restitution = Equation(
         "(L147)",

@@ -9,7 +9,7 @@ from __future__ import annotations
 from sympy import Expr, Rational, Rel, exp, log
 from sympy.core.parameters import evaluate
 
-from ..equation import Equation, Kind
+from ..equation import Equation, define
 from ..global_fit import n_tests, over_tests
 from ..symbols import k
 from ..vocabulary import Quantity
@@ -52,23 +52,18 @@ def taken(
         Without what a test tells nothing of it.
     """
     with evaluate(False):
-        over_all = Equation(
+        over_all = define(
             numbers[0],
-            (mean.symbol, scale * exp(over_tests(log(alone[k] / scale)) / n_tests)),
-            "geometric mean over the tests: each restitution counts alike",
-            Kind.DEFINITION,
+            mean.symbol,
+            scale * exp(over_tests(log(alone[k] / scale)) / n_tests),
             mean.meaning,
-            defines=mean.symbol,
+            "geometric mean over the tests: each restitution counts alike",
         )
-        left = Equation(
+        left = define(
             numbers[1],
-            (
-                without.symbol,
-                scale * exp((over_tests(log(alone[k] / scale)) - log(alone.symbol / scale)) / (n_tests - 1)),
-            ),
-            "the geometric mean of the others",
-            Kind.DEFINITION,
+            without.symbol,
+            scale * exp((over_tests(log(alone[k] / scale)) - log(alone.symbol / scale)) / (n_tests - 1)),
             without.meaning,
-            defines=without.symbol,
+            "the geometric mean of the others",
         )
     return Constant(of_test, over_all, left, needs), (over_all, left)

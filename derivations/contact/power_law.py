@@ -5,7 +5,7 @@ from __future__ import annotations
 from sympy.core.parameters import evaluate
 
 from .. import soft_impact as paper
-from ..equation import Derivation, Equation, Kind, Step
+from ..equation import Derivation, Equation, Step, define
 from ..fit_checks import FREE
 from ..soft_impact import XM, XP, E
 from ..symbols import VOCABULARY as PAPER
@@ -43,21 +43,19 @@ with evaluate(False):
         title="imprint by law (3)",
         defines=x_p,
     )
-    lasting = Equation(
+    lasting = define(
         "(L162)",
-        (t, duration(x_m, x_p, e, paper.alpha, beta)),
-        "the way of each branch divided by its rate, summed (DLMF 5.12.1)",
-        Kind.DEFINITION,
+        t,
+        duration(x_m, x_p, e, paper.alpha, beta),
         "duration of the contact by law (3)",
-        defines=t,
+        "the way of each branch divided by its rate, summed (DLMF 5.12.1)",
     )
-    without = Equation(
+    without = define(
         "(L163)",
-        (WITHOUT.symbol, OBSERVED.symbol - R.symbol / (1 - H.symbol)),
-        "a test that is left out lies this much farther off, along the tangents of the fit",
-        Kind.DEFINITION,
+        WITHOUT.symbol,
+        OBSERVED.symbol - R.symbol / (1 - H.symbol),
         "imprint by law (3) through all tests but one",
-        defines=WITHOUT.symbol,
+        "a test that is left out lies this much farther off, along the tangents of the fit",
     )
 
 _one = {paper.x_m: x_m, paper.Cprime: peak}

@@ -11,7 +11,7 @@ from dataclasses import replace
 from sympy import Expr, Integer, Integral, Piecewise, Rational, Rel, pi, sqrt
 from sympy.core.parameters import evaluate
 
-from ..equation import Derivation, Equation, Kind, Step
+from ..equation import Derivation, Equation, Kind, Step, define
 from ..vocabulary import Quantity, Vocabulary
 from . import hertz, johnson
 from .model import ContactModel
@@ -107,14 +107,7 @@ with evaluate(False):
         "the approach less the elastic recovery",
         title="imprint by Thornton",
     )
-    ratio = Equation(
-        "",
-        (share, V_y / v),
-        "definition",
-        Kind.DEFINITION,
-        "speed of first yield over impact speed",
-        defines=share,
-    )
+    ratio = define("", share, V_y / v, "speed of first yield over impact speed")
     _root = sqrt(Rational(6, 5) - share**2 / 5)
     energy_by_share = Equation(
         "",
