@@ -19,7 +19,7 @@ from loopsheet.report.result.uncertain import Budget
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.monte_carlo import draw
 from loopsheet.report.uncertainty.propagation import Spread
-from loopsheet.report.views.budget import as_text
+from loopsheet.report.views.budget import FORMATS
 from loopsheet.report.which_workbook import find_workbook
 
 HEAD = """\
@@ -139,7 +139,7 @@ def test_monte_carlo_draws_what_is_shared_once(apart: Path) -> None:
 def test_a_row_of_a_budget_says_of_which_taken_number_it_tells(apart: Path) -> None:
     """The estimate beside an error of another report is the number that was taken, with its u's digits."""
     report = Study(apart).computed
-    rows = as_text(report, Spread(report.inputs, report.values).budget("rho", 0)).splitlines()
+    rows = FORMATS["text"](report, Spread(report.inputs, report.values).budget("rho", 0)).splitlines()
     found = [re.split(r"  +", row)[:2] for row in rows if "values.json)  " in row]
     alone = [estimate for _, estimate in found if estimate != "—"]  # what moves several has no estimate
     assert alone

@@ -21,7 +21,7 @@ from loopsheet.report.study import Study
 from loopsheet.report.uncertainty import propagation
 from loopsheet.report.uncertainty.monte_carlo import draw
 from loopsheet.report.uncertainty.propagation import Spread
-from loopsheet.report.views.budget import as_text
+from loopsheet.report.views.budget import FORMATS
 from loopsheet.report.which_workbook import find_workbook
 
 LAST = """
@@ -291,7 +291,7 @@ def test_what_is_taken_says_its_uncertainty_itself(both: Path, more: str, code: 
 
 def test_a_budget_says_of_which_row_it_tells(both: Path) -> None:
     report = Study(both).computed
-    rows = as_text(report, Spread(report.inputs, report.values).budget("total", 0)).splitlines()
+    rows = FORMATS["text"](report, Spread(report.inputs, report.values).budget("total", 0)).splitlines()
     (row,) = (row for row in rows if row.startswith("r[3] (lab/out/values.json)"))
     assert "x[3] = 41.73 um" in row
 

@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
     before = None if out is None else own(out, mark)
     with nothing_kept(), Progress(sys.stderr) as progress:
         record = _validation(options.folders, progress)
-    told = FORMATS[options.format](record)
+    told = f"{FORMATS[options.format](record).rstrip()}\n"
     if out is not None:
         written(out, before, told.encode())
     print(told, end="")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from ..cells.address import address
 from ..distribution import Shape
@@ -14,19 +14,9 @@ from ..result.numbers import decimals, rounded, stated
 from ..result.result import Report
 from ..result.shares import foremost
 from ..result.uncertain import Budget, Conformity, Contribution, Distributed, Together
-from . import markdown as md
+from .blocks import Block, TextTable, printers
 
-__all__ = [
-    "FORMATS",
-    "aligned",
-    "as_json",
-    "as_markdown",
-    "as_text",
-    "notes",
-    "number",
-    "percent",
-    "sentence",
-]
+__all__ = ["FORMATS", "notes", "number", "percent", "sentence"]
 
 HEADER = ("source", "estimate", "u", "distribution", "dof", "contribution", "share")
 _NONE = "—"
@@ -53,36 +43,19 @@ def sentence(report: Report, budget: Budget) -> str:
     return f"{told}, U = {expanded.text}{unit} with k = {rounded(budget.factor, 3).text} for {level}"
 
 
-def as_text(
+def _blocks(
     report: Report, budget: Budget, drawn: Distributed | None = None, limited: Sequence[Conformity] = ()
-) -> str:
+) -> Iterator[Block]:
     """The sentence, what limits say, a table of the sources, and what draws told."""
     said = [sentence(report, budget), *_of_limits(report, limited)]
-    rows = [HEADER, *(_row(report, budget, each) for each in budget.contributions)]
-    if len(rows) > 1:
-        said += ["", *aligned(rows), ""]
-    return "\n".join([*said, *notes(report, budget), *_of_draws(report, budget, drawn)])
+    told = [*notes(report, budget), *_of_draws(report, budget, drawn)]
+    if rows := [_row(report, budget, each) for each in budget.contributions]:
+        yield from (said, TextTable(HEADER, rows), told)
+    else:
+        yield [*said, *told]
 
 
-def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
-    """A table as lines, each column as wide as its widest cell."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join(f"{text:{w}}" for text, w in zip(row, widths, strict=True)).rstrip() for row in rows]
-
-
-def as_markdown(
-    report: Report, budget: Budget, drawn: Distributed | None = None, limited: Sequence[Conformity] = ()
-) -> str:
-    """The same for a pull request."""
-    rows = [md.told(_row(report, budget, each)) for each in budget.contributions]
-    told = "".join(
-        f"\n{md.cell(note)}\n" for note in (*notes(report, budget), *_of_draws(report, budget, drawn))
-    )
-    said = "\n\n".join(map(md.cell, (sentence(report, budget), *_of_limits(report, limited))))
-    return f"{said}\n\n{md.table(HEADER, rows) if rows else ''}{told}".rstrip()
-
-
-def as_json(
+def _as_json(
     report: Report, budget: Budget, drawn: Distributed | None = None, limited: Sequence[Conformity] = ()
 ) -> str:
     """All digits, in SI."""
@@ -115,11 +88,7 @@ def as_json(
     )
 
 
-FORMATS: Mapping[str, Callable[[Report, Budget, Distributed | None, Sequence[Conformity]], str]] = {
-    "text": as_text,
-    "markdown": as_markdown,
-    "json": as_json,
-}
+FORMATS = {**printers(_blocks), "json": _as_json}
 """What renders a budget, by the name of the format."""
 
 

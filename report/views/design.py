@@ -9,12 +9,10 @@ from collections.abc import Callable, Iterator, Mapping
 from ..quantity import behind
 from ..result.design import Planned
 from ..result.numbers import rounded
-from . import markdown as md
-from .budget import aligned, notes, number, percent, sentence
+from .blocks import Block, TextTable, printers
+from .budget import notes, number, percent, sentence
 
-__all__ = ["FORMATS", "as_json", "as_markdown", "as_text"]
-
-_PARTS = ("what", "share")
+__all__ = ["FORMATS"]
 
 
 def _header(plan: Planned) -> list[str]:
@@ -102,29 +100,17 @@ def _floor(value: float) -> str:
     return rounded(math.floor(value / unit) * unit, 3).text
 
 
-def _parts(plan: Planned) -> list[tuple[str, str]]:
-    return [(name, percent(share)) for name, share in plan.shares.items()]
-
-
-def as_text(plan: Planned) -> str:
+def _blocks(plan: Planned) -> Iterator[Block]:
     """The planned tests, the cell, where its uncertainty comes from, and what there is to say."""
-    tests = aligned([_header(plan), *_rows(plan)])
-    lines = [_curve(plan), "", *tests, "", sentence(plan.report, plan.budget)]
-    if parts := _parts(plan):
-        lines += ["", *aligned([list(_PARTS), *map(list, parts)]), ""]
-    return "\n".join([*lines, *_said(plan)])
+    yield [_curve(plan)]
+    yield TextTable(_header(plan), [*_rows(plan)])
+    yield [sentence(plan.report, plan.budget)]
+    if parts := [(name, percent(share)) for name, share in plan.shares.items()]:
+        yield TextTable(("what", "share"), parts)
+    yield [*_said(plan)]
 
 
-def as_markdown(plan: Planned) -> str:
-    """The same for a pull request."""
-    tests = md.table(md.told(_header(plan)), map(md.told, _rows(plan)))
-    parts = md.table(_PARTS, map(md.told, _parts(plan)))
-    said = "".join(f"\n{md.cell(line)}\n" for line in _said(plan))
-    told = md.cell(sentence(plan.report, plan.budget))
-    return f"{md.cell(_curve(plan))}\n\n{tests}\n{told}\n\n{parts}{said}".rstrip()
-
-
-def as_json(plan: Planned) -> str:
+def _as_json(plan: Planned) -> str:
     """All digits, in SI."""
     report, budget, best, needed = plan.report, plan.budget, plan.best, plan.needed
     tests = [
@@ -172,9 +158,5 @@ def as_json(plan: Planned) -> str:
     return json.dumps(told, indent=1, ensure_ascii=False)
 
 
-FORMATS: Mapping[str, Callable[[Planned], str]] = {
-    "text": as_text,
-    "markdown": as_markdown,
-    "json": as_json,
-}
+FORMATS: Mapping[str, Callable[[Planned], str]] = {**printers(_blocks), "json": _as_json}
 """What renders a plan, by the name of the format."""

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from ..messages.diagnostics import visible
 from ..quantity import behind
 from ..result.result import Comparison
 from ..result.validation import Example, Validation
-from . import markdown as md
-from .budget import aligned
+from .blocks import Block, Heading, TextTable, printers
 from .checks import as_json, as_junit
 
 __all__ = ["FORMATS", "TITLE"]
@@ -21,38 +18,30 @@ SIGNED = ("Date", "Place and machine", "Name and signature")
 """What is left for whoever files it: the record has no clock."""
 
 
-@dataclass(frozen=True)
-class _Table:
-    """Rows of finished text."""
-
-    header: Sequence[str]
-    rows: Sequence[Sequence[str]]
-
-
-def _blocks(record: Validation) -> Iterator[tuple[int, str] | str | _Table]:
-    """Headings with their level, sentences and tables."""
-    yield 1, TITLE
-    yield record.verdict
-    yield _Table(("computed by", ""), list(record.by.items()))
+def _blocks(record: Validation) -> Iterator[Block]:
+    """For a terminal, for paper, for a pull request or a wiki."""
+    yield Heading(1, TITLE)
+    yield [record.verdict]
+    yield TextTable(("computed by", ""), list(record.by.items()))
     for example in record.examples:
         yield from _of_example(example)
-    yield 2, "Filed"
-    yield _Table(("", ""), [(word, "_" * 40) for word in SIGNED])
+    yield Heading(2, "Filed")
+    yield TextTable(("", ""), [(word, "_" * 40) for word in SIGNED])
 
 
-def _of_example(example: Example) -> Iterator[tuple[int, str] | str | _Table]:
+def _of_example(example: Example) -> Iterator[Block]:
     report, failed = example.report, example.failed
-    yield 2, f"{example.name}: {report.title}"
-    yield f"{example.word}: {report.workbook.source}"
+    yield Heading(2, f"{example.name}: {report.title}")
+    yield [f"{example.word}: {report.workbook.source}"]
     passed = sum(proof.status.passes for proof in report.proofs)
     rows = [("proofs", f"{passed} of {len(report.proofs)} equations stand")]
     rows += [("engine", " ".join(agreement.line.split())) for agreement in report.engines]
-    yield _Table(("", "against 50 digits"), rows)
+    yield TextTable(("", "against 50 digits"), rows)
     if compared := report.every_comparison:
         header = ("where", "what", "published", "computed", "verdict")
-        yield _Table(header, [_row(each) for each in compared])
+        yield TextTable(header, [_row(each) for each in compared])
     for check in failed:
-        yield f"FAIL {check.kind} {check.message}"
+        yield [f"FAIL {check.kind} {check.message}"]
 
 
 def _row(compared: Comparison) -> tuple[str, ...]:
@@ -69,33 +58,6 @@ def _verdict(compared: Comparison) -> str:
     if compared.published.expect:
         return f"known difference: {compared.published.reason}"
     return "pass"
-
-
-def as_text(record: Validation) -> str:
-    """For a terminal and for paper."""
-    return "\n".join("".join(f"{visible(line)}\n" for line in _lines(block)) for block in _blocks(record))
-
-
-def _lines(block: tuple[int, str] | str | _Table) -> list[str]:
-    if isinstance(block, str):
-        return [block]
-    if isinstance(block, tuple):
-        level, heading = block
-        return [heading, ("=" if level == 1 else "-") * len(heading)]
-    return aligned([row for row in (block.header, *block.rows) if any(row)])
-
-
-def as_markdown(record: Validation) -> str:
-    """For a pull request or a wiki."""
-    parts = []
-    for block in _blocks(record):
-        if isinstance(block, _Table):
-            parts.append(md.table(block.header, map(md.told, block.rows)))
-        elif isinstance(block, str):
-            parts.append(f"{md.cell(block)}\n")
-        else:
-            parts.append(f"{'#' * block[0]} {md.cell(block[1])}\n")
-    return "\n".join(parts)
 
 
 def _details(record: Validation) -> dict[str, Any]:
@@ -121,8 +83,7 @@ def _details_of(example: Example) -> Mapping[str, Any]:
 
 
 FORMATS: Mapping[str, Callable[[Validation], str]] = {
-    "text": as_text,
-    "markdown": as_markdown,
+    **printers(_blocks),
     "json": lambda record: as_json(record.checks, TITLE, _details(record)),
     "junit": lambda record: as_junit(record.checks, TITLE, {}),
 }
