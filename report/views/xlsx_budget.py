@@ -56,19 +56,14 @@ _FACTORS = {
 
 def write_budgets(sheet: Any, style: Style, report: Report, grid: Grid) -> None:
     """Write the budgets of the results, one below the other."""
-    style.text(sheet, 0, 0, "uncertainty: where that of the results comes from", "title")
     said = "Estimates follow the sheet; yellow cells may be changed. Sensitivities stay as issued."
-    style.text(sheet, 1, 0, said, "subtitle")
-    for at, (_, width) in enumerate(_COLUMNS):
-        sheet.set_column(at, at, width)
+    widths = (width for _, width in _COLUMNS)
+    style.page(sheet, "uncertainty: where that of the results comes from", said, widths)
     row = 3
     for budget in report.uncertain().budgets:
         if budget.is_known and budget.u > 0:
             row = _Written(sheet, style, report, grid, budget, row).write() + 2
     sheet.freeze_panes(3, 1)
-    sheet.set_landscape()
-    sheet.set_paper(9)
-    sheet.fit_to_pages(1, 0)
 
 
 class _Written:
@@ -176,60 +171,31 @@ class _Written:
         first = f"SUMSQ({own}){self.pairs}"
         ratio = f"({first})^2/{self.below(own, dof)}"
         freedom = f"IF({ratio}>{MOST_DOF},{_UNLIMITED:.0f},MAX(1,INT(ROUND({ratio},2))))"
+        second, largest = budget.second / scale**2, sizes[-1]
+        others = math.sqrt(math.hypot(*sizes[:-1]) ** 2 + abs(second))
+        lost = f"SUMSQ({own})-{at['largest']}^2"
+        shown = number_format(self.report.figures(budget.name)[self.row_of_cell])
+        of_second, of_largest = number_format(rounded(second, 3)), number_format(rounded(largest, 4))
+        cell, value = self.block.place.cell(self.row_of_cell), self.block.place.of(budget.value)
+        u, expanded = budget.u / scale, budget.expanded / scale
+        free = f"=IF({at['largest']}=0,{_UNLIMITED:.0f},{freedom})", min(budget.dof, _UNLIMITED)
         lines: tuple[tuple[str, str, float, str], ...] = (
-            (
-                "value",
-                f"={self.block.place.cell(self.row_of_cell)}",
-                self.block.place.of(budget.value),
-                number_format(self.report.figures(budget.name)[self.row_of_cell]),
-            ),
-            (
-                "standard uncertainty u",
-                f"=SQRT(MAX(0,{first}+{at['second']}))",
-                budget.u / scale,
-                self.form(budget.u),
-            ),
-            (
-                "variance of second order",
-                "",
-                budget.second / scale**2,
-                number_format(rounded(budget.second / scale**2, 3)),
-            ),
-            (
-                "largest contribution",
-                f"=MAX(MAX({own}),-MIN({own}))",
-                sizes[-1],
-                number_format(rounded(sizes[-1], 4)),
-            ),
-            (
-                "all others together",
-                f"=SQRT(MAX(0,SUMSQ({own})-{at['largest']}^2)+ABS({at['second']}))",
-                math.sqrt(math.hypot(*sizes[:-1]) ** 2 + abs(budget.second) / scale**2),
-                number_format(rounded(sizes[-1], 4)),
-            ),
-            (
-                "effective degrees of freedom",
-                f"=IF({at['largest']}=0,{_UNLIMITED:.0f},{freedom})",
-                min(budget.dof, _UNLIMITED),
-                _DOF,
-            ),
+            ("value", f"={cell}", value, shown),
+            ("standard uncertainty u", f"=SQRT(MAX(0,{first}+{at['second']}))", u, self.form(budget.u)),
+            ("variance of second order", "", second, of_second),
+            ("largest contribution", f"=MAX(MAX({own}),-MIN({own}))", largest, of_largest),
+            ("all others together", f"=SQRT(MAX(0,{lost})+ABS({at['second']}))", others, of_largest),
+            ("effective degrees of freedom", *free, _DOF),
             ("coverage probability", "", budget.level, "0.##%"),
             ("coverage factor k", f"={self.factor(own, at, budget)}", budget.factor, "0.000"),
-            (
-                "expanded uncertainty U",
-                f"={at['k']}*{at['u']}",
-                budget.expanded / scale,
-                self.form(budget.expanded),
-            ),
+            ("expanded uncertainty U", f"={at['k']}*{at['u']}", expanded, self.form(budget.expanded)),
         )
-        for line, (name, formula, value, form) in enumerate(lines, start=row):
+        for line, (name, formula, now, form) in enumerate(lines, start=row):
             self.style.text(self.sheet, line, 0, name, "name")
-            if math.isnan(value):
+            if math.isnan(now):
                 self.style.text(self.sheet, line, 1, "not known: correlated sources have degrees of freedom")
-            elif formula:
-                self.style.formula(self.sheet, line, 1, formula, value, self.style("number", form))
             else:
-                self.sheet.write_number(line, 1, value, self.style("input", form))
+                self.number(line, 1, formula, now, form)
         row = self.statement(row + len(lines), at)
         if budget.shape is Shape.CONVOLVED:
             told = f"{budget.because}, as issued: they do not follow an edit"

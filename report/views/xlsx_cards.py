@@ -7,7 +7,7 @@ from typing import Any
 
 from ..result import card_words as words
 from ..result.card import Card, Cards
-from .xlsx_style import Style, height
+from .xlsx_style import Style
 
 __all__ = ["write_cards"]
 
@@ -16,11 +16,8 @@ _WIDTHS = (24, 18, 16, 46, 22, 22)
 
 def write_cards(sheet: Any, style: Style, cards: Cards) -> None:
     """Write the cards, one below the other."""
-    style.text(sheet, 0, 0, "cards: what to type into simulation codes", "title")
     said = "As issued: these numbers follow no edit. Build the report again, or ask loopsheet card."
-    style.text(sheet, 1, 0, said, "subtitle")
-    for at, width in enumerate(_WIDTHS):
-        sheet.set_column(at, at, width)
+    style.page(sheet, "cards: what to type into simulation codes", said, _WIDTHS)
     row = 3
     for card in cards.made:
         row = _Written(sheet, style, card, row).write() + 2
@@ -28,9 +25,6 @@ def write_cards(sheet: Any, style: Style, cards: Cards) -> None:
     for at, line in enumerate(told, start=row):
         style.text(sheet, at, 0, line, "aside")
     sheet.freeze_panes(3, 0)
-    sheet.set_landscape()
-    sheet.set_paper(9)
-    sheet.fit_to_pages(1, 0)
 
 
 class _Written:
@@ -42,8 +36,7 @@ class _Written:
     def write(self) -> int:
         """Write it; return the row behind it."""
         title, *lines = words.head(self.card)
-        for at in range(len(_WIDTHS)):
-            self.style.text(self.sheet, self.row, at, "" if at else title, "section")
+        self.style.section(self.sheet, self.row, title, len(_WIDTHS))
         self.row += 1
         self.lines([*lines, f"in an input: {self.card.snippet}"])
         self.table([list(words.TYPED), *words.typed(self.card)])
@@ -55,9 +48,7 @@ class _Written:
     def lines(self, lines: Iterable[str]) -> None:
         """Sentences, each across all columns."""
         for line in lines:
-            self.sheet.merge_range(self.row, 0, self.row, len(_WIDTHS) - 1, "", self.style("wrapped"))
-            self.style.text(self.sheet, self.row, 0, line, "wrapped")
-            self.sheet.set_row(self.row, height([(line, sum(_WIDTHS))]))
+            self.style.sentence(self.sheet, self.row, line, len(_WIDTHS), sum(_WIDTHS))
             self.row += 1
 
     def table(self, rows: Sequence[Sequence[str]]) -> None:

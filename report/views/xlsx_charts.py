@@ -54,10 +54,7 @@ def write_charts(book: Any, sheet: Any, style: Style, report: Report, grid: Grid
     """Draw every chart, one below the other."""
     figures, words = charted(report, grid), Words(report)
     sheet.hide_gridlines(2)
-    sheet.set_landscape()
-    sheet.set_paper(9)
-    sheet.fit_to_pages(1, 0)
-    style.text(sheet, 0, 0, "figures: drawn from the cells, they follow every edit", "title")
+    style.page(sheet, "figures: drawn from the cells, they follow every edit")
     beside, tops = _BESIDE, [2]
     for figure in figures:
         assert figure.chart is not None

@@ -28,16 +28,12 @@ def write_report(sheet: Any, style: Style, report: Report, grid: Grid, inputs: G
     """Write the first worksheet: what came out, what went in, how to use the workbook."""
     scalars = grid.on(SCALARS, "given", "computed", "margin")
     names = max([18, *(1.15 * len(block.name) for block in scalars)])
-    for column, width in enumerate((names, 17, 15, 52, 12, 10, 22, 40)):
-        sheet.set_column(column, column, width)
-    style.text(sheet, 0, 0, report.title, "title")
-    style.text(sheet, 1, 0, report.workbook.title, "subtitle")
+    style.page(sheet, report.title, report.workbook.title, (names, 17, 15, 52, 12, 10, 22, 40))
     style.formula(sheet, 2, 0, inputs.summary(), "", style("error"))
     row = 0
     for group in _groups(scalars):
         row, given = group[0].place.row, group[0].kind == "given"
-        for at in range(7):
-            style.text(sheet, row - 2, at, _title(report, group) if not at else "", "section")
+        style.section(sheet, row - 2, _title(report, group), 7)
         last = ("as checked", "check") if given else ("computed from",)
         for at, head in enumerate(("name", "value", "unit", "meaning", "equation", "symbol", *last)):
             style.text(sheet, row - 1, at, head, "head")
@@ -47,9 +43,6 @@ def write_report(sheet: Any, style: Style, report: Report, grid: Grid, inputs: G
     _write_notes(sheet, style, report, grid, row + 2)
     for column in (1, CHECKED, CHECKED + 1):
         mark_errors(sheet, style, 0, column, row, column)
-    sheet.set_landscape()
-    sheet.set_paper(9)
-    sheet.fit_to_pages(1, 0)
     sheet.hide_gridlines(2)
 
 
@@ -139,13 +132,10 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
 
 def _write_lines(sheet: Any, style: Style, row: int, title: str, lines: Sequence[str]) -> int:
     """Write sentences below a title; return the row of the last one."""
-    for at in range(7):
-        style.text(sheet, row, at, "" if at else title, "section")
+    style.section(sheet, row, title, 7)
     for line in lines:
         row += 1
-        sheet.merge_range(row, 0, row, 6, "", style("wrapped"))
-        style.text(sheet, row, 0, line, "wrapped")
-        sheet.set_row(row, height([(line, 155)]))
+        style.sentence(sheet, row, line, 7, 155)
     return row
 
 
@@ -170,11 +160,10 @@ _PUBLISHED = (
 
 def write_published(sheet: Any, style: Style, report: Report, grid: Grid) -> None:
     """Write every published value beside its live recomputation."""
-    style.text(sheet, 0, 0, "published: printed values beside their recomputation", "title")
     says = "The recomputed values are live: edit an input and see whether the print is met."
-    style.text(sheet, 1, 0, says, "subtitle")
-    for at, (head, width, meaning) in enumerate(_PUBLISHED):
-        sheet.set_column(at, at, width)
+    widths = (width for _, width, _ in _PUBLISHED)
+    style.page(sheet, "published: printed values beside their recomputation", says, widths)
+    for at, (head, _, meaning) in enumerate(_PUBLISHED):
         style.text(sheet, 3, at, head, "head")
         style.text(sheet, 4, at, meaning, "meaning")
     sheet.set_row(4, 0.85 * height([(meaning, width) for _, width, meaning in _PUBLISHED]))
@@ -186,9 +175,6 @@ def write_published(sheet: Any, style: Style, report: Report, grid: Grid) -> Non
     sheet.conditional_format(5, 11, last, 11, finding)
     sheet.freeze_panes(5, 3)
     sheet.autofilter(3, 0, last, len(_PUBLISHED) - 1)
-    sheet.set_landscape()
-    sheet.set_paper(9)
-    sheet.fit_to_pages(1, 0)
     sheet.repeat_rows(3, 4)
 
 
@@ -271,10 +257,10 @@ _EQUATIONS = (
 
 def write_equations(sheet: Any, style: Style, report: Report) -> None:
     """Write every equation with what is known of it."""
-    style.text(sheet, 0, 0, "equations: what the formulas are made from", "title")
-    style.text(sheet, 1, 0, "Numbers that begin with L are not the source's own.", "subtitle")
-    for at, (head, width) in enumerate(_EQUATIONS):
-        sheet.set_column(at, at, width)
+    says = "Numbers that begin with L are not the source's own."
+    widths = (width for _, width in _EQUATIONS)
+    style.page(sheet, "equations: what the formulas are made from", says, widths)
+    for at, (head, _) in enumerate(_EQUATIONS):
         style.text(sheet, 3, at, head, "head")
     material, statuses, grounds = Material(report), proof_statuses(report), proof_grounds(report)
     for row, equation in enumerate(report.ledger.equations(), start=4):
@@ -296,7 +282,4 @@ def write_equations(sheet: Any, style: Style, report: Report) -> None:
             row, height([(words, width) for words, (_, width) in zip(cells, _EQUATIONS, strict=True)])
         )
     sheet.freeze_panes(4, 1)
-    sheet.set_landscape()
-    sheet.set_paper(9)
-    sheet.fit_to_pages(1, 0)
     sheet.repeat_rows(3)

@@ -89,7 +89,29 @@ class Style:
             self._made[key] = self._book.add_format(properties)
         return self._made[key]
 
+    def page(self, worksheet: Any, title: str, subtitle: str = "", widths: Iterable[float] = ()) -> None:
+        """Begin a worksheet: what it is, how wide its columns are, and that it is printed on A4 across."""
+        self.text(worksheet, 0, 0, title, "title")
+        if subtitle:
+            self.text(worksheet, 1, 0, subtitle, "subtitle")
+        for column, width in enumerate(widths):
+            worksheet.set_column(column, column, width)
+        worksheet.set_landscape()
+        worksheet.set_paper(9)
+        worksheet.fit_to_pages(1, 0)
+
     # --- cells
+
+    def section(self, worksheet: Any, row: int, title: str, columns: int) -> None:
+        """Write a heading that goes across some columns."""
+        for column in range(columns):
+            self.text(worksheet, row, column, "" if column else title, "section")
+
+    def sentence(self, worksheet: Any, row: int, line: str, columns: int, width: float) -> None:
+        """Write a sentence across some columns, which together are so wide, in a row as high as it needs."""
+        worksheet.merge_range(row, 0, row, columns - 1, "", self("wrapped"))
+        self.text(worksheet, row, 0, line, "wrapped")
+        worksheet.set_row(row, height([(line, width)]))
 
     def text(self, worksheet: Any, row: int, column: int, text: str, name: str = "text") -> None:
         """Write text that stays text, whatever it begins with."""

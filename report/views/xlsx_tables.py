@@ -73,7 +73,7 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
     """Write the worksheet that holds the rows of an axis."""
     axis, blocks, below = grid.axes[name], grid.on(name), 0
     main = [b for b in blocks if b.kind in ("given", "computed")] or list(blocks)
-    style.text(sheet, 0, 0, f"{name}: {axis.described}", "title")
+    style.page(sheet, f"{name}: {axis.described}")
     if name in grid.notes:
         weighed = any(block.name in report.sheet.weighed for block in blocks)
         stays = " but standard uncertainties, which stay as issued" * weighed
@@ -113,9 +113,6 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
     mark_errors(sheet, style, FIRST_ROW, first, FIRST_ROW + size - 1, last)
     every = f"A1:{letters(last)}{FIRST_ROW + size}"
     sheet.ignore_errors({"formula_differs": every, **({"number_stored_as_text": every} if words else {})})
-    sheet.set_landscape()
-    sheet.set_paper(9)
-    sheet.fit_to_pages(1, 0)
     sheet.repeat_rows(_NAME, _SYMBOL)
     sheet.print_area(0, 0, FIRST_ROW + size - 1 + below, max(b.place.column for b in main))
 
@@ -194,15 +191,8 @@ def _write_groups(sheet: Any, style: Style, report: Report, blocks: Sequence[Cel
 
 def write_steps(sheet: Any, style: Style, report: Report, grid: Grid) -> None:
     """Write the worksheet of the steps to the scalar roots: what comes before, then a row for each step."""
-    style.text(sheet, 0, 0, "steps: how the scalar roots are found", "title")
-    style.text(
-        sheet,
-        1,
-        0,
-        "NumPy takes the same steps; here each of their quantities has a cell.",
-        "subtitle",
-    )
-    sheet.set_column(0, 0, 12)
+    says = "NumPy takes the same steps; here each of their quantities has a cell."
+    style.page(sheet, "steps: how the scalar roots are found", says, [12])
     sheet.set_column(1, max(b.place.column for b in grid.on(STEPS)), 14)
     before = ""
     for block in grid.on(STEPS):
@@ -224,8 +214,5 @@ def write_steps(sheet: Any, style: Style, report: Report, grid: Grid) -> None:
             sheet, place.row, place.column, block.formulas[0], block.values[0], style("step"), block.array
         )
     last = max(b.place.row for b in grid.on(STEPS))
-    sheet.set_landscape()
-    sheet.set_paper(9)
-    sheet.fit_to_pages(1, 0)
     sheet.freeze_panes(0, 1)
     mark_errors(sheet, style, 0, 1, last, 1)
