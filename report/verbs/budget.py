@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 from typing import TYPE_CHECKING
 
 from ..distribution import LEVEL
-from .common import Progress, answer, count, find_one, folder_argument, format_argument, keeping_arguments
+from .common import answer, count, find_one, folder_argument, format_argument, keeping_arguments, studied
 
 if TYPE_CHECKING:
     from ..study import Study
@@ -42,11 +41,7 @@ def _level(text: str) -> float:
 
 def run(options: argparse.Namespace) -> int:
     """Print the budget of a cell; exit code 1 if it has no value."""
-    from ..inputs.folders import report_folder
-    from ..study import Study
-
-    with Progress(sys.stderr) as progress:
-        study = Study(report_folder(options.folder), step=progress)
+    with studied(options.folder) as study:
         _refuse_too_few(options.draws, options.level)
         draws = str(options.draws or 0), str(options.seed)
         parts = options.cell, options.format, repr(options.level), *draws

@@ -7,7 +7,7 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from .common import FINDINGS, OK, Progress, count, folder_argument, format_argument, keeping_arguments, told
+from .common import FINDINGS, OK, count, folder_argument, format_argument, keeping_arguments, studied, told
 
 if TYPE_CHECKING:
     from ..impacts.drops import Drops
@@ -60,17 +60,14 @@ def run(options: argparse.Namespace) -> int:
     """Print a card, a list of the codes, or the identified law; exit code 1 if the data are at fault."""
     from ..impacts.codes import CODES
     from ..impacts.source import SOURCES
-    from ..inputs.folders import report_folder
     from ..messages.errors import UsageError, diagnose, listing, suggest
-    from ..study import Study
 
     if options.code == "list":
         titles = [(code.name, code.title) for code in CODES.values()]
         titles += [(name, source.said) for name, source in SOURCES.items()]
         print(*(f"{name:14} {title}" for name, title in titles), sep="\n")
         return OK
-    with Progress(sys.stderr) as progress:
-        study = Study(report_folder(options.folder), step=progress)
+    with studied(options.folder) as study:
         asked = {"code": [*CODES, *SOURCES, *_models(study)], "model": _models(study)}
         for kind, known in asked.items():
             text = getattr(options, kind)

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from .common import Progress, folder_argument, format_argument, keeping_arguments, outcome, print_checks, tell
+from .common import folder_argument, format_argument, keeping_arguments, outcome, print_checks, studied, tell
 
 if TYPE_CHECKING:
     from ..referee.accepting import Accepted
@@ -36,15 +35,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Check everything and print it in the format that is asked for."""
-    from ..inputs.folders import report_folder
     from ..outdated import outdated
     from ..result.findings import checks
-    from ..study import Study
 
     if options.accept or options.reason:
         return _accept(options)
-    with Progress(sys.stderr) as progress:
-        report = Study(report_folder(options.folder), step=progress).report
+    with studied(options.folder) as study:
+        report = study.report
     found = (*checks(report), *outdated(report.inputs.folder, report.inputs.files))
     if options.format == "text":
         _print(report, found)
@@ -61,15 +58,14 @@ def _accept(options: argparse.Namespace) -> int:
     from ..referee.accepting import accepted
     from ..result.findings import checks
     from ..stages import compared
-    from ..study import Study
 
     reason, folder = " ".join(options.reason.split()), report_folder(options.folder)
     if not options.accept or folder == PAPER or not reason.isprintable():
         known = "loopsheet check --accept --reason 'a sentence' FOLDER"
         said = "--accept needs a FOLDER of your own, --reason a sentence and --accept"
         raise wrong(said, known)
-    with Progress(sys.stderr) as progress:
-        report = Study(folder, step=progress).refereed
+    with studied(options.folder) as study:
+        report = study.refereed
     if report.every_comparison:
         found = accepted(report, reason)
         if found.after != found.before:
@@ -79,10 +75,10 @@ def _accept(options: argparse.Namespace) -> int:
             _show(found)
             _ask(report)
     left = checks(report)
-    if options.format != "text":
+    if options.format == "text":
+        tell(left)
+    else:
         print_checks(left, options.format, report.title, {})
-        return outcome(left)
-    tell(left)
     return outcome(left)
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import sys
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TextIO
 
 from ..cells.address import index_text, parts
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
     from ..result.findings import Check
     from ..result.result import Report
     from ..sheet import Column
+    from ..study import Study
 
 __all__ = [
     "BUG",
@@ -35,6 +38,7 @@ __all__ = [
     "print_checks",
     "result_argument",
     "source_argument",
+    "studied",
     "tell",
     "told",
 ]
@@ -60,6 +64,16 @@ def keeping_arguments(parser: argparse.ArgumentParser) -> None:
         "--no-cache", action="store_true", help="make everything again, and keep nothing for the next run"
     )
     parser.add_argument("--timing", action="store_true", help="tell at the end where the time went")
+
+
+@contextmanager
+def studied(folder: str | None) -> Iterator[Study]:
+    """The study of a FOLDER, which tells on the terminal what it is about."""
+    from ..inputs.folders import report_folder
+    from ..study import Study
+
+    with Progress(sys.stderr) as progress:
+        yield Study(report_folder(folder), step=progress)
 
 
 def result_argument(parser: argparse.ArgumentParser) -> None:

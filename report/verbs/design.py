@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 from typing import TYPE_CHECKING
 
 from .common import (
     FINDINGS,
     OK,
-    Progress,
     count,
     find,
     find_one,
     folder_argument,
     format_argument,
     keeping_arguments,
+    studied,
 )
 
 if TYPE_CHECKING:
@@ -59,11 +58,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print what a planned campaign will show; exit code 1 if it will not show what was asked for."""
-    from ..inputs.folders import report_folder
-    from ..study import Study
-
-    with Progress(sys.stderr) as progress:
-        study = Study(report_folder(options.folder), step=progress)
+    with studied(options.folder) as study:
         _refuse_what_does_not_fit(options)
         names = ("speeds", "u", "cell", "best", "between", "want", "of", "format")
         words = [f"{name} {getattr(options, name)!r}" for name in names]

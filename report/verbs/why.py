@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from .common import OK, Progress, find_one, folder_argument, keeping_arguments
+from .common import OK, find_one, folder_argument, keeping_arguments, studied
 
 if TYPE_CHECKING:
     from ..study import Study
@@ -24,11 +23,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print what the formula bar of the page tells of a cell."""
-    from ..inputs.folders import report_folder
-    from ..study import Study
-
-    with Progress(sys.stderr) as progress:
-        study = Study(report_folder(options.folder), step=progress)
+    with studied(options.folder) as study:
         told = study.kept("why", lambda: _told(study, options.cell), options.cell)
     print(told)
     return OK
