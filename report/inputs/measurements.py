@@ -162,126 +162,218 @@ def read_measurements(
     table = read_table(source, list(required.values()), findings, semicolons=True)
     if table is None:
         return None
-    heads = [read_head(table, field, columns, findings) for field in table.header]
-    names = [head.name if head else "" for head in heads]
-    # Where rows are called specimens, a column 'specimen' has their numbers, or else their names.
-    numbers = [is_number(row.fields[names.index(called)].text) for row in table.rows if called in names]
-    has_names = bool(numbers) and not any(numbers)
-    if "test" not in names and called not in columns and not has_names:
-        names = ["test" if name == called else name for name in names]
-    names = [_not_here(table, n, name, elsewhere, findings) for n, name in enumerate(names)]
-    remarks: tuple[str, ...] = ()
-    if measured is None:
-        if "test" not in names:
-            return None  # its rows may be called as the workbook says, which is not known
-        places = {"test": names.index("test")}
-    else:
-        optional = [*(f"u({name})" for name in columns), LEFT_OUT]
-        if "test" not in names:  # rows are numbered as they stand
-            del required["test"]
-            optional += {"test": None} if has_names else {"test": None, called: None}
-        known = [*([] if has_names else [called]), *required, *optional, *elsewhere, *groups]
-        remarks = tuple(_remarks(table, heads, names, known, groups))
-        required |= {name: name for name in groups}
-        places = match_columns(table, names, required, [*optional, *remarks], findings, {"test": called})
-    tests = tuple(range(1, len(table.rows) + 1))
-    if "test" in places:
-        tests = _tests(table, places["test"], findings)
-    reasons = [row.fields[places[LEFT_OUT]] for row in table.rows] if LEFT_OUT in places else []
+    reading = _Reading(source, table, columns, findings, called, groups)
+    reading.find(None if measured is None else required, elsewhere)
+    if measured is None and "test" not in reading.places:
+        return None  # its rows may be called as the workbook says, which is not known
+    tests, reasons = reading.tests(), reading.fields(LEFT_OUT)
     gone = {place for place, reason in enumerate(reasons) if reason.text}
-    total = table.total - len(gone)
-    if total < 2:
-        count = (f"no {called}" if total == 0 else f"one {called} only") + " that is not left out" * bool(
-            gone
-        )
-        at = table.end_of_header() if table.total == 0 else _last(table)
-        findings.add("LS310", at, count=count, row=called)
+    reading.count(len(gone))
+    near = reading.alike(tests)
     used = [row for place, row in enumerate(table.rows) if place not in gone]
-    near: list[Alike] = []
-    for name in (name for name in groups if name in places):
-        fields = [row.fields[places[name]] for row in table.rows]
-        _check_words(table, fields, name, findings)
-        if len(tests) == len(fields):
-            near += _alike(table, dict(zip(tests, fields, strict=True)), name, findings)
-    values: dict[str, tuple[Printed | None, ...]] = {}
-    units: dict[str, str] = {}
-    of_u: dict[str, ParsedUnit | None] = {}
-    for name, column in columns.items():
-        head, unit = read_unit(table, heads, places.get(name), column, findings)
-        head_of_u, of_u[name] = read_unit(table, heads, places.get(f"u({name})"), column, findings)
-        for each in (head, head_of_u):
-            if each is not None and each.unit is not None:
-                units[each.name] = each.unit.strip() or "1"  # empty brackets: a pure number
-        if name in places:
-            mode = modes.get(name, "rounded")
-            read: list[Printed | None] = []
-            for row in used:
-                if findings.full:
-                    break
-                cell = row.fields[places[name]]
-                beside = row.fields[places[f"u({name})"]] if f"u({name})" in places else None
-                printed = None
-                if cell.text or (beside is not None and beside.text):
-                    at, where = table.at(cell), source.trace(cell.offset)
-                    printed = read_value(
-                        cell.text, unit, column, at, findings, mode=mode, where=where, if_empty=_ONLY_U
-                    )
-                    if beside is not None:
-                        given = _uncertainty(table, beside, name, of_u[name], findings)
-                        printed = printed and _with(
-                            table, cell, printed, name, given, source.trace(beside.offset), findings
-                        )
-                read.append(printed)
-            values[name] = tuple(read)
+    values = reading.values(used, modes)
     if len(findings.found) > before:
         return None
-    _refuse_nothing(table, used, {name: places[name] for name in values}, columns, findings)
+    reading.refuse_nothing(used, list(values))
     if len(findings.found) > before:
         return None
     taken = tuple(test for place, test in enumerate(tests) if place not in gone)
-    named = {name: place for name, place in places.items() if name not in ("test", LEFT_OUT)}
-
-    def texts(row: CsvRow) -> dict[str, str]:
-        return {name: row.fields[place].text for name, place in named.items()}
-
-    def stated(row: CsvRow) -> dict[str, tuple[Error, ...] | None]:
-        # Nothing in a row that is left out is wrong: what is found of it, nobody hears.
-        given = {name: row.fields[named[f"u({name})"]] for name in columns if f"u({name})" in named}
-        us = {name: _uncertainty(table, each, name, of_u[name], Findings()) for name, each in given.items()}
-        return {name: _known(name, u) for name, u in us.items()}
-
     left_out = tuple(
-        LeftOut(
-            tests[row],
-            reasons[row].text,
-            texts(table.rows[row]),
-            stated(table.rows[row]),
-            row,
-            table.at(reasons[row]),
-        )
-        for row in sorted(gone)
+        LeftOut(tests[n], reasons[n].text, *reading.as_it_stands(table.rows[n]), n, table.at(reasons[n]))
+        for n in sorted(gone)
     )
-    lines = dict(zip(taken, map(texts, used), strict=True))
-    first = {name: table.header[place].text for name, place in places.items()}
-    return Measurements(taken, values, units, left_out, first, lines, remarks, tuple(near))
+    lines = dict(zip(taken, map(reading.texts, used), strict=True))
+    first = {name: table.header[place].text for name, place in reading.places.items()}
+    units = {each.name: (each.unit or "").strip() or "1" for each in reading.with_units}
+    return Measurements(taken, values, units, left_out, first, lines, reading.remarks, near)
 
 
-def _refuse_nothing(
-    table: CsvTable,
-    rows: Sequence[CsvRow],
-    places: Mapping[str, int],
-    columns: Mapping[str, Measured],
-    findings: Findings,
-) -> None:
-    """Refuse columns and rows without any number: a cell may be empty, as long as others are not."""
-    for name, place in places.items():
-        if not any(row.fields[place].text for row in rows):
-            allowed, at = f"a number ({columns[name].meaning})", table.at(rows[0].fields[place])
-            findings.add("LS403", at, name=name, allowed=allowed, suggestion=_NOWHERE)
-    for row in rows if places else ():
-        if not any(row.fields[place].text for place in places.values()):
-            allowed, at = "a number in one column at least", table.at(row.fields[min(places.values())])
-            findings.add("LS403", at, name="the row", allowed=allowed, suggestion=_GAP)
+@dataclass
+class _Reading:
+    """A table as it is read: where its columns stand, and all that is wrong with them."""
+
+    source: Source
+    table: CsvTable
+    columns: Mapping[str, Measured]
+    findings: Findings
+    called: str
+    groups: Collection[str]
+
+    def __post_init__(self) -> None:
+        """Read the first line."""
+        read = (read_head(self.table, each, self.columns, self.findings) for each in self.table.header)
+        self.heads = list(read)
+        self.places: Mapping[str, int] = {}
+        self.remarks: tuple[str, ...] = ()
+        self.of_u: dict[str, ParsedUnit | None] = {}
+        self.with_units: list[ColumnHead] = []
+
+    def find(self, required: dict[str, str] | None, elsewhere: Collection[str]) -> None:
+        """Find the columns; without a workbook, only that of the tests' numbers is known."""
+        called, names = self.called, [head.name if head else "" for head in self.heads]
+        # Where rows are called specimens, a column 'specimen' has their numbers, or else their names.
+        numbers = [
+            is_number(row.fields[names.index(called)].text) for row in self.table.rows if called in names
+        ]
+        has_names = bool(numbers) and not any(numbers)
+        if "test" not in names and called not in self.columns and not has_names:
+            names = ["test" if name == called else name for name in names]
+        names = [self._here(n, name, elsewhere) for n, name in enumerate(names)]
+        if required is None:
+            self.places = {"test": names.index("test")} if "test" in names else {}
+            return
+        optional = [*(f"u({name})" for name in self.columns), LEFT_OUT]
+        if "test" not in names:  # rows are numbered as they stand
+            del required["test"]
+            optional += ["test"] if has_names else list(dict.fromkeys(("test", called)))
+        known = [*([] if has_names else [called]), *required, *optional, *elsewhere, *self.groups]
+        self.remarks = tuple(self._remarks(names, known))
+        required |= {name: name for name in self.groups}
+        optional += self.remarks
+        self.places = match_columns(self.table, names, required, optional, self.findings, {"test": called})
+
+    def _here(self, place: int, name: str, elsewhere: Collection[str]) -> str:
+        """The name in a field of the first line; none, with a finding, where its column is taken."""
+        of = name.removeprefix("u(").removesuffix(")")
+        if of not in elsewhere:
+            return name
+        hint = f"leave out this column, or what [measurements.taken] says of {of}"
+        code = "LS317" if of == name else "LS433"
+        self.findings.add(code, self.table.at(self.table.header[place]), name=of, suggestion=hint)
+        return ""
+
+    def _remarks(self, names: Sequence[str], known: Collection[str]) -> Iterator[str]:
+        """The columns of words, by which rows belong together or that only come along.
+
+        The latter have no unit and no misspelt name of another.
+        """
+        for place, (head, name) in enumerate(zip(self.heads, names, strict=True)):
+            if name in self.groups:
+                yield name
+                continue
+            if head is None or head.unit is not None or not name or close(name, known):
+                continue
+            if _EXCLUDING.fullmatch(name):
+                continue  # whoever wrote it thinks that its rows take no part
+            texts = [row.fields[place].text for row in self.table.rows]
+            if any(text and not is_number(text) for text in texts):
+                yield name
+
+    def fields(self, name: str) -> list[Field]:
+        """What stands in a column; nothing, if there is none."""
+        return [row.fields[self.places[name]] for row in self.table.rows] if name in self.places else []
+
+    def tests(self) -> tuple[int, ...]:
+        """The numbers of the tests: those of their column, or of the rows as they stand."""
+        if "test" not in self.places:
+            return tuple(range(1, len(self.table.rows) + 1))
+        lines: dict[int, int | None] = {}
+        called = self.table.header[self.places["test"]].text
+        for each in self.fields("test"):
+            at, text = self.table.at(each), each.text
+            if not text:
+                self.findings.add("LS403", at, name=called, allowed="a positive whole number", suggestion="")
+            elif not _TEST.fullmatch(text):
+                self.findings.add("LS312", at, text=text)
+            elif int(text) in lines:
+                self.findings.add("LS311", at, name=called, text=text, first=lines[int(text)])
+            else:
+                lines[int(text)] = at.line
+        return tuple(lines)
+
+    def count(self, gone: int) -> None:
+        """Refuse a table with less than two rows that are not left out."""
+        table = self.table
+        if (total := table.total - gone) >= 2:
+            return
+        said = f"no {self.called}" if total == 0 else f"one {self.called} only"
+        at = table.at(table.rows[-1].fields[0]) if table.rows else table.end_of_header()
+        said += " that is not left out" * bool(gone)
+        self.findings.add("LS310", at, count=said, row=self.called)
+
+    def alike(self, tests: Sequence[int]) -> tuple[Alike, ...]:
+        """Words that may be others misspelt, of all columns of words by which rows belong together."""
+        near: list[Alike] = []
+        for name in (name for name in self.groups if name in self.places):
+            fields = self.fields(name)
+            _check_words(self.table, fields, name, self.findings)
+            if len(tests) == len(fields):
+                near += _alike(self.table, dict(zip(tests, fields, strict=True)), name, self.findings)
+        return tuple(near)
+
+    def values(
+        self, rows: Sequence[CsvRow], modes: Mapping[str, str]
+    ) -> dict[str, tuple[Printed | None, ...]]:
+        """The numbers of all columns in some rows."""
+        found = {}
+        for name, column in self.columns.items():
+            unit, self.of_u[name] = (self._unit(each, column) for each in (name, f"u({name})"))
+            if name in self.places:
+                mode = modes.get(name, "rounded")
+                read = (self._value(row, column, unit, mode) for row in rows if not self.findings.full)
+                found[name] = tuple(read)
+        return found
+
+    def _unit(self, name: str, column: Measured) -> ParsedUnit | None:
+        head, unit = read_unit(self.table, self.heads, self.places.get(name), column, self.findings)
+        if head is not None and head.unit is not None:
+            self.with_units.append(head)  # empty brackets: a pure number
+        return unit
+
+    def _value(self, row: CsvRow, column: Measured, unit: ParsedUnit | None, mode: str) -> Printed | None:
+        """A cell, with the uncertainty that its row says."""
+        name = column.name
+        cell, beside = row.fields[self.places[name]], self._beside(row, name)
+        if not cell.text and (beside is None or not beside.text):
+            return None
+        at, where = self.table.at(cell), self.source.trace(cell.offset)
+        printed = read_value(
+            cell.text, unit, column, at, self.findings, mode=mode, where=where, if_empty=_ONLY_U
+        )
+        if beside is None:
+            return printed
+        u = _uncertainty(self.table, beside, name, self.of_u[name], self.findings)
+        if printed is None:
+            return None
+        if printed.stated is not None:
+            hint = f"leave out the column u({name}), or what stands in parentheses"
+            self.findings.add("LS433", at, name=name, suggestion=hint)
+        return replace(printed, stated=_known(name, u, self.source.trace(beside.offset)))
+
+    def _beside(self, row: CsvRow, name: str) -> Field | None:
+        """The field of its uncertainty."""
+        place = self.places.get(f"u({name})")
+        return None if place is None else row.fields[place]
+
+    def refuse_nothing(self, rows: Sequence[CsvRow], names: Sequence[str]) -> None:
+        """Refuse columns and rows without any number: a cell may be empty, as long as others are not."""
+        places = {name: self.places[name] for name in names}
+        for name, place in places.items():
+            if not any(row.fields[place].text for row in rows):
+                allowed, at = f"a number ({self.columns[name].meaning})", self.table.at(rows[0].fields[place])
+                self.findings.add("LS403", at, name=name, allowed=allowed, suggestion=_NOWHERE)
+        for row in rows if places else ():
+            if not any(row.fields[place].text for place in places.values()):
+                at = self.table.at(row.fields[min(places.values())])
+                allowed = "a number in one column at least"
+                self.findings.add("LS403", at, name="the row", allowed=allowed, suggestion=_GAP)
+
+    def texts(self, row: CsvRow) -> dict[str, str]:
+        """What stands in a row, but for its number and why it is left out."""
+        named = ((name, place) for name, place in self.places.items() if name not in ("test", LEFT_OUT))
+        return {name: row.fields[place].text for name, place in named}
+
+    def as_it_stands(self, row: CsvRow) -> tuple[dict[str, str], dict[str, tuple[Error, ...] | None]]:
+        """The texts of a row that is left out, and what is stated of its numbers.
+
+        Nothing in it is wrong: what is found of it, nobody hears.
+        """
+        given = ((name, self._beside(row, name)) for name in self.columns)
+        return self.texts(row), {
+            name: _known(name, _uncertainty(self.table, each, name, self.of_u[name], Findings()))
+            for name, each in given
+            if each is not None
+        }
 
 
 def _check_words(table: CsvTable, fields: Sequence[Field], name: str, findings: Findings) -> None:
@@ -309,46 +401,6 @@ def _alike(table: CsvTable, fields: Mapping[int, Field], name: str, findings: Fi
         Alike(name, word, tuple(rows[word]), other, tuple(rows[other]), table.at(fields[rows[word][0]]))
         for word, other in alike(rows)
     )
-
-
-def _remarks(
-    table: CsvTable,
-    heads: Sequence[ColumnHead | None],
-    names: Sequence[str],
-    known: Collection[str],
-    groups: Collection[str],
-) -> Iterator[str]:
-    """The columns of words, by which rows belong together or that only come along.
-
-    The latter have no unit and no misspelt name of another.
-    """
-    for place, head in enumerate(heads):
-        if names[place] in groups:
-            yield names[place]
-            continue
-        if head is None or head.unit is not None or not names[place] or close(names[place], known):
-            continue
-        if _EXCLUDING.fullmatch(names[place]):
-            continue  # whoever wrote it thinks that its rows take no part
-        texts = [row.fields[place].text for row in table.rows]
-        if any(text and not is_number(text) for text in texts):
-            yield names[place]
-
-
-def _not_here(table: CsvTable, place: int, name: str, elsewhere: Collection[str], findings: Findings) -> str:
-    """The name in a field of the first line; none, with a finding, where it is of a column that is taken."""
-    of = name.removeprefix("u(").removesuffix(")")
-    if of not in elsewhere:
-        return name
-    hint = f"leave out this column, or what [measurements.taken] says of {of}"
-    code = "LS317" if of == name else "LS433"
-    findings.add(code, table.at(table.header[place]), name=of, suggestion=hint)
-    return ""
-
-
-def _last(table: CsvTable) -> Location:
-    row = table.rows[-1] if table.rows else None
-    return table.at(row.fields[0]) if row else table.end_of_header()
 
 
 def read_head(
@@ -428,25 +480,6 @@ def read_unit(
     return head, unit
 
 
-def _tests(table: CsvTable, place: int, findings: Findings) -> tuple[int, ...]:
-    lines: dict[int, int | None] = {}
-    called = table.header[place].text
-    for row in table.rows:
-        field = row.fields[place]
-        if not field.text:
-            findings.add(
-                "LS403", table.at(field), name=called, allowed="a positive whole number", suggestion=""
-            )
-        elif not _TEST.fullmatch(field.text):
-            findings.add("LS312", table.at(field), text=field.text)
-        elif int(field.text) in lines:
-            first = lines[int(field.text)]
-            findings.add("LS311", table.at(field), name=called, text=field.text, first=first)
-        else:
-            lines[int(field.text)] = table.at(field).line
-    return tuple(lines)
-
-
 def _uncertainty(
     table: CsvTable, field: Field, name: str, unit: ParsedUnit | None, findings: Findings
 ) -> Fraction | None:
@@ -461,22 +494,6 @@ def _uncertainty(
         findings.add("LS407", table.at(field), name=f"u({name})", text=field.text)
         return None
     return u.value - u.zero
-
-
-def _with(
-    table: CsvTable,
-    field: Field,
-    printed: Printed,
-    name: str,
-    u: Fraction | None,
-    where: str,
-    findings: Findings,
-) -> Printed:
-    """A number with the standard uncertainty of its column, of which it says nothing itself."""
-    if printed.stated is not None:
-        hint = f"leave out the column u({name}), or what stands in parentheses"
-        findings.add("LS433", table.at(field), name=name, suggestion=hint)
-    return replace(printed, stated=_known(name, u, where))
 
 
 def _known(name: str, u: Fraction | None, where: str = "") -> tuple[Error, ...] | None:
