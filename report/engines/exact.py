@@ -32,7 +32,7 @@ from .isolation import Doubtful
 from .kernels import Enclosing, function_of
 from .numpy_loop import ENOUGH, MOST
 
-__all__ = ["DIGITS", "ExactValues", "evaluate", "laid_out"]
+__all__ = ["DIGITS", "ExactValues", "as_mpf", "evaluate", "laid_out"]
 
 DIGITS = 50
 _GUARD = 15
@@ -118,6 +118,11 @@ def _datum(value: Any, bounds: Bounds) -> Any:
         return mpmath.nan  # no double holds it: it is no datum to the other engines either
     if value is None or not bounds.allow(value if isinstance(value, Fraction) else float(value)):
         return mpmath.nan
+    return as_mpf(value)
+
+
+def as_mpf(value: float | Fraction) -> Any:
+    """A number as it is: a fraction is one of whole numbers."""
     if isinstance(value, Fraction):
         return mpmath.mpf(value.numerator) / value.denominator
     return mpmath.mpf(value)

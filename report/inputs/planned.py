@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from ...derivations.unit_text import parse_unit
 from ..messages.errors import Findings, Location, listing, suggest
 from .number_text import read_unit_of, read_value
-from .stated import Of, StatementError, read_statement
+from .stated import Of, StatementError, read_statement, split
 from .taken import alone
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def read_numbers(text: str, option: str, mark: str, like: Declared, unit: str) -
     """
     findings, found = Findings(), []
     parts = []
-    for part, start in _split(text, mark):
+    for part, start in split(text, mark):
         match = _NUMBER.fullmatch(part)
         number, own = (match["number"], match["unit"]) if match and match["number"] else (part, "")
         parts.append((number, own, start, start + len(part) - len(own)))
@@ -215,17 +215,10 @@ def _like(printed: Printed, value: float) -> Printed:
     return replace(printed, text=text, value=Fraction(value), where="")
 
 
-def _split(text: str, mark: str) -> Iterator[tuple[str, int]]:
-    start = 0
-    for part in text.split(mark):
-        yield part.strip(), start + len(part) - len(part.lstrip())
-        start += len(part) + len(mark)
-
-
 def _statements(text: str, names: Sequence[str]) -> Iterator[tuple[str, str, int, int]]:
     """Name, statement, and where both begin; what names nothing goes on with what was named before."""
     name, said, begin, start = "", "", 0, 0
-    for part, at in _split(text, ";"):
+    for part, at in split(text, ";"):
         named = _NAMED.match(part)
         if named and (named["name"] in names or not name or named["name"] not in _WORDS):
             if name:

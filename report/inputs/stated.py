@@ -41,6 +41,7 @@ __all__ = [
     "StatementError",
     "covariance",
     "read_statement",
+    "split",
 ]
 
 EXAMPLE = "U = 0.03, k = 2"
@@ -246,7 +247,7 @@ def read_statement(text: str, unit: ParsedUnit, bare: Shape | None = None, of: O
     if text.strip() == "exact":
         return StatedErrors(())
     parts = []
-    for part, start in _split(text, ";"):
+    for part, start in split(text, ";"):
         read = _scatter(of.numbers, start) if part == SCATTER else _part(part, start, unit, bare, of)
         if why := next(filter(None, map(read.why_not, of.numbers)), ""):
             raise StatementError("LS431", part, start, why)
@@ -270,16 +271,16 @@ def covariance(one: Sequence[Printed], other: Sequence[Printed]) -> Fraction:
     return sum(products, Fraction(0)) / (len(one) - 1)
 
 
-def _split(text: str, mark: str) -> Iterator[tuple[str, int]]:
+def split(text: str, mark: str) -> Iterator[tuple[str, int]]:
     """The parts of a text between marks, without space around them, and where each begins."""
     start = 0
     for part in text.split(mark):
         yield part.strip(), start + len(part) - len(part.lstrip())
-        start += len(part) + 1
+        start += len(part) + len(mark)
 
 
 def _part(text: str, start: int, unit: ParsedUnit, bare: Shape | None, of: Of) -> _Part:
-    (first, _), *others = [(field, start + place) for field, place in _split(text, ",")]
+    (first, _), *others = [(field, start + place) for field, place in split(text, ",")]
     begin = _NAMED.match(first)
     name = begin["name"] if begin else ""
     if text == _EXPONENTIAL or name == "samples":
@@ -448,7 +449,7 @@ def _keys(fields: list[tuple[str, int]], allowed: set[str]) -> Iterator[tuple[st
 def _amount(text: str, start: int, unit: ParsedUnit) -> tuple[Fraction, Fraction, Fraction]:
     """A size as a sum: in SI, as a share of the value, and in units of the last digit."""
     absolute = relative = digits = Fraction(0)
-    for term, place in _split(text, "+"):
+    for term, place in split(text, "+"):
         at = start + place
         match = _TERM.fullmatch(term)
         try:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import importlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from typing import Any
 
 import mpmath
@@ -134,8 +133,8 @@ class Judge:
                 tally.differs(place, codes[row], CODES[status])
             elif true is not None and number is not None:
                 # Of what a file has cut, nothing is the engine's fault.
-                lost = _number(reading.rounded[name][row]) if name in reading.rounded else 0
-                difference = max(abs(_number(number) - true) - lost, 0)
+                lost = exact.as_mpf(reading.rounded[name][row]) if name in reading.rounded else 0
+                difference = max(abs(exact.as_mpf(number) - true) - lost, 0)
                 tally.add(place, difference, float(self.bounds[name][row]), scale)
 
 
@@ -183,13 +182,6 @@ class _Tally:
 def _addresses(values: Values, column: Column) -> list[str]:
     labels = values.labels(column)
     return [Cell(column.name, label, None, Status.OK).address for label in labels]
-
-
-def _number(value: float | Fraction) -> Any:
-    """A number as it is: a fraction is one of whole numbers."""
-    if isinstance(value, Fraction):
-        return mpmath.mpf(value.numerator) / value.denominator
-    return mpmath.mpf(value)
 
 
 def compare(values: Values, labels: Mapping[str, Sequence[int]], exact_data: Mapping[str, Any]) -> Agreement:
