@@ -90,39 +90,16 @@ class DeclaredFit:
     ) -> None:
         self._of, self.given = of, dict[str, int]()
         self._axis, self._known, self._model, self._observed = axis, known, model, known[name_of(observed)]
-        if not sought:
-            raise SheetError(f"the model of {name} names no unknown: write a = unknown('...') above", name)
-        own_words = {"s", "S", "fitted", "residual", *(f"s_{each}" for each in sought)}
-        for each in sorted(own_words & {str(each) for each in sought}):
-            raise SheetError(f"{each} is a word of the fit {name} itself: call the parameter otherwise", each)
-        stated: list[Column] = []
-        if isinstance(u, str):
-            if u != STATED:
-                raise SheetError(f"{name}: u is a formula, or 'stated', not {u!r}", name)
-            if not isinstance(self._observed.rule, Given):
-                raise SheetError(
-                    f"{name}: nothing is stated of {self._observed.name}, which is computed: give a formula "
-                    "of its standard uncertainties instead of 'stated', or leave u out",
-                    name,
-                )
-            stated = [_stated(self._observed)]
-            u = stated[0].cell
+        _refuse_names(name, sought)
+        stated = [_stated(self._observed)] if self._is_stated(name, u) else []
+        u = stated[0].cell if stated else u
         words = {each: said.meaning or str(each) for each, said in sought.items()}
         rows = f"of the {axis.size_name} {axis.name} of each {of.row}" if of else ""
         self._fit = fit = LeastSquares(
             name, observed, model, self._observed.meaning, words, u, axis.index, axis.size, number, own, rows
         )
-        if of and not fit.linear:
-            raise SheetError(
-                f"the model of {name} is not linear: of each {of.row} there are fits of linear models alone",
-                name,
-            )
-        lost = [str(each) for each, said in sought.items() if said.start is None and not fit.linear]
-        if lost:
-            raise SheetError(
-                f"the model of {name} is not linear: say where to begin, {lost[0]} = unknown(..., start=...)",
-                name,
-            )
+        if not fit.linear:
+            _refuse_curved(name, sought, of)
         self.entries, self.aside = tuple(fit.entries), tuple(part.name for part in fit.helpers)
         self.aside += tuple(column.name for column in stated)
         self.curve = Curve(
@@ -137,26 +114,40 @@ class DeclaredFit:
         self._latex = self._printed([made[str(each)] for each in sought])
         parts = (*fit.results, *fit.helpers)
         for part in _in_turn(parts, () if fit.linear else map(str, sought)):
-            column = made.get(part.name) or self._blank(part)
-            if part.step is not None:
-                start = sought[part.cell].start
-                rule: Any = Iterated(
-                    part.equation.at({part.equation.sides[0]: Integer(0)}), part.step, start, NONE
-                )
-                made[part.name] = replace(column, rule=rule)
-                continue
-            equation, needs = part.equation, part.needs
-            if of:
-                put = self._put(*equation.members, *(condition for condition, _ in needs))
-                equation = equation.at(put)
-                needs = tuple((condition.xreplace(put), says) for condition, says in needs)
-            column = replace(column, rule=Formula(equation), requires=needs)
-            made[part.name] = replace(column, unit=column.unit or named_unit_of({**known, **made}, column))
+            start = None if part.step is None else sought[part.cell].start
+            made[part.name] = self._computed(part, made, start)
         # Another fit of the same column may have declared them.
         new = [column for column in stated if known.get(column.name) != column]
         self.columns = (*new, *(made[part.name] for part in parts))
         self._rows = made[fit.names["fitted"]], made[fit.names["residual"]]
         self.letters = tuple(part.name for part in parts if part.latex)
+
+    def _is_stated(self, name: str, u: Any) -> bool:
+        """Whether rows are weighed by what is stated of the observed, of which something can be stated."""
+        if not isinstance(u, str):
+            return False
+        if u != STATED:
+            raise SheetError(f"{name}: u is a formula, or 'stated', not {u!r}", name)
+        if not isinstance(self._observed.rule, Given):
+            raise SheetError(
+                f"{name}: nothing is stated of {self._observed.name}, which is computed: give a formula "
+                "of its standard uncertainties instead of 'stated', or leave u out",
+                name,
+            )
+        return True
+
+    def _computed(self, part: FitQuantity, made: Mapping[str, Column], start: Expr | None) -> Column:
+        """The column of a part, by its formula or by the steps from a start."""
+        column, equation, needs = made.get(part.name) or self._blank(part), part.equation, part.needs
+        if part.step is not None:
+            first = equation.at({equation.sides[0]: Integer(0)})
+            return replace(column, rule=Iterated(first, part.step, start, NONE))
+        if self._of:
+            put = self._put(*equation.members, *(condition for condition, _ in needs))
+            equation = equation.at(put)
+            needs = tuple((condition.xreplace(put), says) for condition, says in needs)
+        column = replace(column, rule=Formula(equation), requires=needs)
+        return replace(column, unit=column.unit or named_unit_of({**self._known, **made}, column))
 
     def __getattr__(self, name: str) -> Expr:
         """The cell of one of its quantities."""
@@ -259,6 +250,29 @@ class DeclaredFit:
             said = f"{up.meaning} over {over.meaning}{with_it}"
             chart = Chart(said, over.meaning, up.meaning, (points(up), *more), whole=True)
             yield FigureSpec(f"plot_{n}", str(n), f"{sentence_case(said)}.", chart=chart)
+
+
+def _refuse_names(name: str, sought: Mapping[Symbol, Any]) -> None:
+    """Refuse a fit of nothing, and parameters that are called as what a fit has."""
+    if not sought:
+        raise SheetError(f"the model of {name} names no unknown: write a = unknown('...') above", name)
+    own_words = {"s", "S", "fitted", "residual", *(f"s_{each}" for each in sought)}
+    for each in sorted(own_words & {str(each) for each in sought}):
+        raise SheetError(f"{each} is a word of the fit {name} itself: call the parameter otherwise", each)
+
+
+def _refuse_curved(name: str, sought: Mapping[Symbol, Any], of: GroupAxis | None) -> None:
+    """Refuse a model that is not linear where nothing says from where its parameters are sought."""
+    if of:
+        raise SheetError(
+            f"the model of {name} is not linear: of each {of.row} there are fits of linear models alone", name
+        )
+    lost = [str(each) for each, said in sought.items() if said.start is None]
+    if lost:
+        raise SheetError(
+            f"the model of {name} is not linear: say where to begin, {lost[0]} = unknown(..., start=...)",
+            name,
+        )
 
 
 def told_apart(columns: Iterable[Column], fits: Sequence[DeclaredFit]) -> tuple[Column, ...]:
