@@ -12,6 +12,7 @@ import pytest
 from scipy.special import stdtrit
 
 from loopsheet.report.distribution import Shape
+from loopsheet.report.engines.javascript import RUNTIME
 from loopsheet.report.uncertainty.convolution import Convolved, _Part
 from loopsheet.report.views.writer import TEMPLATES
 
@@ -26,7 +27,8 @@ InNode = Callable[[str], list[float]]
 @pytest.fixture(scope="session")
 def in_node(require: Callable[..., str]) -> InNode:
     """The numbers that a line of JavaScript makes of the functions of the page."""
-    functions = (TEMPLATES / "live" / "coverage.js").read_text(encoding="utf-8")
+    functions = RUNTIME.read_text(encoding="utf-8")
+    functions += (TEMPLATES / "live" / "coverage.js").read_text(encoding="utf-8")
 
     def run(line: str) -> list[float]:
         script = f"{functions}\nconsole.log(JSON.stringify({line}));"

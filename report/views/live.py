@@ -61,6 +61,7 @@ SCRIPTS = (
     "files.js",
     "keep.js",
     "monte_carlo.js",
+    "figures.js",
     "panel.js",
     "main.js",
 )

@@ -74,6 +74,7 @@ function sums(kept, terms) {
 
 // The roots of a form in an interval, each between two points where its sign is certain. A part is settled where
 // the form is certainly not zero, or its slope is not; any other is halved. First null where that fails, then the place.
+// The parts of a program's first sheet are kept in `seen`: mostly they are settled in its others, too.
 function isolate(root, row, low, high, told) {
   const look = (a, b) => {
     const [f, slope] = root.enclose(row, [a, b]);
@@ -91,7 +92,9 @@ function isolate(root, row, low, high, told) {
       cut(mid, b, n - 1);
     }
   };
-  if (low < high) cut(low, high, 48);
+  const kept = root.seen[row], ends = kept?.[0] === low && kept.at(-1) === high ? kept : [low, high];
+  if (low < high) for (let n = 1; n < ends.length; n++) cut(ends[n - 1], ends[n], 48);
+  root.seen[row] ??= [low, ...parts.map(([, b]) => b)];
   for (const [a, b, s, slope] of [...parts, [high, high, last, 0]]) {
     if (!s && slope && way * slope >= 0) {
       way = slope;

@@ -161,6 +161,7 @@ function evaluateSheet(program, labels, inputs) {
     }
     const kernels = column[what](value, layouts, sizes, keep), { requires } = kernels, { positive } = column, unknown = [];
     sheet.kept[name] = { sizes, keep, unknown };
+    kernels.seen = ((program.seen ??= {})[name] ??= []);
     for (let row = 0; requires && row < size; row++) {
       // What breaks a condition is outside the domain, whatever the rule would make of it.
       const failed = codes[row] ? 0 : requires(row).indexOf(false) + 1;

@@ -56,10 +56,10 @@ function fillSure(look, name, row) {
     return;
   }
   const [, u, factor, expanded] = known.texts, behind = () => (unit === "1" ? [] : ["\u00a0", ...part(name, "unit")]);
-  const from = known.from.slice(0, MOST_SOURCES).map(({ called, share, moves }) => {
-    const bar = make("i", { class: "share" }), goto = moves.length > 1 ? null : look.trace.address(...moves[0]);
+  const from = estimates(look, known.from).slice(0, MOST_SOURCES).map(({ called, rows, share, goto }) => {
+    const bar = make("i", { class: "share" });
     bar.style.width = `${Math.round(60 * Math.abs(share))}px`;
-    return make(goto ? "button" : "span", { type: goto && "button", "data-goto": goto }, make("code", {}, called), ` ${percent(share)} `, bar);
+    return make(goto ? "button" : "span", { type: goto && "button", "data-goto": goto }, make("code", {}, called), `${rows} ${percent(share)} `, bar);
   });
   const wide = expanded ? [`, U = ${expanded}`, ...behind(), ` with k = ${factor} for 95\u00a0%`, ...(doubt ? [`; ${doubt}`] : [])] : [];
   fillLine("bar-sure", make("span", { class: "says" }, "sure to"), `u = ${u}`, ...behind(), ...wide, ...from);

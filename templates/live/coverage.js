@@ -1,5 +1,5 @@
 // How far to both sides 95 % of an error are: of a t distribution, and of a sum of errors of several kinds.
-// Nothing in this file knows the page.
+// Nothing in this file knows the page; what finds the only root of a column finds these.
 
 const sum = (numbers) => numbers.reduce((all, one) => all + one, 0);
 
@@ -25,7 +25,7 @@ function summedFactor(errors) {
     waves.push(2 * average / (n * Math.PI));
   }
   const within = (x) => x / reach + sum(waves.map((wave, n) => wave * Math.sin((n + 1) * Math.PI * x / reach)));
-  return between(0, reach, (x) => within(x) < 0.95);
+  return bisect({ at: (_, x) => within(x) - 0.95 }, 0, 0, reach, 1);
 }
 
 // The average of cos(frequency * error), of one that has ends, is normal, or t: normal with a variance that nobody knows.
@@ -49,12 +49,6 @@ function bessel(x) {
 
 const mean = (number, of) => sum(Array.from({ length: number }, (_, n) => of((n + 0.5) / number))) / number;
 
-// Where something ceases to hold.
-function between(low, high, holds) {
-  while (high - low > 1e-13 * high) [low, high] = holds((low + high) / 2) ? [(low + high) / 2, high] : [low, (low + high) / 2];
-  return low;
-}
-
 // Half of what holds 95 % of a t distribution: with t = sqrt(freedom) tan(angle) it is an integral of a power of the cosine.
 function studentFactor(freedom) {
   if (Number.isNaN(freedom)) return NaN;
@@ -65,5 +59,5 @@ function studentFactor(freedom) {
     return all;
   };
   const wanted = 0.95 * upTo(Math.PI / 2);
-  return Math.sqrt(freedom) * Math.tan(between(0, Math.PI / 2, (angle) => upTo(angle) < wanted));
+  return Math.sqrt(freedom) * Math.tan(bisect({ at: (_, angle) => upTo(angle) - wanted }, 0, 0, Math.PI / 2, 1));
 }

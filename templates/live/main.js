@@ -148,6 +148,7 @@ function writePage(look, last) {
 function restore() {
   written = new WeakMap();
   page.places = null;
+  [...pictures.late.keys()].forEach(forget);
   for (const [element, model] of page.kept) become(element, model);
   if (!page.hadMissing) byId("missing")?.remove();
   page.loose = looseCells();
@@ -160,18 +161,6 @@ function refocus(element) {
   const { cell, index, use } = element.dataset;
   const same = cell ? document.querySelector(`main [data-cell="${CSS.escape(cell)}"][data-index="${CSS.escape(index)}"]`) : document.querySelector(`[data-use="${CSS.escape(use)}"]`);
   if (same) enter(same);
-}
-
-// Where nothing is to be drawn, the page has nothing that draws.
-function writeFigures(look) {
-  for (const [name, chart] of Object.entries(LIVE.figures)) {
-    const card = document.querySelector(`#figure-${CSS.escape(name)} .card`);
-    if (!card) continue;
-    const made = drawChart(chart, look);
-    const alt = page.kept.find(([part]) => part === card)[1].firstElementChild.getAttribute("aria-label");
-    if (made) made.svg.setAttribute("aria-label", `${alt} Redrawn after an edit: ${made.says}`);
-    card.replaceChildren(made?.svg ?? make("p", { class: "nothing" }, "Nothing to draw: the cells that it shows have no value."));
-  }
 }
 
 function writeToolbar(edited) {
@@ -211,6 +200,7 @@ function begin() {
   ];
   page.kept = parts.filter((part) => !parts.some((other) => other !== part && other.contains(part))).map((part) => [part, part.cloneNode(true)]);
   page.hadMissing = byId("missing") !== null;
+  for (const figure of all("main figure")) pictures.watcher.observe(figure);
   makeAround();
   listen();
   byId("live-dock").hidden = false;
@@ -222,8 +212,12 @@ function begin() {
   }
   toggleBar(matchMedia("(min-width: 48rem)").matches);
   new ResizeObserver(makeRoom).observe(byId("live-dock"));
-  // A frame later: to ask for widths lays out what was put off, and sizes would change under the observer.
-  new ResizeObserver(() => requestAnimationFrame(letScroll)).observe(byId("main"));
+  // A frame later, or sizes would change under the observer; only for another width, for to ask lays out what was put off.
+  let wide = 0;
+  new ResizeObserver(() => requestAnimationFrame(() => {
+    placePanel();
+    if (wide !== (wide = byId("main").clientWidth)) letScroll();
+  })).observe(byId("main"));
   document.documentElement.dataset.live = "ready";
 }
 
@@ -236,7 +230,6 @@ function makeRoom([entry]) {
 
 // Equations and pictures that are wider than the page are scrolled with the keyboard, too.
 function letScroll() {
-  placePanel();
   const boxes = all("main .eq .scroll, article div, main .card");
   const wide = boxes.map((box) => box.scrollWidth > box.clientWidth || box.scrollHeight > box.clientHeight);
   boxes.forEach((box, n) => (wide[n] ? box.setAttribute("tabindex", "0") : box.removeAttribute("tabindex")));

@@ -22,6 +22,7 @@
 //   #bar-draws[data-u][data-ends][data-lost]          what draws told, in SI; #live-panel span: of the results
 //   #bar-precedents button[data-goto="x_p[2]"], #bar-dependents button[data-goto]
 //   #figure-loops svg, #figure-alpha_pairs svg      drawn again (then of the class picture)
+//   [aria-busy]                       a picture that is not seen, until it is drawn again
 //   #why-NAME-INDEX                   the row that says why a cell has no value
 //   html[data-milliseconds]           how long the last recalculation and redrawing took
 

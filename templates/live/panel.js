@@ -6,7 +6,10 @@ const MOST_DRAWN = 4; // results; of the others, and of the number in the bar, o
 function makePanel() {
   const table = page.tables.find((one) => one.editable), names = LIVE.headline;
   if (!table || !names.length) return;
-  page.panel = make("div", { id: "live-panel", role: "group", "aria-label": "The result while you edit" });
+  // What scrolls stays, and so where it stands: to ask for that would lay out the page in the middle of an edit.
+  const results = make("div", { class: "results", tabindex: 0, "aria-label": "all results" });
+  page.panel = make("div", { id: "live-panel", role: "group", "aria-label": "The result while you edit" }, results);
+  pictures.watcher.observe(page.panel);
   const block = table.element.closest(".table"), around = make("div", { class: "edited-beside" });
   block.before(around);
   around.append(page.panel, block);
@@ -25,14 +28,16 @@ function writePanel(look) {
   });
   const head = make("tr", {}, ...["result", "as issued", LIVE.shared ? "now (u)" : "now"].map((text) => make("th", { scope: "col" }, text)));
   if (LIVE.shared) head.lastChild.append(make("span", {}, `95\u00a0% of ${DRAWS} draws`));
-  // The last of the pictures that is one: those before it show steps on the way.
-  const chart = Object.values(LIVE.figures).findLast(({ panels }) => !panels), picture = chart && drawChart({ ...chart, ...SMALL }, look)?.svg;
-  picture?.setAttribute("aria-hidden", "true"); // the same stands in the report, with words
   // So that there is room for what is edited, more results than some are scrolled to.
-  const results = make("div", { class: "results", tabindex: 0, "aria-label": "all results" }, make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows)));
-  const { scrollTop = 0 } = page.panel.firstChild ?? {};
-  page.panel.replaceChildren(results, ...(picture ? [picture] : []));
-  results.scrollTop = scrollTop;
+  page.panel.firstChild.replaceChildren(make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows)));
+  // The last of the pictures that is one: those before it show steps on the way.
+  const chart = Object.values(LIVE.figures).findLast(({ panels }) => !panels);
+  if (chart) drawIn(page.panel, () => {
+    const picture = drawChart({ ...chart, ...SMALL }, look)?.svg;
+    picture?.setAttribute("aria-hidden", "true"); // the same stands in the report, with words
+    page.panel.querySelector("svg")?.remove();
+    if (picture) page.panel.append(picture);
+  });
 }
 
 // Which results had a value as issued and have none now; if none, which other cells, and so all that needs them.

@@ -5,7 +5,7 @@ const MOVE = 2 ** -10; // in standard uncertainties, to both sides: far enough f
 const BENT = 2 ** -20; // of the change to both sides together: what those to either side may differ by where it is straight
 const LEAST = 2 ** -32; // of a cell: no step is shorter
 const NEAR = 2 ** -17; // of a root: so far from it its form is asked for its slope
-const STILL = 2 ** -40; // of the largest effect: what moves no more is settled
+const STILL = 2 ** -30; // of the largest effect: what moves no more is settled, as far as slopes are known
 const MOST_PASSES = 60; // of columns that rest on one another
 
 // For each column, in SI, what each of the errors does to each of its rows: row by row in one array. There is none where
@@ -51,7 +51,7 @@ function chain(out, effects, known, column, other, sheet, count) {
   const steps = stepsOf(sheet.value[other], effects, count), size = sheet.status[column.name].length;
   if (!known.length) known.push(...movedTogether(column, other, sheet));
   for (const part of known) {
-    if (part.cells.some((cell) => steps[cell] && !(Math.abs(Math.log2(steps[cell] / part.steps?.[cell])) < 3))) askSlopes(part, column, other, steps, sheet);
+    if (part.cells.some((cell) => steps[cell] && !(part.steps?.[cell] < 8 * steps[cell] && steps[cell] < 8 * part.steps[cell]))) askSlopes(part, column, other, steps, sheet);
     for (let row = 0; part.steps && row < size; row++) {
       const slope = part.slopes[row], from = part.cell(row) * count, to = row * count;
       for (let n = 0; slope && n < count; n++) out[to + n] += slope * effects[from + n];

@@ -120,11 +120,8 @@ function writeUncertain(look) {
     const known = row >= 0 && sureOf(look, name, row), shown = row < 0 ? "–" : look.cell(name, row).text;
     const { texts, from } = known || { texts: [shown, "", "", ""], from: [] };
     texts.forEach((text, n) => setText(line.cells[n + 1], text));
-    const most = estimates(from).slice(0, 3).filter(({ share }) => share >= 0.05);
-    line.cells[6].replaceChildren(...most.flatMap(({ own: [one, ...more], share }, n) => {
-      const [[column]] = one.moves, rows = more.length ? ` (${more.length + 1}\u00a0${look.trace.declared[column].axis})` : "";
-      return [n ? ", " : "", make("code", {}, rows ? column : one.called), `${rows}\u00a0${percent(share)}`];
-    }));
+    const most = estimates(look, from).slice(0, 3).filter(({ share }) => share >= 0.05);
+    line.cells[6].replaceChildren(...most.flatMap(({ called, rows, share }, n) => [n ? ", " : "", make("code", {}, called), `${rows}\u00a0${percent(share)}`]));
   }
   for (const told of all(".headline .sure")) {
     const name = told.parentElement.querySelector("[data-cell]").dataset.cell, known = LIVE.shared && sureOf(look, name, 0);
@@ -133,14 +130,18 @@ function writeUncertain(look) {
   }
 }
 
-// Errors of one sample together, as one estimate, the largest sum first.
-function estimates(from) {
+// Errors of one sample together, as one estimate, the largest sum first; with the cell that one moves alone.
+function estimates({ trace }, from) {
   const found = new Map();
   for (const one of from) {
     const key = one.sample ?? `${one.called} alone`;
     found.set(key, [...(found.get(key) ?? []), one]);
   }
-  const told = [...found.values()].map((own) => ({ own, share: sum(own.map(({ share }) => share)) }));
+  const told = [...found.values()].map((own) => {
+    const [{ called, moves: [[column, row], more] }] = own, share = sum(own.map(({ share }) => share));
+    if (own.length > 1) return { called: column, rows: ` (${own.length}\u00a0${trace.declared[column].axis})`, share };
+    return { called, rows: "", share, goto: more ? null : trace.address(column, row) };
+  });
   return told.sort((a, b) => Math.abs(b.share) - Math.abs(a.share));
 }
 

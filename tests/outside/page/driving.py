@@ -110,7 +110,8 @@ _AROUND = """() => {
 
 # When all that waits for the next frame has been done.
 _STATE = """async () => {
-  for (let n = 0; n < 3; n++) await new Promise(requestAnimationFrame);
+  const busy = () => document.querySelector("[aria-busy]");
+  for (let n = 0; n < 3 || busy(); n++) await new Promise(requestAnimationFrame);
   return [document.getElementById("main").innerHTML,
     ...Array.from(document.querySelectorAll("main input"), (input) => `${input.value} ${input.checked}`)];
 }"""
@@ -164,7 +165,12 @@ class Live:
         found: list[str] = self.page.evaluate(_STATE)
         return found
 
+    def drawn(self) -> None:
+        """Wait until all pictures are: those that are not seen are drawn a moment after an edit."""
+        self.page.wait_for_function("() => !document.querySelector('[aria-busy]')")
+
     def paths(self, figure: str) -> list[str]:
+        self.drawn()
         found: list[str] = self.page.eval_on_selector_all(
             f"#figure-{figure} svg path", "paths => paths.map((path) => path.getAttribute('d'))"
         )

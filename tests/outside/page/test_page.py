@@ -92,6 +92,7 @@ def test_a_chart_of_ones_own_is_drawn_again(open_page: Open, tmp_path: Path) -> 
     assert len(first) == len(again) > 5
     assert first != again
     assert not re.search("NaN|Infinity|undefined", "".join(again))
+    live.drawn()
     said = live.page.locator("#figure-orbit svg text").all_text_contents()
     assert {"half a turn after each sighting", "3 sightings", "distance r / Gm", "2", "3", "4"} <= set(said)
 

@@ -127,6 +127,7 @@ def uncertain(live: Live, without: Collection[str] = ()) -> list[str]:
 
 def drawn_again(live: Live, scalars: dict[str, str]) -> None:
     """The numbers in the pictures and in the formula bar have the digits of the tables."""
+    live.drawn()
     said = live.page.locator("#figure-alpha_pairs svg text, #figure-loops svg text").all_text_contents()
     means = [text for text in said if text.startswith("mean ") and "speed" not in text]
     assert means in ([], [f"mean {scalars['alpha_mean']}"])
@@ -207,3 +208,6 @@ def test_what_is_one_estimate_stands_together_after_an_edit(open_page: Open, tmp
     assert edited == uncertain(open_page(driving.static(again, tmp_path / "after.html")))
     assert edited != issued
     assert "V (3\u00a0readings)" in edited[0]
+    live.page.locator("#cell-D").click(position={"x": 3, "y": 3})
+    of_bar = live.page.locator("#bar-sure > :is(button, span:not(.says))").all_inner_texts()
+    assert ["V (3\u00a0readings)" in text for text in of_bar] == [True, False, False, False]

@@ -37,6 +37,7 @@ def seen(live: Live, selector: str) -> list[bool]:
 def test_the_result_is_on_the_screen_while_the_tests_are_edited(open_page: Open, width: int) -> None:
     live = open_page(viewport={"width": width, "height": 850})
     live.type("x_p", 2, "29.8")
+    live.drawn()
     panel = live.page.locator("#live-panel")
     shown = [text for text in panel.locator("tbody tr").all_inner_texts() if text]
     assert [word for word in shown[0].split() if word[0] in "1("][:3] == ["1.3013", "1.3066", "(31)"]
@@ -48,6 +49,7 @@ def test_the_result_is_on_the_screen_while_the_tests_are_edited(open_page: Open,
     assert seen(live, "#live-panel tbody tr:last-child") == [True]
     live.type("x_p", 2, "29.9")
     assert results.evaluate("box => box.scrollTop") > 0
+    live.drawn()
     results.evaluate("box => box.scrollTop = 0")
     assert seen(live, "#live-panel svg") == [True]
     assert all(seen(live, "#cell-x_p-2, #cell-x_p-3"))
@@ -168,3 +170,42 @@ def test_chapters_that_are_as_issued_say_so(live: Live) -> None:
     assert "As issued, before the edits" in live.page.locator("#result .note").last.inner_text()
     live.click("live-undo")
     assert [word.is_visible() for word in words.all()] == [False] * 3
+
+
+_BLANK_OR_NEW = """async (selector) => {
+  const input = document.getElementById("cell-x_p-2"), picture = document.querySelector(selector), seen = [];
+  const drawn = (svg) => Array.from(svg.querySelectorAll("path"), (path) => path.getAttribute("d")).join();
+  const blank = (svg) => getComputedStyle(svg).visibility === "hidden";
+  const shown = () => Array.from(picture.querySelectorAll("svg"), (svg) => (blank(svg) ? "" : drawn(svg)));
+  input.focus();
+  input.dispatchEvent(new InputEvent("beforeinput", { bubbles: true }));
+  input.value = "29.8";
+  input.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true }));
+  PRINTED
+  picture.scrollIntoView();
+  for (let n = 0; n < 30; n++) {
+    seen.push(...shown());
+    await new Promise(requestAnimationFrame);
+  }
+  return seen;
+}"""
+
+
+@pytest.mark.parametrize("printed", [False, True])
+def test_a_picture_that_is_scrolled_to_after_an_edit_is_the_new_one_or_none(
+    open_page: Open, printed: bool
+) -> None:
+    """What was put off is never seen as it was; print asks for all at once."""
+    live = open_page()
+    live.type("x_p", 2, "31")
+    before = ",".join(live.paths("alpha_pairs"))
+    print_it = "dispatchEvent(new Event('beforeprint'));" if printed else ""
+    frames = live.page.evaluate(_BLANK_OR_NEW.replace("PRINTED", print_it), "#figure-alpha_pairs")
+    # What it shall be: where it was on the screen all the time, and in a page that began with the edit.
+    other = open_page()
+    other.page.locator("#figure-alpha_pairs").scroll_into_view_if_needed()
+    other.page.evaluate(_BLANK_OR_NEW.replace("PRINTED", ""), "#figure-alpha_pairs")
+    wanted = ",".join(other.paths("alpha_pairs"))
+    assert wanted != before
+    assert set(frames) - {""} == {wanted}
+    assert (frames[0] == wanted) is printed

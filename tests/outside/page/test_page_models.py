@@ -48,6 +48,7 @@ def test_loops_of_models_follow_an_edit(live: Live, folder: Path) -> None:
     picture = live.page.locator("#figure-loops svg")
     assert "Redrawn" not in (picture.get_attribute("aria-label") or "")
     live.type("E_2", "", "70")
+    live.drawn()
     assert "Redrawn after an edit" in (picture.get_attribute("aria-label") or "")
     toml = (folder / "report.toml").read_text(encoding="utf-8")
     assert toml.count('E_2 = "210 GPa') == 1

@@ -33,6 +33,7 @@ def test_what_is_being_typed_is_stepped(live: Live) -> None:
 def test_the_issued_curves_lie_in_grey_below_edited_ones(live: Live) -> None:
     assert live.page.locator(GREY).count() == 0
     live.type("x_p", 2, "29.9")
+    live.drawn()
     below = live.page.locator(f"{GREY}[stroke-linecap]")
     assert below.get_attribute("d").count("M") == 10  # type: ignore[union-attr]
     assert "as issued" in live.page.locator("#figure-alpha_pairs svg text").all_text_contents()

@@ -95,6 +95,7 @@ def test_bars_are_no_longer_there_where_points_may_have_moved(
     figure = live.page.locator("#figure-plot_1 svg")
     assert "bars: standard uncertainty" in (figure.text_content() or "")
     live.type("T", 3, "-13.7")
+    live.drawn()
     assert "bars" not in (figure.text_content() or "")
     live.click("live-reset")
     assert "bars: standard uncertainty" in (figure.text_content() or "")
