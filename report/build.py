@@ -252,7 +252,7 @@ def _refereed(recipe: Recipe, plain: Later[tuple[Any, ...]]) -> tuple[Referee, t
     study = Study.of(recipe)
     made = study.prepared
     made = replace(made, inputs=made.check_cells())
-    values = Values(made.sheet, made.layouts, *plain.wait())
+    values = made.worded(Values(made.sheet, made.layouts, *plain.wait()))
     return refereed_values(made, values, keep=study.kept)
 
 

@@ -535,8 +535,9 @@ class _Declaring(type):
         source : str
             Where the method is published.
         headline : str
-            The names of the results, first in every view; without, the parameters of fits, and else that of
-            which nothing else is computed.
+            The names of the results, first in every view: single numbers, and columns of groups, which have a
+            line for each group. Without, the parameters of fits, and else that of which nothing else is
+            computed.
         rows, index, size : str
             What the rows of the table of measurements are called, ``readings``, their running number in
             formulas, ``k``, and how many there are, ``n``.

@@ -457,8 +457,11 @@ class MethodBody(dict[str, Any]):
         sought = {symbol: self._begun(announced, str(symbol)) for symbol, announced in sought.items()}
         rows = self.axis_of(said.observed) or self.axis
         if said.of is not None and (said.of not in self.groups or rows != self.axis):
-            raise SheetError(f"{name}: of={said.of} is none of what groups() returned, or has no {rows.name}")
+            word = getattr(said.of, "row", said.of)
+            raise SheetError(f"{name}: of={word} is none of what groups() returned, or has no {rows.name}")
         for formula in (said.model, said.u):
+            if isinstance(formula, Expr) and rows in self.groups:
+                self._refuse_rows(name, formula, rows)
             if isinstance(formula, Expr) and self._is_grouped(formula, said.observed):
                 raise SheetError(f"{name}: {formula} is of rows in groups, which no fit takes", name)
         found = DeclaredFit(
@@ -491,6 +494,19 @@ class MethodBody(dict[str, Any]):
             self.drawn += found.traced
             self.drawn_given |= found.given
         return found
+
+    def _refuse_rows(self, name: str, formula: Expr, groups: Axis) -> None:
+        """Say what a fit over the groups takes instead of what has a value for each of their rows."""
+        word = next((word for word, value in self.items() if value is groups), groups.row)
+        named = (cell for cell in self._named_in(formula) if cell.over is None)
+        if of_rows := sorted({cell.name for cell in named if cell.index == self.axis.index_name}):
+            raise SheetError(
+                f"{name}: {of_rows[0]} has a value for each {self.axis.row}, and what is fitted one for each "
+                f"{groups.row}; instead: name a let(mean({of_rows[0]}, of={word}), ...)",
+                name,
+            )
+        if formula.has(Member):
+            raise SheetError(f"{name}: let(...) what is taken of={word} be a column first", name)
 
     def _begun(self, sought: UnknownLine, name: str) -> UnknownLine:
         """The same with a start that takes nothing over rows: one that does is a column aside."""

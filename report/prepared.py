@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from .axis import MemberAxis
+from .axis import GroupAxis, MemberAxis
 from .column import Given, written_in
-from .inputs.inputs import Inputs, check_cells
+from .inputs.cells import check_cells
+from .inputs.inputs import Inputs
 
 if TYPE_CHECKING:
     from .cells.layout import Layout
@@ -62,6 +63,17 @@ class Prepared:
 
         return laid_out(self.sheet, self.labels, self.exact_data)
 
+    @cached_property
+    def words(self) -> dict[str, dict[tuple[int, ...], str]]:
+        """What rows are known by besides their numbers, by axis: groups, and rows that the table names."""
+        found, inputs = dict[str, dict[tuple[int, ...], str]](), self.inputs
+        for axis in self.sheet.axes:
+            if isinstance(axis, GroupAxis):
+                found[axis.name] = {(n,): word for n, word in enumerate(inputs.words(axis.row), start=1)}
+            elif axis.is_given and inputs.naming:
+                found[axis.name] = {(test,): row[inputs.naming[0]] for test, row in inputs.rows.items()}
+        return found
+
     def check_cells(self) -> Inputs:
         """Refuse what is said of cells that there are not.
 
@@ -83,6 +95,7 @@ class Prepared:
                 c.name: (written_in(c, by_name), {()} if c.axis is None else rows[c.axis.name])
                 for c in self.sheet.columns
             },
+            {c.name: self.words.get(c.axis.name, {}) for c in self.sheet.columns if c.axis},
         )
 
     @property
@@ -121,7 +134,11 @@ class Prepared:
 
         if how_large(whole, self.layouts) <= most:
             found = exact.evaluate(whole, self.labels, self.exact_data)
-            return found, (found.rounded(self.sheet), found.rounded(whole))
-        values = engine.evaluate(self.sheet, self.labels, self.data)
+            return found, (self.worded(found.rounded(self.sheet)), self.worded(found.rounded(whole)))
+        values = self.worded(engine.evaluate(self.sheet, self.labels, self.data))
         more = [column for column in whole.columns if column.name not in self.sheet]
-        return None, (values, engine.extend(values, more, {}))
+        return None, (values, self.worded(engine.extend(values, more, {})))
+
+    def worded(self, values: Values) -> Values:
+        """The same with what its rows are known by."""
+        return replace(values, words=self.words)

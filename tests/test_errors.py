@@ -21,8 +21,9 @@ from loopsheet.report.archive.scaffold import new
 from loopsheet.report.cli import _parse
 from loopsheet.report.files.manifest import read_manifest
 from loopsheet.report.files.values import read_result
+from loopsheet.report.inputs.cells import check_cells
 from loopsheet.report.inputs.folders import PAPER, built_from, report_folder
-from loopsheet.report.inputs.inputs import check_cells, load
+from loopsheet.report.inputs.inputs import load
 from loopsheet.report.machine.staging import own, replaced
 from loopsheet.report.messages import errors
 from loopsheet.report.messages.errors import (

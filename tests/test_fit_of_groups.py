@@ -16,6 +16,7 @@ from loopsheet.report.column import SheetError
 from loopsheet.report.study import Study
 
 METHOD, HEAD, drawn = grouped.RATES, grouped.RATES_HEAD, grouped.rates
+FIT, LEVEL = "line = fit(y, a + b * x, of=catalyst)", "level = let(mean(y, of=catalyst), '')\n    line = "
 Rows = tuple[tuple[str, ...], ...]
 
 
@@ -103,6 +104,8 @@ def test_the_report_has_a_line_for_each(tmp_path: Path) -> None:
         ("of=catalyst", "of='catalyst'", "of=catalyst is none of what groups() returned"),
         ("fit(y, a", "fit(mean(y, of=catalyst), a", "is no column over the rows"),
         ("a + b * x", "a + b * mean(x, of=catalyst)", "is of rows in groups, which no fit takes"),
+        (FIT, LEVEL + "fit(level, a + b * x)", "instead: name a let(mean(x, of=catalyst), ...)"),
+        (FIT, LEVEL + "fit(level, a + b * mean(x, of=catalyst))", "let(...) what is taken of=catalyst be"),
     ],
 )
 def test_what_is_refused_of_a_fit_of_groups(old: str, new: str, said: str) -> None:

@@ -122,7 +122,7 @@ def test_draws_follow_the_group_of_a_row(tmp_path: Path, capsys: pytest.CaptureF
 def test_it_is_told_of_which_group(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = grouped.write(tmp_path)
     assert main(["why", "off[6]", str(folder)]) == 0
-    assert re.search(r"rests on +y\[6\] = 2.75 mm, level\[2\] = 2.50* mm\n", capsys.readouterr().out)
+    assert re.search(r"rests on +y\[6\] = 2.75 mm, level\[B\] = 2.50* mm\n", capsys.readouterr().out)
     assert main(["why", "level[2]", str(folder)]) == 0
     used = capsys.readouterr().out
     assert ("off[2]" in used, "off[6]" in used, "off[1]" in used) == (True, True, False)

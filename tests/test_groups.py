@@ -113,7 +113,7 @@ def test_a_group_without_readings_has_no_value(tmp_path: Path, capsys: pytest.Ca
     folder = grouped.write(tmp_path, rows, "instrument,y [mm],x [mm]", code)
     values = Study(folder).computed.values
     assert values.cell("level", (2,)).reason == (
-        "#INPUT! level[2] needs y[2]: the datum is missing or invalid"
+        "#INPUT! level[B] needs y[2]: the datum is missing or invalid"
     )
     assert values.numbers("level")[0] == pytest.approx(1.5e-3)
     assert values.scalar("within") == pytest.approx(0.15625e-6, rel=1e-14)
@@ -145,10 +145,10 @@ def test_it_is_told_where_it_comes_from(tmp_path: Path, capsys: pytest.CaptureFi
     assert "over 2 readings\n" in told
     assert re.search(r"rests on +y\[2\] = 2.25 mm, y\[6\] = 2.75 mm\n", told)
     assert main(["why", "y[5]", str(folder)]) == 0
-    assert "level[3]" in (told := capsys.readouterr().out)
+    assert "level[C]" in (told := capsys.readouterr().out)
     assert "level[1]" not in told
     assert main(["show", "level", str(folder)]) == 0
-    assert re.search(r"level\[2\] +B +2\.5", capsys.readouterr().out)
+    assert re.search(r"level\[B\] +2\.5", capsys.readouterr().out)
 
 
 @pytest.mark.parametrize(
@@ -249,12 +249,51 @@ def test_published_values_of_groups_are_refereed(tmp_path: Path, capsys: pytest.
     assert "3 values: 3 print the same" in capsys.readouterr().out
     (folder / "published.csv").write_text(said + rows.replace("2.50", "2.61"), encoding="utf-8")
     assert main(["check", str(folder)]) == 1
-    assert "level[2]" in capsys.readouterr().out
-    (folder / "published.csv").write_text(said + rows.replace("level,2", "level,B"), encoding="utf-8")
+    assert "level[B]" in capsys.readouterr().out
+    (folder / "published.csv").write_text(said + rows.replace("level,2", "level,b"), encoding="utf-8")
     assert main(["check", str(folder)]) == 2
     told = capsys.readouterr().err
-    assert "not an index: 'B'" in told
+    assert "not an index: 'b'" in told
     assert "'loopsheet show level FOLDER' lists" in told
+
+
+def test_words_stand_for_rows_in_the_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = tuple((f"P{n}", word, y) for n, (word, y) in enumerate(grouped.FEW, start=1))
+    more = (
+        '[published]\nfile = "published.csv"\n[limits]\n"level[B]" = "2 .. 3 mm"\n"level[C]" = "2 .. 3 mm"\n'
+        '"y[P3]" = ">= 1 mm"\n[expected]\n"scatter[B]" = "rough"\n'
+    )
+    folder = grouped.write(tmp_path, rows, "part,instrument,y [mm]", more=more)
+    said = (
+        "source,cell,index,value,unit\nTable,level,{},{},mm\nTable,u(level),B,0.002,mm\nTable,y,{},1.75,mm\n"
+    )
+    table = folder / "published.csv"
+    table.write_text(said.format("B", "2.50", "P3"), encoding="utf-8")
+    assert main(["check", str(folder)]) == 1
+    told = capsys.readouterr().out
+    assert "level[C] does not conform" in told
+    assert "level[B] does not" not in told
+    assert "scatter[B] is expected to be odd (rough), and is not" in told
+    assert "3 values: 3 print the same" in told
+    assert main(["budget", "y[P3]", str(folder)]) == 0
+    assert "y[3] conforms" in capsys.readouterr().out
+    table.write_text(said.format("C", "2.50", "P3"), encoding="utf-8")
+    main(["check", str(folder)])
+    assert "Table level[C] prints 2.50" in capsys.readouterr().out
+    table.write_text(said.format("P3", "2.50", "B"), encoding="utf-8")
+    assert main(["check", str(folder)]) == 2
+    wrong = capsys.readouterr().err
+    assert "level has no index 'P3'" in wrong
+    assert "allowed: 1, 2 or 3; or A, B or C" in wrong
+    assert "y has no index 'B'" in wrong
+
+
+@pytest.mark.parametrize("section", ['[limits]\n"level[X]" = "< 3 mm"', '[expected]\n"level[X]" = "odd"'])
+def test_a_word_of_no_group_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str], section: str) -> None:
+    assert main(["check", str(grouped.write(tmp_path, more=section.replace("<", "<=")))]) == 2
+    told = capsys.readouterr().err
+    assert "level has no index 'X'" in told
+    assert "1, 2 or 3; or A, B or C" in told
 
 
 def test_a_large_table_is_judged_by_some_of_its_rows(tmp_path: Path) -> None:

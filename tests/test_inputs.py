@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from loopsheet.derivations.unit_text import parse_unit
-from loopsheet.report.inputs.inputs import Inputs, check_cells, load
+from loopsheet.report.inputs.cells import check_cells
+from loopsheet.report.inputs.inputs import Inputs, load
 from loopsheet.report.inputs.number_text import read_printed
 from loopsheet.report.inputs.published import Pin
 from loopsheet.report.messages.errors import InputError, UnknownWorkbook, diagnose

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-__all__ = ["address", "index_text", "named", "parts"]
+__all__ = ["address", "index_text", "named", "parts", "word"]
 
 _ROW = re.compile("(?:[0-9]{1,9}(?:-[0-9]{1,9})*)?")
 
@@ -34,6 +34,15 @@ def named(text: str) -> tuple[str, tuple[int, ...]]:
     if found is None or not _ROW.fullmatch(found[1]):
         return text, ()
     return found[0], tuple(map(int, filter(None, found[1].split("-"))))
+
+
+def word(text: str) -> bool:
+    """Whether a word may stand for a row in an address: a number there is that of a row.
+
+    >>> word("steel"), word("2"), word("[2]")
+    (True, False, False)
+    """
+    return not _ROW.fullmatch(text) and parts(f"_[{text}]") is not None
 
 
 def parts(text: str) -> tuple[str, str] | None:

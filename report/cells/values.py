@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..quantity import Bounds, behind
-from ..sheet import Column, Formula, Iterated, MemberAxis, Root, Sheet
+from ..sheet import Column, Formula, GroupAxis, Iterated, MemberAxis, Root, Sheet
 from .address import address
+from .address import word as is_word
 from .layout import Layout, Precedent, precedents
 
 __all__ = ["CODES", "Cell", "Status", "Values", "how_many", "inherited", "other_rows", "rows_kept"]
@@ -146,11 +147,13 @@ class Cell:
     culprit: Cell | None = None
     """The cell where the error began; None if this is it, or if there is no error."""
     why: str = ""
+    word: str = ""
+    """What its group is called, which then stands for the number of its row."""
 
     @property
     def address(self) -> str:
-        """``alpha[1-2]``, ``x_m[3]``, ``alpha_mean``."""
-        return address(self.name, self.label)
+        """``alpha[1-2]``, ``x_m[3]``, ``alpha_mean``, ``slope[steel]``."""
+        return f"{self.name}[{self.word}]" if self.word else address(self.name, self.label)
 
     @property
     def reason(self) -> str:
@@ -193,10 +196,12 @@ class Values:
     roots: Mapping[str, Mapping[int, tuple[float, ...]]] = field(default_factory=dict)
     counted: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
     broken: Mapping[str, NDArray[np.uint8]] = field(default_factory=dict)
+    words: Mapping[str, Mapping[tuple[int, ...], str]] = field(default_factory=dict)
+    """What the rows of an axis are known by besides their numbers, by its name and their labels."""
 
     @property
     def plain(self) -> tuple[Any, ...]:
-        """All but sheet and layouts, in their order: plain data for another process, which has those."""
+        """All but sheet, layouts and words, in their order: plain data for a process that has those."""
         return self.value, self.status, self.roots, self.counted, self.broken
 
     @property
@@ -219,6 +224,17 @@ class Values:
     def labels(self, column: Column) -> list[tuple[int, ...]]:
         """How the rows of a column are called; one empty label for a scalar."""
         return [()] if column.axis is None else self._labels(column.axis.name)
+
+    def word(self, column: Column, label: tuple[int, ...]) -> str:
+        """What the group is called that a row is; empty where its number stands for it."""
+        words = self.words.get(column.axis.name, {}) if isinstance(column.axis, GroupAxis) else {}
+        return found if is_word(found := words.get(label, "")) else ""
+
+    def address(self, name: str, row: int) -> str:
+        """How a cell of a column is called."""
+        column = self.sheet[name]
+        label = self.labels(column)[row]
+        return Cell(name, label, None, Status.OK, word=self.word(column, label)).address
 
     def row(self, column: Column, label: tuple[int, ...]) -> int:
         """The row of a label.
@@ -320,11 +336,22 @@ class Values:
     def _cell(self, column: Column, row: int, label: tuple[int, ...]) -> Cell:
         status = Status(int(self.status[column.name][row]))
         if status is Status.OK:
-            return Cell(column.name, label, float(self.value[column.name][row]), status)
+            return self._told(column, label, float(self.value[column.name][row]), status)
         culprit = self._culprit(column, row)
         if culprit is not None:
-            return Cell(column.name, label, None, status, culprit)
-        return Cell(column.name, label, None, status, None, self._why(column, row, status))
+            return self._told(column, label, None, status, culprit)
+        return self._told(column, label, None, status, None, self._why(column, row, status))
+
+    def _told(
+        self,
+        column: Column,
+        label: tuple[int, ...],
+        value: float | None,
+        status: Status,
+        culprit: Cell | None = None,
+        why: str = "",
+    ) -> Cell:
+        return Cell(column.name, label, value, status, culprit, why, self.word(column, label))
 
     def _culprit(self, column: Column, row: int) -> Cell | None:
         """The cell where the error of a cell began; None if it is this one."""
@@ -333,7 +360,7 @@ class Values:
         if (other.name, its_row) == (column.name, row) or iterated:
             return None  # of what a loop iterates, none is to blame for the others
         label, status = self.labels(other)[its_row], Status(int(self.status[other.name][its_row]))
-        return Cell(other.name, label, None, status, None, self._why(other, its_row, status))
+        return self._told(other, label, None, status, None, self._why(other, its_row, status))
 
     def _loop(self, column: Column) -> frozenset[str]:
         """The names of the columns of its loop; none if it is in none."""

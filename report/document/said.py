@@ -10,6 +10,7 @@ from typing import NamedTuple
 from ...derivations.equation import Derivation, Equation, Step
 from ...derivations.proved import IDENTITY, Proof
 from ..cells.address import index_text
+from ..cells.values import Cell
 from ..messages.errors import suggest
 from ..result import verdict_words as words
 from ..result.agreement import Agreement
@@ -196,34 +197,37 @@ class Said:
     def headline(self) -> Blocks:
         """The results, and what is decided on limits."""
         names = [name for name in self.report.workbook.headline if name in self.report.sheet]
-        results = (Headline(tuple(map(self._result, names))),) if names else ()
+        items = [item for name in names for item in self.material.items(name)[1]]
+        results = (Headline(tuple(map(self._result, items))),) if items else ()
         decided = self.report.uncertain().conformities if self.report.inputs.limits else ()
         told = tuple(self.rich(decision(self.report, found)) for found in decided)
         told += tuple(self.rich(f"{undecided(each)}.") for each in self.report.inputs.undecided)
         return (*results, *((Items(told, "decided"),) if told else ()))
 
-    def _result(self, name: str) -> HeadlineItem:
-        material, item = self.material, self.material.item(name)
+    def _result(self, item: Item) -> HeadlineItem:
+        material, name = self.material, item.cell.name
         counted = self.report.values.counted.get(name, {}).items()
         left_out = ((axis, rows, material.count(axis)) for axis, rows in counted)
         rows = tuple(f"over {rows} of {size} {axis}" for axis, rows, size in left_out if rows != size)
         marks = (count for count in self.report.marks.behind(self.report.sheet[name]) if count.number)
-        meaning = self.rich(item.head.meaning)
+        column = self.report.sheet[name]
+        word = self.report.words(column).get(item.cell.label, "") if column.axis else ""
+        meaning = (*self.rich(item.head.meaning), f", {word}" if word else "")
         return HeadlineItem(
             Math(item.head.latex),
             meaning,
             item,
             (*(rows if item.ok else ()), *(count.said for count in marks)),
-            *self._sure(name),
+            *self._sure(item.cell),
         )
 
-    def _sure(self, name: str) -> tuple[Inlines, Inlines]:
+    def _sure(self, cell: Cell) -> tuple[Inlines, Inlines]:
         """The expanded uncertainty of a result, where one is known, and whether it may not hold."""
         for budget in self.material.budgets:
-            if budget.name == name and budget.label == () and math.isfinite(budget.factor):
-                _, expanded = self.report.stated(name, budget.value, budget.expanded)
+            if (budget.name, budget.label) == (cell.name, cell.label) and math.isfinite(budget.factor):
+                _, expanded = self.report.stated(cell.name, budget.value, budget.expanded)
                 factor = f" (k\u00a0=\u00a0{rounded(budget.factor, 3).text})"
-                told = "U\u00a0=\u00a0", Number(expanded), *in_unit(self.report.shown[name].unit), factor
+                told = "U\u00a0=\u00a0", Number(expanded), *in_unit(self.report.shown[cell.name].unit), factor
                 instead = ("; use ", Code(draws_of(budget.cell))) if budget.fails else ()
                 return told, ((budget.doubt, *instead) if budget.doubt else ())
         return (), ()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...derivations.unit_text import UnitError, parse_unit
 from ..messages.errors import listing, suggest
+from ..sheet import GroupAxis
 from ..workbook import FigureSpec, Measured, Parameter, TableSpec
 
 if TYPE_CHECKING:
@@ -85,10 +86,14 @@ def misnamed(
         Returns the names of the drawings there are; asked only if the workbook has figures.
     """
     scalars = [column.name for column in sheet.columns if column.axis is None]
+    grouped = [column.name for column in sheet.columns if isinstance(column.axis, GroupAxis)]
     for where in ("headline", "fits"):
         for name in getattr(workbook, where):
+            if where == "headline" and name in grouped:
+                continue  # a line for each group
             if name in sheet.by_name and name not in scalars:
-                yield where, name, f"'{name}' has many rows, and {where} names single numbers"
+                or_groups = ", or what has one for each group" if where == "headline" else ""
+                yield where, name, f"'{name}' has many rows, and {where} names single numbers{or_groups}"
             elif name not in scalars:
                 yield where, name, _unknown("cell", where, name, scalars)
     if workbook.prose not in narratives:

@@ -5,19 +5,25 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol
 
-from ..cells.address import address, index_text, named
+from ..cells.address import address, index_text, named, parts
 from ..messages.errors import Findings, Location, listing, suggest
 from .parameters import wrong_type
 
 if TYPE_CHECKING:
     from .tables import TomlTables
 
-__all__ = ["Expectation", "check_expected", "read_expected"]
+__all__ = ["Expectation", "Words", "check_expected", "read_expected", "row_of", "rows"]
+
+Index = tuple[int, ...]
+Words = Mapping[str, Mapping[Index, str]]
 
 EXAMPLE = '"alpha[1-2]" = "both drops from one height"'
 """A line of the section."""
+
+NO_WORDS: Words = MappingProxyType({})
 
 _ROW = re.compile(r"(?P<word>[^\W\d]\w*) +(?P<number>[0-9]{1,9})")
 
@@ -54,6 +60,8 @@ class Expectation:
     address: str
     reason: str
     at: Location
+    row: tuple[int, ...] | None = None
+    """Which row its word stands for, where one does."""
 
     @property
     def cell(self) -> tuple[str, tuple[int, ...]]:
@@ -64,6 +72,8 @@ class Expectation:
         >>> Expectation("test 3", "heard twice", Location()).cell
         ('', (3,))
         """
+        if self.row is not None:
+            return self.address.partition("[")[0], self.row
         if row := _ROW.fullmatch(self.address):
             return "", (int(row["number"]),)
         return named(self.address)
@@ -88,12 +98,19 @@ def read_expected(tables: TomlTables) -> tuple[Expectation, ...]:
     )
 
 
+def row_of(word: str, words: Mapping[Index, str]) -> tuple[int, ...] | None:
+    """The only row that a word stands for."""
+    found = [index for index, own in words.items() if own == word and word]
+    return found[0] if len(found) == 1 else None
+
+
 def check_expected(
     expected: Sequence[OfCell],
     tests: Sequence[int],
     cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
     findings: Findings,
     row: str = "test",
+    words: Words = NO_WORDS,
 ) -> None:
     """Find what is expected of cells and tests that there are not.
 
@@ -108,10 +125,16 @@ def check_expected(
         Where unknown cells, indices and tests go.
     row : str
         What else a test is called.
+    words : mapping of str to mapping of tuple of int to str
+        For each cell what its rows are known by, by their indices.
     """
     called = [f"{row} {test}" for test in tests]
     for each in expected:
         name, index = each.cell
+        of, word = parts(each.address) or ("", "")
+        if name not in cells and word and of in cells and () not in cells[of][1]:
+            findings.add("LS506", each.at, name=of, text=word, known=rows(cells[of][1], words.get(of, {})))
+            continue
         is_other = not name and each.address.partition(" ")[0] not in ("test", row)
         if is_other or ((name or not index) and name not in cells):
             near = suggest(name or each.address, [*called, *cells])
@@ -123,5 +146,11 @@ def check_expected(
             known = listing(address(name, one) for one in sorted(indices))
             findings.add("LS505", each.at, text=each.address, known=known, suggestion="")
         elif index not in indices:
-            known = listing(index_text(one) or "no index" for one in sorted(indices))
+            known = rows(indices, words.get(name, {}))
             findings.add("LS506", each.at, name=name or row, text=index_text(index), known=known)
+
+
+def rows(indices: Collection[Index], words: Mapping[Index, str]) -> str:
+    """The rows that a cell has, and the words that stand for them."""
+    known = listing(index_text(one) or "no index" for one in sorted(indices))
+    return f"{known}; or {listing(dict.fromkeys(words.values()))}" if words else known

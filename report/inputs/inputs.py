@@ -25,13 +25,13 @@ from ..messages.errors import (
 from ..quantity import there
 from .cards import AskedCards, read_cards
 from .draws import read_draws
-from .expected import Expectation, check_expected, read_expected
+from .expected import Expectation, read_expected
 from .groups import groups, words
-from .limits import Limits, check_limits, of_every_row, read_limits
+from .limits import Limits, read_limits
 from .measurements import MODES, LeftOut, Measurements, read_measurements
 from .number_text import NumberError, read_printed
 from .parameters import read_parameters, wrong_type
-from .published import PublishedValue, check_published, read_published
+from .published import PublishedValue, read_published
 from .sources import Source, open_source, read_bytes
 from .stated import Conventions
 from .tables import TomlTables
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from .number_text import Declared
     from .spelling import Alike
 
-__all__ = ["Find", "Inputs", "PublishedValue", "check_cells", "load"]
+__all__ = ["Find", "Inputs", "PublishedValue", "load"]
 
 Find = Callable[[str, Path, bytes | None], "Workbook"]
 """Finds a workbook by its name in report.toml, the folder, and what the file of that name holds."""
@@ -259,55 +259,6 @@ def load(
     return _Reader(folder, find_workbook, more, read).read()
 
 
-def check_cells(inputs: Inputs, cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]]) -> Inputs:
-    """Check all that was read of cells against those of the sheet.
-
-    What is said of a cell that is missing because a test is left out is set aside.
-
-    Parameters
-    ----------
-    inputs : Inputs
-        What was read.
-    cells : mapping of str to (str, collection of tuple of int)
-        For each cell its unit and the indices that it has: ``{()}`` for a scalar.
-
-    Returns
-    -------
-    Inputs
-        Those without what was set aside.
-
-    Raises
-    ------
-    InputError
-        With every cell, index and test that there is not, and every unit of another dimension.
-    """
-    gone = {each.test for each in inputs.left_out}
-
-    def rests_on_gone(name: str, index: tuple[int, ...]) -> bool:
-        there = cells[name][1] if name in cells else () if not name else (index,)
-        return index not in there and not gone.isdisjoint(index)
-
-    every = (*inputs.published, *inputs.published_u)
-    aside = tuple(value for value in every if rests_on_gone(value.columns[0], value.index))
-    undecided = tuple(each for each in inputs.limits if rests_on_gone(*each.cell))
-    kept = replace(
-        inputs,
-        expected=tuple(each for each in inputs.expected if not rests_on_gone(*each.cell)),
-        limits=tuple(each for each in of_every_row(inputs.limits, cells) if each not in undecided),
-        undecided=undecided,
-        published=tuple(value for value in inputs.published if value not in aside),
-        published_u=tuple(value for value in inputs.published_u if value not in aside),
-        aside=aside,
-    )
-    findings = Findings()
-    check_expected(kept.expected, kept.tests, cells, findings, inputs.workbook.row)
-    written = {each.at: each for each in reversed(kept.limits)}  # what is wrong with a line is told once
-    check_limits([*reversed(written.values())], cells, findings)
-    check_published((*kept.published, *kept.published_u), kept.free_at, cells, kept.measured, findings)
-    findings.check()
-    return kept
-
-
 class _Reader:
     """One reading of a folder: what was found and what was read, so far."""
 
@@ -343,7 +294,7 @@ class _Reader:
         if self.workbook and measurements is not None and "uncertainty" in toml.data:
             uncertainty, parameters, measurements = self.uncertainty(parameters, measurements)
         computable = not self.findings.found
-        published = self.published()
+        published = self.published(measurements.words if measurements else ())
         expected, limits = read_expected(self.tables), read_limits(self.tables)
         cards = read_cards(self.tables)
         errata = self.errata(measurements) if measurements is not None else {}
@@ -609,7 +560,7 @@ class _Reader:
             return name, tests.index(index)
         return None
 
-    def published(self) -> tuple[PublishedValue, ...]:
+    def published(self, words: Collection[str]) -> tuple[PublishedValue, ...]:
         if "published" not in self.toml.data:
             return ()
         table = self.tables.keys(("published",))
@@ -627,7 +578,7 @@ class _Reader:
         source = self.source(name, LARGEST_PUBLISHED, "a first line with the names of the columns", at)
         if source is None:
             return ()
-        values = read_published(source, self.findings)
+        values = read_published(source, self.findings, words)
         modes = self.modes("published", list({v.cell: v for v in values})) if "printed" in table else {}
         return tuple(
             replace(value, printed=replace(value.printed, mode=modes.get(value.cell, "rounded")))

@@ -25,7 +25,7 @@ from ..cells.address import address, named
 from ..distribution import LEVEL
 from ..messages.errors import listing
 from ..quantity import Bounds, behind, span
-from .expected import check_expected
+from .expected import NO_WORDS, Words, check_expected
 from .keys import fixed
 from .number_text import NumberError, read_number, read_printed
 from .published import unit_fits
@@ -93,10 +93,14 @@ class Limits:
     high: Printed | None
     guard: Guard
     at: Location
+    row: tuple[int, ...] | None = None
+    """Which row its word stands for, where one does."""
 
     @property
     def cell(self) -> tuple[str, tuple[int, ...]]:
         """Column and index of the cell; what is no address is a cell that there is not."""
+        if self.row is not None:
+            return self.address.partition("[")[0], self.row
         return named(self.address)
 
     @property
@@ -257,6 +261,7 @@ def check_limits(
     limits: Sequence[Limits],
     cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
     findings: Findings,
+    words: Words = NO_WORDS,
 ) -> None:
     """Find limits of cells that there are not, twice of one, in a unit of another dimension, or below 0 K.
 
@@ -266,13 +271,15 @@ def check_limits(
     cells : mapping of str to (str, collection of tuple of int)
         As for :func:`~loopsheet.report.inputs.expected.check_expected`.
     findings : Findings
+    words
+        As there.
     """
-    check_expected(limits, (), cells, findings)
+    check_expected(limits, (), cells, findings, words=words)
     for each in limits:
         name, index = each.cell
         if name not in cells or index not in cells[name][1]:
             continue
-        if each.address != (own := address(name, index)):
+        if each.row is None and each.address != (own := address(name, index)):
             findings.add("LS506", each.at, name=name, text=each.address, known=own)
         ends, width = [number for number in (each.low, each.high) if number], each.guard.width
         said, unit = f"the limit of {name}", cells[name][0]

@@ -95,6 +95,11 @@ class Measurements:
     remarks: tuple[str, ...] = ()
     alike: tuple[Alike, ...] = ()
 
+    @property
+    def words(self) -> set[str]:
+        """Those in columns of words."""
+        return {row[name] for row in self.texts.values() for name in self.remarks if row[name]}
+
     def beside(self, taken: Mapping[str, Taken], order: Iterable[str]) -> Measurements:
         """The same with columns that were taken from other reports, all in the order of their names."""
         columns = self.measured | {name: column.printed for name, column in taken.items()}

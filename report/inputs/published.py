@@ -13,6 +13,7 @@ from ..cells.address import index_text
 from ..messages.errors import Findings, Location, listing, suggest
 from .about import FORMS, About, read_about
 from .csvtable import CsvTable, Field, match_columns, read_table
+from .expected import NO_WORDS, Words, row_of, rows
 from .keys import PUBLISHED
 from .number_text import NumberError, read_number, read_printed, with_uncertainty
 
@@ -27,7 +28,7 @@ _OPTIONAL = tuple(name for name, column in PUBLISHED.items() if not column.requi
 COLUMNS = (*_REQUIRED, *_OPTIONAL)
 _AS_DATE = "a spreadsheet may have turned 1-2 into a date: format the column as text"
 _AS_WORD = (
-    "rows and groups stand by their numbers here, which 'loopsheet show {} FOLDER' lists beside their words"
+    "a row stands by its number here, or by its word in the table, which 'loopsheet show {} FOLDER' lists"
 )
 _DATE = re.compile(r"^[0-9]|[0-9][-./ ]|[-./ ][0-9]")
 _INDEX = re.compile(r"[1-9][0-9]{0,8}(?:-[1-9][0-9]{0,8})?")
@@ -115,6 +116,13 @@ class PublishedValue:
     label: str = ""
     unread: frozenset[str] = frozenset()
     about: About | None = None
+    word: str = ""
+    """What stands for its row in the file, if no number does."""
+
+    def of_words(self, words: Words) -> PublishedValue:
+        """The same with the row that its word stands for; one that stands for none is told later."""
+        row = row_of(self.word, words.get(self.columns[0], {})) if self.word else None
+        return self if row is None else replace(self, index=row, word="")
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -123,7 +131,9 @@ class PublishedValue:
         return (self.cell,) if about is None else tuple(filter(None, (about.cell, about.other)))
 
 
-def read_published(source: Source, findings: Findings) -> tuple[PublishedValue, ...]:
+def read_published(
+    source: Source, findings: Findings, words: Collection[str] = ()
+) -> tuple[PublishedValue, ...]:
     """Read published.csv, as far as it can be checked without the sheet.
 
     Parameters
@@ -132,6 +142,8 @@ def read_published(source: Source, findings: Findings) -> tuple[PublishedValue, 
         The file.
     findings : Findings
         Where findings go.
+    words : collection of str
+        Those of the table of measurements: one may stand for a row.
     """
     table = read_table(source, COLUMNS, findings)
     if table is None:
@@ -146,7 +158,7 @@ def read_published(source: Source, findings: Findings) -> tuple[PublishedValue, 
         if findings.full:
             break
         fields = {name: row.fields[place] for name, place in places.items()}
-        values.append(_value(table, fields, findings))
+        values.append(_value(table, fields, findings, words))
         key = (fields["source"].text, fields["cell"].text, fields["index"].text)
         at = table.at(fields["cell"])
         if key in first:
@@ -156,7 +168,9 @@ def read_published(source: Source, findings: Findings) -> tuple[PublishedValue, 
     return tuple(values)
 
 
-def _value(table: CsvTable, fields: Mapping[str, Field], findings: Findings) -> PublishedValue:
+def _value(
+    table: CsvTable, fields: Mapping[str, Field], findings: Findings, known: Collection[str]
+) -> PublishedValue:
     unread = set()
     allowed = {"source": "where it is printed, such as Table 2", "cell": "the name of a cell, such as alpha"}
     for name, sentence in {**allowed, "unit": "a unit, 1 for a pure number"}.items():
@@ -168,7 +182,8 @@ def _value(table: CsvTable, fields: Mapping[str, Field], findings: Findings) -> 
         findings.add("LS509", table.at(fields["cell"]), text=fields["cell"].text, known=FORMS)
         unread.add("cell")
     index = fields["index"]
-    if index.text and not _INDEX.fullmatch(index.text):
+    is_word = index.text in known and not _INDEX.fullmatch(index.text)
+    if index.text and not is_word and not _INDEX.fullmatch(index.text):
         hint = _AS_DATE if _DATE.search(index.text) else _AS_WORD.format(fields["cell"].text)
         findings.add("LS501", table.at(index), text=index.text, suggestion=hint)
         unread.add("index")
@@ -187,7 +202,7 @@ def _value(table: CsvTable, fields: Mapping[str, Field], findings: Findings) -> 
         fields["source"].text,
         fields["cell"].text,
         tuple(int(number) for number in index.text.split("-"))
-        if index.text and "index" not in unread
+        if index.text and not is_word and "index" not in unread
         else (),
         printed,
         words["expect"],
@@ -199,6 +214,7 @@ def _value(table: CsvTable, fields: Mapping[str, Field], findings: Findings) -> 
         words["label"],
         frozenset(unread),
         about,
+        index.text if is_word else "",
     )
 
 
@@ -245,6 +261,7 @@ def check_published(
     cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
     measured: Collection[str],
     findings: Findings,
+    words: Words = NO_WORDS,
 ) -> None:
     """Compare what the published values are values of with the cells of the sheet.
 
@@ -260,6 +277,8 @@ def check_published(
         The columns of the table of measurements.
     findings : Findings
         Where unknown cells and indices go, and units of another dimension.
+    words
+        As for :func:`~loopsheet.report.inputs.expected.check_expected`.
     """
     for name, place in free.items():
         if name not in cells:
@@ -281,9 +300,10 @@ def check_published(
         unit, _ = cells[value.columns[0]]
         of_rows = value.columns if value.about and value.about.kind == "r" else value.columns[:1]
         for name in of_rows if "index" not in value.unread else ():
-            if value.index not in cells[name][1]:
-                at, text = value.places.get("index"), index_text(value.index)
-                findings.add("LS506", at, name=name, text=text, known=_indices(cells[name][1]))
+            if value.word or value.index not in cells[name][1]:
+                at, text = value.places.get("index"), value.word or index_text(value.index)
+                known = _indices(cells[name][1], words.get(name, {}))
+                findings.add("LS506", at, name=name, text=text, known=known)
         if value.about and value.about.is_pure:
             unit = "1"
         if "unit" not in value.unread:
@@ -336,7 +356,7 @@ def _not_convertible(written: str, unit: str) -> str | None:
     return None if fits else examples(expected)
 
 
-def _indices(indices: Collection[tuple[int, ...]]) -> str:
+def _indices(indices: Collection[tuple[int, ...]], words: Mapping[tuple[int, ...], str]) -> str:
     if () in indices:
         return "nothing: it is a single number"
-    return listing(index_text(index) for index in sorted(indices))
+    return rows(indices, words)

@@ -54,7 +54,7 @@ def suspected(report: Report, odd: Collection[Tests], failed: Collection[Tests])
 def _furthest(report: Report, tests: Sequence[int]) -> tuple[int, str]:
     """The test without which the first sum of the result moves furthest."""
     headline = (report.sheet[name] for name in report.workbook.headline if name in report.sheet)
-    column = next((one for one in headline if report.sheet.summed_axes(one)), None)
+    column = next((one for one in headline if one.axis is None and report.sheet.summed_axes(one)), None)
     if column is None or (before := report.values.cell(column.name).value) is None:
         return 0, ""
     sheet = Sheet((*report.sheet.ancestors(column), column))

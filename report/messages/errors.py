@@ -341,7 +341,7 @@ CATALOGUE: dict[str, Entry] = {
     "LS501": Entry(
         "not an index",
         "not an index: '{text}'",
-        "1-2 for a pair, 3 for a row or group by its number, nothing for a single number",
+        "1-2 for a pair, 3 for a row or group by its number, or its word; nothing for a single number",
         "{suggestion}",
     ),
     "LS502": Entry("unknown expectation", "expect is '{text}'", "nothing, or 'differs'", "{suggestion}"),

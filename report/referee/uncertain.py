@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -69,11 +70,11 @@ class _Asked:
         about, index = published.about, published.index
         there = self.values.cell(about.cell, index)
         if there.value is None:
-            return Cell(published.cell, index, None, there.status, there.culprit or there, there.why)
+            return replace(there, name=published.cell, culprit=there.culprit or there)
         number = self.number(about, index, float(published.printed.half_unit) / FINER)
         if not math.isfinite(number):
-            return Cell(published.cell, index, None, Status.DOMAIN, None, NOTHING)
-        return Cell(published.cell, index, number, Status.OK)
+            return Cell(published.cell, index, None, Status.DOMAIN, None, NOTHING, there.word)
+        return Cell(published.cell, index, number, Status.OK, word=there.word)
 
     def number(self, about: About, index: tuple[int, ...], tolerance: float) -> float:
         """What is told, in SI; NaN where nothing is known. Draws tell it to a tolerance."""

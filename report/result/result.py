@@ -14,7 +14,7 @@ from ..files.values import Unit
 from ..inputs.inputs import Inputs, PublishedValue
 from ..messages.diagnostics import Check
 from ..quantity import Printed, behind
-from ..sheet import Column, Given, GroupAxis, Iterated, Sheet
+from ..sheet import Column, Given, Iterated, Sheet
 from ..workbook import Workbook
 from .agreement import Agreement
 from .card import Cards
@@ -262,14 +262,7 @@ class Report:
 
     def words(self, column: Column) -> dict[tuple[int, ...], str]:
         """What the rows of a column are known by besides their numbers; nothing where there are no words."""
-        axis, inputs = column.axis, self.inputs
-        labels = self.values.labels(column)
-        if isinstance(axis, GroupAxis):
-            words = inputs.words(axis.row)
-            return {label: words[label[0] - 1] for label in labels}
-        if axis is None or not axis.is_given or not inputs.naming:
-            return {}
-        return {label: inputs.rows[label[0]][inputs.naming[0]] for label in labels}
+        return dict(self.values.words.get(column.axis.name, {})) if column.axis else {}
 
     def in_unit(self, name: str) -> list[float | None]:
         """The cells of a column in the unit that it is shown in; None where there is no value."""

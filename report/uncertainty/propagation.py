@@ -205,7 +205,7 @@ class Spread:
         label = self.values.labels(column)[row]
         value = float(self.values.value[name][row])
         if name not in self._known:
-            return Budget(address(name, label), name, label, value, level=level)
+            return Budget(self.values.address(name, row), name, label, value, level=level)
         cell = [(name, row)]
         found = self.contributions(cell)
         (first,), more = self._orders(cell, found)
@@ -216,7 +216,7 @@ class Spread:
         own = found[0, : len(self.sources)]
         u = math.sqrt(first + second) if math.isfinite(first + second) else math.nan
         if math.isnan(u):
-            return Budget(address(name, label), name, label, value, level=level)
+            return Budget(self.values.address(name, row), name, label, value, level=level)
         shares = own / u * (with_correlated(own, self._pairs) / u) if u > 0 else np.zeros(len(own))
         _, dof = of_sum(self.sources, own, self._pairs, math.sqrt(first))
         shape, law = assigned(self.sources, own, u, dof, second, self._pairs)
@@ -232,7 +232,7 @@ class Spread:
         }
         known = value, u, told, pairs, dof, level, factor, because, second, unlooked, shape, law
         summed, least = tuple(self._summed(column)), _least(column)
-        return Budget(address(name, label), name, label, *known, summed, least=least)
+        return Budget(self.values.address(name, row), name, label, *known, summed, least=least)
 
     def _summed(self, column: Column) -> Iterator[Together]:
         """The columns over pairs of rows that a column sums, of the rows that it sums."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .common import FINDINGS, OK, Progress, folder_argument, keeping_arguments, named, told
 
 if TYPE_CHECKING:
+    from ..cells.values import Cell
     from ..result.result import Report
     from ..study import Study
 
@@ -101,7 +102,7 @@ def summary(report: Report) -> dict[str, Any]:
     """What to print of a report: its result, and what is not as expected."""
     from ..result.findings import checks
 
-    lines = [_line(report, name) for name in report.workbook.headline]
+    lines = [_line(report, cell) for name in report.workbook.headline for cell in report.values.cells(name)]
     lines += [
         f"{agreement.engine}: {agreement.counted}, judged at 50 digits"
         for agreement in report.engines
@@ -111,15 +112,14 @@ def summary(report: Report) -> dict[str, Any]:
     return {"lines": [*lines, *told(found)], "passed": all(check.passed for check in found)}
 
 
-def _line(report: Report, name: str) -> str:
+def _line(report: Report, cell: Cell) -> str:
     """A headline cell in a line, with the digits that its uncertainty leaves."""
-    cell = report.values.cell(name)
-    column = report.sheet[name]
+    column, name = report.sheet[cell.name], cell.name
     if cell.value is None:
         return cell.reason
     rows = report.values.counted.get(name, {})
     left = "".join(f"  (over {n} of {report.values.layouts[a].size} {a})" for a, n in rows.items())
     left += "".join(f"  ({count.said})" for count in report.marks.behind(column) if count.number)
-    left += (mark := report.marks.of(name)[0]) and f"  {mark}"
-    left += (doubt := report.uncertain().advice.get(name, "")) and f"  ({doubt})"
-    return f"{name:12} {report.text(cell)}  {column.meaning} {column.source}{left}"
+    left += (mark := report.marks.of(name)[report.values.row(column, cell.label)]) and f"  {mark}"
+    left += (doubt := report.uncertain().advice.get(cell.address, "")) and f"  ({doubt})"
+    return f"{cell.address:12} {report.text(cell)}  {column.meaning} {column.source}{left}"

@@ -70,7 +70,11 @@ def _lines(report: Report, column: Column, labels: Collection[tuple[int, ...]]) 
     if name in report.inputs.taken:  # what was computed has those that its uncertainty tells
         texts = [figure.plain if figure else "" for figure in report.figures(name)]
     given = dict(zip(every, texts, strict=True)) if len(texts) == len(every) else {}
-    names = {label: f"{word}  " for label, word in report.words(column).items()}
+    names = {
+        label: f"{word}  "
+        for label, word in report.words(column).items()
+        if not report.values.word(column, label)  # stands there already
+    }
     wide = max(map(len, names.values()), default=0)
     nothing = [0.0] * len(every)
     uncertain = report.uncertain().u.get(name, nothing)

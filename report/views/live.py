@@ -119,7 +119,12 @@ def data(report: Report, document: Material) -> str:
         **given(report),
         **uncertain(report),
         "rows": next(([axis.name, axis.row] for axis in sheet.axes if axis.is_given), ["rows", "row"]),
-        "headline": [name for name in report.workbook.headline if name in sheet],
+        "headline": [
+            (name, index_text(label))
+            for name in report.workbook.headline
+            if name in sheet
+            for label in report.values.labels(sheet[name])
+        ],
         "figures": drawn(report),
         "squares": {one.name: [one.axis, one.fitted] for one in report.workbook.squares if one.asked},
         "chances": [RARE, LEAST],

@@ -9,9 +9,10 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from ..cells.address import word as is_word
 from ..quantity import Printed, behind
 from ..result.result import Report
-from ..sheet import MemberAxis
+from ..sheet import GroupAxis, MemberAxis
 
 __all__ = ["given"]
 
@@ -26,7 +27,7 @@ def given(report: Report) -> dict[str, Any]:
         "heads": inputs.heads or {"test": inputs.workbook.row},
         "texts": _texts(report, measured),
         "naming": [*inputs.naming],
-        **({"groups": own} if (own := _groups(report)) else {}),
+        **({"groups": own, "words": _words(report)} if (own := _groups(report)) else {}),
         "toml": list(_toml(report)),
         **_files(report),
     }
@@ -36,6 +37,16 @@ def _groups(report: Report) -> dict[str, dict[int, int]]:
     """For each axis of rows in groups, the number of every test's group."""
     axes = (axis for axis in report.sheet.axes if isinstance(axis, MemberAxis))
     return {axis.name: report.inputs.groups(axis.by) for axis in axes}
+
+
+def _words(report: Report) -> dict[str, dict[int, str]]:
+    """For each axis of groups, the words that stand for the number of a row."""
+    words = (
+        (axis.name, report.values.words[axis.name])
+        for axis in report.sheet.axes
+        if isinstance(axis, GroupAxis)
+    )
+    return {name: {n: word for (n,), word in own.items() if is_word(word)} for name, own in words}
 
 
 def _tests(report: Report, measured: Mapping[str, tuple[Printed | None, ...]]) -> list[dict[str, Any]]:

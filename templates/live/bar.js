@@ -202,7 +202,7 @@ function markCells(look, name, row, index) {
 
 // Goes to a cell: to its place in a table if it has one.
 function goTo(address) {
-  const [, name, index = ""] = ADDRESS.exec(address);
+  const { trace } = page.look, [, name, called = ""] = ADDRESS.exec(address), row = trace.row(name, called), index = row < 0 ? called : trace.index(name, row);
   const selector = `main [data-cell="${CSS.escape(name)}"][data-index="${CSS.escape(index)}"]`;
   const element = byId(cellId("cell", name, index)) ?? document.querySelector(selector);
   if (!element) {

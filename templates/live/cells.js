@@ -65,6 +65,12 @@ class Look {
   }
 }
 
+// The same of a row by its index, which may be gone.
+function textAt(look, name, index) {
+  const row = look.trace.row(name, index);
+  return row < 0 ? "–" : look.shownText(name, row);
+}
+
 function isSameCell(look, name, row, other, before) {
   const a = look.trace.sheet, b = other.trace.sheet;
   if (a.status[name][row] !== b.status[name][before]) return false;

@@ -5,7 +5,7 @@ const page = {
 };
 
 const lookAt = (state, issued) =>
-  new Look(new Trace(PROGRAM, LIVE.columns, computeSheet(PROGRAM, LIVE.columns, state, LIVE.groups)), state, issued);
+  new Look(new Trace(PROGRAM, LIVE.columns, computeSheet(PROGRAM, LIVE.columns, state, LIVE.groups), LIVE.words), state, issued);
 
 const say = (sentence) => {
   byId("live-said").textContent = sentence;
@@ -174,13 +174,13 @@ function writeToolbar(edited) {
 
 // One sentence about the result, for those who cannot see it change.
 function announce(before, after) {
-  const name = LIVE.headline[0];
+  const [name, index] = LIVE.headline[0] ?? [];
   if (!name) return;
-  const then = before.shownText(name, 0), now = after.shownText(name, 0), meaning = meaningOf(name);
-  const reason = after.trace.isOk(name, 0) ? "" : ` ${after.trace.reason(name, 0)}.`;
+  const row = after.trace.row(name, index), then = textAt(before, name, index), now = textAt(after, name, index), meaning = meaningOf(name);
+  const reason = row < 0 || after.trace.isOk(name, row) ? "" : ` ${after.trace.reason(name, row)}.`;
   const broken = after.trace.errors.length;
   const cells = broken ? ` ${plural(broken, "cell")} without a value.` : "";
-  say(`${meaning} (${name}) ${then === now ? `is still ${now}` : `changed from ${then} to ${now}`}.${reason}${cells}`);
+  say(`${meaning} (${row < 0 ? name : after.trace.address(name, row)}) ${then === now ? `is still ${now}` : `changed from ${then} to ${now}`}.${reason}${cells}`);
 }
 
 // --- the beginning ---------------------------------------------------------------------------------------

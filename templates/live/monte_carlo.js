@@ -11,7 +11,7 @@ const draws = (look, name) => LIVE.shared && axisNamed(look.trace.declared[name]
 
 // Every cell that is to be drawn: after an edit the results, and the one in the bar.
 function cellsToDraw(look) {
-  const results = isEdited() && page.panel ? LIVE.headline.slice(0, MOST_DRAWN).map((name) => [name, 0]) : [];
+  const results = isEdited() && page.panel ? LIVE.headline.slice(0, MOST_DRAWN).map(([name, index]) => [name, look.trace.row(name, index)]) : [];
   const own = bar.name === null ? [] : [[bar.name, look.trace.row(bar.name, bar.index)]];
   return [...results, ...own].filter(([name, row]) => row >= 0 && draws(look, name) && look.trace.isOk(name, row));
 }
@@ -99,11 +99,11 @@ function fillDraws(look) {
 }
 
 // The same of a result, for the panel.
-function shortDraws(name) {
-  const found = carlo.found[[name, 0]];
+function shortDraws(name, row) {
+  const found = carlo.found[[name, row]];
   if (!found) return carlo.refused ? "–" : "…";
   return found.ends ? rangeOf(name, found) : `${found.lost} of ${DRAWS} draws without a value`;
 }
 
 // Whether draws tell another standard uncertainty of a result than the first order does.
-const isOff = (look, name) => Math.abs(carlo.found[[name, 0]]?.u / look.sure.u(name, 0) - 1) > OFF;
+const isOff = (look, name, row) => Math.abs(carlo.found[[name, row]]?.u / look.sure.u(name, row) - 1) > OFF;

@@ -19,11 +19,12 @@ function makePanel() {
 
 function writePanel(look) {
   if (!page.panel) return;
-  const rows = LIVE.headline.map((name, place) => {
-    const [before, now] = [page.issued, look].map((one) => one.cell(name, 0).text), same = before === now;
-    const second = LIVE.shared && (LIVE.columns[name].kept || isOff(look, name)), u = LIVE.shared && !second ? look.sure.u(name, 0) / LIVE.columns[name].scale : NaN;
-    const more = isEdited() && LIVE.shared && look.trace.isOk(name, 0) ? [...(second ? ["second order"] : []), ...(place < MOST_DRAWN ? [shortDraws(name)] : [])] : [];
-    return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
+  const rows = LIVE.headline.map(([name, index], place) => {
+    const [was, row] = [page.issued, look].map((one) => one.trace.row(name, index)), before = page.issued.cell(name, was).text, now = row < 0 ? "–" : look.cell(name, row).text, same = before === now;
+    const second = LIVE.shared && (LIVE.columns[name].kept || isOff(look, name, row)), u = LIVE.shared && !second && row >= 0 ? look.sure.u(name, row) / LIVE.columns[name].scale : NaN;
+    const more = isEdited() && LIVE.shared && row >= 0 && look.trace.isOk(name, row) ? [...(second ? ["second order"] : []), ...(place < MOST_DRAWN ? [shortDraws(name, row)] : [])] : [];
+    const called = index ? ` ${page.issued.trace.word(name, was) ?? index}` : "";
+    return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol")), called),
       make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now, u > 0 ? ` (${told(u, LIVE.most).digits})` : "", ...more.map((text) => make("span", {}, text))));
   });
   const head = make("tr", {}, ...["result", "as issued", LIVE.shared ? "now (u)" : "now"].map((text) => make("th", { scope: "col" }, text)));
@@ -42,7 +43,7 @@ function writePanel(look) {
 
 // Which results had a value as issued and have none now; if none, which other cells, and so all that needs them.
 function lost({ trace }) {
-  const was = page.issued.trace, gone = LIVE.headline.filter((name) => was.isOk(name, 0) && !trace.isOk(name, 0));
+  const was = page.issued.trace, there = (one, [name, index]) => one.isOk(name, one.row(name, index)), gone = LIVE.headline.filter((cell) => there(was, cell) && !there(trace, cell)).map(([name, index]) => was.address(name, was.row(name, index)));
   const begun = trace.errors.filter(({ name, row }) => {
     const before = was.row(name, trace.index(name, row));
     return !LIVE.columns[name].of && (before < 0 || was.isOk(name, before)); // an input, not its uncertainty as well

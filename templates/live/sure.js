@@ -124,7 +124,7 @@ function writeUncertain(look) {
     line.cells[6].replaceChildren(...most.flatMap(({ called, rows, share }, n) => [n ? ", " : "", make("code", {}, called), `${rows}\u00a0${percent(share)}`]));
   }
   for (const told of all(".headline .sure")) {
-    const name = told.parentElement.querySelector("[data-cell]").dataset.cell, known = LIVE.shared && sureOf(look, name, 0);
+    const { cell: name, index } = told.parentElement.querySelector("[data-cell]").dataset, row = look.trace.row(name, index), known = LIVE.shared && row >= 0 && sureOf(look, name, row);
     const unit = LIVE.columns[name].unit === "1" ? [] : ["\u00a0", ...part(name, "unit")], [, , factor, wide] = known ? known.texts : [];
     told.replaceChildren(...(wide ? [`U\u00a0=\u00a0${wide}`, ...unit, ` (k\u00a0=\u00a0${factor})`] : []));
   }

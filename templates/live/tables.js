@@ -159,7 +159,7 @@ function howMany(look, margin) {
 function writeCounted(look) {
   for (const element of all(".headline [data-cell]")) {
     const box = element.parentElement, name = element.dataset.cell;
-    const counted = look.trace.isOk(name, 0) ? look.trace.sheet.counted[name] ?? {} : {};
+    const counted = look.trace.isOk(name, look.trace.row(name, element.dataset.index)) ? look.trace.sheet.counted[name] ?? {} : {};
     for (const old of all(".counted", box)) {
       if (!old.previousSibling?.data?.trim()) old.previousSibling?.remove();
       old.remove();

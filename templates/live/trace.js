@@ -9,8 +9,9 @@ function wholeColumns(columns) {
 }
 
 class Trace {
-  constructor(program, columns, sheet) {
+  constructor(program, columns, sheet, words = {}) {
     this.columns = columns;
+    this.words = words;
     this.sheet = sheet;
     this.declared = Object.fromEntries(program.columns.map((column) => [column.name, column]));
     // What is only drawn is no cell of the report.
@@ -34,17 +35,22 @@ class Trace {
     return this.label(name, row).join("-");
   }
 
+  // What a group is called, which stands for the number of its row.
+  word(name, row) {
+    return this.words[this.declared[name].axis]?.[this.index(name, row)];
+  }
+
   address(name, row) {
-    const index = this.index(name, row);
+    const index = this.word(name, row) ?? this.index(name, row);
     return index ? `${name}[${index}]` : name;
   }
 
-  // The row of an index such as "1-2"; -1 if there is none.
+  // The row of an index such as "1-2", or of a group's word; -1 if there is none.
   row(name, index) {
     const axis = this.declared[name]?.axis;
     if (axis === undefined) return -1;
     if (axis === null) return index === "" ? 0 : -1;
-    this.found[axis] ??= new Map(this.sheet.layouts[axis].labels.map((label, row) => [label.join("-"), row]));
+    this.found[axis] ??= new Map(this.sheet.layouts[axis].labels.flatMap((label, row) => [label.join("-"), this.words[axis]?.[label]].map((index) => [index, row])));
     return this.found[axis].get(index) ?? -1;
   }
 

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from loopsheet.report.inputs.inputs import Inputs, check_cells, load
+from loopsheet.report.inputs.cells import check_cells
+from loopsheet.report.inputs.inputs import Inputs, load
 from loopsheet.report.messages.errors import InputError, UnknownWorkbook, render_all
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.workbook import Measured, Parameter, Workbook

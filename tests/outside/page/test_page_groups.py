@@ -43,6 +43,7 @@ def test_an_edited_reading_moves_its_group(open_page: Callable[..., Live], folde
     assert driving.differences(live.cells(), again) == []
     assert driving.differences(live.cells(), issued) != []
     live.page.locator('main [data-cell="level"][data-index="2"]').first.click()
+    assert live.page.locator("#bar-name code").text_content() == "level[B]"
     beside = live.page.locator("#bar-precedents button").evaluate_all(
         "all => all.map((one) => one.dataset.goto)"
     )
@@ -101,3 +102,33 @@ def test_an_edited_reading_moves_the_line_of_its_group(
     words = [row[0] for row in grouped.rates(1)]
     moved = again.value["b"] != issued.value["b"]
     assert moved.tolist() == [word == words[4] for word in dict.fromkeys(words)]
+
+
+def test_a_result_of_each_group_has_its_word_and_follows(
+    open_page: Callable[..., Live], tmp_path: Path
+) -> None:
+    code = grouped.RATES.replace('headline="spread"', 'headline="spread b"')
+    stated = '[uncertainty]\ny = "u = 0.05"\n'
+    folder = grouped.write(tmp_path, grouped.rates(1), grouped.RATES_HEAD, code, stated)
+    live = opened(folder, open_page)
+    shown = live.page.locator('.headline > div:has([data-cell="b"])')
+    words = list(dict.fromkeys(row[0] for row in grouped.rates(1)))
+    assert [text.split(", ")[1] for text in shown.locator(".meaning").all_text_contents()] == words
+    before, sure = (
+        shown.locator("[data-cell]").all_text_contents(),
+        shown.locator(".sure").all_text_contents(),
+    )
+    old = grouped.rates(1)[4][2]
+    live.type("y", 5, "-0.512")
+    again = rebuilt(folder, (f",{old}\n", ",-0.512\n"))
+    report = Study(folder).computed
+    assert driving.differences([cell for cell in live.cells() if cell.name == "b"], again) == []
+    place, now = words.index(grouped.rates(1)[4][0]), shown.locator("[data-cell]").all_text_contents()
+    assert [one != other for one, other in zip(before, now, strict=True)] == [n == place for n in range(3)]
+    assert shown.locator(".sure").all_text_contents() == sure  # a straight line's u is of x alone
+    assert len(report.uncertain().budgets) == 4
+    panel = live.page.locator("#live-panel tbody th").all_text_contents()
+    assert [text.rsplit(" ", 1)[-1] for text in panel[1:]] == words
+    live.page.locator('main [data-cell="spread"]').first.click()
+    live.page.locator(f'#bar-precedents [data-goto="b[{words[1]}]"]').click()
+    assert live.page.locator("#bar-name code").text_content() == f"b[{words[1]}]"

@@ -1,0 +1,94 @@
+"""What a folder says of cells, held against those that the sheet has."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import replace
+from typing import TypeVar
+
+from ..cells.address import parts
+from ..messages.errors import Findings
+from .expected import NO_WORDS, Expectation, Words, check_expected, row_of
+from .inputs import Inputs
+from .limits import Limits, check_limits, of_every_row
+from .published import check_published
+
+__all__ = ["check_cells"]
+
+_Of = TypeVar("_Of", Expectation, Limits)
+
+
+def check_cells(
+    inputs: Inputs,
+    cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
+    words: Words = NO_WORDS,
+) -> Inputs:
+    """Check all that was read of cells against those of the sheet.
+
+    What is said of a cell that is missing because a test is left out is set aside.
+
+    Parameters
+    ----------
+    inputs : Inputs
+        What was read.
+    cells : mapping of str to (str, collection of tuple of int)
+        For each cell its unit and the indices that it has: ``{()}`` for a scalar.
+    words
+        As for :func:`~loopsheet.report.inputs.expected.check_expected`.
+
+    Returns
+    -------
+    Inputs
+        Those without what was set aside.
+
+    Raises
+    ------
+    InputError
+        With every cell, index and test that there is not, and every unit of another dimension.
+    """
+    gone = {each.test for each in inputs.left_out}
+
+    def rests_on_gone(name: str, index: tuple[int, ...]) -> bool:
+        there = cells[name][1] if name in cells else () if not name else (index,)
+        return index not in there and not gone.isdisjoint(index)
+
+    inputs = replace(
+        inputs,
+        expected=tuple(_of_words(inputs.expected, words)),
+        limits=tuple(_of_words(inputs.limits, words)),
+        published=tuple(each.of_words(words) for each in inputs.published),
+        published_u=tuple(each.of_words(words) for each in inputs.published_u),
+    )
+    every = (*inputs.published, *inputs.published_u)
+    aside = tuple(value for value in every if rests_on_gone(value.columns[0], value.index))
+    undecided = tuple(each for each in inputs.limits if rests_on_gone(*each.cell))
+    kept = replace(
+        inputs,
+        expected=tuple(each for each in inputs.expected if not rests_on_gone(*each.cell)),
+        limits=tuple(each for each in of_every_row(inputs.limits, cells) if each not in undecided),
+        undecided=undecided,
+        published=tuple(value for value in inputs.published if value not in aside),
+        published_u=tuple(value for value in inputs.published_u if value not in aside),
+        aside=aside,
+    )
+    findings = Findings()
+    check_expected(kept.expected, kept.tests, cells, findings, inputs.workbook.row, words)
+    written = {each.at: each for each in reversed(kept.limits)}  # what is wrong with a line is told once
+    check_limits([*reversed(written.values())], cells, findings, words)
+    check_published((*kept.published, *kept.published_u), kept.free_at, cells, kept.measured, findings, words)
+    findings.check()
+    return kept
+
+
+def _of_words(said: Iterable[_Of], words: Words) -> Iterator[_Of]:
+    """What is said of cells, with the rows that words stand for: ``slope[steel]``.
+
+    Parameters
+    ----------
+    said : iterable of Expectation or Limits
+    words
+        As for :func:`~loopsheet.report.inputs.expected.check_expected`.
+    """
+    for each in said:
+        name, word = parts(each.address) or ("", "")
+        yield each if each.cell[1] else replace(each, row=row_of(word, words.get(name, {})))
