@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from sympy import Expr
 
 __all__ = [
-    "BARS", "BLUE", "INK", "IN_A_ROW", "MOST_DOTS", "MOST_PANELS", "STYLES", "VERMILION", "Chart", "Drawn",
-    "Series", "copied", "drawn", "shade", "with_copies",
+    "BARS", "BLUE", "INK", "IN_A_ROW", "MOST_DOTS", "MOST_GROUPS", "MOST_PANELS", "STYLES", "VERMILION",
+    "Chart", "Drawn", "Series", "copied", "drawn", "shade", "with_copies",
 ]  # fmt: skip
 
 INK, VERMILION, BLUE = "#1a1a1a", "#d55e00", "#0072b2"
@@ -23,6 +23,8 @@ BARS = "bars: standard uncertainty"
 STYLES = ("points", "line", "level")
 MOST_DOTS = 500
 """Points of a series that are drawn; more are thinned: they would blacken the paper and bloat the file."""
+MOST_GROUPS = 8
+"""Of points that the legend tells apart; of more, those with a line are named at its end."""
 MOST_PANELS, IN_A_ROW = 9, 3
 """Panels of a picture; of more rows some are drawn, evenly."""
 _SHADES = ((68, 1, 84), (70, 50, 127), (54, 92, 141), (39, 127, 142), (31, 161, 135))
@@ -52,6 +54,8 @@ class Series:
         A single number that the label is told to be, behind it.
     bars : bool
         Whether points have bars of a standard uncertainty to both sides, where one is known.
+    by : str
+        The groups of the points, an index set: those of each have a colour, and its word in the legend.
     """
 
     x: str
@@ -63,6 +67,7 @@ class Series:
     named: bool = False
     value: str = ""
     bars: bool = False
+    by: str = ""
 
     @property
     def is_cloud(self) -> bool:
@@ -84,6 +89,8 @@ class Chart:
         The axes with a logarithmic scale: ``x``, ``y`` or ``xy``.
     from_zero : bool
         Whether both axes begin at zero.
+    zero : bool
+        Whether there is a line at zero across all of it.
     whole : bool
         Whether every point is drawn where it is, however far from the lines and the other points.
     panels : bool
@@ -98,6 +105,7 @@ class Chart:
     series: tuple[Series, ...]
     log: str = ""
     from_zero: bool = False
+    zero: bool = False
     whole: bool = False
     panels: bool = False
     height: float = 8

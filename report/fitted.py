@@ -237,7 +237,9 @@ class DeclaredFit:
         over = self._over or fitted
 
         def points(up: Column) -> Series:
-            return Series(over.name, up.name, up.meaning, "points", bars=True)
+            return Series(
+                over.name, up.name, up.meaning, "points", bars=True, by=self._of.name if self._of else ""
+            )
 
         *_, across, up = self.traced or (over, fitted)
         curve = Series(across.name, up.name, fitted.meaning, "line", VERMILION)
@@ -248,7 +250,8 @@ class DeclaredFit:
             (number + 1, residual, (), ""),
         ):
             said = f"{up.meaning} over {over.meaning}{with_it}"
-            chart = Chart(said, over.meaning, up.meaning, (points(up), *more), whole=True)
+            left = up is residual
+            chart = Chart(said, over.meaning, up.meaning, (points(up), *more), zero=left, whole=True)
             yield FigureSpec(f"plot_{n}", str(n), f"{sentence_case(said)}.", chart=chart)
 
 

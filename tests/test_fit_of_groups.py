@@ -11,12 +11,15 @@ import pytest
 import loopsheet
 from loopsheet.report import method
 from loopsheet.report.build import build
+from loopsheet.report.charts import BARS
 from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
 from loopsheet.report.study import Study
+from loopsheet.report.views import charts
 
 METHOD, HEAD, drawn = grouped.RATES, grouped.RATES_HEAD, grouped.rates
 FIT, LEVEL = "line = fit(y, a + b * x, of=catalyst)", "level = let(mean(y, of=catalyst), '')\n    line = "
+STATED = '[uncertainty]\ny = "u = 0.05"\n'
 Rows = tuple[tuple[str, ...], ...]
 
 
@@ -91,6 +94,29 @@ def test_the_report_has_a_line_for_each(tmp_path: Path) -> None:
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert "fit of each catalyst" in page
     assert "of the n readings of each catalyst" in page
+
+
+def test_its_pictures_tell_groups_apart_by_their_words(tmp_path: Path) -> None:
+    report = Study(grouped.write(tmp_path, drawn(1), HEAD, METHOD, STATED)).computed
+    fitted, left = (charts.draw(report, spec.chart) for spec in report.workbook.figures if spec.chart)
+    said = [[text.get_text() for text in figure.legends[0].get_texts()] for figure in (fitted, left)]
+    words = list(dict.fromkeys(row[0] for row in drawn(1)))
+    assert said == [[*words, BARS, "fit of each catalyst"], [*words, BARS]]
+    axes = fitted.axes[0]
+    colours = [line.get_color() for line in axes.lines if len(line.get_xdata()) == 2]
+    keys = [handle.get_color() for handle in fitted.legends[0].legend_handles[: len(words)]]
+    assert len({*keys}) == len(words)
+    assert {*colours} >= {*keys}  # a line has the colour of its points
+    assert {text.get_text() for text in axes.texts} <= {*words}
+    assert any([*line.get_ydata()] == [0, 0] for line in left.axes[0].lines)
+    assert not any([*line.get_ydata()] == [0, 0] for line in axes.lines)
+
+
+def test_many_groups_are_not_told_apart_in_a_legend(tmp_path: Path) -> None:
+    report = Study(grouped.write(tmp_path, drawn(1, 9, 40), HEAD, METHOD, STATED)).computed
+    figure = charts.draw(report, report.workbook.figures[0].chart)
+    said = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert said == ["logarithm of the rate", BARS, "fit of each catalyst"]
 
 
 @pytest.mark.parametrize(

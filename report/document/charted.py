@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...derivations.unit_text import is_pure, micro
+from ..cells.address import index_text
 from ..charts import Chart, Series
 from ..result.result import Report
-from ..sheet import Axis, RepeatAxis
+from ..sheet import Axis, GroupAxis, RepeatAxis
 from .material import Material
 from .notation import fragments
 from .tree import Math, Refer
@@ -119,9 +120,16 @@ class Words:
 
     def axis(self, series: Series) -> Axis:
         """The axis whose rows a series tells of."""
+        if series.by:
+            return next(axis for axis in self.plotted.values.sheet.axes if axis.name == series.by)
         axis = self.plotted.values.sheet[series.x].axis
         assert axis is not None
         return axis.of if isinstance(axis, RepeatAxis) else axis
+
+    def called(self, axis: Axis, label: tuple[int, ...]) -> str:
+        """What one of its rows is called: a group by its word."""
+        words = self.report.values.words.get(axis.name, {}) if isinstance(axis, GroupAxis) else {}
+        return words.get(label) or index_text(label).replace("-", "–")
 
     def count(self, series: Series, number: int) -> str:
         """So many rows: ``10 pairs``."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from ..cells.address import index_text
 from ..cells.layout import evenly
 from ..cells.values import Status
-from ..charts import BARS, IN_A_ROW, MOST_DOTS, MOST_PANELS, VERMILION, Chart, Series, shade
+from ..charts import BARS, IN_A_ROW, INK, MOST_DOTS, MOST_GROUPS, MOST_PANELS, VERMILION, Chart, Series, shade
 from ..document.charted import PREFIXES, Letters, Words, thinned
 from ..result.result import Report
+from ..sheet import GroupAxis
 from . import drawing
 from .drawing import Array, Labels, Place
 
@@ -72,13 +73,12 @@ class Trace:
     """
 
     labels: list[tuple[int, ...]]
+    names: list[str]
+    """What the points are called, or the row."""
     at: Array
     u: Array
-
-    @property
-    def names(self) -> list[str]:
-        """What the points are called, or the row."""
-        return ["–".join(map(str, label)) for label in self.labels]
+    part: float
+    """Which of all rows it is, from 0 to 1."""
 
 
 def traces(
@@ -106,7 +106,9 @@ def traces(
     for row in np.unique(which[ok]):
         here = np.flatnonzero(ok & (which == row))
         named = labels[here] if of is axis else labels[[row]]
-        yield Trace([tuple(label) for label in named.tolist()], at[:, here], u[:, here])
+        own = [tuple(label) for label in named.tolist()]
+        part = float(row) / max(1, len(labels) - 1)
+        yield Trace(own, [words.called(of, label) for label in own], at[:, here], u[:, here], part)
 
 
 def _units(words: Words, chart: Chart) -> list[tuple[str, float, float]]:
@@ -272,7 +274,7 @@ class _Picture:
         axes: Axes,
         found: list[list[Trace]],
     ) -> None:
-        self.words, self.up, self.figure, self.axes = words, up, figure, axes
+        self.words, self.up, self.figure, self.axes, self.zero = words, up, figure, axes, chart.zero
         self.found = list(zip(chart.series, found, strict=True))
         lines, dots = (
             np.hstack([np.empty((2, 0)), *(t.at for s, own in self.found if s.style == style for t in own)])
@@ -292,6 +294,8 @@ class _Picture:
     def draw(self) -> None:
         """Draw all series, then what names them where there is room."""
         self.axes.grid(visible=True)
+        if self.zero and self.frame.ends[1][0] < 0 < self.frame.ends[1][1]:
+            self.axes.axhline(0, color=INK, lw=0.7, zorder=1.5)
         for series, own in self.found:
             if series.style == "level":
                 self.level(series)
@@ -308,20 +312,28 @@ class _Picture:
         for text, places, style in self.names:
             any(labels.place(text, (float(x), float(y)), beside, **style) for (x, y), beside in places)
 
-    def key(self, series: Series, count: int, more: str = "", **looks: Any) -> None:
+    def key(self, series: Series, count: int, more: str = "", word: str = "", **looks: Any) -> None:
         """An entry of the legend, which stands above the picture, where nothing can be covered."""
         from matplotlib.lines import Line2D
 
         rows = "%s" if series.each else self.words.count(series, count)
         value = self.words.value(series.value) if series.value else ""
-        text = mathtext((*self.words.label(series, rows), ("", more + value)))
+        label: Letters = (("", word),) if word else self.words.label(series, rows)
+        text = mathtext((*label, ("", more + value)))
         if all(key.get_label() != text for key in self.keys):  # both sides of a band are one
             self.keys.append(Line2D([], [], label=text, **looks))
 
-    def points(self, series: Series, own: list[Trace]) -> None:
+    def points(self, series: Series, own: list[Trace], word: str = "") -> None:
         """Dots, thinned if they are many; what is outside of the frame is counted, and marked if named."""
         from matplotlib.lines import Line2D
 
+        if series.by:
+            few = len(own) <= MOST_GROUPS
+            for trace in own:
+                alone = replace(series, by="", colour=shade(trace.part))
+                self.points(alone, [trace], trace.names[0] if few else "")
+            self.keys.sort(key=lambda key: key.get_label() == BARS)
+            return
         at = np.hstack([trace.at for trace in own])
         total = at.shape[1]
         outermost = np.argsort(-np.abs(at[1] - np.median(at[1])), kind="stable")
@@ -346,7 +358,7 @@ class _Picture:
             drawing.dots(self.axes, at[0, shown], at[1, shown], size, series.colour)
         self.taken.append((at[:, shown], size / 2 + 0.75 if series.named else 1.0))
         count = total if series.named else len(own)
-        self.key(series, count, more, ls="", marker="o", ms=min(size, 2.4), color=series.colour)
+        self.key(series, count, more, word, ls="", marker="o", ms=min(size, 2.4), color=series.colour)
         if ends.size and BARS not in (key.get_label() for key in self.keys):
             self.keys.append(Line2D([], [], ls="", marker="|", ms=7, color=series.colour, label=BARS))
         if series.named:
@@ -392,6 +404,9 @@ class _Picture:
         ways = [(t.names[0], t.at[:, evenly(t.at.shape[1], corners)]) for t in own]
         ways.sort(key=lambda way: (float(way[1][1, -1]), way[0]))
         colours = [shade(n / max(1, len(ways) - 1)) for n in range(len(ways))]
+        if isinstance(self.words.axis(series), GroupAxis):  # as its points
+            of = {trace.names[0]: shade(trace.part) for trace in own}
+            colours = [of[name] for name, _ in ways]
         for (_, at), colour in zip(ways, colours, strict=True):
             self.line(at, colour, width)
         for n in evenly(len(ways), SOME_NAMES)[::-1]:

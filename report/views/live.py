@@ -172,6 +172,8 @@ def _chart(words: Words, chart: Chart) -> dict[str, Any]:
     found["log"] = [int(axis in chart.log) for axis in "xy"]
     if chart.from_zero:
         found["zero"] = 1
+    if chart.zero:
+        found["base"] = 1
     if chart.whole:
         found["whole"] = 1
     if chart.panels:

@@ -9,7 +9,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ..cells.address import word as is_word
 from ..quantity import Printed, behind
 from ..result.result import Report
 from ..sheet import GroupAxis, MemberAxis
@@ -40,13 +39,9 @@ def _groups(report: Report) -> dict[str, dict[int, int]]:
 
 
 def _words(report: Report) -> dict[str, dict[int, str]]:
-    """For each axis of groups, the words that stand for the number of a row."""
-    words = (
-        (axis.name, report.values.words[axis.name])
-        for axis in report.sheet.axes
-        if isinstance(axis, GroupAxis)
-    )
-    return {name: {n: word for (n,), word in own.items() if is_word(word)} for name, own in words}
+    """For each axis of groups, the words by their numbers."""
+    names = [axis.name for axis in report.sheet.axes if isinstance(axis, GroupAxis)]
+    return {name: {n: word for (n,), word in report.values.words[name].items()} for name in names}
 
 
 def _tests(report: Report, measured: Mapping[str, tuple[Printed | None, ...]]) -> list[dict[str, Any]]:

@@ -5,7 +5,7 @@ const AROUND = [
   [5, 9, "start"], [-5, -5, "end"], [-5, 9, "end"], [5, -5, "start"],
 ];
 const BESIDE_END = [[5, 10, "start"], [-4, -4, "end"], [-6, -14, "end"], [-8, -26, "end"]];
-const MOST_DOTS = 500, MOST_NAMES = 21, SOME_NAMES = 12, ROOM = 0.25, MARGINS = [0.06, 0.1], MOST_PANELS = 9, IN_A_ROW = 3, GHOST = "#c4c4c4";
+const MOST_DOTS = 500, MOST_NAMES = 21, SOME_NAMES = 12, ROOM = 0.25, MARGINS = [0.06, 0.1], MOST_PANELS = 9, MOST_GROUPS = 8, IN_A_ROW = 3, GHOST = "#c4c4c4";
 
 // From dark to middling, as the pictures that were issued.
 const SHADES = [[68, 1, 84], [70, 50, 127], [54, 92, 141], [39, 127, 142], [31, 161, 135]];
@@ -15,15 +15,16 @@ function shade(part) {
 }
 
 // What a series shows, in units of these sizes, with these zeros: all rows, or those of each row of the axis that is repeated.
-function tracesOf({ x, y, style }, { log }, { sheet, declared }, sizes) {
+function tracesOf({ x, y, style, by }, { log }, { sheet, declared, words }, sizes) {
   if (style === "level") return [];
-  const { value, status, layouts } = sheet, axis = axisNamed(declared[x].axis), of = axis.kind === "repeat" && axisNamed(axis.of);
+  const { value, status, layouts } = sheet, axis = axisNamed(declared[x].axis), of = by ? axisNamed(by) : axis.kind === "repeat" && axisNamed(axis.of);
   const { labels } = layouts[(of || axis).name], found = [];
   for (let row = 0; row < layouts[axis.name].size; row++) {
     const at = [x, y].map((name, n) => (value[name][row] - sizes[n][1]) / sizes[n][0]);
     if (status[x][row] || status[y][row] || at.some((one, n) => one <= 0 && log[n])) continue;
     const parent = of ? layouts[axis.name].rows[of.index][row] : row;
-    (found[of ? parent : 0] ??= []).push({ at, row, name: labels[parent].join("–") });
+    const name = words[of?.name]?.[labels[parent]] ?? labels[parent].join("–"), part = parent / Math.max(1, labels.length - 1);
+    (found[of ? parent : 0] ??= []).push({ at, row, name, part });
   }
   return found.filter(Boolean);
 }
@@ -94,12 +95,13 @@ function drawChart(chart, look) {
   const titled = (before = ["", ""]) => ["x", "y"].map((axis, n) => lettered([["", before[n]], ...chart[axis].title, ["", units[n][0] && ` / ${units[n][0]}`]]));
   const mark = (d, attributes) => draw("path", { d, ...attributes });
   if (chart.panels) return drawPanels(chart, series, own, ghosts, frame, titled, mark);
-  const picture = new Picture(chart, frame.ends, titled(), chart.small ? 14 : series.filter(({ style }) => style !== "level").length > 1 || !dots.every(frame.holds) || ghosts.some((traces) => traces.length) ? 33 : 4);
+  const picture = new Picture(chart, frame.ends, titled(), chart.small ? 14 : series.some(({ by }) => by) || series.filter(({ style }) => style !== "level").length > 1 || !dots.every(frame.holds) || ghosts.some((traces) => traces.length) ? 33 : 4);
   const key = ({ label, rows, value }, count, more, sign) => {
     const told = label.map(([kind, text]) => [kind, text.replace("%s", `${count} ${rows?.[Number(count === 1)]}`)]);
     const text = [...told, ["", more + (value ? look.shownText(value, 0) : "")]];
     if (!keys.some((other) => plainOf(other.text) === plainOf(text))) keys.push({ mark: sign, text }); // both sides of a band are one
   };
+  if (chart.base && y[0] < 0 && y[1] > 0) picture.line([{ at: [x[0], 0] }, { at: [x[1], 0] }], INK, 0.7, null, false);
   const draws = {
     level(one) {
       const at = (value[one.y][0] - units[1][2]) / units[1][1];
@@ -110,13 +112,18 @@ function drawChart(chart, look) {
     },
     line(one, traces) {
       const ways = waysOf(one, traces);
-      const colour = (n) => (one.each ? shade(n / Math.max(1, ways.length - 1)) : one.colour);
+      const grouped = axisNamed(axisNamed(trace.declared[one.x].axis).of)?.kind === "groups"; // as its points
+      const colour = (n) => (one.each ? shade(grouped ? ways[n][0].part : n / Math.max(1, ways.length - 1)) : one.colour);
       const width = one.each ? (ways.length <= SOME_NAMES ? 1.4 : 0.8) : 1.1;
       ways.forEach((way, n) => picture.line(way, colour(n), width));
       if (one.each) for (const n of evenly(ways.length, SOME_NAMES).reverse()) names.push([ways[n][0].name, [[ways[n].at(-1).at, BESIDE_END]], { colour: colour(n) }]);
       key(one, traces.length, "", mark("M0 0h13", { stroke: colour(Math.floor(ways.length / 2)), "stroke-width": width }));
     },
     points(one, traces) {
+      if (one.by) {
+        for (const own of traces) draws.points({ ...one, by: "", colour: shade(own[0].part), label: traces.length > MOST_GROUPS ? one.label : [["", own[0].name]] }, [own]);
+        return;
+      }
       const all = traces.flat(), few = all.length <= MOST_NAMES, within = all.filter(frame.holds), out = all.length - within.length;
       const middle = quantile(all.map(({ at }) => at[1]).sort((a, b) => a - b), 0.5), far = ({ at }) => Math.abs(at[1] - middle);
       const named = one.named ? [...all].sort((a, b) => far(b) - far(a)).slice(0, few ? Infinity : SOME_NAMES) : [];

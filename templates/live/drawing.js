@@ -33,13 +33,14 @@ class Picture {
   constructor({ height, log, width = WIDTH, small }, limits, titles, top) {
     const marks = (n, most) => (log[n] ? logTicks : ticks)(...limits[n], most);
     const yTicks = marks(1, small ? 4 : Math.min(9, (height - 60) / 24));
-    const left = 28 + Math.max(...yTicks.map((tick) => textWidth(tick.text, 8.5)));
+    const lines = small ? [titles[1]] : broken(titles[1], height - 36 - top);
+    const left = 17 + 11 * lines.length + Math.max(...yTicks.map((tick) => textWidth(tick.text, 8.5)));
     this.frame = { left, right: width - 3, top, bottom: height - (small ? 25 : 36) };
     this.limits = limits;
     this.log = log;
     this.taken = [];
     this.svg = canvas(width, height);
-    this.axes(marks(0, small ? 5 : 9), yTicks, titles, height, small);
+    this.axes(marks(0, small ? 5 : 9), yTicks, [titles[0], lines], height, small);
   }
 
   // How far along an axis a value stands, from 0 to 1.
@@ -58,7 +59,7 @@ class Picture {
     return bottom - this.part(1, value) * (bottom - top);
   }
 
-  axes(xTicks, yTicks, [xLabel, yLabel], height, small) {
+  axes(xTicks, yTicks, [xLabel, yLabels], height, small) {
     const { left, right, top, bottom } = this.frame, lines = [], marks = [], texts = [];
     for (const { at, text } of xTicks) {
       const x = this.x(at).toFixed(2);
@@ -78,7 +79,7 @@ class Picture {
       draw("path", { d: marks.join("") + `M${left} ${top}V${bottom}H${right}`, stroke: INK, "stroke-width": 0.7, fill: "none" }),
       draw("g", { "font-size": "8.5" }, ...texts),
       draw("text", { x: (left + right) / 2, y: height - (small ? 2 : 7), "text-anchor": "middle" }, ...xLabel),
-      draw("text", small ? { x: 2, y: 9 } : { transform: `translate(11 ${middle}) rotate(-90)`, "text-anchor": "middle" }, ...yLabel),
+      ...yLabels.map((line, n) => draw("text", small ? { x: 2, y: 9 } : { transform: `translate(${11 * (n + 1)} ${middle}) rotate(-90)`, "text-anchor": "middle" }, ...line)),
     );
   }
 
@@ -143,6 +144,24 @@ class Picture {
 const plainOf = (letters) => letters.map(([, text]) => text).join("");
 
 // Letters of a symbol are slanted; some stand lower or higher, and what follows back on the line.
+// A title in lines that are no longer than its axis, broken at blanks.
+function broken(parts, most) {
+  const lines = [[]];
+  let wide = 0, last = "";
+  for (const part of parts) {
+    part.textContent.split(/(?<= )/).forEach((word, n) => {
+      const long = textWidth(word, 9), piece = part.cloneNode(false);
+      piece.textContent = word;
+      if (n) piece.removeAttribute("dy");
+      if (last.endsWith(" ") && wide + long > most) [wide] = [0, lines.push([])];
+      lines.at(-1).push(piece);
+      wide += long;
+      last = word;
+    });
+  }
+  return lines;
+}
+
 function lettered(letters) {
   let low = 0;
   return letters.map(([kind, text]) => {

@@ -37,7 +37,8 @@ class Trace {
 
   // What a group is called, which stands for the number of its row.
   word(name, row) {
-    return this.words[this.declared[name].axis]?.[this.index(name, row)];
+    const word = this.words[this.declared[name].axis]?.[this.index(name, row)];
+    return /^[\d-]*$|[[\]]/.test(word) ? undefined : word; // which would be read as a number
   }
 
   address(name, row) {
@@ -50,7 +51,7 @@ class Trace {
     const axis = this.declared[name]?.axis;
     if (axis === undefined) return -1;
     if (axis === null) return index === "" ? 0 : -1;
-    this.found[axis] ??= new Map(this.sheet.layouts[axis].labels.flatMap((label, row) => [label.join("-"), this.words[axis]?.[label]].map((index) => [index, row])));
+    this.found[axis] ??= new Map(this.sheet.layouts[axis].labels.flatMap((label, row) => [[this.words[axis]?.[label], row], [label.join("-"), row]]));
     return this.found[axis].get(index) ?? -1;
   }
 

@@ -132,3 +132,25 @@ def test_a_result_of_each_group_has_its_word_and_follows(
     live.page.locator('main [data-cell="spread"]').first.click()
     live.page.locator(f'#bar-precedents [data-goto="b[{words[1]}]"]').click()
     assert live.page.locator("#bar-name code").text_content() == f"b[{words[1]}]"
+
+
+def test_pictures_tell_groups_by_their_words_after_an_edit(
+    open_page: Callable[..., Live], tmp_path: Path
+) -> None:
+    code = grouped.RATES.replace(
+        '"logarithm of the rate"', f'"{"logarithm of the rate over the catalyst, " * 2}by its flow"'
+    )
+    live = opened(grouped.write(tmp_path, grouped.rates(1), grouped.RATES_HEAD, code), open_page)
+    live.type("y", 5, "-0.512")
+    words = list(dict.fromkeys(row[0] for row in grouped.rates(1)))
+    for number, more in ((1, ["fit of each catalyst"]), (2, [])):
+        figure = live.page.locator(f"#figure-plot_{number} svg")
+        keys = figure.locator("g[transform]:has(> text[x])").all_text_contents()
+        assert [key for key in keys if key != "as issued"] == [*words, *more]
+        rotated = figure.locator('text[transform*="rotate(-90)"]')
+        assert rotated.count() > 2
+        picture = figure.bounding_box()
+        for title in rotated.all():
+            box = title.bounding_box()
+            assert box["y"] >= picture["y"] + 25 * picture["width"] / 453.54  # below the legend
+            assert box["y"] + box["height"] <= picture["y"] + picture["height"]
