@@ -66,13 +66,17 @@ class Delivered:
 
     def edited(self, edits: Edits) -> bytes:
         """The delivered file after somebody typed into it, everything else as it was stored."""
+        return typed(self.content, self.cells(edits))
+
+    def cells(self, edits: Edits) -> dict[str, dict[str, Typed]]:
+        """What is typed, by worksheet and address."""
         by_sheet: dict[str, dict[str, Typed]] = {}
         for (name, row), value in edits.items():
             place = self.grid[name].place
             by_sheet.setdefault(place.worksheet, {})[place.cell(row, place.worksheet).replace("$", "")] = (
                 value
             )
-        return typed(self.content, by_sheet)
+        return by_sheet
 
     def values(self, edits: Edits) -> Values:
         """What the NumPy engine makes of the same inputs; as many rows as there are, or none at all."""
@@ -338,7 +342,7 @@ def cells_of(content: bytes) -> dict[str, dict[str, Any]]:
     """Every value of a saved workbook."""
     import openpyxl
 
-    book = openpyxl.load_workbook(io.BytesIO(content), data_only=True)
+    book = openpyxl.load_workbook(io.BytesIO(content), data_only=True, read_only=True)
     return {
         sheet.title: {
             cell.coordinate: cell.value for row in sheet.iter_rows() for cell in row if cell.value is not None
@@ -352,7 +356,7 @@ def formulas_of(content: bytes) -> dict[str, dict[str, Any]]:
     import openpyxl
     from openpyxl.worksheet.formula import ArrayFormula
 
-    book = openpyxl.load_workbook(io.BytesIO(content))
+    book = openpyxl.load_workbook(io.BytesIO(content), read_only=True)
     found: dict[str, dict[str, Any]] = {}
     for sheet in book.worksheets:
         cells = found.setdefault(sheet.title, {})

@@ -19,8 +19,6 @@ from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.sheet import Given
 
-pytestmark = pytest.mark.usefixtures("keeping")
-
 HERE = Path(__file__).parent
 
 Recalculate = Callable[..., dict[str, Any]]
@@ -35,8 +33,9 @@ def hyperformula(require: Callable[..., str], npm_packages: Callable[[Path], Pat
         books: Mapping[str, Any],
         mutants: list[list[str]] | None = None,
         changes: Mapping[str, Any] | None = None,
+        edits: Mapping[str, Any] | None = None,
     ) -> dict[str, Any]:
-        asked = {"books": books, "mutants": mutants or [], "changes": changes or {}}
+        asked = {"books": books, "mutants": mutants or [], "changes": changes or {}, "edits": edits or {}}
         run = subprocess.run(
             [node, str(HERE / "hyperformula.js")],
             input=json.dumps({"module": str(packages / "hyperformula"), **asked}),
@@ -66,7 +65,8 @@ EDITS: dict[str, spreadsheets.Edits] = {
 def test_recalculates_the_paper_as_numpy_does(hyperformula: Recalculate) -> None:
     paper = spreadsheets.paper()
     read = hyperformula(
-        {name: spreadsheets.formulas_of(paper.edited(edits)) for name, edits in EDITS.items()}
+        {"paper": spreadsheets.formulas_of(paper.content)},
+        edits={name: paper.cells(edits) for name, edits in EDITS.items()},
     )
     for name, edits in EDITS.items():
         found = spreadsheets.compare(paper, paper.values(edits), read[name])
