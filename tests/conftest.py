@@ -106,15 +106,14 @@ def anew(_kept: None) -> Iterator[None]:
 
 
 @pytest.fixture(scope="module")
-def keeping(_kept: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """What the tests of a file make is kept for that file alone, though they patch what makes it."""
-    with pytest.MonkeyPatch.context() as patch:
-        if KEEPS:
-            own = tmp_path_factory.mktemp("kept")
-            if os.environ[SETTING]:
-                shutil.copytree(os.environ[SETTING], own, dirs_exist_ok=True, copy_function=os.link)
-            patch.setenv(SETTING, str(own))
-        yield
+def keeping(_kept: None, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Where that is kept for the tests of a file alone which is made where they patch something."""
+    if not KEEPS:
+        return ""
+    own = tmp_path_factory.mktemp("kept")
+    if os.environ[SETTING]:
+        shutil.copytree(os.environ[SETTING], own, dirs_exist_ok=True, copy_function=os.link)
+    return str(own)
 
 
 @pytest.fixture(autouse=True)
@@ -123,8 +122,8 @@ def _made_by_what_is_patched(request: pytest.FixtureRequest) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         if "monkeypatch" in request.fixturenames:
             patch.setitem(ONCE, "now", False)
-            if "keeping" not in request.fixturenames:
-                patch.setenv(SETTING, "")
+            own = "keeping" in request.fixturenames
+            patch.setenv(SETTING, request.getfixturevalue("keeping") if own else "")
         yield
 
 

@@ -24,8 +24,6 @@ from loopsheet.report.stages import computing
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.design import Planner
 
-pytestmark = pytest.mark.usefixtures("keeping")
-
 PAPER = Path(__file__).parent.parent / "data" / "soft_steel"
 STATED = "v = +-0.5 % rect; e = 0.002; x_p = u = 0.1 um, dof = 7"
 

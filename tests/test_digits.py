@@ -32,8 +32,6 @@ from loopsheet.report.views import html, latex
 from loopsheet.report.views.live_uncertain import digits
 from loopsheet.report.views.xlsx_style import MOST_DECIMALS
 
-pytestmark = pytest.mark.usefixtures("keeping")
-
 TOML = """\
 workbook = "soft_impact"
 [parameters]

@@ -126,7 +126,6 @@ def different(expected: str, found: str) -> str:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
-@pytest.mark.usefixtures("keeping")
 def test_a_page_tells_what_happens(
     page: Path, require: Callable[..., str], tmp_path: Path, chdir: Callable[[Path], None]
 ) -> None:

@@ -28,8 +28,6 @@ from loopsheet.report.uncertainty.propagation import Spread
 from loopsheet.report.views import live
 from loopsheet.report.views.writer import TEMPLATES
 
-pytestmark = pytest.mark.usefixtures("keeping")
-
 SCRIPTS = ("numbers.js", "inputs.js", "trace.js", "sensitivities.js", "coverage.js", "sure.js", "cells.js")
 HARNESS = """
 const state = { tests: LIVE.tests, parameters: LIVE.parameters };

@@ -16,8 +16,6 @@ from loopsheet.report.inputs.inputs import PublishedValue
 from loopsheet.report.pytest_plugin import _is_ours
 from loopsheet.report.result.findings import names_of
 
-pytestmark = pytest.mark.usefixtures("keeping")
-
 
 def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     """Pytest in a process of its own, in a folder, with no settings of ours."""

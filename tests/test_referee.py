@@ -31,8 +31,6 @@ from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
 from loopsheet.report.stages import refereed
 from loopsheet.report.study import Study
 
-pytestmark = pytest.mark.usefixtures("keeping")
-
 
 def printed(text: str, unit: str = "1", scale: Fraction = Fraction(1)) -> Printed:
     """A printed number without a file."""

@@ -21,8 +21,6 @@ from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.propagation import Spread
 from loopsheet.report.workbooks.soft_impact_limits import APART, NEAR
 
-pytestmark = pytest.mark.usefixtures("keeping")
-
 HEIGHTS: Texts = {
     "v": ("2.200", "2.222", "3.100", "3.131", "4.300", "4.343"),
     "e": ("0.5344", "0.5337", "0.5015", "0.4993", "0.4706", "0.4711"),

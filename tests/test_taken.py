@@ -296,7 +296,6 @@ def test_check_warns_of_outputs_that_are_older_than_their_inputs(
     assert len(warnings()) == 1
 
 
-@pytest.mark.usefixtures("keeping")
 def test_build_warns_of_older_numbers_that_it_takes(apart: Path, capsys: pytest.CaptureFixture[str]) -> None:
     def warnings() -> list[str]:
         build(apart)

@@ -16,8 +16,6 @@ from test_toy_workbook import FILES
 
 from loopsheet.report.inputs.folders import PAPER
 
-pytestmark = pytest.mark.usefixtures("keeping")
-
 HERE = Path(__file__).parent
 OFFICES = ("Office2016", "Microsoft365")
 

@@ -13,11 +13,6 @@ HERE = Path(__file__).parent
 Open = Callable[..., driving.Live]
 
 
-@pytest.fixture(scope="module", autouse=True)
-def _as_users_build(keeping: None) -> None:
-    """What pages are made of is kept from one to the next."""
-
-
 SIZE: ViewportSize = {"width": 1280, "height": 720}
 
 
