@@ -230,6 +230,7 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
     if isinstance(column.rule, Given) and column.rule.u_of:
         return entry | {"of": column.rule.u_of} | digits(report, column)
     if isinstance(column.rule, Given):
+        del entry["source"]  # what is given says in which file
         entry["given"] = _given(report, column)
         return entry if (stated := errors(report, column)) is None else entry | {"errors": stated}
     entry |= digits(report, column)

@@ -88,14 +88,8 @@ function isUnchanged(look, last, name, row, before) {
   return one.exponent === other.exponent && one.fraction === other.fraction && form.places === old.places;
 }
 
-// What was last written into an element.
-let written = new WeakMap();
-
 function writeCell(element, look, name, row) {
   const cell = look.cell(name, row);
-  const key = [cell.code, cell.data, cell.text, cell.printed, cell.pad, cell.mark, cell.before, cell.beyond].join(" ");
-  if (written.get(element) === key && cell.ok) return;
-  written.set(element, key);
   const reason = cell.ok ? "" : look.trace.reason(name, row);
   const title = [reason || cell.beyond, cell.before && `as issued: ${cell.before}`].filter(Boolean).join("; ");
   element.setAttribute("data-value", cell.ok ? cell.data : "");
@@ -148,7 +142,7 @@ function setInput(element, text) {
 }
 
 function writeInText(element, cell) {
-  element.textContent = cell.text;
+  setText(element, cell.text);
   element.classList.toggle("error", !cell.ok);
   // A code has no unit.
   const unit = element.nextElementSibling;

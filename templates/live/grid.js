@@ -71,7 +71,10 @@ function endEditing() {
 
 function commit() {
   if (!editing) return;
-  const { element } = editing, text = normalised(element.value);
+  const { element } = editing, all = normalised(element.value), plain = (text) => text.replace(/[µμ]/, "u");
+  // Its own unit may be typed behind it.
+  const { unit } = LIVE.columns[element.dataset.cell], bare = all.slice(0, -unit.length).trim();
+  const text = unit !== "1" && plain(all).endsWith(plain(unit)) && /[0-9.)]$/.test(bare) ? bare : all;
   endEditing();
   element.value = text;
   setCell(element.dataset.cell, element.dataset.index, text);

@@ -23,30 +23,31 @@ const CONCISE = /^([^()]*)\(([0-9]+)\)$/;
 
 // A printed text as the value of an input in SI: { value }, with one unit of its last digit and what is stated of its
 // errors, or { why } there is none.
-function readInput({ given, errors }, index, text) {
+function readInput({ given, errors, unit }, index, text) {
   const concise = given.bounds.integer ? null : CONCISE.exec(text), digits = concise ? concise[1] : text;
   const own = Array.isArray(errors) ? errors : errors?.[index];
   const stated = concise && !errors?.length ? [{ digits: Number(concise[2]), shape: "normal" }] : own;
-  const allowed = `it must be ${given.allowed}`;
-  if (text === "") return { why: `the datum is missing; ${allowed}` };
-  const found = NUMBER.exec(digits);
-  const meant = EITHER.test(text) ? `: write ${text.replace(",", ".")} or ${text.replace(",", "")}, whichever is meant` : "";
-  if (!found) return { why: `“${text}” is not a number${meant}; ${allowed}` };
-  if (text.length > 100 || Math.abs(Number(found[5] ?? 0)) > 300) return { why: `“${text}” is out of all range; ${allowed}` };
+  const refused = (why, what = `“${text}” `) => ({ why: `${what}${why}; it must be ${given.allowed}` });
+  if (text === "") return refused("the datum is missing", "");
+  const found = NUMBER.exec(digits), alone = given.bounds.integer || given.said || errors?.length ? "" : ", or as 46.7(5) with its u in units of the last digit";
+  const meant = EITHER.test(text) ? `: write ${text.replace(",", ".")} or ${text.replace(",", "")}, whichever is meant`
+    : /^[-+.]?[0-9]/.test(text) ? `: write it alone${unit === "1" ? "" : `, in ${unit}`}${alone}` : "";
+  if (!found) return refused(`is not a number${meant}`);
+  if (text.length > 100 || Math.abs(Number(found[5] ?? 0)) > 300) return refused("is out of all range");
   if (concise && given.said) return { why: `“${text}” says how sure it is, and so does ${given.said}: write ${digits}` };
   if (typeof stated === "string") return { why: `“${stated}” in ${given.said} is not a standard uncertainty of at least 0` };
   const exact = readExact(digits), [n, d, zero = 0n] = given.scale.map(BigInt);
   const value = { n: exact.n * n + zero * exact.d, d: exact.d * d };
   // Its last digit is asked for, too: from it comes the uncertainty.
   const places = decimalsOf(digits), digit = places < 0 ? { n: n * tenTo(-places), d } : { n, d: d * tenTo(places) };
-  if (!isSane(digit) || (value.n !== 0n && !isSane(value))) return { why: `“${text}” is out of all range; ${allowed}` };
+  if (!isSane(digit) || (value.n !== 0n && !isSane(value))) return refused("is out of all range");
   const { low, high, low_open, high_open, integer } = given.bounds;
   const wrong = [
     integer && value.n % value.d !== 0n,
     low !== undefined && (isLess(value, readExact(low)) || (low_open && !isLess(readExact(low), value))),
     high !== undefined && (isLess(readExact(high), value) || (high_open && !isLess(value, readExact(high)))),
   ];
-  if (wrong.some(Boolean)) return { why: `“${text}” is not allowed; ${allowed}` };
+  if (wrong.some(Boolean)) return refused("is not allowed");
   return { value: toDouble(value), digit: toDouble(digit), stated };
 }
 

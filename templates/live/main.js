@@ -33,6 +33,9 @@ function setCell(name, index, text) {
     if (index === "") state.parameters[name] = text;
     else state.tests.find((test) => String(test.label) === index).cells[name] = text;
   });
+  // At once, for the bar goes on to the next cell.
+  const { trace } = page.look, row = trace.row(name, index), why = trace.sheet.refused[name]?.[row];
+  if (why) note(`${trace.address(name, row)}: ${why}.`);
 }
 
 const enough = (state) => usedTests(state).length >= 2;
@@ -146,12 +149,12 @@ function writePage(look, last) {
 
 // The page as it was issued, character by character.
 function restore() {
-  written = new WeakMap();
   page.places = null;
   [...pictures.late.keys()].forEach(forget);
   for (const [element, model] of page.kept) become(element, model);
   if (!page.hadMissing) byId("missing")?.remove();
   page.loose = looseCells();
+  requestAnimationFrame(letScroll);
 }
 
 // The cells outside of the tables whose rows come and go; found again when elements were replaced.

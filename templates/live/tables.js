@@ -113,7 +113,6 @@ const mostOf = (table) => Number(table.dataset.most ?? Infinity);
 
 // A cell of a test that is left out: its printed number stays, it has no part in anything.
 function writeLeftOut(element, text) {
-  written.delete(element);
   element.removeAttribute("title");
   element.removeAttribute("aria-invalid");
   element.setAttribute("data-value", "");

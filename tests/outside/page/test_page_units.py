@@ -99,3 +99,23 @@ def test_bars_are_no_longer_there_where_points_may_have_moved(
     assert "bars" not in (figure.text_content() or "")
     live.click("live-reset")
     assert "bars: standard uncertainty" in (figure.text_content() or "")
+
+
+def test_a_number_may_have_its_own_unit_and_u_behind_it_and_else_it_is_said_at_once(live: Live) -> None:
+    live.type("x_p", 2, "29.8 µm")
+    assert live.input("x_p", 2).input_value() == "29.8"
+    live.type("x_p", 2, "29.8(5)um")
+    assert live.input("x_p", 2).input_value() == "29.8(5)"
+    assert live.text("live-note") == ""
+    live.page.locator("#cell-x_p-2").click()
+    assert "u = 0.50" in live.text("bar-sure")
+    live.type("x_p", 2, "0.0298 mm")
+    said = "x_p[2]: “0.0298 mm” is not a number: write it alone, in µm, or as 46.7(5) with its u"
+    assert live.text("live-note").startswith(said)
+    assert live.focused() == "x_p[3]"
+    live.type("e", 2, "0.512 m")
+    assert "write it alone, or as 46.7(5)" in live.text("live-note")
+    live.type("v", 2, "2.94 ms")
+    assert "“2.94 ms” is not a number" in live.text("live-note")
+    live.click("live-undo")
+    assert live.text("live-note") == ""
