@@ -252,10 +252,15 @@ class MethodBody(dict[str, Any]):
         """A formula, in which what is taken over the rows of each group is a column if it is of one row."""
         return self._without_groups(formula) if self.axis in self._rows_of(formula) else formula
 
-    def _without_groups(self, formula: Any) -> Any:
-        """A formula with columns for what is taken in it over the rows of each group."""
+    def _without_groups(self, formula: Any, unknown: Symbol | None = None) -> Any:
+        """A formula with columns for what is taken in it over the rows of each group without the unknown."""
         if not formula.has(Member):
             return formula
+        if unknown is not None and formula.has(unknown):
+            if isinstance(formula, REDUCTIONS):
+                return formula  # which is refused
+            parts = formula.as_independent(unknown, as_Add=False) if formula.is_Mul else formula.args
+            return formula.func(*(self._without_groups(part, unknown) for part in parts))
         over = self.axis_of(formula)
         if over in self.groups:
             number, taken = formula.as_coeff_Mul()
@@ -587,7 +592,10 @@ class MethodBody(dict[str, Any]):
         return self._of_rows(side, self.axis) if self._is_grouped(side) and unknown not in named else side
 
     def _computed(self, name: str, said: ComputedLine) -> Column:
-        said = replace(said, sides=tuple(map(self._of_one_row, said.sides)))
+        if self.axis in self._rows_of(*said.sides):  # whichever side names the row
+            sought = Column(name, None, Given(), positive=False).symbol if said.ends else None
+            sides = tuple(self._without_groups(side, sought) for side in said.sides)
+            said = replace(said, sides=sides)
         if said.ends:  # a proof finds no point where a row and its group stand in one equation
             said = replace(said, sides=tuple(self._aside_of(name, side) for side in said.sides))
         named = {symbol for side in said.sides for symbol in side.free_symbols}

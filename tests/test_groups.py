@@ -305,6 +305,18 @@ def test_a_large_table_is_judged_by_some_of_its_rows(tmp_path: Path) -> None:
     assert set(some.groups("instrument").items()) >= {(1, 1), (40, 40), (41, 1)}
 
 
+def test_words_in_two_cases_are_two_groups_if_each_has_several_rows(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = tuple(({"A": "CO", "B": "Co"}.get(word, word), y) for word, y in grouped.FEW)
+    folder = grouped.write(tmp_path, rows)
+    assert Study(folder).computed.values.numbers("many") == [3, 2, 2]
+    main(["check", str(folder)])
+    told = capsys.readouterr().out
+    assert "warning" in told
+    assert "'Co' (readings 2 and 6) is nearly 'CO' (readings 1, 3 and 4)" in told
+
+
 def test_a_word_in_another_case_is_no_other_group(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     rows = tuple(("a" if n == 2 else word, y) for n, (word, y) in enumerate(grouped.FEW))
     assert main(["check", str(grouped.write(tmp_path, rows))]) == 2

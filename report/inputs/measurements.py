@@ -13,7 +13,7 @@ from ..distribution import Error
 from ..messages.errors import Findings, close
 from .csvtable import CsvRow, CsvTable, Field, is_number, match_columns, read_table
 from .number_text import NumberError, read_printed, read_value
-from .spelling import Alike, alike, same
+from .spelling import Alike, alike, in_case, same
 from .taken import Taken, alone
 
 if TYPE_CHECKING:
@@ -399,7 +399,7 @@ def _alike(table: CsvTable, fields: Mapping[int, Field], name: str, findings: Fi
             rows.setdefault(each.text, []).append(test)
     first: dict[str, str] = {}
     for word in sorted(rows, key=lambda each: -len(rows[each])):
-        if (other := first.setdefault(same(word), word)) != word:
+        if (other := first.setdefault(same(word), word)) != word and not in_case(word, other, rows):
             at, line = table.at(fields[rows[word][0]]), table.at(fields[rows[other][0]]).line
             findings.add("LS319", at, name=name, text=word, other=other, line=line)
     yield from (

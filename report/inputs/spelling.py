@@ -39,10 +39,16 @@ def same(word: str) -> str:
     return "".join(unicodedata.normalize("NFKC", word).casefold().split())
 
 
+def in_case(word: str, other: str, rows: Mapping[str, Sequence[int]]) -> bool:
+    """Whether two words differ in case alone, and each stands in several rows: both may be meant."""
+    return word.casefold() == other.casefold() and min(len(rows[word]), len(rows[other])) > 1
+
+
 def alike(rows: Mapping[str, Sequence[int]]) -> Iterator[tuple[str, str]]:
     """Words that may be one, that of fewer rows (or the later one) first.
 
-    They look the same (``B4O`` and ``B40``, ``S01`` and ``S1``); or one stands in a single row and the other
+    They look the same (``B4O`` and ``B40``, ``S01`` and ``S1``); or they differ in case alone, and
+    each stands in several rows (``CO`` and ``Co``); or one stands in a single row and the other
     in several, and they differ by a small letter more within the word, or by two that are exchanged. Other
     numbers and other letters tell rows apart (``A1`` and ``A2``, ``butane`` and ``butene``).
 
@@ -58,10 +64,11 @@ def alike(rows: Mapping[str, Sequence[int]]) -> Iterator[tuple[str, str]]:
     >>> list(alike({"A1": [1, 2], "A2": [3], "butane": [5, 6], "butene": [7], "CO2": [8], "C2": [9]}))
     []
     """
-    for seen in (lambda word: word.translate(_AS_DRAWN), lambda word: _ZEROS.sub("", word)):
+    for seen in (str.casefold, lambda word: word.translate(_AS_DRAWN), lambda word: _ZEROS.sub("", word)):
         first: dict[str, str] = {}
         for word in rows:
-            if (other := first.setdefault(seen(word), word)) != word:
+            other = first.setdefault(seen(word), word)
+            if other != word and (seen is not str.casefold or in_case(word, other, rows)):
                 yield (word, other) if len(rows[word]) <= len(rows[other]) else (other, word)
     of = {slip: word for word, own in rows.items() if len(own) > 1 for slip in _slips(word)}
     for word in (word for word, own in rows.items() if len(own) == 1):

@@ -229,7 +229,7 @@ CATALOGUE: dict[str, Entry] = {
         "one group in two words",
         "{name} is '{text}', and '{other}' in line {line}: they differ in case or blanks alone",
         "one word for all rows that belong together",
-        "write '{other}'; if they are two groups, words that differ in a letter or number",
+        "write '{other}'; two groups may differ in case if each has several rows, else in a letter or number",
     ),
     "LS401": Entry(
         "not a number",

@@ -134,6 +134,22 @@ def test_a_result_of_each_group_has_its_word_and_follows(
     assert live.page.locator("#bar-name code").text_content() == f"b[{words[1]}]"
 
 
+def test_an_edited_reading_moves_the_roots_of_its_group(
+    open_page: Callable[..., Live], tmp_path: Path
+) -> None:
+    equation = "q**3 + mean(y, of=instrument) / y * q, y / level"
+    more = f'    q = unknown()\n    q = root({equation}, "q", low=0, high=5)\n'
+    code = (grouped.METHOD + more).replace("import total, unknown", "import root, total, unknown")
+    folder = grouped.write(tmp_path, code=code)
+    live, issued = opened(folder, open_page), Study(folder).computed.values
+    live.type("y", 6, "2.85")
+    again = rebuilt(folder, ("6,B,2.75", "6,B,2.85"))
+    cells = [cell for cell in live.cells() if cell.name == "q"]
+    assert driving.differences(cells, again) == []
+    moved = again.value["q"] != issued.value["q"]
+    assert moved.tolist() == [word == "B" for word, _ in grouped.FEW]
+
+
 def test_pictures_tell_groups_by_their_words_after_an_edit(
     open_page: Callable[..., Live], tmp_path: Path
 ) -> None:
