@@ -317,12 +317,16 @@ def test_words_in_two_cases_are_two_groups_if_each_has_several_rows(
     assert "'Co' (readings 2 and 6) is nearly 'CO' (readings 1, 3 and 4)" in told
 
 
-def test_a_word_in_another_case_is_no_other_group(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    rows = tuple(("a" if n == 2 else word, y) for n, (word, y) in enumerate(grouped.FEW))
+@pytest.mark.parametrize("other", ["a", "A\u200b", "\uff21"])
+def test_a_word_in_another_case_is_no_other_group(
+    other: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = tuple((other if n == 2 else word, y) for n, (word, y) in enumerate(grouped.FEW))
     assert main(["check", str(grouped.write(tmp_path, rows))]) == 2
     told = capsys.readouterr().err
     assert "LS319" in told
-    assert "instrument is 'a', and 'A' in line 2" in told
+    seen = other.replace("\u200b", "\\u200b")
+    assert f"instrument is '{seen}', and 'A' in line 2" in told
     assert "measurements.csv:4:3" in told
 
 
@@ -330,6 +334,7 @@ def test_a_word_in_another_case_is_no_other_group(tmp_path: Path, capsys: pytest
     ("words", "said"),
     [
         (("B40", "B4O", "B40"), ":3:3: instrument: 'B4O' (reading 2) is nearly 'B40' (readings 1 and 3)"),
+        (("B40", "\u041240", "B40"), ":3:3: instrument: '\u041240' (reading 2) is nearly 'B40'"),
         (("S01", "S02", "S1"), ":4:3: instrument: 'S1' (reading 3) is nearly 'S01' (reading 1)"),
         (("Aldrich", "Aldrich", "Aldrch"), ":4:3: instrument: 'Aldrch' (reading 3) is nearly 'Aldrich'"),
         (

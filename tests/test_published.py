@@ -141,6 +141,13 @@ def test_what_is_measured_is_not_free(tmp_path: Path, check: Check) -> None:
 # --- what prints the same ----------------------------------------------------------------------------------
 
 
+def test_a_nought_that_is_none_is_told(tmp_path: Path, check: Check) -> None:
+    published(tmp_path, "H.1,l,1,0,km", "H.1,theta,,-0.1,K")
+    code, out = check()
+    assert code == 0
+    assert "2 print the same (1 as 0, which says little of a value)" in out
+
+
 @pytest.mark.parametrize("text", ["50.000838", "5.0000838e1", "5.0000838E+01", "+50.000838", "50000.838e-3"])
 def test_check_counts_what_prints_the_same_in_any_notation(tmp_path: Path, check: Check, text: str) -> None:
     published(tmp_path, f"H.1,l,1,{text},mm")

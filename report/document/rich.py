@@ -25,7 +25,7 @@ _PART = re.compile(
     r"|(?P<symbol>(?<![\w'’.])(?P<name>[A-Za-z]\w*(?:'+(?:_\w+)?)?(?:,[a-z](?!\w))?)"
     r"(?:\[(?P<index>\w+(?:-\w+)?)\])?(?:(?:\*\*|\^)(?P<power>\w+))?(?![\w’]|\.\w))"
     r"|(?P<raised>(?<=\))\^(?P<to>\w+))"
-    r"|(?P<relation><=|>=)|(?P<minus>(?<= )-(?= ))|(?P<times>(?<=[\w)\]'])\*(?=[\w(]))"
+    r"|(?P<relation><=|>=)|(?P<minus>(?<= )-(?= ))|(?P<times>(?<=[\w)\]'])\*(?!(?<=\d\*)\d)(?=[\w(]))"
 )
 _LONE = frozenset("ijk")
 _OTHERWISE = frozenset("aN")

@@ -12,7 +12,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Alike", "alike", "same"]
 
-_AS_DRAWN = str.maketrans("OoIl", "0011")
+_AS_DRAWN = str.maketrans(
+    "OoIl" + "АВЕКМНОРСТХаеорсух" + "ΑΒΕΖΗΙΚΜΝΟΡΤΥΧο",
+    "0011" + "ABEKMH0PCTXae0pcyx" + "ABEZH1KMN0PTYX0",
+)
+"""Signs that look alike: digits and letters, and the letters of three alphabets."""
+_DASHES = re.compile("[\u2010-\u2015\u2212\ufe58\ufe63\uff0d]")
 _ZEROS = re.compile(r"(?<![0-9.,])0+(?=[0-9])")
 _SHORTEST = 5
 """In shorter words one letter more is another word."""
@@ -33,10 +38,13 @@ class Alike(NamedTuple):
 def same(word: str) -> str:
     """What a word has in common with those that differ from it in case, blanks or the form of a sign alone.
 
-    >>> same("b 40") == same("B40"), same("B40") == same("B41")
-    (True, False)
+    Dashes are one sign, and what is not drawn at all is a blank.
+
+    >>> same("b 40") == same("B40"), same("A\u20131\u200b") == same("A-1"), same("B40") == same("B41")
+    (True, True, False)
     """
-    return "".join(unicodedata.normalize("NFKC", word).casefold().split())
+    plain = _DASHES.sub("-", unicodedata.normalize("NFKC", word).casefold())
+    return "".join(each for each in plain if not each.isspace() and unicodedata.category(each) != "Cf")
 
 
 def in_case(word: str, other: str, rows: Mapping[str, Sequence[int]]) -> bool:

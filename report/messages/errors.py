@@ -227,7 +227,7 @@ CATALOGUE: dict[str, Entry] = {
     ),
     "LS319": Entry(
         "one group in two words",
-        "{name} is '{text}', and '{other}' in line {line}: they differ in case or blanks alone",
+        "{name} is '{text}', and '{other}' in line {line}: they differ in case, blanks or forms alone",
         "one word for all rows that belong together",
         "write '{other}'; two groups may differ in case if each has several rows, else in a letter or number",
     ),

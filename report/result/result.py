@@ -129,6 +129,11 @@ class Comparison:
         return not self.finding
 
     @property
+    def says_nothing(self) -> bool:
+        """Whether 0 is published of a value that is none, in digits or a unit too coarse for it."""
+        return self.published.printed.value == 0 and self.cell.value not in (None, 0)
+
+    @property
     def known(self) -> tuple[str | None, str]:
         """What a view that recalculates shall expect, and what there is to find even so.
 

@@ -127,7 +127,9 @@ def _print(report: Report, found: Sequence[Check]) -> None:
         def they(number: int, verb: str) -> str:
             return f"{number} {verb}{'s' * (number == 1)}"
 
-        said = [f"{they(same, 'print')} the same", f"{they(known, 'differ')} as is known"]
+        nought = sum(c.verdict == "same" and c.says_nothing for c in every)
+        as_nought = f" ({nought} as 0, which says little of a value)" if nought else ""
+        said = [f"{they(same, 'print')} the same{as_nought}", f"{they(known, 'differ')} as is known"]
         said += [f"{they(other, 'come')} out of other inputs that print as given"] * bool(other)
         said += [f"{they(within, 'differ')} within the stated uncertainties alone"] * bool(within)
         said += [f"{missing} cannot be checked"] * bool(missing)
