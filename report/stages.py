@@ -420,7 +420,7 @@ def book(report: Report) -> tuple[Grid, bytes]:
     units = {name: how.unit for name, how in report.shown.items()}
     try:
         first, values = report.workbook.headline, report.marks.values
-        words = len(report.inputs.remarks)
+        words = report.inputs.remarks
         grid = excel_grid.grid(report.sheet, values, units, first, for_a_grid(report), words)
     except NotPrintable as error:
         raise UsageError(

@@ -233,7 +233,8 @@ def test_what_is_refused_is_told_beside_it(book: Any, grid: Grid) -> None:
     )
     said = "&".join(f'IF({test},"{text}","")' for test, text in zip(broken, told, strict=True))
     assert tests["H4"].value == "check"
-    assert tests["H8"].value == f'=IF(OR({",".join(broken)}),"#INPUT! "&{said},"ok")'
+    other = 'IF(NOT(AND($A$8=1)),"#INPUT! not the row as issued: its number, name or group is another one",'
+    assert tests["H8"].value == f'={other}IF(OR({",".join(broken)}),"#INPUT! "&{said},"ok"))'
     row = grid["points_per_pair"].place.row + 1
     assert "change report.toml and build again" in report[f"H{row}"].value
     assert report[f"G{row}"].value.startswith("=IF(IF(ISNUMBER(")

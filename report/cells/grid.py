@@ -24,6 +24,7 @@ __all__ = [
     "CellBlock",
     "FilledDown",
     "Grid",
+    "Grouped",
     "Place",
     "as_issued",
     "checked",
@@ -174,6 +175,27 @@ def quoted(worksheet: str) -> str:
     return worksheet if plain else "'" + worksheet.replace("'", "''") + "'"
 
 
+class Grouped(NamedTuple):
+    """The words by which rows stand in groups: sums go by the rows as issued, whatever is sorted since.
+
+    Parameters
+    ----------
+    own, group : Place
+        The words beside the rows, and beside the groups.
+    rows : tuple of int
+        Of each row, the row of its group.
+    """
+
+    own: Place
+    group: Place
+    rows: tuple[int, ...]
+
+    @staticmethod
+    def same(own: str, group: str) -> str:
+        """The formula, without its equals sign, that says whether two cells hold the same word."""
+        return f"EXACT({own},{group})"
+
+
 class FilledDown(NamedTuple):
     """A formula, filled down over so many rows: rows without a ``$`` move with the row that they stand in.
 
@@ -283,6 +305,8 @@ class Grid:
         Free cells beside the given columns of an axis, for what is wrong with them.
     words : mapping of worksheet name to tuple of Place
         Free columns beside the numbers of its rows, for what is said of them in words; one beside groups.
+    groups : mapping of worksheet name to tuple of Grouped
+        How rows that stand in groups are held to their words.
     """
 
     blocks: tuple[CellBlock, ...]
@@ -290,6 +314,7 @@ class Grid:
     drawn: Drawn | None = None
     notes: Mapping[str, Place] = field(default_factory=dict)
     words: Mapping[str, tuple[Place, ...]] = field(default_factory=dict)
+    groups: Mapping[str, tuple[Grouped, ...]] = field(default_factory=dict)
 
     @cached_property
     def by_name(self) -> Mapping[str, CellBlock]:

@@ -13,7 +13,18 @@ from fractions import Fraction
 from typing import Any, get_args
 
 from ...derivations.unit_text import ParsedUnit, UnitError, parse_open, parse_unit
-from ..cells.grid import CHECKED, FIRST_ROW, SCALARS, STEPS, CellBlock, FilledDown, Place, as_issued, checked
+from ..cells.grid import (
+    CHECKED,
+    FIRST_ROW,
+    SCALARS,
+    STEPS,
+    CellBlock,
+    FilledDown,
+    Grouped,
+    Place,
+    as_issued,
+    checked,
+)
 from ..cells.layout import Layout
 from ..charts import MOST_DOTS
 from ..column import shown_as
@@ -67,7 +78,7 @@ class Assembly:
         counts: Mapping[str, float],
         units: Mapping[str, str],
         first: Sequence[str],
-        worded: int,
+        worded: Sequence[str],
         thinned: Collection[str],
     ) -> None:
         self.sheet, self.judged, self.whole, self.layouts, self.counts = sheet, judged, whole, layouts, counts
@@ -78,6 +89,7 @@ class Assembly:
         self.notes: dict[str, Place] = {}
         self.thinned = thinned
         self.worded, self.words = worded, dict[str, tuple[Place, ...]]()
+        self.groups: dict[str, tuple[Grouped, ...]] = {}
         self.indices: dict[str, tuple[Place, ...]] = {}
         self.plan = ordered(lowered(whole))
         roots = {node.column.name: node for node in self.plan.nodes if isinstance(node, RootNode)}
@@ -118,6 +130,7 @@ class Assembly:
             "roots": [auxiliary_texts(self.whole, unrolled) for unrolled in self.unrolled.values()],
             "notes": as_data(self.notes),
             "words": as_data(self.words),
+            "groups": as_data(self.groups),
         }
 
     # --- places
@@ -129,9 +142,10 @@ class Assembly:
             room = self.rooms[axis.name]
             self.indices[axis.name] = tuple(room.next() for _ in range(parts))
             if axis.is_given:
-                self.words[room.worksheet] = tuple(room.next() for _ in range(self.worded))
+                self.words[room.worksheet] = tuple(room.next() for _ in self.worded)
             elif isinstance(axis, GroupAxis):
                 self.words[room.worksheet] = (room.next(),)
+                self.put_group(axis, self.words[room.worksheet][0])
         self.put_scalars()
         given = [c for c in self.whole.columns if c.axis is not None and isinstance(c.rule, Given)]
         for column in given:
@@ -163,6 +177,15 @@ class Assembly:
                 self.put(column, as_issued(column.name))
             else:
                 self.places[as_issued(column.name)] = Place(STEPS, row := row + 1, 1, 1, *self.size(column))
+
+    def put_group(self, axis: GroupAxis, group: Place) -> None:
+        """Say where the words are by which a row belongs to its group, if there are any."""
+        rows = axis.members.of
+        if axis.row in self.worded:
+            words = self.words[self.names[rows.name]]
+            which = self.layouts[rows.name].rows[axis.members.group_name].tolist()
+            grouped = Grouped(words[self.worded.index(axis.row)], group, tuple(which))
+            self.groups[grouped.own.worksheet] = (*self.groups.get(grouped.own.worksheet, ()), grouped)
 
     def number(self, column: Column) -> int:
         """Of the pass that a column belongs to: -1 for one that belongs to none."""
@@ -310,7 +333,7 @@ class Assembly:
             block, name=name, kind="checked", meaning=f"{column.name}, where it is allowed",
             place=self.places[name], of=column.name,
         )  # fmt: skip
-        yield _computed(own, formulas.checked(column, test))
+        yield _computed(own, formulas.checked(column, test, self.groups.get(block.place.worksheet, ())))
 
     def step_blocks(self, formulas: Formulas) -> Iterator[CellBlock]:
         """The cells on the way to roots."""

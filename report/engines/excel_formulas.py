@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sympy import And, Expr, Float, Rational, Rel, Symbol
 
-from ..cells.grid import FilledDown, Place, as_issued, checked
+from ..cells.grid import FilledDown, Grouped, Place, as_issued, checked
 from ..cells.layout import Layout, evenly
 from ..cells.values import CODES, Status
 from ..named import within
@@ -108,11 +108,15 @@ class Formulas:
         self.sheet, self.plan, self.layouts, self.places = sheet, plan, layouts, places
         self.maps = {node.column.name: node for node in plan.every if isinstance(node, Map)}
 
-    def checked(self, column: Column, guard: str) -> tuple[FilledDown, ...]:
-        """The formulas of what is given, if it is allowed, or else its code."""
+    def checked(self, column: Column, guard: str, groups: Sequence[Grouped] = ()) -> tuple[FilledDown, ...]:
+        """The formulas of what is given, if it is allowed and its row has its words, or else its code."""
         writing = _Writing(self, column, column.name)
         cell = writing.fill(self.places.typed[column.name])
-        return writing.rows(f"IF({guard.format(cell)},{cell},{_CODE[Status.INPUT]})")
+        same = [
+            Grouped.same(writing.fill(own), writing.fill(group, np.array(rows)))
+            for own, group, rows in groups
+        ]
+        return writing.rows(f"IF({_all([*same, guard.format(cell)])},{cell},{_CODE[Status.INPUT]})")
 
     def column(self, column: Column, unrolled: Unrolled | None = None) -> tuple[FilledDown, ...]:
         """The formulas of a computed column, one a row."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import chain, count
 from typing import Any
 
-from ..cells.grid import SCALARS, STEPS, CellBlock, Grid, Place
+from ..cells.grid import SCALARS, STEPS, CellBlock, Grid, Grouped, Place
 from ..cells.layout import Layout
 from ..cells.values import Values
 from ..charts import Drawn
@@ -37,7 +37,7 @@ def grid(
     units: Mapping[str, str],
     first: Sequence[str] = (),
     drawn: Drawn | None = None,
-    worded: int = 0,
+    worded: Sequence[str] = (),
 ) -> Grid:
     """Lay a sheet out as the cells of a workbook, with the values that they have now.
 
@@ -53,8 +53,8 @@ def grid(
         The scalars that are the result.
     drawn : Drawn or None
         What is drawn as native charts.
-    worded : int
-        How many columns of words stand beside the numbers of rows that are made of no others.
+    worded : sequence of str
+        The columns of words that stand beside the numbers of rows that are made of no others.
 
     Raises
     ------
@@ -86,13 +86,15 @@ def grid(
     ]
     words = [(column.meaning, column.unit, column.display, column.source) for column in whole.columns]
     names = [list(each.by_name) for each in (sheet, values.sheet)]
-    sizes = sorted(counts.items()), sorted(units.items()), list(first), worded, thinned
+    sizes = sorted(counts.items()), sorted(units.items()), list(first), list(worded), thinned
     hangs_on = repr((names, own, words, sizes))
     told = of_sheet(whole, "formulas of the workbook", [hangs_on], make)
     axes = dict(zip(worksheets.values(), whole.axes, strict=True))
     blocks = filled(of_data(told["blocks"], tuple[CellBlock, ...]), told["roots"], every)
     notes = of_data(told["notes"], dict[str, Place])
-    return Grid(tuple(blocks), axes, drawn, notes, of_data(told["words"], dict[str, tuple[Place, ...]]))
+    beside = of_data(told["words"], dict[str, tuple[Place, ...]])
+    groups = of_data(told["groups"], dict[str, tuple[Grouped, ...]])
+    return Grid(tuple(blocks), axes, drawn, notes, beside, groups)
 
 
 def with_passes(drawn: Drawn | None, sheet: Sheet) -> Drawn | None:

@@ -27,6 +27,10 @@ _LONGEST = 255
 _ROWS_TOLD = FIRST_ROW - 5
 """The row, from 0, of the cell that says whether the rows are those that the formulas are for."""
 _CODE, _FINE = CODES[Status.INPUT], "ok"
+_MOVED = f"{_CODE} not the row as issued: its number, name or group is another one"
+"""What a row is told that was sorted to here, or whose words were edited."""
+_ORDER = f"{_CODE} rows that are not those as issued, by which groups, limits and errors go: "
+"""What is told above all of them, with their number."""
 
 
 class GivenCells:
@@ -105,7 +109,8 @@ class GivenCells:
     def write_told(self, sheet: Any, style: Style, blocks: Sequence[CellBlock], note: Place) -> None:
         """Write beside each row which of its given cells are refused, and above all what became of rows."""
         for row in range(note.rows):
-            style.formula(sheet, note.row + row, note.column, self.told(blocks, row), _FINE, style("aside"))
+            told = self.told(blocks, row, self._same(note, row))
+            style.formula(sheet, note.row + row, note.column, told, _FINE, style("aside"))
         style.formula(sheet, _ROWS_TOLD, 0, self._rows(blocks, note), "", style("error"))
 
     def write_left_out(self, sheet: Any, style: Style, blocks: Sequence[CellBlock], note: Place) -> int:
@@ -125,14 +130,31 @@ class GivenCells:
             style.text(sheet, row, note.column, each.reason, "aside")
         return 2 + len(left_out)
 
-    def told(self, blocks: Sequence[CellBlock], row: int = 0) -> str:
-        """The formula that tells which given cells of a row are refused, and what they must be."""
+    def told(self, blocks: Sequence[CellBlock], row: int = 0, same: Sequence[str] = ()) -> str:
+        """The formula that tells whether a row is another one, else which of its given cells are refused."""
         refused = [self._refused(block, row) for block in blocks]
         told = [
             f'IF({test},{_text(f"{self.allowed(block)}. ")},"")'
             for test, block in zip(refused, blocks, strict=True)
         ]
-        return f'=IF(OR({",".join(refused)}),"{_CODE} "&{"&".join(told)},"{_FINE}")'
+        moved = f"IF(NOT(AND({','.join(same)})),{_text(_MOVED)}," if same else ""
+        return f'={moved}IF(OR({",".join(refused)}),"{_CODE} "&{"&".join(told)},"{_FINE}"){")" * bool(same)}'
+
+    def _same(self, note: Place, row: int) -> list[str]:
+        """What says that a row is the one as issued: its number, its name, and the words of its groups."""
+        here, words = note.worksheet, self.grid.words.get(note.worksheet, ())
+        numbers = [block for block in self.grid.on(here, "index") if block.place.rows == note.rows]
+        same = [f"{block.place.cell(row, here)}={block.values[row]:.0f}" for block in numbers]
+        grouped = self.grid.groups.get(here, ())
+        same += [
+            each.same(each.own.cell(row, here), each.group.cell(each.rows[row], here)) for each in grouped
+        ]
+        inputs = self.report.inputs
+        for place, name in zip(words, inputs.remarks, strict=False):
+            if name in inputs.naming and place not in [each.own for each in grouped]:
+                word = inputs.texts[inputs.tests[row]][name][:_LONGEST]
+                same.append(f"EXACT(LEFT({place.cell(row, here)},{_LONGEST}),{_text(word)})")
+        return same
 
     def _refused(self, block: CellBlock, row: int = 0) -> str:
         """The formula, without its equals sign, that says whether a given cell is refused."""
@@ -140,14 +162,19 @@ class GivenCells:
         return f"NOT(ISNUMBER({place.cell(row, place.worksheet)}))"
 
     def _rows(self, blocks: Sequence[CellBlock], note: Place) -> str:
-        """The formula that tells of rows that were put in, taken out, or written below the last one."""
+        """The formula that tells of rows that were put in, taken out, moved or written below the last."""
         columns, first = [block.place.column for block in blocks], note.row + note.rows + 1
         below = f"${letters(min(columns))}${first}:${letters(max(columns))}${first + _BELOW - 1}"
         where = f"{_CODE} the formulas are for {note.rows} rows"
         again = "change the file of the measurements and build again"
         moved = _text(f"{where}, and some were put in or taken out: {again}")
         more = _text(f"{where}, and there are numbers below them: {again}")
-        return f'=IF(ROWS({note.range(note.worksheet)})<>{note.rows},{moved},IF(COUNT({below})>0,{more},""))'
+        notes = note.range(note.worksheet)
+        others = f"SUMPRODUCT(--(LEFT({notes},{len(_MOVED)})={_text(_MOVED)}))"
+        order = f"{_text(_ORDER)}&{others}&{_text(f'; {again}')}"
+        return (
+            f'=IF(ROWS({notes})<>{note.rows},{moved},IF({others}>0,{order},IF(COUNT({below})>0,{more},"")))'
+        )
 
     def summary(self) -> str:
         """The formula that tells on the first worksheet whether anything given is refused."""

@@ -111,9 +111,12 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
         "What depends on such a cell shows its code; a sum leaves such rows out and says from how many it "
         "was made.",
         "Numbers are stored in full; only what is shown is rounded, as its uncertainty as issued has it.",
-        f"How many rows there are is fixed in this workbook: to add {rows}"
+        f"How many rows there are, and which, is fixed in this workbook: to add {rows}"
         + (f" or change {' or '.join(counts)}" if counts else "")
-        + f", build the report again. To leave {rows} out, empty one of its cells.",
+        + f", build the report again. To leave {rows} out, empty one of its cells. Do not sort the rows: "
+        "groups, limits and shared errors go by the rows as issued. One with another number, name or group "
+        "is told in the column check"
+        + (", and nothing is computed from one of another group." if grid.groups else "."),
         f"Source: {report.workbook.source}.",
         "Computed with " + ", ".join(f"{name} {version}" for name, version in report.versions.items()) + ".",
     ]

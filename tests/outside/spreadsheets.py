@@ -141,7 +141,8 @@ def deliver(folder: Path = PAPER, drawn: bool = True) -> Delivered:
     report = Study(folder).computed
     charts = stages.for_a_grid(report) if drawn else None
     units = {name: shown.unit for name, shown in report.shown.items()}
-    grid = excel_grid.grid(report.sheet, report.marks.values, units, report.workbook.headline, charts)
+    first, words = report.workbook.headline, report.inputs.remarks
+    grid = excel_grid.grid(report.sheet, report.marks.values, units, first, charts, words)
     return Delivered(report, grid, xlsx.render(report, grid))
 
 
@@ -200,7 +201,7 @@ def typed(content: bytes, by_sheet: Mapping[str, Mapping[str, Typed]]) -> bytes:
         text = files[name].decode()
         for address, value in cells.items():
             text, found = re.subn(
-                rf'<c r="{address}"( s="\d+")?><v>[^<]*</v></c>', _cell(address, value), text
+                rf'<c r="{address}"( s="\d+")?(?: t="s")?><v>[^<]*</v></c>', _cell(address, value), text
             )
             assert found == 1, (worksheet, address)
         files[name] = text.encode()
