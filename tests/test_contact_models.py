@@ -179,7 +179,9 @@ def test_two_tests_tell_no_curve_without_one_of_them(tmp_path: Path) -> None:
         "needs three tests: the others alone tell no curve"
     )
     assert [found for engine in report.engines for found in engine.findings] == []
-    assert [check.message for check in report.oddities if not check.passed] == []
+    assert [check.message for check in report.oddities if not check.passed] == [
+        "rms_x_p_power of the result has no value, for want of x_p_power_without[1]"
+    ]
     assert report.values.rows_summed("rms_x_p_johnson", "tests") == 2
 
 
@@ -192,13 +194,25 @@ def test_all_models_are_asked_for_the_same_tests(tmp_path: Path) -> None:
     ]
     assert len(names) == 12
     assert {values.rows_summed(name, "tests") for name in names} == {4}
-    assert values.cell("r_Y_alone", (2,)).reason.endswith(
-        "e = 1: nothing is lost, which tells nothing of yield"
-    )
     # And the mean over the others is over those that tell a pressure.
-    alone, without = values.value["p_y_alone"], values.value["p_y_without"]
-    others = np.array([alone[row] for row in (2, 3, 4)])
-    assert without[0] == pytest.approx(np.exp(np.log(others).mean()), rel=1e-13)
+    for alone, says, without in (
+        ("p_d_alone", "p_d_alone", "p_d_without"),
+        ("p_y_alone", "r_Y_alone", "p_y_without"),
+    ):
+        assert values.cell(says, (2,)).reason.endswith("e = 1: nothing is lost, which tells nothing of yield")
+        others = np.array([values.value[alone][row] for row in (2, 3, 4)])
+        assert values.value[without][0] == pytest.approx(np.exp(np.log(others).mean()), rel=1e-13)
+
+
+def test_a_test_without_loss_leaves_the_constants_of_all_others_as_they_are(tmp_path: Path) -> None:
+    found = []
+    for number, tests in enumerate(((*ALL, "5.500,1.000,56.0"), ALL)):
+        (place := tmp_path / str(number)).mkdir()
+        found.append(changed(place, "; ".join(tests)).computed.values)
+    lossless, fewer = found
+    for name in ("p_d", "p_y"):
+        assert lossless.scalar(name) == pytest.approx(fewer.scalar(name), rel=1e-13)
+        assert lossless.rows_summed(name, "tests") == 5
 
 
 def test_below_its_limit_thornton_s_impact_is_hertz_s(tmp_path: Path) -> None:

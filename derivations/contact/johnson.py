@@ -12,7 +12,7 @@ from ..equation import Derivation, Equation, Kind, define
 from ..vocabulary import Quantity, Vocabulary
 from . import hertz
 from .model import ContactModel
-from .one_constant import COMES_BACK, taken
+from .one_constant import COMES_BACK, LOSES, taken
 from .quantities import SHARED
 
 __all__ = ["FIRST_YIELD", "JOHNSON", "SLOW", "YIELD", "YIELD_WORDS"]
@@ -175,7 +175,7 @@ _recovers = hertz.recovery.at({F_m: peak, hertz.a_u: a_p, any_delta: delta})
 CONSTANT, _entries = taken(
     (by_restitution.at({p_d: alone, e_J: e}),),
     _WORDS["p_d"], _WORDS["p_d_alone"], _WORDS["p_d_without"], E_star, ("(L148)", "(L149)"),
-    COMES_BACK,
+    COMES_BACK, LOSES,
 )  # fmt: skip
 
 FIRST_YIELD = (deepest, pressure_at_yield, approach_at_yield, speed_at_yield, beyond)
