@@ -237,7 +237,6 @@ class _Oddities:
             for name in headline
             for cell in self.values.cells(name)
             if cell.status is not Status.OK
-            and not (self.sheet[cell.name].spare and self.report.marks.is_faultless(cell.culprit or cell))
             and not self.follows(cell, _no_value(cell))
         ]
         lacks = any(cell.status is not Status.OK for name in headline for cell in self.values.cells(name))
