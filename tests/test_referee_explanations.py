@@ -132,6 +132,15 @@ def test_two_misprints_are_the_smallest_set_without_which_the_rest_comes_out() -
     assert {one[1] for each in changes(of) for one in each} == {"square", "x"}
     assert [one[:3] for one in changes(of)[0]] == [("misprint", "square", (2,)), ("misprint", "square", (4,))]
     assert all(len(each.changes) == 2 == each.count for each in of.explanations)
+    # 1.7695^2 = 3.1311 to 1.7705^2 = 3.1347, and 3.3695^2 = 11.3535 to 3.3705^2 = 11.3603: no other digits.
+    ways = [sorted((each.would_print, *each.also)) for each in of.explanations[0].changes]
+    assert ways == [
+        [f"3.{n}" for n in range(131, 136)],
+        [f"11.{n}" for n in range(354, 361)],
+    ]
+    assert [each.span for each in of.explanations[0].changes] == [(), ()]
+    assert "or 3.131" in words.explained(of.explanations[0])
+    assert words.EACH_ALONE in words.explained(of.explanations[0])
 
 
 def test_a_misprinted_input_and_another_in_a_table_of_the_same_columns_are_found() -> None:

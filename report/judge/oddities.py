@@ -236,8 +236,7 @@ class _Oddities:
             cell
             for name in headline
             for cell in self.values.cells(name)
-            if cell.status is not Status.OK
-            and not self.follows(cell, _no_value(cell))
+            if cell.status is not Status.OK and not self.follows(cell, _no_value(cell))
         ]
         lacks = any(cell.status is not Status.OK for name in headline for cell in self.values.cells(name))
         said = "the result has a value" + (" where one is expected" if lacks or self.failed else "")

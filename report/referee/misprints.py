@@ -102,8 +102,13 @@ class _Told:
     best: Best
 
 
-def _told(cell: _Cell, problem: Problem, box: Box, point: Array) -> _Told | None:
-    """Follow the ways to print a cell to both sides of what a point makes of it; None if there is none."""
+def _told(
+    cell: _Cell, problem: Problem, box: Box, point: Array, known_way: int | None = None
+) -> _Told | None:
+    """Follow the ways to print a cell to both sides of what a point makes of it; None if there is none.
+
+    One that is known stays the first.
+    """
     known: dict[int, Best | None] = {0: None}
     near = replace(box, start=point)
 
@@ -113,7 +118,7 @@ def _told(cell: _Cell, problem: Problem, box: Box, point: Array) -> _Told | None
             known[units] = now if now.mismatch <= 1 else None
         return known[units]
 
-    middle = cell.units(problem, point)
+    middle = cell.units(problem, point) if known_way is None else known_way
     starts = () if middle is None else (middle, middle + 1, middle - 1)
     start = next((units for units in starts if possible(units) is not None), None)
     if start is None:
@@ -121,6 +126,7 @@ def _told(cell: _Cell, problem: Problem, box: Box, point: Array) -> _Told | None
     low, high = (_last(start, way, possible) for way in (-1, 1))
     ways = _in_order(cell.printed, low, high)
     would = next((units for units in ways[:LISTED] if possible(units) is not None), start)
+    would = would if known_way is None else start
     others = [respelt(cell.printed, units).text for units in ways if units != would]
     ends = tuple(respelt(cell.printed, units).text for units in (low, high))
     text, span = respelt(cell.printed, would).text, ends if high - low > LISTED else ()
@@ -321,15 +327,16 @@ def two_misprints(search: Search) -> Iterator[Explained]:
         if looked_into > PAIRS:
             search.drop(certain=False)
             continue
-        asked, box = other.ignored(*one.ignored(problem, problem.box))
         point = _freed_both(search, one, other)
-        first = None if point is None else _told(one, asked, box, point)
+        first = None if point is None else _told(one, *other.ignored(problem, problem.box), point)
         if first is None:
             continue
         second = _told(other, *one.reprinted(problem, first.box, first.units), first.best.point)
         if second is None:
             search.drop(certain=False)
         else:
+            # What else the first may read is asked again: not whatever the second is, but as it is told now.
+            first = _told(one, second.problem, second.box, second.best.point, first.units) or first
             changes = [first.change, second.change]
             yield search.explained(changes, second.problem, second.box, second.best)
 

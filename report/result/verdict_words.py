@@ -35,6 +35,7 @@ from .verdict import (
 
 __all__ = [
     "CALLED",
+    "EACH_ALONE",
     "NOTHING_EXPLAINS",
     "POSSIBLE",
     "address",
@@ -87,6 +88,8 @@ POSSIBLE = {
 }
 """What a change would be, were it the right one."""
 
+EACH_ALONE = "each of these other digits with the first that are named of the other number"
+"""What else of several numbers may stand is not said of both at once."""
 NOTHING_EXPLAINS = (
     "no small change of what is printed was found with which everything published comes out: no misprinted "
     "number or two, no truncated column, no unit off by a power of ten, no mean over other rows, nothing "
@@ -246,7 +249,9 @@ def _whose(table: TableVerdict) -> str:
 
 def explained(found: Explanation) -> str:
     """What is claimed and what follows."""
-    return f"{' and '.join(claimed(change) for change in found.changes)}: {follows(found)}"
+    told = " and ".join(claimed(change) for change in found.changes)
+    several = sum(bool(change.also) for change in found.changes) > 1
+    return f"{told}{f', {EACH_ALONE}' if several else ''}: {follows(found)}"
 
 
 def name(found: Explanation) -> str:
