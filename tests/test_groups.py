@@ -15,6 +15,7 @@ from loopsheet.report import build, method
 from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
 from loopsheet.report.judge.sample import part
+from loopsheet.report.result.findings import CONFORMITY, checks
 from loopsheet.report.study import Study
 
 SIZE = {"between": 1e-6, "within": 1e-6, "s": 1e-3, "F": 1.0, "R2": 1.0}  # of mm in SI
@@ -303,6 +304,21 @@ def test_a_large_table_is_judged_by_some_of_its_rows(tmp_path: Path) -> None:
     some = part(report.inputs, report.values, 300)
     assert 4 < len(some.tests) < 400
     assert set(some.groups("instrument").items()) >= {(1, 1), (40, 40), (41, 1)}
+
+
+@pytest.mark.parametrize("place", ["3", "C"])
+def test_a_limit_of_a_group_that_is_left_out_is_a_finding(place: str, tmp_path: Path) -> None:
+    """Its number is that of no row that is left out."""
+    rows = tuple((*row, "cracked" if row[0] == "C" else "") for row in grouped.FEW)
+    folder = grouped.write(tmp_path, rows, "instrument,y [mm],left out")
+    with (folder / "report.toml").open("a", encoding="utf-8") as file:
+        file.write(f'[limits]\n"level[{place}]" = "<= 2 mm"\n"level[1]" = "<= 2 mm"\n')
+    failed = [
+        check.message
+        for check in checks(Study(folder).computed)
+        if check.kind == CONFORMITY and not check.passed
+    ]
+    assert failed == [f"no decision on level[{place}] (at most 2 mm): it rests on a row that is left out"]
 
 
 def test_words_in_two_cases_are_two_groups_if_each_has_several_rows(

@@ -50,7 +50,10 @@ def check_cells(
 
     def rests_on_gone(name: str, index: tuple[int, ...]) -> bool:
         there = cells[name][1] if name in cells else () if not name else (index,)
-        return index not in there and not gone.isdisjoint(index)
+        if index in there:
+            return False
+        # Groups are known by their words, also those that have no row left.
+        return index in words[name] if words.get(name) else not gone.isdisjoint(index)
 
     inputs = replace(
         inputs,

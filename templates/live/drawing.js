@@ -143,7 +143,6 @@ class Picture {
 
 const plainOf = (letters) => letters.map(([, text]) => text).join("");
 
-// Letters of a symbol are slanted; some stand lower or higher, and what follows back on the line.
 // A title in lines that are no longer than its axis, broken at blanks.
 function broken(parts, most) {
   const lines = [[]];
@@ -162,6 +161,7 @@ function broken(parts, most) {
   return lines;
 }
 
+// Letters of a symbol are slanted; some stand lower or higher, and what follows back on the line.
 function lettered(letters) {
   let low = 0;
   return letters.map(([kind, text]) => {
