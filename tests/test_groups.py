@@ -321,6 +321,19 @@ def test_a_limit_of_a_group_that_is_left_out_is_a_finding(place: str, tmp_path: 
     assert failed == [f"no decision on level[{place}] (at most 2 mm): it rests on a row that is left out"]
 
 
+@pytest.mark.parametrize(
+    ("cell", "told"),
+    [("level[3]", "level[3] is level[C] as it stands"), ("level[C]", ""), ("level", "")],
+)
+def test_a_group_that_is_named_by_its_number_is_told(cell: str, told: str, tmp_path: Path) -> None:
+    """Whoever sorts the table would have the limit of another one."""
+    folder = grouped.write(tmp_path, grouped.FEW)
+    with (folder / "report.toml").open("a", encoding="utf-8") as file:
+        file.write(f'[limits]\n"{cell}" = "<= 9 mm"\n')
+    (found,) = (each for each in Study(folder).computed.oddities if each.kind == "words")
+    assert (found.note, told in found.message) == ("warning" if told else "", True)
+
+
 def test_words_in_two_cases_are_two_groups_if_each_has_several_rows(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

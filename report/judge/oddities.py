@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..axis import MemberAxis
+from ..axis import GroupAxis, MemberAxis
+from ..cells.address import address
 from ..cells.marks import Margin, MarkCount, margins
 from ..cells.values import Cell, Status
 from ..distribution import SCATTER
@@ -25,6 +26,7 @@ from .claims import CLAIM
 from .suspects import suspected
 
 if TYPE_CHECKING:
+    from ..inputs.expected import OfCell
     from ..inputs.inputs import Inputs
     from ..inputs.uncertainty import SharedError
     from ..quantity import Printed
@@ -387,13 +389,27 @@ class _Oddities:
         """Whether a word by which rows belong together may be another one misspelt."""
         found = [each for each in self.inputs.alike if each.column == column]
         if not found:
-            return Check(WORDS, column, True, f"{column}: no word is nearly another", self.inputs.place)
+            return self.of_numbers(column)
         told = [
             f"'{word}' ({self.numbered(rows)}) is nearly '{other}' ({self.numbered(others)})"
             for _, word, rows, other, others, _ in found
         ]
         said = f"{column}: {_some(told)}: is that misspelt? Each word is a group of its own"
         return Check(WORDS, column, True, said, found[0].at, note="warning")
+
+    def of_numbers(self, column: str) -> Check:
+        """Whether a group is named by its number, which is another group's once the table is sorted."""
+        axes = [axis for axis in self.sheet.axes if isinstance(axis, GroupAxis) and axis.members.by == column]
+        said_of: tuple[OfCell, ...] = (*self.inputs.limits, *self.inputs.expected)
+        for each in said_of:
+            name, index = each.cell
+            if name not in self.sheet or self.sheet[name].axis not in axes or not index:
+                continue
+            called, by_number = self.values.cell(name, index).address, address(name, index)
+            if called != by_number and by_number in str(each.at.source):  # limits of the column name no group
+                said = f"{by_number} is {called} as it stands; in a sorted table it is another {column}'s"
+                return Check(WORDS, column, True, f"{said}: write {called}", each.at, note="warning")
+        return Check(WORDS, column, True, f"{column}: no word is nearly another", self.inputs.place)
 
     def of_scatter(self, name: str, axis: MemberAxis) -> Check:
         """Whether readings that stand in groups scatter about one mean as about those of their groups."""
