@@ -84,26 +84,6 @@ function addTest() {
   enter(input);
 }
 
-// A block of texts from a cell on: to the right as far as there are inputs, down into new tests.
-function pasteBlock(element, rows) {
-  const { cell, index } = element.dataset, table = page.tables.find((one) => one.element === gridOf(element));
-  const names = table?.editable ? table.inputs.slice(table.inputs.indexOf(cell)) : [];
-  const scalars = table ? [] : all("input[data-cell]", gridOf(element).tBodies[0]).map((input) => input.dataset.cell);
-  change((state) => {
-    rows.forEach((fields, down) => {
-      if (!names.length) {
-        const name = scalars[scalars.indexOf(cell) + down];
-        if (name) state.parameters[name] = fields[0];
-        return;
-      }
-      const first = state.tests.findIndex((test) => String(test.label) === index);
-      const test = state.tests[first + down] ?? (LIVE.groups ? null : newTest(state)); // of no group
-      if (test) fields.slice(0, names.length).forEach((text, right) => (test.cells[names[right]] = text));
-    });
-  });
-  enter(element);
-}
-
 const undo = () => moved(page.history.move(-1));
 const redo = () => moved(page.history.move(1));
 

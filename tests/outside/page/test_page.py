@@ -403,10 +403,57 @@ def test_pasted_block_makes_new_tests_and_stays_within_its_columns(open_page: Op
     live.input("e", 5).click()
     live.page.evaluate("text => navigator.clipboard.writeText(text)", "0.453\t51.03\t999\n0.44\t56.6\t999\n")
     live.press("Control+v")
+    assert live.text("live-note") == "Pasted, but 1 column had no place."
     assert live.cell("v", "6").status == "#INPUT!"
     live.type("v", 6, "5.5")
     six = {**driving.paper(), 6: {"v": "5.5", "e": "0.44", "x_p": "56.6"}}
     assert driving.differences(live.cells(), driving.built(tmp_path / "six", six).values) == []
+
+
+NAMED = {("v", 1): "2.4", ("v", 2): "3.0", ("x_p", 1): "24.1", ("x_p", 2): "30.1"}
+
+
+@pytest.mark.parametrize(
+    ("cell", "block", "said"),
+    [
+        ("e", "x_p [µm]\tv [m/s]\n24,1\t2,4\n30,1\t3,0\n", ""),
+        ("v", "test\tv\tx_p [um]\n2\t3.0\t30.1\n1\t2.4\t24.1\n", ""),
+        ("v", "v\twhere\tx_p\n2.4\tlab 3\t24.1\n3.0\tlab 4\t30.1\n", "Pasted, but 1 column had no place."),
+        ("v", "test\tv\tx_p\n2\t3.0\t30.1\n9\t2\t2\n1\t2.4\t24.1\n", "Pasted, but 1 row had no place."),
+    ],
+)
+def test_names_in_the_first_line_choose_the_columns(
+    open_page: Open, tmp_path: Path, cell: str, block: str, said: str
+) -> None:
+    live = open_page(permissions=["clipboard-read", "clipboard-write"])
+    live.input(cell, 1).click()
+    live.paste(block)
+    report = driving.built(tmp_path / "folder", driving.edited(NAMED))
+    assert driving.differences(live.cells(), report.values) == []
+    assert live.text("live-note") == said
+
+
+def test_a_column_of_the_rows_numbers_is_known(open_page: Open, tmp_path: Path) -> None:
+    live = open_page(permissions=["clipboard-read", "clipboard-write"])
+    live.input("v", 4).click()
+    live.paste("2\t3.0\t0.512\t30.1\n1\t2.4\t0.530\t24.1\n")
+    report = driving.built(tmp_path / "folder", driving.edited(NAMED))
+    assert driving.differences(live.cells(), report.values) == []
+
+
+@pytest.mark.parametrize(
+    ("block", "said"),
+    [
+        ("x_p [mm]\tv [m/s]\n0.0241\t2.4\n", "x_p is in µm here, not in mm."),
+        ("speed\tdepth\n2.4\t24.1\n", "no such column is typed here: speed, depth."),
+    ],
+)
+def test_another_unit_or_no_known_name_is_refused(open_page: Open, block: str, said: str) -> None:
+    live = open_page(permissions=["clipboard-read", "clipboard-write"])
+    live.input("v", 1).click()
+    live.paste(block)
+    assert live.text("live-banner") == ""
+    assert live.text("live-note") == f"Nothing was pasted: {said}"
 
 
 def test_one_number_is_pasted_into_a_cell(open_page: Open) -> None:

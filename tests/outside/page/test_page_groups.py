@@ -51,6 +51,19 @@ def test_an_edited_reading_moves_its_group(open_page: Callable[..., Live], folde
     assert "over 2\u00a0readings" in (live.page.locator("#bar-source").text_content() or "")
 
 
+def test_readings_of_another_group_are_not_pasted(open_page: Callable[..., Live], folder: Path) -> None:
+    live = opened(folder, open_page)
+    live.input("y", 1).click()
+    live.paste("instrument\ty [mm]\nA\t1.6\nA\t2.3\n")
+    assert live.text("live-note") == "Nothing was pasted: instrument of reading 2 is B, not A."
+    assert live.text("live-banner") == ""
+    live.input("y", 6).click()
+    live.paste("instrument\ty [mm]\nB\t2.85\nC\t3.25\nC\t3.5\n")
+    assert live.text("live-note") == "Pasted, but 1 row had no place."
+    again = rebuilt(folder, ("6,B,2.75", "6,B,2.85"))
+    assert driving.differences(live.cells(), again) == []
+
+
 def test_a_group_that_is_left_out_leaves_the_numbers_of_the_others(
     open_page: Callable[..., Live], folder: Path
 ) -> None:
