@@ -109,7 +109,7 @@ class DeclaredFit:
         made = {column.name: column for column in stated}
         for each, said in sought.items():
             unit = {"unit": "" if fit.linear else "1", **said.column}
-            made[str(each)] = Column(str(each), of, Given(), meaning=words[each], positive=False, **unit)
+            made[str(each)] = Column(str(each), of, Given(), meaning=words[each], **unit)
         self._weighed, self._shown = u is not None, {f"s_{each}": f"like {each}" for each in sought}
         self._latex = self._printed([made[str(each)] for each in sought])
         parts = (*fit.results, *fit.helpers)

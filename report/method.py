@@ -195,7 +195,16 @@ def let(
     return _said(ComputedLine(meaning, unit, column, (exact(formula),), label, because))
 
 
-def unknown(meaning: str = "", unit: str = "", *, start: Any = None, latex: str = "") -> Any:
+def unknown(
+    meaning: str = "",
+    unit: str = "",
+    *,
+    start: Any = None,
+    low: float | None = None,
+    high: float | None = None,
+    positive: bool = False,
+    latex: str = "",
+) -> Any:
     """Announce what a root or a parameter of a fit will be called, so that an equation can name it.
 
     Parameters
@@ -204,8 +213,13 @@ def unknown(meaning: str = "", unit: str = "", *, start: Any = None, latex: str 
         Of a parameter, as for :func:`let`; a root says itself what it is.
     start : float or Expr, optional
         Where a fit begins that is not linear in its parameters; a number is in its unit.
+    low, high, positive
+        Of a parameter, as for :func:`given`: proofs draw it so. One that is found outside of low and high has
+        a warning, one that is found not positive has no value.
     """
-    return UnknownLine(meaning, unit, {"latex": latex}, None if start is None else exact(start))
+    column = {"latex": latex, "positive": positive}
+    bounds = _bounds(low, high, positive)
+    return UnknownLine(meaning, unit, column, None if start is None else exact(start), bounds)
 
 
 def root(
@@ -232,7 +246,8 @@ def root(
     meaning, unit, label, because, display, latex
         As for :func:`let`; the unit is that of the unknown.
     low, high : Expr
-        Between which it lies, themselves left out, as all formulas in SI; they may hang on other names.
+        Between which it lies, themselves left out; a number is in the unit of the unknown, a formula that
+        names others in SI.
     start : Expr, optional
         A first guess, alike; the middle, without. It costs steps, never truth.
     steps : int
@@ -561,13 +576,13 @@ class Method(metaclass=_Declaring):
     """
 
 
-def _has_limits(said: Measured | Parameter) -> bool:
-    return (said.bounds.low, said.bounds.high) != (None, None)
+def _ends(bounds: Bounds) -> bool:
+    return (bounds.low, bounds.high) != (None, None)
 
 
-def _drawn(said: Measured | Parameter, column: Column) -> Quantity:
+def _drawn(column: Column, bounds: Bounds) -> Quantity:
     """What is given, for proofs: it is drawn between its limits, or beyond the only one that it has."""
-    low, high = said.bounds.low, said.bounds.high
+    low, high = bounds.low, bounds.high
     if low is None or high is None:
         (end,) = (each for each in (low, high) if each is not None)
         far = max(abs(end), 1.0) * (1 if high is None else -1)
@@ -597,7 +612,8 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
     used = {each.name for c in columns for each in sheet.precedents(c) if each.name != c.name}
     scalars = (c.name for c in columns if c.axis is None and c.equation)
     last = [each for each in scalars if body.of_fits.get(each, each not in used)]
-    words = Vocabulary(*(_drawn(one, body.columns[one.name]) for one in body.inputs if _has_limits(one)))
+    bounds = {one.name: one.bounds for one in body.inputs} | body.bounds
+    words = Vocabulary(*(_drawn(body.columns[one], said) for one, said in bounds.items() if _ends(said)))
     in_tables = {*body.aside, *(each for spec in body.tables for each in spec.columns)}
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
     columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))

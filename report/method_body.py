@@ -28,12 +28,14 @@ from .method_lines import (
     UnknownLine,
     exact,
     in_si,
+    refuse_zero,
     size_of,
     stated_unit,
     unit_in_si,
     with_unit,
 )
 from .named import member, name_of, references, summed_over
+from .quantity import Bounds
 from .sheet import Sheet
 from .workbook import Claimed, Curve, FigureSpec, Measured, Parameter, TableSpec
 
@@ -82,6 +84,7 @@ class MethodBody(dict[str, Any]):
         self.drawn_given: dict[str, int] = {}
         self.tables: list[TableSpec] = []
         self.announced: dict[str, UnknownLine] = {}
+        self.bounds: dict[str, Bounds] = {}  # of parameters of fits, in SI
         self.constants: list[str] = []
         self.unnamed: list[Declaration | FitLine] = []
         self.aside: list[str] = []
@@ -389,7 +392,7 @@ class MethodBody(dict[str, Any]):
             self._refuse_name_of_rows(name)
         if isinstance(value, UnknownLine):
             self.announced[name] = value
-            value = Column(name, None, Given(), positive=False).symbol
+            value = Column(name, None, Given(), positive=value.column["positive"]).symbol
         if isinstance(value, FitLine):
             value = self._fitted(name, value)
         if isinstance(value, Declaration):
@@ -422,8 +425,7 @@ class MethodBody(dict[str, Any]):
     def _input(self, name: str, said: Declaration) -> Column:
         assert isinstance(said, InputLine)
         size = size_of(name, said.unit)
-        if size.zero and said.column["positive"]:
-            raise SheetError(f"{name}: above which zero? say low=..., in {said.unit}", name)
+        refuse_zero(name, said, size)
         bounds = said.bounds.within(size.scale, size.zero)
         if size.zero:  # nothing is colder than 0 K
             bounds = replace(bounds, low=max(bounds.low or 0.0, 0.0))
@@ -457,7 +459,7 @@ class MethodBody(dict[str, Any]):
         sought = {
             symbol: with_unit(each, announced)
             for each, announced in self.announced.items()
-            if each not in self.columns and (symbol := Symbol(each, real=True)) in said.model.free_symbols
+            if each not in self.columns and (symbol := self[each]) in said.model.free_symbols
         }
         sought = {symbol: self._begun(announced, str(symbol)) for symbol, announced in sought.items()}
         rows = self.axis_of(said.observed) or self.axis
@@ -478,11 +480,12 @@ class MethodBody(dict[str, Any]):
                 raise SheetError(f"{column.name} is declared twice: {name} has one of that name, too", name)
             self.columns[column.name] = column
         for column in sorted(found.columns, key=lambda each: each.axis != rows):  # scatter rests on residuals
-            said_so = Symbol(column.name, real=True) in sought
+            said_so = column.name in self.announced
             self.columns[column.name] = self._as_difference(column, said_so)
         self.entries += found.entries
         self.aside += found.aside
-        self.of_fits |= {column.name: Symbol(column.name, real=True) in sought for column in found.columns}
+        self.of_fits |= {column.name: column.name in self.announced for column in found.columns}
+        self.bounds |= {str(each): line.bounds for each, line in sought.items()}
         self.fits.append(found)
         if said.of is None:
             self.curves.append(found.curve)
@@ -611,7 +614,7 @@ class MethodBody(dict[str, Any]):
                 raise SheetError(
                     f"the equation of {name} does not name it: write {name} = unknown() above", name
                 )
-            if self.announced.get(name) not in (None, UnknownLine("", "", {"latex": ""})):
+            if self.announced.get(name) not in (None, UnknownLine("", "", {"latex": "", "positive": False})):
                 raise SheetError(f"{name} = unknown() is enough: root(...) says what {name} is", name)
             size = size_of(name, said.unit)
             places = {

@@ -12,7 +12,7 @@ from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, Ne
 
 from ..derivations.reductions import Member
 from ..derivations.unit_text import ParsedUnit, UnitError, coherent, parse_open
-from .column import SheetError
+from .column import Limit, SheetError
 from .quantity import Bounds
 
 __all__ = [
@@ -24,6 +24,7 @@ __all__ = [
     "UnknownLine",
     "exact",
     "in_si",
+    "refuse_zero",
     "size_of",
     "stated_unit",
     "unit_in_si",
@@ -78,6 +79,7 @@ class UnknownLine(Declaration):
     """What a root or a fit will find."""
 
     start: Expr | None = None
+    bounds: Bounds = field(default_factory=Bounds)
 
 
 @dataclass(frozen=True)
@@ -119,11 +121,23 @@ def stated_unit(name: str, unit: str) -> dict[str, Any]:
 
 
 def with_unit(name: str, sought: UnknownLine) -> UnknownLine:
-    """The parameter of a fit with its unit, if that is stated, and its start in SI."""
-    start = sought.start
-    if start is not None and sought.unit:
-        start = in_si(start, size_of(name, sought.unit))
-    return replace(sought, column={**stated_unit(name, sought.unit), **sought.column}, start=start)
+    """The parameter of a fit with its unit, if that is stated, its start and its bounds in SI."""
+    start, bounds = sought.start, sought.bounds
+    if sought.unit:
+        size = size_of(name, sought.unit)
+        refuse_zero(name, sought, size)
+        start = start if start is None else in_si(start, size)
+        bounds = bounds.within(size.scale, size.zero)
+    column = {**stated_unit(name, sought.unit), **sought.column}
+    if bounds != Bounds() and not (column["positive"] and bounds == Bounds(low=0, low_open=True)):
+        column["limits"] = (Limit(bounds, f"outside of what is said of {name}"),)
+    return replace(sought, column=column, start=start, bounds=bounds)
+
+
+def refuse_zero(name: str, said: Declaration, size: ParsedUnit) -> None:
+    """Refuse what is positive in a unit whose zero is another than that of SI."""
+    if size.zero and said.column["positive"]:
+        raise SheetError(f"{name}: above which zero? say low=..., in {said.unit}", name)
 
 
 def exact(formula: Any) -> Expr:

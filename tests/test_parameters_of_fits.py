@@ -1,0 +1,84 @@
+"""What an author says of the parameters of a fit: proofs take it, and what is found is held to it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from loopsheet.derivations.proved import ProofStatus
+from loopsheet.report.cli import main
+from loopsheet.report.study import Study
+
+HEAD = """from sympy import exp, log, sqrt
+from loopsheet import Method, claim, fit, let, measured, root, unknown
+
+
+class Line(Method, rows="readings"):
+    x = measured("m", "place", positive=True)
+    y = measured("V", "voltage")
+"""
+RISING, FALLING = ((0.1, 0.31, 0.49, 0.7), (0.9, 0.69, 0.51, 0.3))
+
+
+def folder(place: Path, lines: str, y: tuple[float, ...]) -> Path:
+    rows = (f"{n},{n}.0,{value}" for n, value in enumerate(y, 1))
+    (place / "measurements.csv").write_text("\n".join(("reading,x [m],y [V]", *rows, "")))
+    (place / "workbook.py").write_text(HEAD + "".join(f"    {line}\n" for line in lines.split("; ")))
+    (place / "report.toml").write_text(
+        'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
+    )
+    return place
+
+
+LINE = "a = unknown('a', 'V'); b = unknown('b', 'mV/m'{}); f = fit(y, a + b * x); "
+CURVE = (
+    "a = unknown('a', 'V', start=1.0); b = unknown('b', '1/m', start=-0.2{}); f = fit(y, a * exp(b * x)); "
+)
+BOTH = "a = unknown('a', 'V'{0}); b = unknown('b', 'V/m'{0}); f = fit(y, a + b * x); "
+HILL = "claim(log(b * x / a), -log(a / (b * x)), 'turned round', label='(P)')"
+
+
+def test_proofs_draw_a_parameter_as_it_is_said_to_be(tmp_path: Path) -> None:
+    found = []
+    for number, said in enumerate(("", ", positive=True")):
+        (place := tmp_path / str(number)).mkdir()
+        of = Study(folder(place, BOTH.format(said) + HILL, RISING)).proved.proofs
+        found.append(next(proof.status for proof in of if proof.equation.label == "(P)"))
+    assert found[0] is not ProofStatus.PROVED
+    assert found[1] is ProofStatus.PROVED
+
+
+def test_one_that_is_positive_proves_nothing_false(tmp_path: Path) -> None:
+    lines = LINE.format(", positive=True") + "claim(sqrt(a**2) * b, a * b, 'of the other', label='(F)')"
+    found = {
+        proof.equation.label: proof.status for proof in Study(folder(tmp_path, lines, RISING)).proved.proofs
+    }
+    assert found["(F)"] is ProofStatus.REFUTED
+
+
+@pytest.mark.parametrize("fitted", [LINE, CURVE])
+def test_one_that_is_not_positive_has_no_value_in_any_engine(fitted: str, tmp_path: Path) -> None:
+    report = Study(folder(tmp_path, fitted.format(", positive=True"), FALLING)).proved
+    assert report.values.cell("b").reason.startswith("#")
+    assert [found for engine in report.engines for found in engine.findings] == []
+    assert main(["check", str(tmp_path)]) == 1
+
+
+@pytest.mark.parametrize("fitted", [LINE, CURVE])
+def test_one_outside_of_its_ends_is_told(
+    fitted: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own = folder(tmp_path, fitted.format(", low=0.01, high=500"), FALLING)
+    main(["check", str(own)])
+    assert "warning: b: outside of what is said of b" in capsys.readouterr().out
+    inside = "low=-500, high=-0.01"
+    folder(tmp_path, fitted.format(", " + inside), FALLING)
+    main(["check", str(own)])
+    assert "outside of what is said of b" not in capsys.readouterr().out
+
+
+def test_a_root_says_itself_where_it_is_sought(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = "q = unknown(low=0); q = root(q**2, 2, 'q', low=1, high=2)"
+    assert main(["check", str(folder(tmp_path, lines, RISING))]) == 2
+    assert "q = unknown() is enough: root(...) says what q is" in capsys.readouterr().err
