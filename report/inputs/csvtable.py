@@ -192,20 +192,31 @@ def is_number(text: str) -> bool:
 
 
 def _pointed(rows: list[CsvRow]) -> list[CsvRow]:
-    """Rows with decimal points for decimal commas, if it is certain that they are."""
-    texts = [field.text for row in rows for field in row.fields]
+    """Rows with decimal points for decimal commas, if it is certain that they are: of columns of numbers."""
+    header, *body = [row for row in rows if not _is_blank(row)] or [CsvRow([], 0)]
+    worded = {
+        place
+        for place, head in enumerate(header.fields)
+        if "[" not in head.text  # dates, or remarks; 'left out' has a reason
+        and any(row.fields[place].text and not _like_number(row.fields[place].text)
+                for row in body if place < len(row.fields))
+    }  # fmt: skip
+    numbers = [[field for place, field in enumerate(row.fields) if place not in worded] for row in body]
+    texts = [field.text for fields in numbers for field in fields]
     commas = [text for text in texts if _COMMA.fullmatch(text)]
     if all(map(_THOUSANDS.fullmatch, commas)) or any(map(_POINT.fullmatch, texts)):
         return rows  # what has a comma is refused where it is read
 
-    def pointed(field: Field) -> Field:
-        return (
-            field._replace(text=_COMMA.sub(r"\g<whole>.\g<rest>", field.text))
-            if field.text in commas
-            else field
-        )
+    def pointed(place: int, field: Field) -> Field:
+        told = _COMMA.fullmatch(field.text) and place not in worded
+        return field._replace(text=_COMMA.sub(r"\g<whole>.\g<rest>", field.text)) if told else field
 
-    return [row._replace(fields=[pointed(field) for field in row.fields]) for row in rows]
+    return [row._replace(fields=[pointed(*each) for each in enumerate(row.fields)]) for row in rows]
+
+
+def _like_number(text: str) -> bool:
+    """Whether a text is a number, be it one with a decimal comma and its uncertainty."""
+    return is_number(text) or _COMMA.fullmatch(text) is not None
 
 
 def _rows(source: Source, findings: Findings, separator: str, position: int) -> list[CsvRow]:
