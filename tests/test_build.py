@@ -404,6 +404,7 @@ def test_a_place_that_may_not_be_entered_is_a_message(require: Callable[..., str
     assert done.returncode == 2, done.stderr
     assert done.stderr.startswith("error[LS601]: ")
     assert "' cannot be written: Permission denied\n" in done.stderr
+    assert "help: choose another place (a build's is --out), or check the permissions\n" in done.stderr
 
 
 @pytest.mark.parametrize(

@@ -342,6 +342,7 @@ def test_no_room_is_a_message(reason: str, tmp_path: Path) -> None:
     assert (
         f"OutputError: error[LS601]: 'out/inner/figures/large.svg' cannot be written: {reason}" in done.stdout
     )
+    assert "help: choose another place (a build's is --out), or make room\n" in done.stdout
     assert "1 error\n" in done.stdout
     assert done.stdout.endswith("1 error\n")  # and nothing is left
 

@@ -23,7 +23,7 @@ from ..inputs.folders import INPUTS, built_from
 from ..machine.scratch import scratch
 from ..machine.staging import put
 from ..machine.stopping import unstoppable
-from ..messages.errors import LoopsheetError, OutputError, UsageError, diagnose
+from ..messages.errors import LoopsheetError, OutputError, UsageError, diagnose, why
 
 __all__ = ["NAME", "added", "crate", "write"]
 
@@ -104,7 +104,7 @@ def write(
                 (out / name).parent.mkdir(parents=True, exist_ok=True)
                 (stage / name).replace(out / name)
     except OSError as error:
-        raise OutputError(diagnose("LS601", text=out / NAME, reason=error.strerror or error)) from error
+        raise OutputError(diagnose("LS601", text=out / NAME, **why(error))) from error
     return out / NAME
 
 

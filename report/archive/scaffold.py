@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..messages.errors import Location, OutputError, diagnose
+from ..messages.errors import Location, OutputError, diagnose, why
 from ..quantity import Bounds, behind
 from .wheel import wheel
 
@@ -60,8 +60,8 @@ def new(folder: Path, workbook: Workbook, ci: str = "", code: bytes = b"") -> li
         is_new = _is_new(folder)
         for path in beside:
             if path.exists() or path.is_symlink():
-                reason = "there is one; rename it, or the campaign"
-                raise OutputError(diagnose("LS601", Location(path.as_posix()), text=path.name, reason=reason))
+                there = why(FileExistsError("there is one; rename it, or the campaign"))
+                raise OutputError(diagnose("LS601", Location(path.as_posix()), text=path.name, **there))
         with _written(beside):
             if is_new:
                 _create(folder, files)
@@ -69,8 +69,7 @@ def new(folder: Path, workbook: Workbook, ci: str = "", code: bytes = b"") -> li
                 with _written({folder / name: content for name, content in files.items()}):
                     pass
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise OutputError(diagnose("LS601", text=folder, reason=reason)) from error
+        raise OutputError(diagnose("LS601", text=folder, **why(error))) from error
     return [*(folder / name for name in files), *beside]
 
 

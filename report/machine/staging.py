@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
 
-from ..messages.errors import EXHAUSTED, Diagnostic, Location, OutputError, diagnose
+from ..messages.errors import EXHAUSTED, Diagnostic, Location, OutputError, diagnose, why
 from .scratch import PREFIX, left_over, locked, scratch
 from .stopping import unstoppable
 
@@ -109,7 +109,7 @@ def written(path: Path, before: bytes | None, content: bytes) -> None:
 
 
 def _unwritable(path: Path, error: OSError) -> Diagnostic:
-    return diagnose("LS613", Location(path.as_posix()), text=path.name, reason=error.strerror or str(error))
+    return diagnose("LS613", Location(path.as_posix()), text=path.name, **why(error, "of both"))
 
 
 def _replaced(path: Path, before: bytes | None, after: bytes) -> None:
@@ -205,8 +205,7 @@ def staged(
             if error.errno not in EXHAUSTED or not file.is_relative_to(stage):
                 raise  # not about what we write
             place = out / file.relative_to(stage)
-        reason = error.strerror or str(error)
-        raise OutputError(diagnose("LS601", text=place.as_posix(), reason=reason)) from error
+        raise OutputError(diagnose("LS601", text=place.as_posix(), **why(error))) from error
     except BaseException:
         _remove(made)
         raise
@@ -286,8 +285,7 @@ def _move_in(
                 target.unlink(missing_ok=True)
             else:
                 os.replace(kept, target)
-        reason = error.strerror or str(error)
-        raise OutputError(diagnose("LS601", text=str(out), reason=reason)) from error
+        raise OutputError(diagnose("LS601", text=str(out), **why(error))) from error
     return kept_as, removed
 
 
@@ -306,10 +304,12 @@ def _kept(target: Path, place: Path) -> Path | None:
 def _refuse_what_is_in_the_way(out: Path, name: Path) -> None:
     """A folder where a file goes, or a file where a folder goes, is the user's: nothing is done then."""
     if (out / name).is_dir():
-        raise OutputError(diagnose("LS601", text=name.as_posix(), reason="a folder has this name"))
+        error = FileExistsError("a folder has this name")
+        raise OutputError(diagnose("LS601", text=name.as_posix(), **why(error)))
     for parent in name.parents[:-1]:
         if (out / parent).exists() and not (out / parent).is_dir():
-            raise OutputError(diagnose("LS601", text=name.as_posix(), reason=f"{parent} is a file"))
+            error = FileExistsError(f"{parent} is a file")
+            raise OutputError(diagnose("LS601", text=name.as_posix(), **why(error)))
 
 
 def _listed(folder: Path) -> dict[Path, str] | None:

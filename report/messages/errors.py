@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import errno
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from .diagnostics import Diagnostic, Location, render, render_all, visible
 
@@ -33,6 +33,7 @@ __all__ = [
     "render_all",
     "suggest",
     "unknown",
+    "why",
     "wrong",
 ]
 
@@ -380,7 +381,7 @@ CATALOGUE: dict[str, Entry] = {
         "output not writable",
         "'{text}' cannot be written: {reason}",
         "a folder that may be written",
-        "choose another place, or check the permissions",
+        "choose another place (a build's is --out), or {suggestion}",
     ),
     "LS602": Entry(
         "output not a folder",
@@ -436,7 +437,7 @@ CATALOGUE: dict[str, Entry] = {
         "file not writable",
         "'{text}' cannot be written: {reason}",
         "a file that may be written, in a folder that may be written",
-        "nothing was written; check the permissions of both",
+        "nothing was written; {suggestion}",
     ),
     "LS614": Entry("options that do not go together", "{reason}", hint="{known}"),
     "LS615": Entry(
@@ -514,6 +515,17 @@ EXHAUSTED = frozenset(
     if hasattr(errno, name)
 )
 """What the system says when the machine, or what somebody allowed us of it, is used up: no bug of ours."""
+
+
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+def why(error: Exception, of: str = "") -> dict[str, Any]:
+    """Why something cannot be written, and what helps: of a full disk, no permission does."""
+    helps = "make room" if getattr(error, "errno", 0) in _FULL else f"check the permissions {of}".rstrip()
+    if isinstance(error, FileExistsError):
+        helps = "move away what is there"
+    return {"reason": getattr(error, "strerror", None) or str(error), "suggestion": helps}
 
 
 def diagnose(code: str, at: Location | None = None, **fields: object) -> Diagnostic:
