@@ -20,10 +20,13 @@ from sympy import (
     Mul,
     Pow,
     Sum,
+    Symbol,
     acosh,
     acoth,
     asinh,
+    atan,
     atanh,
+    cos,
     cosh,
     coth,
     csch,
@@ -34,6 +37,7 @@ from sympy import (
     expand,
     expand_log,
     expand_power_base,
+    expand_trig,
     fraction,
     log,
     nan,
@@ -41,7 +45,9 @@ from sympy import (
     powsimp,
     sech,
     simplify,
+    sin,
     sinh,
+    tan,
     tanh,
     together,
     zoo,
@@ -256,8 +262,55 @@ def vanishes(residual: Expr) -> bool:
         lambda: _simplified(numerator),
         lambda: _simplified(residual),
         lambda: _simplified(_undisguised(residual)),
+        lambda: _in_half_angles(residual),
     )
-    return any(attempt() == 0 for attempt in attempts)
+    return any(attempt() == 0 for attempt in attempts) or _stays_zero(residual)
+
+
+def _stays_zero(expression: Expr) -> bool:
+    """Whether an expression does not change with a symbol, and is zero at one value of it.
+
+    It has to be smooth on all that the symbol may be: atan(1/x) + atan(x) is pi/2 above zero, not below.
+    """
+    if not expression.has(atan) or not _is_smooth(expression):
+        return False
+    for symbol in sorted(expression.free_symbols, key=str):
+        anything = symbol == Symbol(symbol.name, real=True)
+        if symbol != Symbol(symbol.name, positive=True) and not anything:
+            continue
+        if expand(_numerator(expression.diff(symbol))) == 0:
+            there = expression.xreplace({symbol: Integer(1)})
+            return bool(simplify(there) == 0) or _stays_zero(there)
+    return False
+
+
+def _is_smooth(expression: Expr) -> bool:
+    """Whether an expression has a value and a slope wherever its symbols' assumptions hold."""
+    match expression:
+        case Symbol():
+            return bool(expression.is_real)
+        case Pow(base=base, exp=power):
+            known = power.is_Integer and power.is_positive
+            return _is_smooth(base) and _is_smooth(power) and bool(known or base.is_positive)
+        case log(args=(of,)):
+            return bool(of.is_positive) and _is_smooth(of)
+        case Add() | Mul() | atan() | exp() | sin() | cos():
+            return all(map(_is_smooth, expression.args))
+    return bool(expression.is_number and expression.is_real)
+
+
+def _in_half_angles(expression: Expr) -> Any:
+    """Sines and cosines by the tangent of half their angle, of which they are rational functions.
+
+    What holds of these but where a tangent has no value holds there too, as both sides go on smoothly.
+    """
+    if not expression.has(sin, cos) or expression.count_ops() > _LARGEST:
+        return expression
+    halved: Expr = expand_trig(expression)
+    for angle in sorted({each.args[0] for each in halved.atoms(sin, cos)}, key=str):
+        t = tan(angle / 2)
+        halved = halved.xreplace({sin(angle): 2 * t / (1 + t**2), cos(angle): (1 - t**2) / (1 + t**2)})
+    return expand(_numerator(halved))
 
 
 def _simplified(expression: Expr) -> Expr:

@@ -34,6 +34,12 @@ __all__ = [
     "prove_equation",
 ]
 
+NOT_REDUCED = (
+    "the numbers agree, but the residual was not reduced to zero; what may help: say what is positive, claim "
+    "it in steps, or claim of both sides what undoes a root or an inverse function, as a square or a tangent"
+)
+"""Of what is true as far as is known."""
+
 # --- verdicts ------------------------------------------------------------------------------------------
 
 
@@ -61,7 +67,7 @@ def check_step(step: Step, vocabulary: Vocabulary = NO_WORDS) -> StepProof:
         if outcome.points < POINTS:
             raise Refused(f"only {outcome.points} points of its domain were evaluated")
         if not system.residual_is_zero():
-            raise Refused("the numbers agree, but the residual was not reduced to zero")
+            raise Refused(NOT_REDUCED)
     except (Refused, NotEvaluable) as problem:
         return StepProof(step, ProofStatus.UNDECIDED, 0, 0.0, why=str(problem))
     return StepProof(step, ProofStatus.PROVED, outcome.points, outcome.worst)

@@ -20,6 +20,8 @@ from sympy import (
     Sum,
     Symbol,
     asinh,
+    atan,
+    cos,
     cosh,
     erf,
     erfc,
@@ -27,14 +29,16 @@ from sympy import (
     log,
     nan,
     oo,
+    pi,
     sin,
     sinh,
     sqrt,
+    tan,
     tanh,
     zoo,
 )
 
-from loopsheet.derivations import proof, sampling, system
+from loopsheet.derivations import algebra, proof, sampling, system
 from loopsheet.derivations.equation import Equation, Step
 from loopsheet.derivations.proof import POINTS, check_step
 from loopsheet.derivations.proved import ProofStatus
@@ -68,6 +72,35 @@ def test_a_false_claim_is_refuted_with_its_point_and_both_sides() -> None:
 def test_every_link_of_a_chain_of_equalities_counts() -> None:
     assert decide(claim(a, (a**2 + a * b) / (a + b), a * b / b)).status is ProofStatus.PROVED
     assert decide(claim(a, 2 * a, a)).status is ProofStatus.REFUTED
+
+
+def test_what_does_not_change_and_is_zero_somewhere_is_zero_on_a_connected_domain() -> None:
+    assert decide(claim(atan(1 / a), pi / 2 - atan(a))).status is ProofStatus.PROVED
+    assert decide(claim(atan(b / a), pi / 2 - atan(a / b))).status is ProofStatus.PROVED
+    for wrong in (pi / 3 - atan(a), pi / 2 + atan(a), pi / 2 - atan(a) + Rational(1, 10**30)):
+        assert decide(claim(atan(1 / a), wrong)).status is ProofStatus.REFUTED
+    # Both have the same slope, and are equal at 1, but not below zero.
+    real = Symbol("y", real=True)
+    assert not algebra.vanishes(atan(1 / real) - pi / 2 + atan(real))
+    assert not algebra.vanishes(atan(1 / (a - 3)) + atan(a - 3) + pi / 2)
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "wrong"),
+    [
+        (tan(a / 2), sin(a) / (1 + cos(a)), sin(a) / (1 - cos(a))),
+        (sin(2 * atan(b)), 2 * b / (1 + b**2), 2 * b / (1 - b**2)),
+        (
+            b * (1 - c / 2 * cos(a)),
+            b * (1 - c**2 / 4) / (1 + c / 2 * cos(2 * atan(sqrt((1 + c / 2) / (1 - c / 2)) * tan(a / 2)))),
+            b * (1 - c / 2) / (1 + c / 2 * cos(2 * atan(sqrt((1 + c / 2) / (1 - c / 2)) * tan(a / 2)))),
+        ),
+    ],
+)
+def test_angles_and_their_halves_are_known(left: Expr, right: Expr, wrong: Expr) -> None:
+    assert decide(claim(left, right)).status is ProofStatus.PROVED
+    assert decide(claim(left, wrong)).status is ProofStatus.REFUTED
+    assert decide(claim(left, right * (1 + Rational(1, 10**30)))).status is ProofStatus.REFUTED
 
 
 @pytest.mark.parametrize(
@@ -167,7 +200,7 @@ def test_a_symbolic_half_that_cannot_tell_proves_nothing(
     monkeypatch.setattr(system, "vanishes", lambda residual: answer)
     found = decide(claim(a + b, b + a))
     assert found.status is ProofStatus.UNDECIDED
-    assert found.why == "the numbers agree, but the residual was not reduced to zero"
+    assert found.why == proof.NOT_REDUCED
     check_step.cache_clear()
 
 
