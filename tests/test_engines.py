@@ -13,7 +13,7 @@ import sympy
 
 from loopsheet.report.cells.values import CODES, Status
 from loopsheet.report.engines import ENGINES, exact
-from loopsheet.report.judge.engines import EPS, LIMIT, Judge, _number
+from loopsheet.report.judge.engines import EPS, LIMIT, Judge
 from loopsheet.report.judge.readers import Case, Reading
 from loopsheet.report.quantity import SMALLEST
 
@@ -70,8 +70,8 @@ def test_every_engine_finds_what_is_known(
 def _is_near(number: Any, true: Any, found: Reading, bound: float, name: str, row: int) -> None:
     if 0 < abs(true) < SMALLEST:
         return  # what a double has left of its digits is chance
-    lost = _number(found.rounded[name][row]) if name in found.rounded else 0
-    assert abs(_number(number) - true) - lost <= LIMIT * EPS * bound, row
+    lost = exact.as_mpf(found.rounded[name][row]) if name in found.rounded else 0
+    assert abs(exact.as_mpf(number) - true) - lost <= LIMIT * EPS * bound, row
 
 
 def test_a_gap_names_an_engine_and_a_case_that_there_are() -> None:

@@ -170,7 +170,7 @@ class GivenCells:
         moved = _text(f"{where}, and some were put in or taken out: {again}")
         more = _text(f"{where}, and there are numbers below them: {again}")
         notes = note.range(note.worksheet)
-        others = f"SUMPRODUCT(--(LEFT({notes},{len(_MOVED)})={_text(_MOVED)}))"
+        others = f"COUNTIF({notes},{_text(_MOVED)})"
         order = f"{_text(_ORDER)}&{others}&{_text(f'; {again}')}"
         return (
             f'=IF(ROWS({notes})<>{note.rows},{moved},IF({others}>0,{order},IF(COUNT({below})>0,{more},"")))'
