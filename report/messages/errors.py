@@ -517,14 +517,11 @@ EXHAUSTED = frozenset(
 """What the system says when the machine, or what somebody allowed us of it, is used up: no bug of ours."""
 
 
-_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-
-
 def why(error: Exception, of: str = "") -> dict[str, Any]:
     """Why something cannot be written, and what helps: of a full disk, no permission does."""
-    helps = "make room" if getattr(error, "errno", 0) in _FULL else f"check the permissions {of}".rstrip()
-    if isinstance(error, FileExistsError):
-        helps = "move away what is there"
+    full = getattr(error, "errno", 0) in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+    there = "move away what is there" if isinstance(error, FileExistsError) else ""
+    helps = there or ("make room" if full else f"check the permissions {of}".rstrip())
     return {"reason": getattr(error, "strerror", None) or str(error), "suggestion": helps}
 
 

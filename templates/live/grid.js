@@ -249,9 +249,9 @@ function pasteRows({ dataset: { cell, index } }, rows, read, head, { inputs }) {
 // The column that a name in the first line of a block is of: "" of the numbers of rows; or why it is refused.
 function columnAsked(text, inputs) {
   const [, name, unit] = /^(.*?)\s*(?:\[(.*)\])?$/.exec(text.trim()), own = inputs.includes(name) && LIVE.columns[name].unit;
-  const plain = (one = "") => one.replace(/[µμ]/g, "u").replace(/^[-–1]$/, "");
+  const plain = (one = "") => one.replace(/[µμ]/, "u").replace(/^[-1]$/, "");
   const other = own && unit !== undefined && ![own, /\[(.*)\]/.exec(LIVE.heads[name])?.[1]].some((one) => plain(one) === plain(unit));
-  return other ? { why: `${name} is in ${own} here, not in ${unit}` } : [ROW, "test", LIVE.heads.test].includes(name) ? "" : name;
+  return other ? { why: `${name} is in ${own} here, not in ${unit}` } : [ROW, LIVE.heads.test].includes(name) ? "" : name;
 }
 
 // A first line of different words is the head of a block; what stands for a missing datum is no head.

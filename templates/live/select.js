@@ -68,8 +68,9 @@ function cellText(cell) {
   return name ? `${name} [${LIVE.columns[name].unit}]` : plainNumber(cell.textContent.trim().replace(/[ \n\t]+/g, " "));
 }
 
+// What begins as a formula and is no number gets an apostrophe, which says to programs that it is a text.
 function asTable(rows) {
-  const texts = rows.map((cells) => cells.map(cellText));
+  const texts = rows.map((cells) => cells.map((cell) => cellText(cell).replace(/^[=+@-](?![\d.]+(e-?\d+)?(\(\d+\))?$)/, "'$&")));
   const lines = texts.map((cells) => make("tr", {}, ...cells.map((text) => make("td", {}, text))));
   return { plain: texts.map((cells) => cells.join("\t")).join("\n"), html: asMarkup(make("table", {}, ...lines)) };
 }

@@ -2,11 +2,16 @@
 
 from collections.abc import Callable
 from html.parser import HTMLParser
+from pathlib import Path
 from typing import Any
 
+import grouped
 import pytest
 from driving import Live
 from playwright.sync_api import Locator
+
+from loopsheet.report.build import build
+from loopsheet.report.study import Study
 
 Open = Callable[..., Live]
 
@@ -125,6 +130,20 @@ def test_powers_and_signs_are_copied_as_programs_read_them(page: Live) -> None:
     again, unit, off = clipboard(page)[0].splitlines()[0].split("\t")
     assert (float(again), unit) == (1.258, "–")
     assert float(off) == pytest.approx(24, abs=1)
+
+
+def test_what_begins_as_a_formula_is_copied_as_a_text(open_page: Open, tmp_path: Path) -> None:
+    said = ['=HYPERLINK("x")', "+1+cmd|x", "@now", "-x", "-1.5", "plain", "x" * 3000]
+    rows = tuple(("A", f"{n}.5", f'"{word.replace(chr(34), chr(34) * 2)}"') for n, word in enumerate(said, 1))
+    folder = grouped.write(tmp_path / "few", rows, "instrument,y [mm],remark")
+    build(Study(folder), folder / "out", ("html",))
+    live = open_page(folder / "out" / "report.html", permissions=["clipboard-read", "clipboard-write"])
+    live.page.locator(".table:has(input[data-cell=y]) > button[data-copy]").click()
+    found = [line.split("\t")[2] for line in clipboard(live)[0].splitlines()[1:]]
+    assert found == [*(f"'{word}" for word in said[:4]), *said[4:]]
+    wide = live.page.locator("td.words", has_text="xxx").first.bounding_box()
+    assert wide is not None
+    assert wide["width"] < 600
 
 
 def test_dragging_selects_a_rectangle(page: Live) -> None:
