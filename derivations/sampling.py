@@ -14,7 +14,7 @@ from sympy import Abs, Add, Expr, Indexed, Integral, Mul, Pow, Sum, Symbol
 from .evaluation import UNDEFINED, Tape, is_real
 from .proved import DIGITS, said
 from .reductions import Greatest, OrderStatistic
-from .space import SampledRows, Space, short
+from .space import SampledRows, Space, apart
 from .system import Refused, System
 
 __all__ = ["AGREES", "POINTS", "Outcome", "examine", "magnitude"]
@@ -229,7 +229,7 @@ def examine(system: System, seed: str) -> Outcome:
                         if (witness := _witness(trial, point, counted)) is not None:
                             return witness
                         break
-                    return Outcome(counted, float(residual), trial.describe(point), (short(a), short(b)))
+                    return Outcome(counted, float(residual), trial.describe(point), apart(a, b))
                 if not (is_real(a) and is_real(b)):
                     raise Refused(f"its sides are not real at {said(trial.describe(point))}")
                 worst = max(worst, residual)
@@ -258,9 +258,7 @@ def _witness(trial: _Trial, point: list[Any], counted: int) -> Outcome | None:
             continue
         ((*sides, residual),) = trial.gap(*trial.claim)
         if not residual <= AGREES:
-            return Outcome(
-                counted, float(residual), trial.describe(moved), (short(sides[0]), short(sides[1]))
-            )
+            return Outcome(counted, float(residual), trial.describe(moved), apart(sides[0], sides[1]))
     return None
 
 

@@ -10,12 +10,15 @@ import mpmath
 from sympy import Indexed, Integer, Symbol
 from sympy.logic.boolalg import Boolean
 
+from .proved import DIGITS
 from .reductions import REDUCTIONS
 from .text import text
 from .vocabulary import Vocabulary
 
-__all__ = ["SampledRows", "Space", "short"]
+__all__ = ["SampledRows", "Space", "apart", "short"]
 
+_DIGITS = 6
+"""Of a number in a sentence."""
 _FEW, _MANY = 5, 1000
 """Sizes of sums are drawn up to the first number, and about the rows that are named, up to the second."""
 
@@ -131,6 +134,12 @@ class Space:
         return found
 
 
-def short(value: Any) -> str:
+def short(value: Any, digits: int = _DIGITS) -> str:
     """Write a number for a reader."""
-    return str(mpmath.nstr(value, 6))
+    return str(mpmath.nstr(value, digits))
+
+
+def apart(one: Any, other: Any) -> tuple[str, str]:
+    """Write two numbers that are not the same with the digits in which they differ."""
+    written = ((short(one, n), short(other, n)) for n in range(_DIGITS, DIGITS + 1))
+    return next((both for both in written if both[0] != both[1]), (short(one), short(other)))

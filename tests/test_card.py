@@ -220,6 +220,7 @@ def test_a_sweep_tells_every_impact(capsys: pytest.CaptureFixture[str]) -> None:
     head, *lines = capsys.readouterr().out.splitlines()
     rows = [[float(cell or "nan") for cell in line.split(",")] for line in lines]
     assert head.startswith("v [m/s],e [1],x_m [m],F_m [N],x_p [m],duration [s]")
+    assert [len(line.split(",")[0]) for line in lines] == [5, 7, 6, 7, 5]  # as typed, and halves between
     assert [row[0] for row in rows] == pytest.approx([2.334, 2.99875, 3.6635, 4.32825, 4.993])
     assert (rows[0][1], rows[-1][1]) == pytest.approx((0.53, 0.453), abs=1e-9)
     for speed, e, *_, loss, failure in rows:
@@ -265,7 +266,7 @@ def test_the_list_of_codes_needs_no_folder(capsys: pytest.CaptureFixture[str]) -
         (["--for", "c", "--sweep", "3"], "LS614]: --sweep says nothing to --for c"),
         (["--for", "drake", "--sweep", "3", "--format", "json"], "LS614]: --format json says nothing to"),
         (["--for", "drake", "--speed", "3 mm"], "error[LS"),
-        (["--for", "chrono", "--nu", "0.5"], "error[LS"),
+        (["--for", "chrono", "--nu", "0.51"], "error[LS"),
         (["--for", "chrono", "--R", "-1 mm"], "error[LS"),
     ],
 )

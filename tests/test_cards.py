@@ -168,7 +168,7 @@ def test_all_codes_can_be_asked_for(tmp_path: Path) -> None:
         ('codes = ["drake", "simbody"]\nnu = "0.3"', "LS614", '"0.3"', "nu says nothing to drake or simbody"),
         ('codes = ["drake"]\nspeed = "9 m/s"', "LS614", '"9 m/s"', "speed 9 m/s is not among the measured"),
         ('codes = ["drake"]\nspeed = "9 mm"', "LS422", "mm", "speed is in 'mm', which does not"),
-        ('codes = ["lammps"]\nnu = "0.5"', "LS406", "0.5", "0.5"),
+        ('codes = ["lammps"]\nnu = "0.51"', "LS406", "0.51", "0.5"),
         ('codes = "lammps"', "LS205", '"lammps"', "a list of names"),
         ('code = ["lammps"]', "LS203", "code", "unknown key 'code'"),
         ('E = "210 GPa"', "LS204", "cards]", "codes"),

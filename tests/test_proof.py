@@ -69,6 +69,13 @@ def test_a_false_claim_is_refuted_with_its_point_and_both_sides() -> None:
     )
 
 
+def test_sides_are_told_with_the_digits_in_which_they_differ() -> None:
+    found = decide(claim(a, a * (1 + Rational(1, 10**12))))
+    assert found.status is ProofStatus.REFUTED
+    assert found.sides[0] != found.sides[1]
+    assert float(found.sides[0]) == pytest.approx(float(found.sides[1]), rel=1e-11)
+
+
 def test_every_link_of_a_chain_of_equalities_counts() -> None:
     assert decide(claim(a, (a**2 + a * b) / (a + b), a * b / b)).status is ProofStatus.PROVED
     assert decide(claim(a, 2 * a, a)).status is ProofStatus.REFUTED

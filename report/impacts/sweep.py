@@ -48,5 +48,5 @@ def as_csv(speeds: Sequence[float], impacts: Sequence[Impact]) -> str:
     for speed, each in zip(speeds, impacts, strict=True):
         numbers = (each.e, each.x_m, each.F_m, each.x_p, each.duration, each.compression, each.loss)
         cells = [f"{number:.10g}" if number == number else "" for number in numbers]
-        lines.append(",".join([repr(speed), *cells, f'"{each.failure}"' if each.failure else ""]))
+        lines.append(",".join([f"{speed:.10g}", *cells, f'"{each.failure}"' if each.failure else ""]))
     return "\n".join(lines)

@@ -24,16 +24,16 @@ if TYPE_CHECKING:
     from ..quantity import Printed
     from .tables import TomlTables
 
-__all__ = ["NUMBERS", "AskedCards", "read_cards"]
+__all__ = ["NUMBERS", "POISSON", "AskedCards", "read_cards"]
 
 SECTION = "cards"
 _POSITIVE = Bounds(low=0, low_open=True)
+POISSON = Bounds(low=0, high=0.5)
+"""Of no change of breadth, and of none of volume."""
 NUMBERS = {
     "speed": Parameter("speed", "m/s", "an impact speed", _POSITIVE),
     "E": Parameter("E", "Pa", "Young's modulus of both bodies", _POSITIVE),
-    "nu": Parameter(
-        "nu", "1", "Poisson's ratio of both bodies", Bounds(low=0, low_open=True, high=0.5, high_open=True)
-    ),
+    "nu": Parameter("nu", "1", "Poisson's ratio of both bodies", POISSON),
     "R": Parameter("R", "m", "the effective radius", _POSITIVE),
 }
 """What a card may be asked besides its code, in SI."""

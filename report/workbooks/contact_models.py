@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...derivations.contact.models import LEDGER, MODELS
+from ..inputs.cards import POISSON
 from ..quantity import Bounds
 from ..workbook import FigureSpec, Parameter, SquareSum, TableSpec, Workbook, sentence_case
 from . import soft_impact
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 __all__ = ["WORKBOOK"]
 
 _POSITIVE = Bounds(low=0, low_open=True)
-_POISSON = Bounds(low=0, high=0.5)
 _TOLD = {"x_m": "approach", "F_m": "greatest force", "t": "duration", "e": "restitution", "x_p": "imprint"}
 """What models predict."""
 _NUMBERS = ("no number", "one number", "two numbers", "three numbers")
@@ -33,9 +33,9 @@ _NUMBERS = ("no number", "one number", "two numbers", "three numbers")
 PARAMETERS = (
     *(each for each in soft_impact.PARAMETERS if each.name != "points_per_pair"),
     Parameter("E_1", "Pa", "Young's modulus of the ball", _POSITIVE),
-    Parameter("nu_1", "1", "Poisson's ratio of the ball", _POISSON),
+    Parameter("nu_1", "1", "Poisson's ratio of the ball", POISSON),
     Parameter("E_2", "Pa", "Young's modulus of the target", _POSITIVE),
-    Parameter("nu_2", "1", "Poisson's ratio of the target", _POISSON),
+    Parameter("nu_2", "1", "Poisson's ratio of the target", POISSON),
     Parameter(
         "sigma_Y", "Pa", "yield strength of the target; left out, nothing is told of first yield", _POSITIVE
     ),
