@@ -18,7 +18,7 @@ from .distribution import Error, Shape
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["LARGEST", "SMALLEST", "Bounds", "Printed", "behind", "span", "there"]
+__all__ = ["LARGEST", "POISSON", "SMALLEST", "Bounds", "Printed", "behind", "span", "there"]
 
 
 LARGEST = 2**1024 - 2**970
@@ -122,6 +122,10 @@ class Bounds:
         if high is not None:
             parts.append(f"less than {high}" if self.high_open else f"at most {high}")
         return kind + " and ".join(parts) if parts else (kind or "any number").strip()
+
+
+POISSON = Bounds(low=0, high=0.5)
+"""Of no change of breadth, and of none of volume."""
 
 
 @dataclass(frozen=True)

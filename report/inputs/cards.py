@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from ..messages.errors import close
-from ..quantity import Bounds
+from ..quantity import POISSON, Bounds
 from ..workbook import Parameter
 from .keys import TABLES
 from .parameters import read_parameters
@@ -24,12 +24,10 @@ if TYPE_CHECKING:
     from ..quantity import Printed
     from .tables import TomlTables
 
-__all__ = ["NUMBERS", "POISSON", "AskedCards", "read_cards"]
+__all__ = ["NUMBERS", "AskedCards", "read_cards"]
 
 SECTION = "cards"
 _POSITIVE = Bounds(low=0, low_open=True)
-POISSON = Bounds(low=0, high=0.5)
-"""Of no change of breadth, and of none of volume."""
 NUMBERS = {
     "speed": Parameter("speed", "m/s", "an impact speed", _POSITIVE),
     "E": Parameter("E", "Pa", "Young's modulus of both bodies", _POSITIVE),

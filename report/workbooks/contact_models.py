@@ -8,8 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...derivations.contact.models import LEDGER, MODELS
-from ..inputs.cards import POISSON
-from ..quantity import Bounds
+from ..quantity import POISSON, Bounds
 from ..workbook import FigureSpec, Parameter, SquareSum, TableSpec, Workbook, sentence_case
 from . import soft_impact
 from .contact_models_charts import LOOPS, columns, over_speed
