@@ -378,7 +378,7 @@ def found_by(name: str, case: Case, require: Callable[..., str]) -> Reading:
         require(*PROGRAMS[name])
     module, _, function = ENGINES[name].partition(":")
     found: Reading = getattr(importlib.import_module(module), function)(case)
-    assert not found.failure
+    assert not found.failure, found.failure
     return found
 
 

@@ -355,6 +355,7 @@ CASES: dict[str, Callable[[], None]] = {
     "LS507": lambda: campaign(published=pinned("differs,1.258")),
     "LS508": lambda: campaign(published=pinned(",1.234 -> 1.258")),
     "LS509": published("alpha", "q(alpha)"),
+    "LS510": toml("[published]\n", '[published]\nfree = ["x_p"]\n'),
     "LS601": new_in_a_file,
     "LS602": new_on_a_file,
     "LS603": new_in_a_used_folder,

@@ -135,7 +135,7 @@ def test_what_is_measured_is_not_free(tmp_path: Path, check: Check) -> None:
     toml.write_text(text, encoding="utf-8")
     code, said = check()
     assert code == 2
-    assert "free would set the digits of the table aside" in said
+    assert "is measured: its digits count" in said
 
 
 # --- what prints the same ----------------------------------------------------------------------------------

@@ -155,7 +155,7 @@ def enclose(
 def needed(program: str) -> str:
     """The functions for intervals that a program calls, and those that they call."""
     parts = FUNCTIONS.read_text(encoding="utf-8").strip().split("\n\n")
-    names = {part: set(re.findall(r"^(?:const|function) (\w+)", part, re.MULTILINE)) for part in parts}
+    names = {part: set(re.findall(r"^(?:let|function) (\w+)", part, re.MULTILINE)) for part in parts}
     found: set[str] = set()
     waiting = [program]
     while waiting:

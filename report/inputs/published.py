@@ -281,11 +281,11 @@ def check_published(
         As for :func:`~loopsheet.report.inputs.expected.check_expected`.
     """
     for name, place in free.items():
-        if name not in cells:
+        if name in measured:
+            findings.add("LS510", place, text=name)
+        elif name not in cells:
             known, suggestion = listing(cells, most=24), suggest(name, cells)
             findings.add("LS505", place, text=name, known=known, suggestion=suggestion)
-        elif name in measured:
-            findings.add("LS510", place, text=name)
     for value in published:
         if findings.full:
             break

@@ -132,11 +132,7 @@ CATALOGUE: dict[str, Entry] = {
         "a unit that converts to {unit}",
         'write the unit after a space, for example "{example}"',
     ),
-    "LS213": Entry(
-        "workbook fails",
-        "{text} cannot be used: {reason}",
-        hint="{suggestion}",
-    ),
+    "LS213": Entry("workbook fails", "{text} cannot be used: {reason}", hint="{suggestion}"),
     "LS214": Entry(
         "code of the folder",
         "'{text}' is code that came with the folder, and nobody asked to run it",
@@ -372,10 +368,7 @@ CATALOGUE: dict[str, Entry] = {
         "write what is published of its uncertainty as it stands there, in quotes if it has a comma",
     ),
     "LS510": Entry(
-        "measured and free",
-        "'{text}' is measured: free would set the digits of the table aside",
-        "what is given or computed, and not printed",
-        "leave it out of free",
+        "measured and free", "'{text}' is measured: its digits count", hint="leave it out of free"
     ),
     "LS601": Entry(
         "output not writable",
