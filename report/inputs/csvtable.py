@@ -26,6 +26,8 @@ __all__ = ["CsvRow", "CsvTable", "Field", "is_number", "match_columns", "read_ta
 
 _BLANK = " \t\u00a0"
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "vertical bars"}
+_TITLE = 5
+"""So many lines are looked through for the names of columns, where the first has none."""
 _MOST_COLUMNS = 200
 _STOP = {separator: re.compile(rf"[{separator}\r\n]") for separator in ",;"}
 _COMMA = re.compile(r"(?P<whole>[+-]?[0-9]+),(?P<rest>[0-9]+(?:[eE][+-]?[0-9]+)?(?:\([0-9]+\))?)")
@@ -97,6 +99,9 @@ def read_table(
         Whether they may stand between the fields: if a line above the names says so, or no comma stands in
         these.
     """
+    if line := _below_title(source.text, known):
+        findings.add("LS320", source.at(0, source.line_end(0)), line=line)
+        return None
     says = _SAYS.match(source.text) if semicolons else None
     head = source.text.lstrip().partition("\n")[0]
     separator = ";" if semicolons and ";" in head and "," not in head else ","
@@ -137,6 +142,21 @@ def read_table(
     _report_widths(source, wide, len(header), findings, separator)
     good = [row for row in full if row.sound and len(row.fields) == len(header)]
     return CsvTable(source, header, good, len(full))
+
+
+def _below_title(text: str, known: Sequence[str]) -> int:
+    """The line that names the columns, where the first is a title; 0 where there is no such line."""
+    names = {name.partition(" [")[0] for name in known}
+    if len(names) < 3 or _SAYS.match(text):
+        return 0
+    lines = [set(map(_name, re.split("[,;\t]", line))) & names for line in text.split("\n", _TITLE)[:_TITLE]]
+    # What rows are called need not stand there.
+    every = (number for number, named in enumerate(lines, start=1) if len(named) > len(names) - 2)
+    return 0 if lines[0] else next(every, 0)
+
+
+def _name(field: str) -> str:
+    return field.partition("[")[0].strip(' "\r')
 
 
 def _report_widths(

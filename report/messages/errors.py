@@ -228,6 +228,7 @@ CATALOGUE: dict[str, Entry] = {
         "one word for all rows that belong together",
         "write '{other}'; two groups may differ in case if each has several rows, else in a letter or number",
     ),
+    "LS320": Entry("title above names", "columns are named in line {line}", hint="delete what is above it"),
     "LS401": Entry(
         "not a number",
         "{name} is not a number: '{text}'",
