@@ -147,7 +147,7 @@ def read_table(
 def _below_title(text: str, known: Sequence[str]) -> int:
     """The line that names the columns, where the first is a title; 0 where there is no such line."""
     names = {name.partition(" [")[0] for name in known}
-    if len(names) < 3 or _SAYS.match(text):
+    if len(names) < 3 or _SAYS.match(text) or not text.partition("\n")[0].strip(' ",;\t\r'):
         return 0
     lines = [set(map(_name, re.split("[,;\t]", line))) & names for line in text.split("\n", _TITLE)[:_TITLE]]
     # What rows are called need not stand there.
