@@ -9,6 +9,7 @@ from typing import Any
 
 from sympy import Expr, Float, Function, Rational, sympify
 from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
+from sympy.core.relational import Relational
 
 from ..derivations.reductions import Member
 from ..derivations.unit_text import ParsedUnit, UnitError, coherent, parse_open
@@ -145,6 +146,8 @@ def exact(formula: Any) -> Expr:
     if isinstance(formula, str):
         raise SheetError(f"{formula!r} is a text: a formula stands there without quotes")
     formula = sympify(formula)
+    if isinstance(formula, Relational):
+        raise SheetError(f"{formula} is no formula of real numbers; what is claimed is that two are equal")
     if not isinstance(formula, Expr) or formula.has(
         ImaginaryUnit, NaN, Infinity, NegativeInfinity, ComplexInfinity
     ):

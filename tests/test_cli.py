@@ -137,6 +137,7 @@ def test_show_tells_value_equation_and_precedents(capsys: pytest.CaptureFixture[
         (["why", "alpha[1-2]]", "paper"], "unknown cell 'alpha[1-2]]'"),
         (["why", "alpha", "paper"], "unknown single cell 'alpha'"),
         (["prove", "(99)", "paper"], "unknown equation '(99)'"),
+        (["why", "(11)", "paper"], "'loopsheet prove \"(11)\"' tells of an equation"),
         (["build", "--to", "htlm"], "did you mean 'html'?"),
         (["build", "no-such-folder"], "no-such-folder"),
         (["new", "x", "--workbook", "soft_inpact"], "did you mean 'soft_impact'?"),

@@ -154,6 +154,7 @@ def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         ('c = let("2 * a", "x")', "'2 * a' is a text: a formula stands there without quotes"),
         ('let(2 * a, "no name")', "'no name' has no name: a line is a name, =, and what is declared"),
         ('c = [let(2 * a, "in a list")]', "'in a list' has no name"),
+        ('claim(a > 0, 1, "positive")', "a > 0 is no formula of real numbers; what is claimed is that two"),
         ('c = let(a / 2, "half"); claim(2 * c, a, "twice")', "'twice' is what (1) says of itself"),
         ('a = given("m", "again")', "a is declared twice"),
         ('c = let(a + b, "of two kinds")', "cannot add m and s"),

@@ -217,9 +217,10 @@ def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
     from ..messages.errors import UsageError, diagnose, listing, unknown
 
     found = parts(address)
-    if found is None:
+    if found is None or address.startswith("("):
         known = "a column such as alpha, or a row of it in brackets, such as alpha[1-2] or x_m[3]"
-        raise UsageError(diagnose("LS604", kind="cell", text=address, known=known, suggestion=""))
+        instead = f"'loopsheet prove \"{address}\"' tells of an equation" if address.startswith("(") else ""
+        raise UsageError(diagnose("LS604", kind="cell", text=address, known=known, suggestion=instead))
     name, index = found
     if name not in report.sheet:
         raise unknown("cell", name, report.sheet.by_name, most=60)
