@@ -240,7 +240,7 @@ def test_an_impact_that_there_is_not_is_a_line_of_a_sweep() -> None:
     found = sweep(law, {}, 1.0, [1.0, 2.0], said.append)
     assert said == ["simulating 0 of 2 impacts", "simulating 1 of 2 impacts"]
     (_, first, _) = as_csv([1.0, 2.0], found).splitlines()
-    assert first == '1.0,,,,,,,,"the bodies do not part: the damping is as strong as the spring"'
+    assert first == '1,,,,,,,,"the bodies do not part: the damping is as strong as the spring"'
 
 
 def test_the_list_of_codes_needs_no_folder(capsys: pytest.CaptureFixture[str]) -> None:

@@ -390,7 +390,7 @@ def test_the_report_tells_it_in_every_form(tmp_path: Path, capsys: pytest.Captur
     first = page[page.index("id=result") : page.index("id=measured")]
     assert "conforms: it lies within the acceptance limits (22.2 to 23 µm, guard band" in first
     assert "does not conform: it lies outside of the tolerance limits (at most 1.2, guard" in first
-    assert re.search(r"<span class=sure>±\s[\d.]+ \(k\s=\s[\d.]+\)</span>", first)
+    assert re.search(r"<span class=sure>U\s=\s[\d.]+ \(k\s=\s[\d.]+\)</span>", first)
     assert page.count("22.49 to 22.71") == 2  # the acceptance limits, there and in their table
 
 

@@ -156,7 +156,7 @@ def test_a_view_is_a_format_of_build(run: Run, tmp_path: Path) -> None:
     done = run("build", "--to", "note", "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "stairs.txt").read_text(encoding="utf-8").splitlines()[0] == "h = 0.175"
-    assert {path.name for path in tmp_path.iterdir()} == {"stairs.txt", "manifest.json"}
+    assert {path.name for path in tmp_path.iterdir()} == {"stairs.txt", "values.json", "manifest.json"}
     assert "note" in run("build", "--to", "nte").stderr
 
 

@@ -56,7 +56,7 @@ def short_script(text: str) -> str:
     r"""JavaScript without comments and idle spaces; a line end stays where it ends a statement.
 
     >>> short_script('const a = 1; // one\n  const b = `x  ${ a }`;\n')
-    'const a=1;const b=`x  ${ a }`;\n'
+    'let a=1;let b=`x  ${ a }`;\n'
     """
     pieces: list[str] = []
     space = ""
@@ -72,7 +72,8 @@ def short_script(text: str) -> str:
             if words or signs or ends:
                 pieces.append(space)
         space = ""
-        pieces.append(piece.lstrip() if kind == "pattern" else piece)
+        varies = kind == "word" and piece == "const"  # nothing is assigned to it
+        pieces.append("let" if varies else piece.lstrip() if kind == "pattern" else piece)
     return "".join(pieces) + ("\n" if space == "\n" else "")
 
 
@@ -107,11 +108,11 @@ def short_style(text: str) -> str:
 _FLOW = "article|aside|div|dl|footer|h[1-6]|header|nav|ol|p|section|table|ul"
 _IMPLIED = re.compile(
     r"(?P<kept><(?P<name>script|style)\b[\s\S]*?</(?P=name)>)"
-    r"|</t[dh]>(?=<t[dh][ >]|</tr>)|</tr>(?=<tr[ >]|</t(?:head|body)>)|</thead>(?=<tbody[ >])"
-    rf"|</li>(?=<li[ >]|</[ou]l>)|</d[dt]>(?=<d[dt][ >])|</p>(?=<(?:{_FLOW})[ >])"
+    r"|</t[dh]>(?=<t[dh][ >])|</tr>(?=<tr[ >])|</thead>(?=<tbody[ >])"
+    rf"|</li>(?=<li[ >])|</d[dt]>(?=<d[dt][ >])|</p>(?=<(?:{_FLOW})[ >])"
     r"|(?P<tag><(?!meta)[a-z]\w*(?: [\w-]+(?:=\"[^\"<>]*\")?)+ ?/?>)"
 )
-"""End tags that HTML lets one leave out, for what stands next says that the element is over; and tags."""
+"""End tags that HTML lets one leave out, for what begins next says that the element is over; and tags."""
 
 
 def short_markup(page: str) -> str:
@@ -120,7 +121,7 @@ def short_markup(page: str) -> str:
     Scripts and styles stay.
 
     >>> short_markup("<ul><li>1</li><li>2</li></ul><script>'</li><li>'</script>")
-    "<ul><li>1<li>2</ul><script>'</li><li>'</script>"
+    "<ul><li>1<li>2</li></ul><script>'</li><li>'</script>"
     >>> short_markup('<td class="p0" title="a b">x="1" </td>')
     '<td class=p0 title="a b">x="1" </td>'
     """

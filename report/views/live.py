@@ -95,7 +95,7 @@ def script(program: str, runtime: str, drawings: bool = True) -> str:
     alone, *own = [(TEMPLATES / "minified" / name).read_text(encoding="utf-8") for name in (ALONE, *names)]
     short: str = kept("program of the page", [program], lambda: short_cells(short_script(program)))
     until = f"{alone}if(!self.document)return;\n"
-    text = "".join(["(()=>{", runtime, f"const PROGRAM={short};\n", until, *own, "})();\n"])
+    text = "".join(["(()=>{", runtime, f"let PROGRAM={short};\n", until, *own, "})();\n"])
     if re.search(r"</script|<!--|<script", text, re.IGNORECASE):
         raise ValueError("the script of the page must not hold the end of its element")
     return text

@@ -206,8 +206,8 @@ function writeMissing(look) {
         "tr", code === "†" ? {} : { id: cellId("why", name, index) },
         make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol"))),
         make("td", { class: "row" }, index.replaceAll("-", "–")),
-        make("td", { class: "words" }, make("code", {}, code)),
-        make("td", { class: "words" }, why),
+        make("td", { class: "w" }, make("code", {}, code)),
+        make("td", { class: "w" }, why),
       );
     }),
   );

@@ -37,7 +37,7 @@ def test_a_temperature_that_is_edited_is_saved_as_it_was_typed(
 
 
 _WORDS = """() => Array.from(document.querySelectorAll("main table:not(.list) tr[data-label]"), (row) => [
-  row.dataset.label, ...Array.from(row.querySelectorAll("td:is(.row, .words)"), (cell) => cell.textContent),
+  row.dataset.label, ...Array.from(row.querySelectorAll("td:is(.row, .w)"), (cell) => cell.textContent),
 ])"""
 
 
@@ -78,8 +78,8 @@ def test_rows_keep_their_names_and_a_new_one_gets_one(open_page: Callable[..., L
         '1,,"=1+1",20.5,',
         f'2,"{note}","@x <b>y</b>",22.5,',
         f'3,,"{code}",-3.2,',
-        "5,,reading 5,25.0,",
         "4,,17,30,fell",
+        "5,,reading 5,25.0,",
     ]
     assert Study(saved).inputs.naming == ("specimen",)
     live.click("live-reset")
