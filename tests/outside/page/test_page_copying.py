@@ -141,7 +141,7 @@ def test_what_begins_as_a_formula_is_copied_as_a_text(open_page: Open, tmp_path:
     live.page.locator(".table:has(input[data-cell=y]) > button[data-copy]").click()
     found = [line.split("\t")[2] for line in clipboard(live)[0].splitlines()[1:]]
     assert found == [*(f"'{word}" for word in said[:4]), *said[4:]]
-    wide = live.page.locator("td.words", has_text="xxx").first.bounding_box()
+    wide = live.page.locator("td.w", has_text="xxx").first.bounding_box()
     assert wide is not None
     assert wide["width"] < 600
 

@@ -68,7 +68,7 @@ def test_loops_of_models_follow_an_edit(live: Live, folder: Path) -> None:
 def test_cards_that_an_edit_has_left_behind_are_struck_out(live: Live) -> None:
     def looks() -> tuple[set[str], set[str]]:
         style = "all => all.map((one) => getComputedStyle(one)['%s'])"
-        cells, cards = (live.page.locator(f"#cards {what}") for what in ("td:not(.words)", ".card"))
+        cells, cards = (live.page.locator(f"#cards {what}") for what in ("td:not(.w)", ".card"))
         return set(cells.evaluate_all(style % "textDecorationLine")), set(
             cards.evaluate_all(style % "opacity")
         )
