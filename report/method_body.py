@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from sympy import Add, Dummy, Expr, Float, Indexed, Max, Min, Rational, Sum, Symbol, sympify
+from sympy import Add, Basic, Dummy, Expr, Float, Indexed, Max, Min, Rational, Sum, Symbol, sympify
 
 from ..derivations.equation import Derivation, Equation, Kind, Ledger
 from ..derivations.grounds import says
@@ -59,12 +59,6 @@ def _typed(formula: Expr) -> Expr:
 def _fractions(*formulas: Expr) -> dict[Expr, Expr]:
     """The decimal fractions in formulas, as fractions."""
     return {each: Rational(repr(float(each))) for formula in formulas for each in formula.atoms(Float)}
-
-
-def _cells(formula: Expr) -> list[Expr]:
-    """What a formula names, cells as a whole."""
-    bases = {part for cell in formula.atoms(Indexed) for part in cell.atoms(Symbol)}
-    return sorted(formula.atoms(Indexed) | (formula.atoms(Symbol) - bases), key=str)
 
 
 class MethodBody(dict[str, Any]):
@@ -174,7 +168,7 @@ class MethodBody(dict[str, Any]):
         name, found = name_of(by), formula
 
         def other() -> list[Expr]:
-            return [cell for cell in _cells(found) if name_of(cell) != name]
+            return [cell for cell in self._cells(found) if name_of(cell) != name]
 
         while resting := [cell for cell in other() if self._rests(cell, name)]:
             for cell in resting:
@@ -190,11 +184,17 @@ class MethodBody(dict[str, Any]):
         for beside in (cell for cell in other() if self._inputs(name_of(cell)) & below):
             raise SheetError(f"{by} and {beside}, beside it, rest on the same: what stays as it is?")
         # The second of a pair is not the first.
-        apart = {cell: Dummy(real=True) for cell in _cells(found) if name_of(cell) == name and cell != by}
+        apart = {
+            cell: Dummy(real=True) for cell in self._cells(found) if name_of(cell) == name and cell != by
+        }
         if apart and not found.has(by):
             raise SheetError(f"{formula} has no {by}: say first(...) or second(...) of a pair")
         slope: Expr = found.xreplace(apart).diff(by).xreplace({own: cell for cell, own in apart.items()})
         return slope
+
+    def _cells(self, formula: Basic) -> list[Expr]:
+        """What a formula names, each cell once, in an order that is always the same."""
+        return sorted({each.cell for each in self._named_in(formula)}, key=str)
 
     def _rests(self, cell: Expr, on: str) -> bool:
         """Whether a cell is computed from what a name stands for."""
@@ -209,7 +209,7 @@ class MethodBody(dict[str, Any]):
     def _below(self, name: str) -> list[Expr]:
         """The cells that the rule of a column names."""
         parts = self.columns[name].expressions if name in self.columns else ()
-        return [each for part in parts for each in _cells(part) if name_of(each) != name]
+        return [each for part in parts for each in self._cells(part) if name_of(each) != name]
 
     def grouped(self, by: str, name: str, index: str, size: str, example: str) -> GroupAxis:
         """The groups of the rows that have one word in a column."""
