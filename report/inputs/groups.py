@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from .measurements import LeftOut
 
-__all__ = ["groups", "words"]
+__all__ = ["groups", "rows", "words"]
 
 Texts = Mapping[int, Mapping[str, str]]
 
@@ -28,6 +28,11 @@ def words(texts: Texts, left_out: Sequence[LeftOut], column: str) -> list[str]:
     return list(dict.fromkeys(found))
 
 
+def rows(texts: Texts, left_out: Sequence[LeftOut]) -> dict[int, Mapping[str, str]]:
+    """The row of each test as it stands, by column, those that are left out last."""
+    return {**texts, **{each.test: each.texts for each in left_out}}
+
+
 def groups(texts: Texts, left_out: Sequence[LeftOut], column: str) -> dict[int, int]:
     """The number of each test's word, from 1: whatever is left out, others keep theirs.
 
@@ -37,5 +42,4 @@ def groups(texts: Texts, left_out: Sequence[LeftOut], column: str) -> dict[int, 
         As for :func:`words`.
     """
     number = {word: place for place, word in enumerate(words(texts, left_out, column), start=1)}
-    every = {**texts, **{each.test: each.texts for each in left_out}}
-    return {test: number[row[column]] for test, row in every.items()}
+    return {test: number[row[column]] for test, row in rows(texts, left_out).items()}

@@ -26,7 +26,7 @@ from ..quantity import there
 from .cards import AskedCards, read_cards
 from .draws import read_draws
 from .expected import Expectation, read_expected
-from .groups import groups, words
+from .groups import groups, rows, words
 from .limits import Limits, read_limits
 from .measurements import MODES, LeftOut, Measurements, read_measurements
 from .number_text import NumberError, read_printed
@@ -172,7 +172,7 @@ class Inputs:
     @cached_property
     def rows(self) -> Mapping[int, Mapping[str, str]]:
         """The row of each test as it stands, by column, also of those that are left out."""
-        return {**self.texts, **{each.test: each.texts for each in self.left_out}}
+        return rows(self.texts, self.left_out)
 
     @cached_property
     def naming(self) -> tuple[str, ...]:
@@ -468,7 +468,7 @@ class _Reader:
         declared = self.workbook.declared if self.workbook else {}
         single = {name: (printed,) for name, printed in parameters.items()}
         numbers = {name: column for name, column in measurements.measured.items() if column}
-        tests = {**measurements.texts, **{each.test: each.texts for each in measurements.left_out}}
+        tests = rows(measurements.texts, measurements.left_out)
         stated = read_uncertainty(self.tables, numbers | single, declared, tests, self.said)
         parameters = {name: printed for name, (printed,) in stated.of(single).items()}
         left_out = tuple(_with(stated, each, measurements.header_units) for each in measurements.left_out)
