@@ -24,12 +24,16 @@ def address(name: str, index: Sequence[int]) -> str:
     return f"{name}[{index_text(index)}]" if index else name
 
 
-def named(text: str) -> tuple[str, tuple[int, ...]]:
+def named(text: str, row: tuple[int, ...] | None = None) -> tuple[str, tuple[int, ...]]:
     """Column and index of an address that somebody wrote; what is none is a cell that there is not.
 
-    >>> named("alpha[1-2]"), named("alpha[x]")
-    (('alpha', (1, 2)), ('alpha[x]', ()))
+    A word in it stands for the row that is known of it.
+
+    >>> named("alpha[1-2]"), named("alpha[x]"), named("alpha[x]", (3,))
+    (('alpha', (1, 2)), ('alpha[x]', ()), ('alpha', (3,)))
     """
+    if row is not None:
+        return text.partition("[")[0], row
     found = parts(text)
     if found is None or not _ROW.fullmatch(found[1]):
         return text, ()

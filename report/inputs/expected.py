@@ -72,11 +72,9 @@ class Expectation:
         >>> Expectation("test 3", "heard twice", Location()).cell
         ('', (3,))
         """
-        if self.row is not None:
-            return self.address.partition("[")[0], self.row
         if row := _ROW.fullmatch(self.address):
             return "", (int(row["number"]),)
-        return named(self.address)
+        return named(self.address, self.row)
 
     def covers(self, cell: str, index: tuple[int, ...], tests: Collection[int]) -> bool:
         """Whether it speaks of a cell, by itself or by one of the tests that it rests on."""

@@ -99,9 +99,7 @@ class Limits:
     @property
     def cell(self) -> tuple[str, tuple[int, ...]]:
         """Column and index of the cell; what is no address is a cell that there is not."""
-        if self.row is not None:
-            return self.address.partition("[")[0], self.row
-        return named(self.address)
+        return named(self.address, self.row)
 
     @property
     def ends(self) -> tuple[float, float]:
