@@ -103,7 +103,7 @@ def test_a_name_stands_beside_its_row_in_every_table(
     build.build(Study(folder), tmp_path / "out", ("html", "latex"))
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert page.count("<td class=row>@x &lt;b&gt;y&lt;/b&gt;<td") == 2
-    assert f"<td class=words>{NOTE}<td" in page
+    assert f"<td class=w>{NOTE}<td" in page
     assert "reading 4 (17), fell" in page
     tex = (tmp_path / "out" / "report.tex").read_text(encoding="utf-8")
     assert r"3 & \#9 \{\textbackslash{}a\} & " in tex
