@@ -18,14 +18,18 @@ from sympy import (
     Integer,
     Integral,
     Mul,
+    Piecewise,
     Pow,
     Sum,
     Symbol,
+    acos,
     acosh,
     acoth,
+    asin,
     asinh,
     atan,
     atanh,
+    ceiling,
     cos,
     cosh,
     coth,
@@ -38,12 +42,14 @@ from sympy import (
     expand_log,
     expand_power_base,
     expand_trig,
+    floor,
     fraction,
     log,
     nan,
     oo,
     powsimp,
     sech,
+    sign,
     simplify,
     sin,
     sinh,
@@ -56,7 +62,7 @@ from sympy import (
 from .facts import Facts
 from .sums import in_terms
 
-__all__ = ["Solved", "definite", "in_powers", "is_root", "settle", "solve_for", "vanishes"]
+__all__ = ["Solved", "definite", "in_powers", "is_continuous", "is_root", "settle", "solve_for", "vanishes"]
 
 NOTHING = Facts()
 
@@ -272,7 +278,7 @@ def _stays_zero(expression: Expr) -> bool:
 
     It has to be smooth on all that the symbol may be: atan(1/x) + atan(x) is pi/2 above zero, not below.
     """
-    if not expression.has(atan) or not _is_smooth(expression):
+    if not expression.has(acos, asin, atan) or not _is_smooth(expression):
         return False
     for symbol in sorted(expression.free_symbols, key=str):
         anything = symbol == Symbol(symbol.name, real=True)
@@ -294,6 +300,8 @@ def _is_smooth(expression: Expr) -> bool:
             return _is_smooth(base) and _is_smooth(power) and bool(known or base.is_positive)
         case log(args=(of,)):
             return bool(of.is_positive) and _is_smooth(of)
+        case acos(args=(of,)) | asin(args=(of,)):
+            return all(together(end).is_positive for end in (1 - of, 1 + of)) and _is_smooth(of)
         case Add() | Mul() | atan() | exp() | sin() | cos():
             return all(map(_is_smooth, expression.args))
     return bool(expression.is_number and expression.is_real)
@@ -316,6 +324,12 @@ def _in_half_angles(expression: Expr) -> Any:
 def _simplified(expression: Expr) -> Expr:
     """What sympy makes of an expression that is not so large that nobody would wait for it."""
     return simplify(expression) if expression.count_ops() <= _LARGEST else expression
+
+
+def is_continuous(expression: Expr) -> bool:
+    """Whether an expression is continuous wherever it has a value: of what does not jump, and no 0^0."""
+    powers = (power for power in expression.atoms(Pow) if not power.exp.is_number)
+    return not expression.has(Piecewise, ceiling, floor, sign) and all(p.base.is_positive for p in powers)
 
 
 def is_root(expression: Expr) -> bool:

@@ -21,14 +21,18 @@ class Facts:
     ----------
     conditions : iterable of Rel
         What is no inequality is left aside: to know less is always sound.
+    inside : bool
+        Whether the ends of the domain do not count.
     """
 
-    def __init__(self, conditions: Iterable[Any] = ()) -> None:
+    def __init__(self, conditions: Iterable[Any] = (), inside: bool = False) -> None:
         self._symbols: dict[Expr, Expr] = {}
         self._margins: dict[Expr, Expr] = {}
         for condition in conditions:
             if isinstance(condition, Rel) and condition.rel_op in (">", ">=", "<", "<="):
-                self._learn(condition.gts - condition.lts, strict=condition.rel_op in "<>")
+                margin = condition.gts - condition.lts
+                within = inside and not margin.is_integer  # of whole numbers none is near the end
+                self._learn(margin, strict=within or condition.rel_op in "<>")
 
     def _learn(self, margin: Expr, strict: bool) -> None:
         margin = self.put(margin)

@@ -66,11 +66,12 @@ def check_step(step: Step, vocabulary: Vocabulary = NO_WORDS) -> StepProof:
             return replace(found, counterexample=outcome.counterexample, sides=outcome.sides)
         if outcome.points < POINTS:
             raise Refused(f"only {outcome.points} points of its domain were evaluated")
-        if not system.residual_is_zero():
+        where = system.residual_is_zero()
+        if where is None:
             raise Refused(NOT_REDUCED)
     except (Refused, NotEvaluable) as problem:
         return StepProof(step, ProofStatus.UNDECIDED, 0, 0.0, why=str(problem))
-    return StepProof(step, ProofStatus.PROVED, outcome.points, outcome.worst)
+    return StepProof(step, ProofStatus.PROVED, outcome.points, outcome.worst, why=where)
 
 
 def _check_print(step: Step, vocabulary: Vocabulary) -> tuple[ProofStatus, str]:

@@ -47,6 +47,7 @@ class StepProof:
     sides: tuple[str, str] = ("", "")
     """Both sides of the claim at the counterexample."""
     why: str = ""
+    """Why it is undecided; where it is proved, where its symbols have to lie besides what the claim says."""
 
     @property
     def sentence(self) -> str:
@@ -55,7 +56,8 @@ class StepProof:
             return f"at {said(self.counterexample)} the sides are {self.sides[0]} and {self.sides[1]}"
         if self.status is ProofStatus.UNDECIDED:
             return self.why
-        return f"residual 0; {self.points} points at {DIGITS} digits agree within {self.worst:.0e}"
+        where = f" where {self.why}" if self.why else ""
+        return f"residual 0{where}; {self.points} points at {DIGITS} digits agree within {self.worst:.0e}"
 
 
 @dataclass(frozen=True)

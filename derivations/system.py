@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 from sympy import Expr, Float, Indexed, IndexedBase, Rel, Symbol, true
 from sympy.core.function import AppliedUndef
 
-from .algebra import NOTHING, Solved, definite, is_root, settle, solve_for, vanishes
+from .algebra import NOTHING, Solved, definite, is_continuous, is_root, settle, solve_for, vanishes
 from .cells import Cells, running
 from .equation import Equation, Step
 from .facts import Facts
@@ -46,6 +46,10 @@ class System:
         What the claim says of its domain, and where the cells exist that it names.
     facts : Facts
         What follows from them for the algebra.
+    inside : str
+        Where its symbols are known to lie besides, as a sentence goes on.
+    inner : Facts
+        The facts without the ends of the domain: what holds there and is continuous holds at them, too.
     multiplied : tuple of Expr or None
         Factor and both sides of the premise that is not solved: factor times premise is the claim.
     names : dict
@@ -60,6 +64,8 @@ class System:
     solution: dict[Expr, Expr]
     conditions: tuple[Rel, ...]
     facts: Facts
+    inside: str
+    inner: Facts
     multiplied: tuple[Expr, Expr, Expr] | None
     names: dict[Any, Any]
     vocabulary: Vocabulary
@@ -71,13 +77,24 @@ class System:
         sides = [side for _, *pair in self.premises for side in pair]
         return (*solved, *sides, *self.claim, *self.conditions, *(self.multiplied or ()))
 
-    def residual_is_zero(self) -> bool:
-        """Whether every difference of neighbouring members vanishes once the premises are put in."""
-        return all(
-            self._are_roots_of_the_same(a, b)
-            or any(vanishes(self._residual(a, b, facts)) for facts in (NOTHING, self.facts))
-            for a, b in pairwise(self.claim)
-        )
+    def residual_is_zero(self) -> str | None:
+        """Where every difference of neighbouring members vanishes once the premises are put in.
+
+        Returns
+        -------
+        str or None
+            Empty where the claim says itself where it holds; what is known besides of where its symbols lie;
+            None where it was not seen to vanish.
+        """
+        inner = [self.inner] if all(map(is_continuous, self.claim)) else []
+        where = ""
+        for a, b in pairwise(self.claim):
+            if self._are_roots_of_the_same(a, b) or vanishes(self._residual(a, b, NOTHING)):
+                continue
+            if not any(vanishes(self._residual(a, b, facts)) for facts in (self.facts, *inner)):
+                return None
+            where = self.inside
+        return where
 
     def _are_roots_of_the_same(self, a: Expr, b: Expr) -> bool:
         """Whether two members that are not negative have the same square."""
@@ -144,7 +161,8 @@ def prepare(step: Step, vocabulary: Vocabulary) -> System:
         return {plain(condition): condition for condition in (*equation.conditions, *exist)}
 
     conditions = tuple(domain(step.claim))
-    stated = Facts(conditions)
+    inside = _inside(map(plain, given), cells.names, vocabulary)
+    stated = Facts((*conditions, *inside))
     solution: dict[Expr, Expr] = {}
     chain: list[tuple[Expr, Solved]] = []
     for premise, cell in pairs:
@@ -160,7 +178,8 @@ def prepare(step: Step, vocabulary: Vocabulary) -> System:
         solution = {known: value.xreplace({unknown: solved.value}) for known, value in solution.items()}
         solution[unknown] = solved.value
         chain.insert(0, (unknown, solved))
-    facts = Facts(settle(condition, solution) for condition in conditions)
+    known = [settle(condition, solution) for condition in (*conditions, *inside)]
+    facts = Facts(known)
     for premise in step.premises:
         for condition, written in domain(premise).items():
             if condition not in conditions and not _is_implied(condition, solution, facts):
@@ -179,10 +198,20 @@ def prepare(step: Step, vocabulary: Vocabulary) -> System:
         solution=solution,
         conditions=conditions,
         facts=facts,
+        inside=" and ".join(told(each.xreplace(cells.names)) for each in inside),
+        inner=Facts(known, inside=True),
         multiplied=multiplied,
         names=cells.names,
         vocabulary=vocabulary,
     )
+
+
+def _inside(expressions: Iterable[Any], names: Mapping[Any, Any], vocabulary: Vocabulary) -> tuple[Rel, ...]:
+    """Where the symbols of expressions are known to lie, whatever is said of them."""
+    symbols = sorted({each for e in expressions for each in e.atoms(Symbol)}, key=str)
+    found = ((symbol, vocabulary.find(names.get(symbol, symbol))) for symbol in symbols)
+    every = (each for symbol, quantity in found if quantity is not None for each in quantity.inside(symbol))
+    return tuple(each for each in every if each != true)
 
 
 def _check_form(step: Step, told: Told) -> None:

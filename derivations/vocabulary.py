@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from sympy import Expr, Indexed, IndexedBase, Symbol
+    from sympy import Expr, Indexed, IndexedBase, Rel, Symbol
 
 __all__ = ["NO_WORDS", "Quantity", "Vocabulary", "spelt", "subscripted"]
 
@@ -75,6 +75,8 @@ class Quantity:
         Whether it is positive on the domain of every model here (a logarithm is not).
     text : str
         How a terminal shows it; ``%s`` is where a subscript goes. Left out: the name, then the subscript.
+    low, high : float, optional
+        Between which it is known to lie, in SI: nothing else is let in.
     """
 
     name: str
@@ -84,6 +86,8 @@ class Quantity:
     span: tuple[float, float] = (0.5, 2.0)
     positive: bool = True
     text: str = ""
+    low: float | None = None
+    high: float | None = None
 
     def called(self, subscript: str = "") -> str:
         """How a terminal shows it, of a row or of all."""
@@ -104,6 +108,15 @@ class Quantity:
         from sympy import IndexedBase
 
         return IndexedBase(self.symbol)
+
+    def inside(self, symbol: Expr) -> Iterator[Rel]:
+        """That it lies between its ends, of a symbol or cell that stands for it."""
+        from sympy import Rational
+
+        if self.low is not None:
+            yield symbol >= Rational(repr(self.low))
+        if self.high is not None:
+            yield symbol <= Rational(repr(self.high))
 
     def __getitem__(self, index: Expr | int) -> Indexed:
         """The quantity of one test (or pair, or point)."""

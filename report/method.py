@@ -576,19 +576,20 @@ class Method(metaclass=_Declaring):
     """
 
 
-def _ends(bounds: Bounds) -> bool:
-    return (bounds.low, bounds.high) != (None, None)
+def _drawn(column: Column, bounds: Bounds, is_sure: bool) -> Quantity:
+    """What is given, for proofs: it is drawn between its limits, or beyond the only one that it has.
 
-
-def _drawn(column: Column, bounds: Bounds) -> Quantity:
-    """What is given, for proofs: it is drawn between its limits, or beyond the only one that it has."""
+    Nothing else is let in of an input; a parameter of a fit may be found elsewhere.
+    """
     low, high = bounds.low, bounds.high
+    known = (low, high) if is_sure else (None, None)
     if low is None or high is None:
         (end,) = (each for each in (low, high) if each is not None)
         far = max(abs(end), 1.0) * (1 if high is None else -1)
         low, high = sorted((end + far / 2, end + 2 * far))
     latex = column.latex or spelt(column.name)
-    return Quantity(column.name, column.meaning, column.unit, latex, (low, high), bool(column.positive))
+    own = column.name, column.meaning, column.unit, latex, (low, high), bool(column.positive)
+    return Quantity(*own, "", *known)
 
 
 def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Sequence[str]) -> Workbook:
@@ -613,7 +614,8 @@ def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Se
     scalars = (c.name for c in columns if c.axis is None and c.equation)
     last = [each for each in scalars if body.of_fits.get(each, each not in used)]
     bounds = {one.name: one.bounds for one in body.inputs} | body.bounds
-    words = Vocabulary(*(_drawn(body.columns[one], said) for one, said in bounds.items() if _ends(said)))
+    limited = (one for one, said in bounds.items() if (said.low, said.high) != (None, None))
+    words = Vocabulary(*(_drawn(body.columns[one], bounds[one], one not in body.bounds) for one in limited))
     in_tables = {*body.aside, *(each for spec in body.tables for each in spec.columns)}
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
     columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))

@@ -14,7 +14,7 @@ from sympy.core.relational import Relational
 from ..derivations.reductions import Member
 from ..derivations.unit_text import ParsedUnit, UnitError, coherent, parse_open
 from .column import Limit, SheetError
-from .quantity import Bounds
+from .quantity import Bounds, behind
 
 __all__ = [
     "FUNCTIONS",
@@ -63,6 +63,15 @@ class InputLine(Declaration):
     is_measured: bool = False
     example: str = ""
     is_constant: bool = False
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.unit.strip():
+            object.__setattr__(self, "unit", "1")
+        default: Any = self.default
+        if default is not None and not isinstance(default, str):
+            written = f"{default}{behind(self.unit)}"
+            raise SheetError(f"a default is a text, as printed and with its unit: default={written!r}")
 
 
 @dataclass(frozen=True)

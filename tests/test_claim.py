@@ -69,6 +69,35 @@ def test_a_claim_is_proved_and_another_is_refuted(claim: str) -> None:
     assert wrong.steps[-1].counterexample
 
 
+WITHIN = {
+    'e = measured("1", "of 0 to 1", low=0, high=1)': {
+        "sqrt((1 - e) ** 2)": "1 - e",
+        "log((1 - e) ** 2)": "2 * log(1 - e)",
+        "acos(-e)": "pi - acos(e)",
+        "asin(e)": "pi / 2 - acos(e)",
+        "sqrt((1 - e) / (1 + e))": "(1 - e) / sqrt(1 - e**2)",
+    },
+    'e = given("mm", "at most 7 mm", low=2, high=7)': {"sqrt((e - K) ** 2)": "K - e"},
+}
+"""What holds where a quantity may be, and nowhere else."""
+
+
+@pytest.mark.parametrize("line", WITHIN)
+def test_what_holds_of_all_that_is_let_in_is_proved_and_says_where(line: str) -> None:
+    named = "from sympy import acos, asin, log, pi, sqrt\nfrom loopsheet import *"
+    known = f'    K = given("mm", "at least 7 mm", low=7)\n    {line}\n    b = let(2 * e, "twice")\n'
+    wider = line.replace("low=0, high=1", "low=-2, high=2").replace("high=7", "high=8")
+    for left, right in WITHIN[line].items():
+        for own in (line, wider):
+            scope: dict[str, object] = {}
+            body = f"{known.replace(line, own)}    claim({left}, {right}, 'c')\n"
+            exec(f"{named}\n\n\nclass Within(Method):\n{body}", scope)
+            (found,) = prove(scope["Within"].workbook.ledger())[-1].steps  # type: ignore[attr-defined]
+            assert (found.status is ProofStatus.PROVED) == (own is line), (left, own, found.sentence)
+            if own is line:
+                assert ("e_i <= 1" if "measured" in line else "e <= 7/1000") in found.why
+
+
 def folder(path: Path, line: str) -> Path:
     code = f'{WORDS}\n\nclass Claimed(Method):\n    """Claims."""\n\n{BODY}    {line}\n'
     (path / "workbook.py").write_text(code, encoding="utf-8")

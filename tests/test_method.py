@@ -150,6 +150,10 @@ def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         ('c = let(sum(sorted(a)), "x")', "help: a name stands for a cell in formulas"),
         ("c = let(a, 5)", "a meaning is a text in quotes, not 5"),
         ('c = given(a, "x")', "a unit is a text in quotes, not a"),
+        (
+            'c = given("m", "x", default=6)',
+            "a default is a text, as printed and with its unit: default='6 m'",
+        ),
         ('c = given("m", "x", low="3")', "low and high are numbers, in the unit that is declared, not '3'"),
         ('c = let("2 * a", "x")', "'2 * a' is a text: a formula stands there without quotes"),
         ('let(2 * a, "no name")', "'no name' has no name: a line is a name, =, and what is declared"),
