@@ -279,24 +279,25 @@ class Spread:
             more: dict[str, Sequence[tuple[int, float]]] = {}
             for some in self._some(name):
                 found, bent = self._influence(some)
-                more |= {cell: [(n, u) for n, u in enumerate(moved) if u] for cell, moved in found.items()}
+                for cell, moved in found.items():
+                    at = np.flatnonzero(moved)
+                    more[cell] = list(zip(at.tolist(), moved[at].tolist(), strict=True))
                 second |= bent
                 if sum(1 + len(moved) for moved in (*rows.values(), *more.values())) > MOST_PASSED:
                     break
             else:
                 rows |= more
-        return Influence(self.sources, known, rows, second, self._pairs)
+        whole = {cell: moved.tolist() for cell, moved in known.items()}
+        return Influence(self.sources, whole, rows, second, self._pairs)
 
-    def _influence(
-        self, cells: Sequence[tuple[str, int]]
-    ) -> tuple[dict[str, Sequence[float]], dict[str, float]]:
+    def _influence(self, cells: Sequence[tuple[str, int]]) -> tuple[dict[str, Array], dict[str, float]]:
         """By their addresses what every source does to some cells, and what terms of second order add."""
         found = self.contributions(cells)
         second = np.nan_to_num(self._more(cells, found))
         at = [address(name, self.values.labels(self.values.sheet[name])[row]) for name, row in cells]
         known = [n for n, moved in enumerate(found) if np.all(np.isfinite(moved))]
         return (
-            {at[n]: found[n, : len(self.sources)].tolist() for n in known},
+            {at[n]: found[n, : len(self.sources)] for n in known},
             {at[n]: math.sqrt(second[n]) for n in known if second[n] > 0},
         )
 

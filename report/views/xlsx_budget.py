@@ -9,8 +9,9 @@ normal, for it does not convolve. Where sources were edited it says what it take
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 from ..cells.grid import CellBlock, Grid, checked
@@ -78,6 +79,7 @@ class _Written:
         self.top = row
         self.first = row + 2
         self.last = self.first + len(budget.contributions) - 1
+        self.rows = {each.source.name: self.first + n for n, each in enumerate(budget.contributions)}
 
     def write(self) -> int:
         """Write it; return the row behind it."""
@@ -148,18 +150,18 @@ class _Written:
 
     def correlated(self, row: int) -> str:
         """What correlated sources add to a contribution."""
-        rows = self.rows
-        told = ""
-        for pair, r in self.budget.correlations.items():
-            first, second = (rows[name] for name in pair)
-            if row in (first, second):
-                told += f"+({self.coefficient(pair, r)})*H{(second if row == first else first) + 1}"
-        return told
+        return "".join(f"+({of})*H{other + 1}" for other, of in self.beside.get(row, ()))
 
-    @property
-    def rows(self) -> Mapping[str, int]:
-        """The line of each source."""
-        return {each.source.name: self.first + n for n, each in enumerate(self.budget.contributions)}
+    @cached_property
+    def beside(self) -> Mapping[int, Sequence[tuple[int, str]]]:
+        """The lines of what each line is correlated with, and the coefficients."""
+        found: dict[int, list[tuple[int, str]]] = {}
+        for pair, r in self.budget.correlations.items():
+            first, second = (self.rows[name] for name in pair)
+            told = self.coefficient(pair, r)
+            found.setdefault(first, []).append((second, told))
+            found.setdefault(second, []).append((first, told))
+        return found
 
     def result(self, row: int) -> int:
         """What follows from the lines; the row behind it."""
@@ -274,8 +276,7 @@ class _Written:
 
     def coefficient(self, pair: tuple[str, str], r: float) -> str:
         """A correlation coefficient; that of paired readings follows them."""
-        known = {each.source.name: each.source for each in self.budget.contributions}
-        sources = [known[name] for name in pair]
+        sources = [self.budget.contributions[self.rows[name] - self.first].source for name in pair]
         if self.report.inputs.uncertainty.paired and all(each.said == SCATTER for each in sources):
             return f"CORREL({','.join(map(self.readings, sources))})"
         return f"{r:.15f}"
