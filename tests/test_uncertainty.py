@@ -93,6 +93,31 @@ def test_in_parts_it_is_the_same(paper: Report, monkeypatch: pytest.MonkeyPatch,
     assert Spread(paper.inputs, paper.values).u("C") == pytest.approx(spread.u("C"), rel=1e-14)
 
 
+MATRIX = '\n[uncertainty.correlation]\n"v, x_p" = "0.4"\n"e, x_p" = "-0.3"\n'
+
+
+@pytest.mark.parametrize("more", ["", MATRIX])
+def test_without_the_zeros_it_is_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, more: str) -> None:
+    """What rests on no sum has the same variances, and moves the same in other reports."""
+    _shared(tmp_path)
+    with (tmp_path / "report.toml").open("a", encoding="utf-8") as file:
+        file.write(more)
+    report = Study(tmp_path).computed
+    monkeypatch.setattr(second_order, "LARGEST", 1)  # else all is of one block
+    whole = Spread(report.inputs, report.values)
+    columns = [column.name for column in report.sheet.columns if whole.knows(column.name)]
+    beside = {name: (whole.variances(name), whole.influence([], [name]).rows) for name in columns}
+    monkeypatch.setattr(propagation, "AT_ONCE", 1)
+    kinds = {name: {type(own) for _, own in whole._blocks(name)} for name in columns}
+    assert kinds["x_m1"] == kinds["alpha"] != kinds["alpha_mean"] == {np.ndarray}
+    for name, (variances, rows) in beside.items():
+        assert whole.variances(name) == pytest.approx(variances, rel=1e-13, nan_ok=True)
+        few = whole.influence([], [name]).rows
+        assert few.keys() == rows.keys()
+        for cell, moved in few.items():
+            assert dict(moved) == pytest.approx(dict(rows[cell]), rel=1e-13)
+
+
 # --- against whole sheets ---------------------------------------------------------------------------------
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,9 +86,13 @@ def of_sum(
     return u, effective(u, parts, list(dof.values()))
 
 
-def with_correlated(contributions: Array, pairs: Sequence[tuple[int, int, float]]) -> Array:
-    """Contributions (..., sources), each together with what is correlated with it."""
+def with_correlated(contributions: Any, pairs: Sequence[tuple[int, int, float]]) -> Any:
+    """Contributions (..., sources), each together with what is correlated with it; sparse ones, too."""
     found = contributions.copy()
+    if pairs and not isinstance(found, np.ndarray):
+        *both, of = map(np.array, zip(*pairs, strict=True))
+        beside = type(found)((of, tuple(both)), (found.shape[1], found.shape[1]))
+        return found + found @ (beside + beside.T)
     for a, b, r in pairs:
         found[..., a] += r * contributions[..., b]
         found[..., b] += r * contributions[..., a]

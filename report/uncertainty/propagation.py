@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -145,11 +146,30 @@ class Spread:
         """The variance of every row of a column, of first order and of second (2, rows), in SI."""
         rows = len(self.values.status[name])
         found = np.full((2, rows), np.nan)
-        for cells in self._some(name) if name in self._known else ():
-            own, at = self.contributions(cells), slice(cells[0][1], cells[-1][1] + 1)
+        for cells, own in self._blocks(name) if name in self._known else ():
             first, second = self._orders(cells, own)
-            found[:, at] = first, np.nan_to_num(second)
+            found[:, cells[0][1] : cells[-1][1] + 1] = first, np.nan_to_num(second)
+        found[:, self.values.status[name] != Status.OK] = np.nan
         return found
+
+    def _blocks(self, name: str) -> Iterator[tuple[list[tuple[str, int]], Any]]:
+        """All cells of a column with their :meth:`contributions`, as many at once as memory holds.
+
+        Of a column that memory does not hold at once all cells come without their zeros, as a sparse array,
+        unless they rest on what is taken over all rows: these have none.
+        """
+        chain, rows = self._along.chain, len(self.values.status[name])
+        pattern = chain.patterns[name]
+        if self.second or rows * chain.number <= AT_ONCE or (pattern.by >= chain.number).any():
+            yield from ((cells, self.contributions(cells)) for cells in self._some(name))
+            return
+        from scipy.sparse import csr_array
+
+        entries = self._along.entries[pattern.entries]
+        derivatives = csr_array((entries, (pattern.rows, pattern.by)), (rows, chain.number))
+        of = np.repeat(np.arange(len(self.sources)), np.diff(self._first, append=self._by.size))
+        weights = csr_array((self._u, (self._by, of)), (chain.number, len(self.sources)))
+        yield [(name, row) for row in range(rows)], derivatives @ weights
 
     def _some(self, name: str) -> Iterator[list[tuple[str, int]]]:
         """All cells of a column, as many at once as memory holds."""
@@ -159,7 +179,7 @@ class Spread:
         for first in range(0, rows, some):
             yield [(name, row) for row in range(first, min(first + some, rows))]
 
-    def _more(self, cells: Sequence[tuple[str, int]], own: Array) -> Array:
+    def _more(self, cells: Sequence[tuple[str, int]], own: Any) -> Array:
         """The variance of second order; NaN where it is not known."""
         if not self.sources:
             return np.zeros(len(cells))
@@ -168,15 +188,16 @@ class Spread:
     def covariance(self, cells: Sequence[tuple[str, int]]) -> Array:
         """Variances and covariances of some cells (cells, cells)."""
         found = self.contributions(cells)
-        return found @ with_correlated(found, self._pairs).T
+        beside: Array = with_correlated(found, self._pairs)
+        return found @ beside.T
 
-    def _variance(self, found: Array) -> Array:
+    def _variance(self, found: Any) -> Array:
         """Of first order."""
         with np.errstate(all="ignore"):
             variance: Array = np.sum(found * with_correlated(found, self._pairs), axis=1)
-            return np.maximum(variance, 0.0)
+        return np.maximum(variance, 0.0)
 
-    def _orders(self, cells: Sequence[tuple[str, int]], own: Array) -> tuple[Array, Array]:
+    def _orders(self, cells: Sequence[tuple[str, int]], own: Any) -> tuple[Array, Array]:
         """The variances of cells, of first order and of second; this is NaN where it is not known.
 
         A computed value has none less than the square of its rounding: derivatives that are 0 come to that.
@@ -273,33 +294,31 @@ class Spread:
             Others, of all their rows: most sources move one of these. One that would make more than
             :data:`MOST_PASSED` numbers of all of them is left out.
         """
-        known, second = self._influence(cells)
+        own = self.contributions(cells)
+        at, second = self._addressed(cells, own)
+        known = {cell: own[n, : len(self.sources)].tolist() for cell, n in at.items()}
         rows: dict[str, Sequence[tuple[int, float]]] = {}
         for name in columns:
             more: dict[str, Sequence[tuple[int, float]]] = {}
-            for some in self._some(name):
-                found, bent = self._influence(some)
-                for cell, moved in found.items():
-                    at = np.flatnonzero(moved)
-                    more[cell] = list(zip(at.tolist(), moved[at].tolist(), strict=True))
+            for some, own in self._blocks(name):
+                at, bent = self._addressed(some, own)
+                more |= {cell: _moved(own, n) for cell, n in at.items()}
                 second |= bent
                 if sum(1 + len(moved) for moved in (*rows.values(), *more.values())) > MOST_PASSED:
                     break
             else:
                 rows |= more
-        whole = {cell: moved.tolist() for cell, moved in known.items()}
-        return Influence(self.sources, whole, rows, second, self._pairs)
+        return Influence(self.sources, known, rows, second, self._pairs)
 
-    def _influence(self, cells: Sequence[tuple[str, int]]) -> tuple[dict[str, Array], dict[str, float]]:
-        """By their addresses what every source does to some cells, and what terms of second order add."""
-        found = self.contributions(cells)
-        second = np.nan_to_num(self._more(cells, found))
+    def _addressed(
+        self, cells: Sequence[tuple[str, int]], own: Any
+    ) -> tuple[dict[str, int], dict[str, float]]:
+        """Those of some cells that have a value, by their addresses, and what terms of second order add."""
+        second = np.nan_to_num(self._more(cells, own))
         at = [address(name, self.values.labels(self.values.sheet[name])[row]) for name, row in cells]
-        known = [n for n, moved in enumerate(found) if np.all(np.isfinite(moved))]
-        return (
-            {at[n]: found[n, : len(self.sources)] for n in known},
-            {at[n]: math.sqrt(second[n]) for n in known if second[n] > 0},
-        )
+        finite = np.isfinite(own @ np.zeros(own.shape[1]))
+        known = [n for n, (name, row) in enumerate(cells) if finite[n] and not self.values.status[name][row]]
+        return {at[n]: n for n in known}, {at[n]: math.sqrt(second[n]) for n in known if second[n] > 0}
 
     def _contribution(self, n: int, u: float, share: float) -> Contribution:
         source = self.sources[n]
@@ -340,6 +359,15 @@ def _known(values: Values) -> set[str]:
         for column in sheet.columns
         if generated.isdisjoint(each.name for each in (column, *sheet.ancestors(column)))
     }
+
+
+def _moved(own: Any, n: int) -> Sequence[tuple[int, float]]:
+    """The sources that move a cell, by their numbers, and by how much."""
+    if isinstance(own, np.ndarray):
+        which = np.flatnonzero(own[n])
+        return list(zip(which.tolist(), own[n, which].tolist(), strict=True))
+    part = slice(*own.indptr[n : n + 2].tolist())
+    return sorted(zip(own.indices[part].tolist(), own.data[part].tolist(), strict=True))
 
 
 def _least(column: Column) -> float:
