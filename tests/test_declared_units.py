@@ -150,7 +150,7 @@ def test_the_unit_of_a_result_must_fit_its_formula() -> None:
         x = measured("mm", "side")
         A = let(x**2, "area", "mm")
 
-    with pytest.raises(SheetError, match=r"the unit m is m, but the formula gives m\^2"):
+    with pytest.raises(SheetError, match=r"the unit is mm, in SI m, but the formula gives m\^2"):
         check(Area.workbook.sheet(frozenset()))
 
 

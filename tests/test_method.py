@@ -162,7 +162,7 @@ def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         ('c = let(a / 2, "half"); claim(2 * c, a, "twice")', "'twice' is what (1) says of itself"),
         ('a = given("m", "again")', "a is declared twice"),
         ('c = let(a + b, "of two kinds")', "cannot add m and s"),
-        ('c = let(a + a, "length", "s")', "the unit s is s, but the formula gives m"),
+        ('c = let(a + a, "length", "s")', "the unit is s, but the formula gives m"),
         ('c = let(a**b, "power")', "exponent"),
         ('c = let(2**(b / b) * a ** (b / Symbol("b")), "x") + 1', "unsupported operand"),
         ('f = root(a, 2 * a, "length", "m", low=0, high=1)', "write f = unknown() above"),

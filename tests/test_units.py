@@ -123,7 +123,7 @@ WRONG: dict[str, tuple[Expr, str, str]] = {
     "another unit": (
         L / T,
         "m",
-        "f (7): the unit m is m, but the formula gives m s^-1: in length/time",
+        "f (7): the unit is m, but the formula gives m s^-1: in length/time",
     ),
     "logarithm": (
         log(L),
@@ -165,12 +165,13 @@ WRONG: dict[str, tuple[Expr, str, str]] = {
     "symbolic exponent": (
         S * L ** (a + 1),
         "N",
-        "f (7): the unit N is kg m s^-2, but the formula gives kg m^2 s^-2: in length**(power + 1)*stiffness",
+        "f (7): the unit is N, in SI kg m s^-2, but the formula gives kg m^2 s^-2: "
+        "in length**(power + 1)*stiffness",
     ),
     "exponent of another quantity": (
         S * L ** (2 * a),
         "N",
-        "f (7): the unit N is kg m s^-2, but the formula gives kg m^(power + 1) s^-2: "
+        "f (7): the unit is N, in SI kg m s^-2, but the formula gives kg m^(power + 1) s^-2: "
         "in length**(2*power)*stiffness",
     ),
 }
@@ -220,10 +221,10 @@ def test_a_sound_root_passes() -> None:
     [
         (u * L - T, "1", {}, "cannot add s and m"),
         (u - L, "1", {}, "cannot add 1 and m"),
-        (u * L - L, "m", {"value": u * T}, "the unit m is m, but the formula gives s"),
-        (u - a, "1", {"high": L}, "the unit 1 is 1, but the formula gives m"),
-        (u - a, "1", {"start": L}, "the unit 1 is 1, but the formula gives m"),
-        (u - a, "1", {"turning": (L,)}, "the unit 1 is 1, but the formula gives m"),
+        (u * L - L, "m", {"value": u * T}, "the unit is m, but the formula gives s"),
+        (u - a, "1", {"high": L}, "the unit is 1, but the formula gives m"),
+        (u - a, "1", {"start": L}, "the unit is 1, but the formula gives m"),
+        (u - a, "1", {"turning": (L,)}, "the unit is 1, but the formula gives m"),
         (u - a, "1", {"sign_low": L + T}, "cannot add m and s"),
     ],
 )

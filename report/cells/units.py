@@ -153,7 +153,7 @@ def _expect(checker: _Checker, expression: Expr, own: Dimension) -> None:
         return
     found = checker.of(expression)
     if dict(found) != dict(own):
-        raise checker.fail(
-            expression,
-            f"the unit {checker.column.unit} is {text_of(own)}, but the formula gives {text_of(found)}:",
-        )
+        column, si = checker.column, text_of(own)
+        said = column.unit if column.display.startswith("like ") else column.display or column.unit
+        meant = said if said == si else f"{said}, in SI {si}"
+        raise checker.fail(expression, f"the unit is {meant}, but the formula gives {text_of(found)}:")
