@@ -219,6 +219,8 @@ class Budget:
     @property
     def doubt(self) -> str:
         """That, with its reason; nothing where first order is enough."""
+        if not self.is_known:
+            return f"U is not known: {self.unlooked}" if self.unlooked else ""
         if not self.of_second_order or math.isnan(self.factor):
             return ""
         return f"{self.hold}: second order {'counts' if self.second else 'was not looked at'}"
@@ -226,7 +228,8 @@ class Budget:
     @property
     def advice(self) -> str:
         """The doubt for where the number stands, and what to use instead where first order plainly fails."""
-        return f"{self.doubt}; use '{draws_of(self.cell)}'" if self.doubt and self.fails else self.doubt
+        drawn = self.doubt and (self.fails or not self.is_known)
+        return f"{self.doubt}; use '{draws_of(self.cell)}'" if drawn else self.doubt
 
     @property
     def expanded(self) -> float:

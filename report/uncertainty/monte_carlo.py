@@ -122,7 +122,7 @@ def by_draws(inputs: Inputs, values: Values, budget: Budget) -> Budget:
     values : Values
         All columns, without a batch.
     budget : Budget
-        With a standard uncertainty that is not 0.
+        With a standard uncertainty that is not 0, or of one that is not known: then that of the draws is.
 
     Returns
     -------
@@ -132,9 +132,14 @@ def by_draws(inputs: Inputs, values: Values, budget: Budget) -> Budget:
     drawn = _Draws(inputs, values, budget.name, seed=1)
     row = values.row(values.sheet[budget.name], budget.label)
     found = [own[there] for own, there in (drawn.of(batch, row) for batch in drawn.batches(SOME, SOME))]
-    errors = (np.concatenate(found) - budget.value) / budget.u
+    errors = np.concatenate(found) - budget.value
     if errors.size < (1 - WITHOUT) * SOME:
         return replace(budget, factor=math.nan, because="nothing: too many draws have no value")
+    if not budget.is_known:
+        budget = replace(budget, u=float(np.std(errors)))
+    if not budget.u:
+        return replace(budget, factor=0.0)
+    errors = errors / budget.u
     why = "terms of second order count" if budget.second else "terms of second order were not looked at"
     told, law = f"{SOME} draws: {why}", Samples(errors)
     factor = law.half(budget.level)

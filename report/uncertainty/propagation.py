@@ -207,7 +207,13 @@ class Spread:
         values = np.array([self.values.value[name][row] for name, row in cells])
         with np.errstate(all="ignore"):
             little = first + np.nan_to_num(second) <= np.square(ROUNDED * np.where(computed, values, 0.0))
-        return np.where(little, 0.0, first), np.where(little, 0.0 * second, second)
+        first = np.where(little, 0.0, first)
+        first[little & self._hidden(cells)] = np.nan
+        return first, np.where(little, 0.0 * second, second)
+
+    def _hidden(self, cells: Sequence[tuple[str, int]]) -> NDArray[np.bool_]:
+        """Which cells change all the same where what first and second order tell is nothing."""
+        return np.array([self.second is not None and self.second.hides(*cell) for cell in cells], dtype=bool)
 
     # --- one cell ---
 
@@ -237,7 +243,12 @@ class Spread:
         own = found[0, : len(self.sources)]
         u = math.sqrt(first + second) if math.isfinite(first + second) else math.nan
         if math.isnan(u):
-            return Budget(self.values.address(name, row), name, label, value, level=level)
+            hidden = self._hidden(cell)[0] and not np.any(found)
+            why = (
+                "its first and second derivatives are 0 here" if hidden else "a derivative has no value here"
+            )
+            own_address = self.values.address(name, row)
+            return Budget(own_address, name, label, value, level=level, unlooked=why)
         shares = own / u * (with_correlated(own, self._pairs) / u) if u > 0 else np.zeros(len(own))
         _, dof = of_sum(self.sources, own, self._pairs, math.sqrt(first))
         shape, law = assigned(self.sources, own, u, dof, second, self._pairs)
@@ -279,7 +290,7 @@ class Spread:
         """A cell beside its limits."""
         name, label = limits.cell
         budget = self.budget(name, self.values.row(self.values.sheet[name], label), limits.guard.level)
-        if budget.u > 0 and (budget.second or budget.unlooked):
+        if (budget.u > 0 or not budget.is_known) and (budget.second or budget.unlooked):
             budget = by_draws(self.inputs, self.values, budget)
         return conformity(budget, limits)
 
@@ -316,7 +327,7 @@ class Spread:
         """Those of some cells that have a value, by their addresses, and what terms of second order add."""
         second = np.nan_to_num(self._more(cells, own))
         at = [address(name, self.values.labels(self.values.sheet[name])[row]) for name, row in cells]
-        finite = np.isfinite(own @ np.zeros(own.shape[1]))
+        finite = np.isfinite(own @ np.zeros(own.shape[1])) & np.isfinite(self._orders(cells, own)[0])
         known = [n for n, (name, row) in enumerate(cells) if finite[n] and not self.values.status[name][row]]
         return {at[n]: n for n in known}, {at[n]: math.sqrt(second[n]) for n in known if second[n] > 0}
 

@@ -106,7 +106,8 @@ class SecondOrder:
             if c.name in sharp or any(a.name in sharp for a in sheet.ancestors(c))
         }
         """What rests on a function that has a corner: near it, derivatives jump."""
-        beside = _beside(values, program, sources, root)
+        own = np.eye(len(sources))
+        beside = _beside(values, program, sources, root @ np.hstack([own, -own]))
         self._along = Numbers(chain, beside).go()
         with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
             self._through = self._along.whole @ self.weights
@@ -119,6 +120,17 @@ class SecondOrder:
             if any(each.name in moved for each in (column, *values.sheet.ancestors(column)))
         }
         """What rests on sums that run over other rows a step away: slopes of other estimators."""
+        self.overdone = set[str]()
+        """What has cells of which the terms of second order take away more than half of the first."""
+        some = np.random.default_rng(1).standard_normal((len(sources), 1))
+        together = _beside(values, program, sources, root @ some @ np.array([[1.0, 2.0, 4.0]]))
+        self.creeping = {name: _creeps(found, values.value[name]) for name, found in together.value.items()}
+        """Which cells change along all errors at once as a power of them that is higher than the first."""
+
+    def hides(self, name: str, row: int) -> bool:
+        """Whether a cell changes, but for terms of third order and higher ones alone."""
+        found = self.creeping.get(name)
+        return found is not None and bool(found[row])
 
     @staticmethod
     def is_small(values: Values, sources: Sequence[ErrorSource]) -> bool:
@@ -133,6 +145,8 @@ class SecondOrder:
             return "it has a corner here (Abs, Max, Min or cases), where derivatives jump"
         if name in self.torn:
             return f"{STEP:.2g} u from what was given its sums run over other rows"
+        if name in self.overdone:
+            return "its terms take away most of those of first order, so that others count, too"
         return "the sheet has no values so far from what was given"
 
     def variance(self, cells: Sequence[tuple[str, int]], first: Array) -> Array:
@@ -164,12 +178,14 @@ class SecondOrder:
             turns += first[:, :, None] * second * np.where(itself, third_moment, 0.0)
             bent, turned = bends.sum(axis=(1, 2)), turns.sum(axis=(1, 2))
             own = np.sum(first**2, axis=1)
-            # A sum that would be negative is no variance: then the terms of the fourth order count too.
-            more = np.where(own + bent + turned > 0, bent + turned, bent)
+            more = bent + turned
+            # Of terms that alternate and fall so slowly the next ones count, too.
+            overdone = more < -own / 2
+            self.overdone |= {name for (name, _), is_over in zip(cells, overdone, strict=True) if is_over}
             little = np.maximum(bent, np.abs(more)) <= COUNTS * own
             unknown = np.array([name in self.jumping or name in self.torn for name, _ in cells], dtype=bool)
             sharp = np.array([name in self.cornered for name, _ in cells], dtype=bool) & ~little
-            found: Array = np.where(unknown | sharp, np.nan, np.where(little, 0.0, more))
+            found: Array = np.where(unknown | sharp | overdone, np.nan, np.where(little, 0.0, more))
         return found
 
     def _nearby(self, cells: Sequence[tuple[str, int]]) -> tuple[NDArray[np.intp], Array, Array]:
@@ -240,15 +256,23 @@ def _only_steers(sheet: Sheet, column: Column) -> bool:
     )
 
 
-def _beside(values: Values, program: Program, sources: Sequence[ErrorSource], root: Array) -> Values:
-    """The sheet a step up and a step down along every independent error (2 errors, rows)."""
+def _creeps(found: Array, value: Array) -> NDArray[np.bool_]:
+    """Whether cells (3, rows) at one, two and four steps have left their values (rows,) faster and faster."""
+    with np.errstate(all="ignore"):
+        one, two, four = np.abs(np.broadcast_to(found, (3, value.size)) - value)
+        faster: NDArray[np.bool_] = (one > 0) & (two >= 3 * one) & (four >= 3 * two)
+    return faster
+
+
+def _beside(values: Values, program: Program, sources: Sequence[ErrorSource], steps: Array) -> Values:
+    """The sheet where each error is so many steps away (sources, sheets); of each sheet (sheets, rows)."""
     sheet = values.sheet
     moved = {
-        name: np.tile(values.value[name], (2 * len(sources), 1))
+        name: np.tile(values.value[name], (steps.shape[1], 1))
         for name in dict.fromkeys(name for source in sources for name, _, _ in source.moves)
     }
-    for source, along in zip(sources, root, strict=True):
+    for source, along in zip(sources, steps, strict=True):
         for name, row, u in source.moves:
-            moved[name][:, row] += STEP * u * np.concatenate([along, -along])
+            moved[name][:, row] += STEP * u * along
     given = {name: values.value[name] for name in sheet.bounds if name in values.value}
     return evaluate(sheet, values.given_labels, given | moved, program)

@@ -71,7 +71,7 @@ def _told(study: Study, address: str, form: str, level: str, draws: str, seed: s
     spread = Spread(report.inputs, report.values)
     row = report.values.row(column, label)
     budget, drawn = spread.budget(column.name, row, float(level)), None
-    if int(draws) and budget.u > 0:
+    if int(draws) and (budget.u > 0 or budget.unlooked):
         drawn = draw(report.inputs, report.values, budget, int(draws), int(seed), study.step)
     limited = [each for each in report.inputs.limits if each.cell == (column.name, tuple(label))]
     told = FORMATS[form](report, budget, drawn, tuple(map(spread.conformity, limited)))

@@ -13,7 +13,7 @@ from ..result.conformity import lines
 from ..result.numbers import decimals, rounded, stated
 from ..result.result import Report
 from ..result.shares import foremost
-from ..result.uncertain import Budget, Conformity, Contribution, Distributed, Together
+from ..result.uncertain import Budget, Conformity, Contribution, Distributed, Together, draws_of
 from .blocks import Block, TextTable, printers
 
 __all__ = ["FORMATS", "notes", "number", "percent", "sentence"]
@@ -31,7 +31,8 @@ def sentence(report: Report, budget: Budget) -> str:
         return report.values.cell(budget.name, budget.label).reason
     if not budget.is_known:
         told = report.text(report.values.cell(budget.name, budget.label))
-        return f"{budget.cell} = {told}, and its uncertainty is not known"
+        why = f": {budget.unlooked}; use '{draws_of(budget.cell)}'" if budget.unlooked else ""
+        return f"{budget.cell} = {told}, and its uncertainty is not known{why}"
     if not budget.u:
         return f"{budget.cell} = {report.shown[budget.name].of(budget.value)!r}{unit}, exactly"
     value, u = report.stated(budget.name, budget.value, budget.u)
