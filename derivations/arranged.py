@@ -43,7 +43,6 @@ class Arranged:
 
     Parameters
     ----------
-    statements : sequence of Statement
     vocabulary : Vocabulary
         Where free symbols are drawn from.
     left_open : collection of Equation

@@ -143,10 +143,6 @@ class Dimensions:
     """Finds dimensions of expressions in the symbols of a vocabulary.
 
     A subclass that knows other cells says so in `of_cell`, and how it complains in `fail`.
-
-    Parameters
-    ----------
-    vocabulary : Vocabulary
     """
 
     def __init__(self, vocabulary: Vocabulary) -> None:
@@ -266,7 +262,6 @@ def mixed(equation: Equation, vocabulary: Vocabulary) -> str:
 
     Parameters
     ----------
-    equation : Equation
     vocabulary : Vocabulary
         The units of its symbols. An equation with a symbol that it lacks is not judged; whole numbers are
         pure.

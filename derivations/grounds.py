@@ -43,7 +43,6 @@ def says(said: Equation, equation: Equation) -> bool:
     ----------
     said : Equation
         What may be contained in the other.
-    equation : Equation
     """
     wanted, there = (_differences(each) for each in (said, equation))
     neighbours = [wanted.get((n, n + 1)) for n in range(len(said.members) - 1)]

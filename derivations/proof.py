@@ -49,7 +49,6 @@ def check_step(step: Step, vocabulary: Vocabulary = NO_WORDS) -> StepProof:
 
     Parameters
     ----------
-    step : Step
     vocabulary : Vocabulary
         Of its ledger: where its symbols are sampled, and what they are called.
 
@@ -125,7 +124,6 @@ def prove_equation(
 
     Parameters
     ----------
-    entry : Equation or Derivation
     known : mapping of Equation to tuple of Equation, optional
         What a step may rest on: the entries before this one that passed, each with what it finally rests on.
     ledger : Ledger, optional
@@ -193,7 +191,6 @@ def prove(
 
     Parameters
     ----------
-    ledger : Ledger
     begin : callable, optional
         Told of each equation before it is decided: all of them take a second or two.
     only : collection of str, optional

@@ -48,7 +48,6 @@ def text(expression: Any, vocabulary: Vocabulary) -> str:
 
     Parameters
     ----------
-    expression : Expr, Boolean or other Basic
     vocabulary : Vocabulary
         What its symbols are called; those it does not have keep their names.
 

@@ -30,21 +30,14 @@ _NEARLY_ZERO = Rational(1, 10**6)
 
 @dataclass(frozen=True)
 class Contradiction:
-    """Statements that were not seen to hold together, as few as there were found.
-
-    Parameters
-    ----------
-    culprit : Equation
-        The last of them: without it, everything before it in the ledger holds together.
-    others : tuple of Equation
-        What it does not agree with.
-    certain : bool
-        Whether they cannot hold together; else no point was found at which they do.
-    """
+    """Statements that were not seen to hold together, as few as there were found."""
 
     culprit: Equation
+    """The last of them: without it, everything before it in the ledger holds together."""
     others: tuple[Equation, ...]
+    """What it does not agree with."""
     certain: bool
+    """Whether they cannot hold together; else no point was found at which they do."""
 
     @property
     def sentence(self) -> str:
@@ -70,7 +63,6 @@ def conflict(
 
     Parameters
     ----------
-    ledger : Ledger
     standing : frozenset of Equation
         Of the ledger, what nothing was found against.
     claims : frozenset of Equation

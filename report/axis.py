@@ -21,21 +21,14 @@ __all__ = ["Axis", "CountedAxis", "GroupAxis", "MemberAxis", "PairAxis", "Repeat
 
 @dataclass(frozen=True)
 class Axis:
-    """An index set whose rows come with the data, such as the tests of a campaign.
-
-    Parameters
-    ----------
-    name : str
-        ``tests``, ``pairs``, ``points``.
-    index : Symbol
-        The running number of a row in formulas, ``k``.
-    size : Symbol
-        How many rows there are: the upper limit of sums over the axis.
-    """
+    """An index set whose rows come with the data, such as the tests of a campaign."""
 
     name: str
+    """``tests``, ``pairs``, ``points``."""
     index: Symbol
+    """The running number of a row in formulas, ``k``."""
     size: Symbol
+    """How many rows there are: the upper limit of sums over the axis."""
     _WORDS: ClassVar[tuple[str, ...]] = ("index_name", "size_name")
 
     @property
@@ -254,21 +247,14 @@ class CountedAxis(Axis):
 
 @dataclass(frozen=True)
 class MemberAxis(Axis):
-    """Another axis' rows once more, those of one group beside one another: what a group takes sums over.
-
-    Parameters
-    ----------
-    of : Axis
-        Whose rows are grouped.
-    group : Symbol
-        The index of the groups, in whose formulas alone such sums stand.
-    by : str
-        The column of words that says of each row to which group it belongs.
-    """
+    """Another axis' rows once more, those of one group beside one another: what a group takes sums over."""
 
     of: Axis
+    """Whose rows are grouped."""
     group: Symbol
+    """The index of the groups, in whose formulas alone such sums stand."""
     by: str
+    """The column of words that says of each row to which group it belongs."""
     _WORDS = (*Axis._WORDS, "group_name", "by")
 
     @property

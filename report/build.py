@@ -66,18 +66,12 @@ def formats_again(out: Path) -> tuple[str, ...] | None:
 
 @dataclass(frozen=True)
 class Built:
-    """What was built.
-
-    Parameters
-    ----------
-    files : tuple of Path
-        Where they are now.
-    told : anything that JSON can hold
-        What there is to tell of the report.
-    """
+    """What was built."""
 
     files: tuple[Path, ...]
+    """Where they are now."""
     told: Any
+    """What there is to tell of the report."""
 
 
 def built(

@@ -79,7 +79,6 @@ def known_equation(told: ToldEquation, whole: Callable[[], Equation]) -> Equatio
 
     Parameters
     ----------
-    told : ToldEquation
     whole : callable
         Returns the equation that it was told of.
     """

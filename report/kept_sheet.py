@@ -128,7 +128,6 @@ def sheet_of(workbook: Workbook, given: frozenset[str], check: Callable[[Sheet],
 
     Parameters
     ----------
-    workbook : Workbook
     given : frozenset of str
         As for :attr:`Workbook.sheet`.
     check : callable
@@ -237,7 +236,6 @@ class _Known:
 
     Parameters
     ----------
-    told : _ToldSheet
     declared : callable
         Returns the columns that it was told of, by name.
     axes : iterable of Axis

@@ -114,7 +114,6 @@ class Named:
 
         Parameters
         ----------
-        column : Column
         names : set of str
             Of the columns of its loop.
         """
@@ -207,7 +206,6 @@ def within(value: Expr, bounds: Bounds) -> Boolean:
     ----------
     value : Expr
         A real symbol that assumes nothing, or all of it would be true already.
-    bounds : Bounds
 
     Examples
     --------
@@ -228,7 +226,6 @@ def references(expression: Basic, sums: Mapping[Expr, Axis], over: Axis | None =
 
     Parameters
     ----------
-    expression : Basic
     sums : mapping of Expr to Axis
         From :func:`summed_over`.
     over : Axis or None

@@ -20,7 +20,6 @@ def proved(ledger: Ledger, errata: bool, step: Callable[[str], None] = lambda _:
 
     Parameters
     ----------
-    ledger : Ledger
     errata : bool
         Whether to check the print, too.
     step : callable

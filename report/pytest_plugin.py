@@ -98,7 +98,6 @@ class FolderChecks:
 
     Parameters
     ----------
-    folder : Path
     own_code : bool
         Whether its workbook may be code of the folder.
     """
@@ -216,8 +215,6 @@ class KindCollector(pytest.Collector):
 
     Parameters
     ----------
-    checks : FolderChecks
-    names : list of str
     **more
         As for :class:`pytest.Collector`.
     """
@@ -237,7 +234,6 @@ class CheckItem(pytest.Item):
 
     Parameters
     ----------
-    checks : FolderChecks
     **more
         As for :class:`pytest.Item`.
     """

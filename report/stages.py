@@ -221,7 +221,6 @@ def judged(report: Report, every: bool = True, step: Step = silent) -> Report:
 
     Parameters
     ----------
-    report : Report
     every : bool
         Whether to run what else is installed too: JavaScript, and the workbook in LibreOffice.
     step : callable
@@ -269,7 +268,6 @@ def refereed(report: Report, step: Step = silent, keep: Keep = made_anew) -> Rep
 
     Parameters
     ----------
-    report : Report
     step : callable
         Told what is begun.
     keep : callable

@@ -16,17 +16,11 @@ __all__ = ["Group", "dependents_of", "precedents_of"]
 
 @dataclass(frozen=True)
 class Group:
-    """Some cells of one column.
-
-    Parameters
-    ----------
-    column : Column
-    rows : tuple of int
-        Their rows, from 0.
-    """
+    """Some cells of one column."""
 
     column: Column
     rows: tuple[int, ...]
+    """Their rows, from 0."""
 
     def cells(self, values: Values) -> Iterator[Cell]:
         """The cells, in the order of the rows."""
@@ -39,8 +33,6 @@ def precedents_of(values: Values, column: Column, row: int) -> tuple[Group, ...]
 
     Parameters
     ----------
-    values : Values
-    column : Column
     row : int
         From 0.
     """

@@ -72,7 +72,6 @@ class Said:
 
     Parameters
     ----------
-    material : Material
     drawn : collection of str
         Names of the figures that were drawn.
     """

@@ -21,7 +21,6 @@ def written(equation: Equation, names: Mapping[str, str], vocabulary: Vocabulary
 
     Parameters
     ----------
-    equation : Equation
     names : mapping of str to str
         From :func:`~loopsheet.report.document.names.latex_names`.
     vocabulary : Vocabulary

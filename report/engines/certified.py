@@ -37,7 +37,6 @@ def certified(sheet: Sheet, column: Column) -> bool:
 
     Parameters
     ----------
-    sheet : Sheet
     column : Column
         Its rule is a :class:`~loopsheet.report.sheet.RootNode`.
     """
@@ -146,7 +145,6 @@ def slope(form: Expr, unknown: Symbol) -> tuple[Expr, Boolean]:
 
     Parameters
     ----------
-    form : Expr
     unknown : Symbol
         Of which only is assumed what holds in the interval.
     """
@@ -171,7 +169,6 @@ def enclosing(sheet: Sheet, plan: Plan, node: RootNode) -> Enclosing:
 
     Parameters
     ----------
-    sheet : Sheet
     plan : Plan
         Of the sheet.
     node : RootNode

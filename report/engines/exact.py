@@ -51,25 +51,19 @@ _ROUGHLY = 1e-12
 
 @dataclass(frozen=True)
 class ExactValues:
-    """Values of every cell to 50 digits.
-
-    Parameters
-    ----------
-    value : mapping of column name to list of mpf or None
-        SI; None where the status is not OK.
-    status : mapping of column name to list of Status
-    roots : mapping of column name to mapping of row to tuple of mpf
-        All roots of ambiguous cells; of undecided ones, the part of the interval that was not decided.
-    layouts, counted, broken
-        As those of :class:`~loopsheet.report.cells.values.Values`.
-    """
+    """Values of every cell to 50 digits."""
 
     value: Mapping[str, list[Any]]
+    """By column name; SI; None where the status is not OK."""
     status: Mapping[str, list[Status]]
+    """By column name."""
     roots: Mapping[str, Mapping[int, tuple[Any, ...]]]
+    """By column name; all roots of ambiguous cells; of undecided ones, the part of the interval that was not
+    decided."""
     layouts: Mapping[str, Layout]
     counted: Mapping[str, Mapping[str, int]]
     broken: Mapping[str, NDArray[np.uint8]]
+    """`layouts`, `counted` and `broken`: as those of :class:`~loopsheet.report.cells.values.Values`."""
 
     def rounded(self, sheet: Sheet) -> Values:
         """Every cell as the double that is nearest to it, the same on every processor.
@@ -145,7 +139,6 @@ def evaluate(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[st
 
     Parameters
     ----------
-    sheet : Sheet
     labels : mapping of axis name to sequence of int
     data : mapping of column name to a number, or a sequence of numbers, in SI
         Fractions are taken exactly; None or NaN is a missing datum.
@@ -448,8 +441,6 @@ class _Scope:
 
     Parameters
     ----------
-    engine : _Exact
-    column : Column
     kept : mapping of axis name to list of int
         The rows that sums over an axis run over.
     """

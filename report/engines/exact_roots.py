@@ -32,8 +32,6 @@ def brackets(enclose: Enclose, low: Any, high: Any, signs: Sequence[Any]) -> lis
 
     Parameters
     ----------
-    enclose : callable
-    low, high : mpf
     signs : sequence of mpf or None
         The equation's at both ends, where the rule gives it.
 

@@ -42,22 +42,15 @@ _SMALLEST = "(2)^(0-1022)"
 
 @dataclass(frozen=True)
 class Places:
-    """Where everything stands.
-
-    Parameters
-    ----------
-    columns : mapping of str to Place
-        Of columns, auxiliaries (``alpha.u_1``) and carried cells, by name; of a given column, those of its
-        checked cells (:func:`~loopsheet.report.cells.grid.checked`), which all formulas name.
-    typed : mapping of str to Place
-        Of given columns, where they are typed.
-    indices : mapping of axis name to tuple of Place
-        The numbers of an axis' rows, one place a part.
-    """
+    """Where everything stands."""
 
     columns: Mapping[str, Place]
+    """Of columns, auxiliaries (``alpha.u_1``) and carried cells, by name; of a given column, those of its
+    checked cells (:func:`~loopsheet.report.cells.grid.checked`), which all formulas name."""
     typed: Mapping[str, Place]
+    """Of given columns, where they are typed."""
     indices: Mapping[str, tuple[Place, ...]]
+    """By axis name; the numbers of an axis' rows, one place a part."""
 
 
 def carried_name(cells: Leaf) -> str:
@@ -97,11 +90,9 @@ class Formulas:
 
     Parameters
     ----------
-    sheet : Sheet
     plan : Plan
         Of the sheet.
     layouts : mapping of axis name to Layout
-    places : Places
     """
 
     def __init__(self, sheet: Sheet, plan: Plan, layouts: Mapping[str, Layout], places: Places) -> None:

@@ -33,7 +33,6 @@ def filled(
 
     Parameters
     ----------
-    blocks : iterable of CellBlock
     roots : iterable of mapping
         From :func:`~loopsheet.report.engines.excel_assembly.auxiliary_texts`.
     values : Values
@@ -80,7 +79,6 @@ def auxiliary_values(values: Values, root: Mapping[str, Any]) -> dict[str, tuple
 
     Parameters
     ----------
-    values : Values
     root : mapping
         From :func:`~loopsheet.report.engines.excel_assembly.auxiliary_texts`.
     """

@@ -311,7 +311,6 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
 
     Parameters
     ----------
-    sheet : Sheet
     constants : mapping of column name to float
         Given scalars that are no input of the user's.
     """

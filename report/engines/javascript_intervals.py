@@ -123,8 +123,6 @@ def enclose(
 
     Parameters
     ----------
-    form, steepness : Expr
-    known : Boolean
     plain : callable
         Puts what is printed for them in the place of cells, and the names that it gives them in that of sums.
     terms : callable

@@ -107,7 +107,6 @@ class Beside:
 
         Parameters
         ----------
-        name, row
         batch : mapping of column name to float array (batch, rows)
             Given columns that are others than in the point; best in memory row by row.
         """

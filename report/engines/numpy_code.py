@@ -104,7 +104,6 @@ def write(
 
     Parameters
     ----------
-    arguments : sequence of Symbol
     totals : sequence of str
         As for :class:`Kernel`.
     expressions : sequence of Expr

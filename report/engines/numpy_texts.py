@@ -22,7 +22,6 @@ def program_texts(sheet: Sheet, plan: Plan) -> dict[str, Any]:
 
     Parameters
     ----------
-    sheet : Sheet
     plan : Plan
         What computes something of it.
 
@@ -43,7 +42,6 @@ def loop_texts(plan: Plan, node: LoopNode) -> dict[str, Any]:
 
     Parameters
     ----------
-    plan : Plan
     node : LoopNode
         Of the plan.
     """
@@ -64,7 +62,6 @@ def root_texts(sheet: Sheet, plan: Plan, node: RootNode) -> dict[str, Any]:
 
     Parameters
     ----------
-    sheet : Sheet
     plan : Plan
         Of the sheet.
     node : RootNode

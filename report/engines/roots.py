@@ -35,7 +35,6 @@ def step(function: Expr, unknown: Symbol) -> tuple[dict[Symbol, Expr], Expr]:
     ----------
     function : Expr
         What must vanish, in plain symbols.
-    unknown : Symbol
 
     Returns
     -------
@@ -63,7 +62,6 @@ def hoist(expression: Expr, unknown: Symbol, constants: dict[Expr, Symbol]) -> E
     ----------
     expression : Expr
         In plain symbols.
-    unknown : Symbol
     constants : dict of Expr to Symbol
         The constants so far; new ones are added.
     """

@@ -55,7 +55,6 @@ def formula(model: ContactModel, numbers: Mapping[Symbol, float], words: Vocabul
 
     Parameters
     ----------
-    model : ContactModel
     numbers : mapping of Symbol to float
         What its constants are, in SI; NaN where one has no value.
     words : Vocabulary

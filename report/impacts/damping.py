@@ -93,7 +93,6 @@ def number_by(author: str, e: float, n: float) -> float:
 
     Parameters
     ----------
-    author : str
     e, n : float
         The restitution that is wanted, and the exponent of the force.
 

@@ -88,7 +88,6 @@ def _of_words(said: Iterable[_Of], words: Words) -> Iterator[_Of]:
 
     Parameters
     ----------
-    said : iterable of Expectation or Limits
     words
         As for :func:`~loopsheet.report.inputs.expected.check_expected`.
     """

@@ -18,7 +18,6 @@ def words(texts: Texts, left_out: Sequence[LeftOut], column: str) -> list[str]:
     ----------
     texts : mapping of int to mapping of str to str
         The rows of the others, in the order of the table, by column.
-    left_out : sequence of LeftOut
     column : str
         By which the workbook groups.
     """

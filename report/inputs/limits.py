@@ -50,24 +50,16 @@ _LEVELS = (Fraction(1, 100), Fraction(999_999, 1_000_000))
 
 @dataclass(frozen=True)
 class Guard:
-    """How far acceptance limits are drawn in (JCGM 106, 8.3.2): so many expanded uncertainties, or a width.
-
-    Parameters
-    ----------
-    times : Fraction
-        Of U; 0 for simple acceptance.
-    width : Printed or None
-        Instead, as it is written.
-    level : float
-        The coverage probability of U.
-    at : Location or None
-        Where it is written.
-    """
+    """How far acceptance limits are drawn in (JCGM 106, 8.3.2): so many times U, or a width."""
 
     times: Fraction = Fraction(0)
+    """Of U; 0 for simple acceptance."""
     width: Printed | None = None
+    """Instead, as it is written."""
     level: float = LEVEL
+    """The coverage probability of U."""
     at: Location | None = None
+    """Where it is written."""
 
     @property
     def draws_in(self) -> bool:
@@ -77,18 +69,10 @@ class Guard:
 
 @dataclass(frozen=True)
 class Limits:
-    """The tolerance limits of a cell, which are allowed values themselves; at least one of them is there.
-
-    Parameters
-    ----------
-    address : str
-        As it was written.
-    low, high : Printed or None
-    guard : Guard
-    at : Location
-    """
+    """The tolerance limits of a cell, which are allowed values themselves; at least one of them is there."""
 
     address: str
+    """As it was written."""
     low: Printed | None
     high: Printed | None
     guard: Guard
@@ -240,7 +224,6 @@ def of_every_row(
 
     Parameters
     ----------
-    limits : sequence of Limits
     cells : mapping of str to (str, collection of tuple of int)
         As for :func:`check_limits`.
     """
@@ -265,10 +248,8 @@ def check_limits(
 
     Parameters
     ----------
-    limits : sequence of Limits
     cells : mapping of str to (str, collection of tuple of int)
         As for :func:`~loopsheet.report.inputs.expected.check_expected`.
-    findings : Findings
     words
         As there.
     """

@@ -21,7 +21,6 @@ class TomlTables:
 
     Parameters
     ----------
-    toml : TomlFile
     findings : Findings
         Where findings go.
     """

@@ -51,45 +51,29 @@ Origin = tuple[str, str]
 
 @dataclass(frozen=True)
 class TakenError:
-    """What one error of another report does to a number that was taken from it.
-
-    Parameters
-    ----------
-    origin : tuple of str
-    moved : float
-        By its standard uncertainty, in SI, with its sign.
-    error : Error
-        Its shape, degrees of freedom and sample; its width is 1.
-    """
+    """What one error of another report does to a number that was taken from it."""
 
     origin: Origin
     moved: float
+    """By its standard uncertainty, in SI, with its sign."""
     error: Error
+    """Its shape, degrees of freedom and sample; its width is 1."""
 
 
 @dataclass(frozen=True)
 class Taken:
-    """A parameter or a measured column that was taken.
-
-    Parameters
-    ----------
-    file, cell : str
-    printed : tuple of Printed
-        Its numbers, one a row, with all their digits, in SI.
-    errors : tuple of tuple of TakenError
-        Of each of them.
-    correlations : mapping of two origins to float
-        Between errors of that report.
-    spare : mapping of int to (Printed, tuple of TakenError)
-        The same of tests that take no part, as far as there are such.
-    """
+    """A parameter or a measured column that was taken."""
 
     file: str
     cell: str
     printed: tuple[Printed, ...]
+    """Its numbers, one a row, with all their digits, in SI."""
     errors: tuple[tuple[TakenError, ...], ...]
+    """Of each of them."""
     correlations: Mapping[tuple[Origin, Origin], float]
+    """By two origins; between errors of that report."""
     spare: Mapping[int, Number] = field(default_factory=dict)
+    """The same of tests that take no part, as far as there are such."""
 
     def of(self, rows: Iterable[int]) -> Taken:
         """The same of some rows."""
@@ -108,7 +92,6 @@ def alone(taken: Mapping[str, Taken], columns: Collection[str]) -> frozenset[Ori
 
     Parameters
     ----------
-    taken : mapping of str to Taken
     columns : collection of str
         Those with a row a test.
     """
@@ -138,11 +121,8 @@ def read_taken(
     ----------
     said : mapping of str to object
         What stands in the file at that path.
-    path : tuple of str
     of : Declared
         What it shall be.
-    toml : TomlFile
-    findings : Findings
     read : callable
         Takes the name of a file and where it stands; returns what it holds, or None with a finding.
     tests : sequence of int or None

@@ -26,7 +26,6 @@ def part(inputs: Inputs, values: Values, most: int) -> Inputs:
 
     Parameters
     ----------
-    inputs : Inputs
     values : Values
         Of all tests; with all columns that count.
     most : int

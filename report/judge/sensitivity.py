@@ -33,7 +33,6 @@ class Along:
 
     Parameters
     ----------
-    chain : Chain
     nothing : callable
         Makes zeros of a shape, of the kind that goes along.
     batch : tuple of int
@@ -114,7 +113,6 @@ class Numbers(Along):
 
     Parameters
     ----------
-    chain : Chain
     values : Values
         All columns; a batch is one of derivatives.
     """

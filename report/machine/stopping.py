@@ -134,7 +134,6 @@ def worker(parent: int, work: Callable[[], None]) -> None:
     ----------
     parent : int
         Its process number.
-    work : callable
     """
     _stop.shields = 1  # until there is somebody to catch what it throws
     sys.unraisablehook = _stop.lost

@@ -67,21 +67,14 @@ _NO_FUNCTIONS = (Derivative, Subs, DiracDelta, Heaviside)
 
 @dataclass(frozen=True)
 class Derivatives:
-    """The derivatives of a sheet.
-
-    Parameters
-    ----------
-    again : mapping of str to str
-        Columns with roots whose cells do not tell the unknown, with the name of what stands for it.
-    plan : Plan
-        Its parts hold roundings and slopes; where one has no value, nothing is known.
-    nodes : tuple of Local
-        Each after those that it names.
-    """
+    """The derivatives of a sheet."""
 
     again: Mapping[str, str]
+    """Columns with roots whose cells do not tell the unknown, with the name of what stands for it."""
     plan: Plan
+    """Its parts hold roundings and slopes; where one has no value, nothing is known."""
     nodes: tuple[Local, ...]
+    """Each after those that it names."""
 
 
 def derivatives(sheet: Sheet, roundings: bool = True) -> Derivatives:
@@ -89,7 +82,6 @@ def derivatives(sheet: Sheet, roundings: bool = True) -> Derivatives:
 
     Parameters
     ----------
-    sheet : Sheet
     roundings : bool
         Whether what rounding does is asked for too.
     """

@@ -65,7 +65,6 @@ def typed(sheet: Sheet, expression: Expr) -> Expr:
 
     Parameters
     ----------
-    sheet : Sheet
     expression : Expr
         A formula of the sheet. What is made of it names the same cells.
     """

@@ -30,7 +30,6 @@ def lowered(sheet: Sheet, known: Collection[str] = ()) -> Plan:
 
     Parameters
     ----------
-    sheet : Sheet
     known : collection of str
         Columns that are computed already: they have no node.
     """
@@ -44,24 +43,13 @@ def lowered(sheet: Sheet, known: Collection[str] = ()) -> Plan:
 
 
 def lowered_column(sheet: Sheet, column: Column) -> Plan:
-    """The nodes of one column alone.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    column : Column
-    """
+    """The nodes of one column alone."""
     lowering = Lowering(sheet)
     return Plan(tuple(lowering.nodes(column)), lowering.leaves)
 
 
 class Lowering:
-    """A sheet being lowered: the symbols so far, and what each stands for.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    """
+    """A sheet being lowered: the symbols so far, and what each stands for."""
 
     def __init__(self, sheet: Sheet) -> None:
         self.sheet = sheet
@@ -118,7 +106,6 @@ class Lowering:
 
         Parameters
         ----------
-        expression : Basic
         column : Column
             In whose rule it stands.
         axis : Axis or None

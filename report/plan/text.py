@@ -14,7 +14,6 @@ def text(plan: Plan, columns: Collection[str] | None = None) -> str:
 
     Parameters
     ----------
-    plan : Plan
     columns : collection of str, optional
         All of them, if it is left out.
     """

@@ -42,7 +42,6 @@ def print_as(value: float, like: Printed) -> str:
     ----------
     value : float
         In SI.
-    like : Printed
 
     Examples
     --------
@@ -112,8 +111,6 @@ def beside(published: PublishedValue, cell: Cell, *, expected: bool = False) -> 
 
     Parameters
     ----------
-    published : PublishedValue
-    cell : Cell
     expected : bool
         Whether it is expected that the cell has no value.
     """

@@ -23,15 +23,7 @@ LOOKED_INTO = 6
 
 @dataclass(frozen=True)
 class Explained:
-    """An explanation, and the problem as it would be.
-
-    Parameters
-    ----------
-    explanation : Explanation
-    problem : Problem
-    box : Box
-    best : Best
-    """
+    """An explanation, and the problem as it would be."""
 
     explanation: Explanation
     problem: Problem
@@ -88,7 +80,6 @@ class Search:
 
         Parameters
         ----------
-        problem : Problem
         box : Box, optional
             That of the printed digits, if left out.
         wide : bool

@@ -37,7 +37,6 @@ def compare_uncertainties(
 
     Parameters
     ----------
-    inputs : Inputs
     values : Values
         All columns, without a batch.
     step : callable

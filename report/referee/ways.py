@@ -20,24 +20,16 @@ __all__ = ["Way", "from_printed", "over_rows"]
 
 @dataclass(frozen=True, eq=False)
 class Way:
-    """A program of its own for some published values.
-
-    Parameters
-    ----------
-    program : Program
-        What is computed from columns that are given to it.
-    labels : mapping of axis name to sequence of int
-        Row numbers of the axes that come with the data.
-    printed : mapping of column name to float array (rows,)
-        Columns that are taken as they are printed, in SI.
-    rows : mapping of column name to integer array
-        Columns of which some rows are taken as the sheet computes them.
-    """
+    """A program of its own for some published values."""
 
     program: Program
+    """What is computed from columns that are given to it."""
     labels: Mapping[str, Sequence[int]]
+    """By axis name; row numbers of the axes that come with the data."""
     printed: Mapping[str, Array] = field(default_factory=dict)
+    """Of shape (rows,), by column name; columns that are taken as they are printed, in SI."""
     rows: Mapping[str, NDArray[np.intp]] = field(default_factory=dict)
+    """By column name; columns of which some rows are taken as the sheet computes them."""
 
     @cached_property
     def guessing(self) -> Way:
@@ -58,8 +50,6 @@ def from_printed(campaign: Campaign, cells: Sequence[str], printed: Mapping[str,
 
     Parameters
     ----------
-    campaign : Campaign
-    cells : sequence of str
     printed : mapping of column name to float array (rows,)
         In SI.
     """
@@ -76,10 +66,8 @@ def over_rows(column: Column, axis: Axis, every: Sequence[NDArray[np.intp]], she
     ----------
     column : Column
         Its rule sums over the axis.
-    axis : Axis
     every : sequence of integer array
         Rows, of which one may come twice: a way for each.
-    sheet : Sheet
     """
     given = [
         Column(c.name, axis.alone if c.axis == axis else None, Given(), c.unit, positive=c.positive)

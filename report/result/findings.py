@@ -88,7 +88,6 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
 
     Parameters
     ----------
-    comparison : Comparison
     name : str
         As from :func:`names_of`.
     """

@@ -33,7 +33,6 @@ def of_column(report: Report, name: str) -> str:
 
     Parameters
     ----------
-    report : Report
     name : str
         Of a measured column or of a parameter.
     """

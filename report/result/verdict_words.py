@@ -421,7 +421,6 @@ def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
 
     Parameters
     ----------
-    found : Referee
     meaning : callable
         Takes a column's name; returns what it is.
     """
@@ -451,7 +450,6 @@ def fit(found: Fit, meaning: Callable[[str], str]) -> str:
 
     Parameters
     ----------
-    found : Fit
     meaning : callable
         Takes a column's name; returns what it is.
     """

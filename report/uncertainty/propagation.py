@@ -61,7 +61,6 @@ class Spread:
 
     Parameters
     ----------
-    inputs : Inputs
     values : Values
         All columns, without a batch.
     like : Spread, optional
@@ -224,7 +223,6 @@ class Spread:
         ----------
         name : str
             Its column.
-        row : int
         level : float
             The coverage probability of its expanded uncertainty.
         """

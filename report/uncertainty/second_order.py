@@ -68,10 +68,8 @@ class SecondOrder:
     ----------
     chain : Chain
         From the given numbers to all cells.
-    values : Values
     program : Program
         Of their sheet.
-    sources : sequence of ErrorSource
     root : float array (sources, sources)
         What makes the errors of independent ones: its product with its transpose is their correlation matrix.
     weights : float array (numbers, sources)
@@ -164,7 +162,6 @@ class SecondOrder:
 
         Parameters
         ----------
-        cells : sequence of (str, int)
         first : float array (cells, sources)
             What each source contributes to first order.
 

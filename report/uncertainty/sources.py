@@ -24,7 +24,6 @@ def sources(inputs: Inputs, values: Values) -> tuple[ErrorSource, ...]:
 
     Parameters
     ----------
-    inputs : Inputs
     values : Values
         Of the sheet; they tell what rows are called.
     """

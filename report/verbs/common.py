@@ -125,8 +125,6 @@ def print_checks(checks: tuple[Check, ...], form: str, title: str, more: Mapping
 
     Parameters
     ----------
-    checks : tuple of Check
-    form : str
     title : str
         What was checked, for formats with a heading.
     more : mapping of str to anything JSON can hold
@@ -153,12 +151,7 @@ def tell(checks: Iterable[Check]) -> None:
 
 
 class Progress:
-    """Says what is being done once it has taken longer than a second; on a terminal in one moving line.
-
-    Parameters
-    ----------
-    stream : TextIO
-    """
+    """Says what is being done once it has taken longer than a second; on a terminal in one moving line."""
 
     def __init__(self, stream: TextIO) -> None:
         self.stream, self.begun, self.shown = stream, time.monotonic(), ""

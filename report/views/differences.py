@@ -19,7 +19,6 @@ def as_text(found: Differences, most: int) -> str:
 
     Parameters
     ----------
-    found : Differences
     most : int
         How many numbers, and how many of each other kind, are named; the rest are counted.
     """

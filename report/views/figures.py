@@ -43,7 +43,6 @@ def draw(report: Report, name: str) -> Figure:
 
     Parameters
     ----------
-    report : Report
     name : str
         One of :func:`drawings`.
 

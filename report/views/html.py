@@ -156,7 +156,6 @@ def render(report: Report, figures: Mapping[str, str], program: str | None = Non
 
     Parameters
     ----------
-    report : Report
     figures : mapping of str to str
         SVG text of each figure, by its name.
     program : str or None

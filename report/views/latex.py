@@ -152,7 +152,6 @@ def render(report: Report, figures: Collection[str]) -> str:
 
     Parameters
     ----------
-    report : Report
     figures : collection of str
         Names of the figures that are there as ``figures/NAME.pdf``.
     """

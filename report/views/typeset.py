@@ -19,18 +19,12 @@ _SHORT = 14.0
 
 @dataclass(frozen=True)
 class Typeset:
-    """A displayed equation, broken into lines.
-
-    Parameters
-    ----------
-    left : str
-        LaTeX in front of the first relation, if the relations are aligned; else empty.
-    rows : tuple of str
-        LaTeX of the lines; all but the first continue it.
-    """
+    """A displayed equation, broken into lines."""
 
     left: str
+    """LaTeX in front of the first relation, if the relations are aligned; else empty."""
     rows: tuple[str, ...]
+    """LaTeX of the lines; all but the first continue it."""
 
     @property
     def latex(self) -> str:

@@ -31,7 +31,6 @@ class Writer(ABC):
 
     Parameters
     ----------
-    material : Material
     pictures : mapping of str to anything
         What the format needs of each figure that was drawn.
     """

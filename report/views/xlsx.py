@@ -46,7 +46,6 @@ def render(report: Report, grid: Grid) -> bytes:
 
     Parameters
     ----------
-    report : Report
     grid : Grid
         The report's sheet as cells, from the Excel engine.
     """

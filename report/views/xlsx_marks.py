@@ -20,9 +20,6 @@ def mark_outside(sheets: Mapping[str, Any], style: Style, report: Report, grid: 
 
     Parameters
     ----------
-    sheets : mapping of str to worksheet
-    style : Style
-    report : Report
     grid : Grid
         One that holds no margins has no marks.
     """

@@ -204,7 +204,6 @@ def branches(sheet: Sheet, points: int) -> Drawn:
 
     Parameters
     ----------
-    sheet : Sheet
     points : int
         Of each branch.
     """

@@ -48,7 +48,6 @@ def columns(tests: Axis, measured: tuple[Column, Column, Column]) -> tuple[Colum
 
     Parameters
     ----------
-    tests : Axis
     measured : tuple of Column
         Speed, restitution and imprint depth of a test.
     """

@@ -43,7 +43,6 @@ def limits(columns: tuple[Column, ...], where: Cells) -> dict[str, tuple[Limit, 
 
     Parameters
     ----------
-    columns : tuple of Column
     where : mapping of Expr to Expr
         The cells that the symbols of the two tests stand for.
     """
