@@ -260,11 +260,8 @@ class _OfLedger(Dimensions):
 def mixed(equation: Equation, vocabulary: Vocabulary) -> str:
     """Say what an equation mixes that cannot be equal, added or compared; empty where nothing was found.
 
-    Parameters
-    ----------
-    vocabulary : Vocabulary
-        The units of its symbols. An equation with a symbol that it lacks is not judged; whole numbers are
-        pure.
+    `vocabulary`: the units of its symbols. An equation with a symbol that it lacks is not judged; whole
+    numbers are pure.
     """
     dimensions = _OfLedger(vocabulary)
     try:

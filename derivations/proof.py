@@ -122,12 +122,8 @@ def prove_equation(
 ) -> Proof:
     """Decide one entry of a ledger, given the equations that stand before it.
 
-    Parameters
-    ----------
-    known : mapping of Equation to tuple of Equation, optional
-        What a step may rest on: the entries before this one that passed, each with what it finally rests on.
-    ledger : Ledger, optional
-        Where it stands: the words of its symbols, and the claims that it might rest on in a circle.
+    `known`: what a step may rest on: the entries before this one that passed, each with what it finally rests
+    on. `ledger`: where it stands: the words of its symbols, and the claims that it might rest on in a circle.
     """
     return _prove_entry(entry, known or {}, ledger or Ledger(()))[0]
 
@@ -189,13 +185,9 @@ def prove(
 ) -> tuple[Proof, ...]:
     """Decide the equations of a ledger, in its order; nothing may rest on what comes later.
 
-    Parameters
-    ----------
-    begin : callable, optional
-        Told of each equation before it is decided: all of them take a second or two.
-    only : collection of str, optional
-        The labels of those that are asked for: what they do not rest on is not derived then. What is assumed
-        is looked at in any case, for they have to hold together with all of it.
+    `begin`: told of each equation before it is decided: all of them take a second or two. `only`: the labels
+    of those that are asked for: what they do not rest on is not derived then. What is assumed is looked at in
+    any case, for they have to hold together with all of it.
     """
     needed = None if only is None else behind((ledger[label] for label in only), ledger)
     proofs: list[Proof] = []

@@ -49,10 +49,7 @@ def seek(statements: Sequence[Statement], vocabulary: Vocabulary) -> Sought:
     What did not hold at some point is tried alone, with all that it rests on, and is not solved in the next
     round: steps may lead to where it is positive and its conditions hold.
 
-    Parameters
-    ----------
-    vocabulary : Vocabulary
-        Where free symbols are drawn from, to begin with.
+    `vocabulary`: where free symbols are drawn from, to begin with.
     """
     left_open: set[Equation] = set()
     tried: set[frozenset[Equation]] = set()

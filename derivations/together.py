@@ -61,12 +61,8 @@ def conflict(
 ) -> Contradiction | None:
     """What of a ledger does not agree with the rest; None where a point was found at which all of it holds.
 
-    Parameters
-    ----------
-    standing : frozenset of Equation
-        Of the ledger, what nothing was found against.
-    claims : frozenset of Equation
-        Of these, what was proved without going to a limit.
+    `standing`: of the ledger, what nothing was found against. `claims`: of these, what was proved without
+    going to a limit.
     """
     if ledger.parts:
         parts = (replace(ledger, entries=entries, parts=()) for entries in ledger.parts)

@@ -84,12 +84,8 @@ def built(
 ) -> Built:
     """Write a report as :func:`build` does, or the very files that were written of the same folder before.
 
-    Parameters
-    ----------
-    study, out, formats, every_engine, tell
-        As for :func:`build`.
-    of : callable
-        What there is to tell of the report, as data that JSON can hold.
+    `study`, `out`, `formats`, `every_engine` and `tell`: as for :func:`build`. `of`: what there is to tell of
+    the report, as data that JSON can hold.
     """
     if not study.folder.is_dir():
         _ = study.inputs  # which tells, before the outputs' folder makes it

@@ -46,12 +46,7 @@ class NoImpacts(Exception):
 class NotTogether(Exception):
     """What is asked of cards does not go with the codes or the drops.
 
-    Parameters
-    ----------
-    reason, known : str
-        What is wrong, and what to do.
-    option : str
-        Of which option it is told.
+    `reason` and `known`: what is wrong, and what to do. `option`: of which option it is told.
     """
 
     def __init__(self, reason: str, known: str, option: str) -> None:

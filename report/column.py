@@ -382,10 +382,7 @@ class Reference:
 def shown_as(column: Column, columns: Mapping[str, Column]) -> Column:
     """The column whose unit another is shown in: itself, or what it is declared to be shown like, to the end.
 
-    Parameters
-    ----------
-    columns : mapping of str to Column
-        One that it is shown like and that is not among them is the end.
+    `columns`: one that it is shown like and that is not among them is the end.
     """
     way = {column.name}
     while column.display.startswith("like "):
@@ -398,13 +395,7 @@ def shown_as(column: Column, columns: Mapping[str, Column]) -> Column:
 
 
 def shown_in(column: Column, columns: Mapping[str, Column]) -> ParsedUnit:
-    """The unit that a column is declared to be shown in; that of another column, if it is shown like it.
-
-    Parameters
-    ----------
-    columns : mapping of str to Column
-        By name.
-    """
+    """The unit that a column is declared to be shown in; that of another column, if it is shown like it."""
     try:
         return parse_open(written_in(column, columns))
     except UnitError:

@@ -234,12 +234,7 @@ def _column(
 class _Known:
     """Columns of what was told.
 
-    Parameters
-    ----------
-    declared : callable
-        Returns the columns that it was told of, by name.
-    axes : iterable of Axis
-        Those that are there already.
+    `declared`: returns the columns that it was told of, by name. `axes`: those that are there already.
     """
 
     def __init__(

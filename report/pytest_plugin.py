@@ -96,10 +96,7 @@ def _is_our_marker(name: str, /, **_: object) -> bool:
 class FolderChecks:
     """A report folder, computed once and only as far as its tests ask.
 
-    Parameters
-    ----------
-    own_code : bool
-        Whether its workbook may be code of the folder.
+    `own_code`: whether its workbook may be code of the folder.
     """
 
     def __init__(self, folder: Path, own_code: bool) -> None:

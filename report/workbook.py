@@ -81,10 +81,7 @@ class TableSpec:
 def tables_of(sheet: Sheet, aside: Set[str]) -> Iterator[TableSpec]:
     """A table of what is given, one for the rows of each axis, and one of the results.
 
-    Parameters
-    ----------
-    aside : set of str
-        The columns that none shows. Generated points are too many to be shown.
+    `aside`: the columns that none shows. Generated points are too many to be shown.
     """
     shown = [column for column in sheet.columns if column.name not in aside]
     given = tuple(c.name for c in shown if c.axis is None and c.equation is None)

@@ -43,10 +43,7 @@ class Compared:
 def compared(model: ContactModel, number: str) -> Compared:
     """A model beside the tests.
 
-    Parameters
-    ----------
-    number : str
-        Of its equations, which get letters.
+    `number`: of its equations, which get letters.
     """
     letters, made = iter(ascii_lowercase), dict[Quantity, Equation]()
     mark = rf"\mathrm{{{model.mark}}}"

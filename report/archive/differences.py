@@ -103,12 +103,8 @@ def compare(
     to which engines are held, for a number whose condition is 1. Who knows the conditions of the cells
     says what is allowed.
 
-    Parameters
-    ----------
-    allowed : mapping of column name to mapping of index to float, optional
-        How much each cell may differ, in SI; used where it is more.
-    names : tuple of str
-        What they are called.
+    `allowed` (mapping of column name to mapping of index to float): how much each cell may differ, in SI;
+    used where it is more. `names`: what they are called.
     """
     same = noise = 0
     moved: list[tuple[tuple[int, ...], Move]] = []

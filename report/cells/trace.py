@@ -31,10 +31,7 @@ class Group:
 def precedents_of(values: Values, column: Column, row: int) -> tuple[Group, ...]:
     """The cells that a cell is computed from, one group for each cell or sum that its rule names.
 
-    Parameters
-    ----------
-    row : int
-        From 0.
+    `row`: from 0.
     """
     named = precedents(values.sheet, values.layouts, column)
     return tuple(Group(one.column, _named_by(one, row, values)) for one in named)

@@ -91,10 +91,7 @@ def rows_kept(
 def how_many(kept: Mapping[str, Mask]) -> dict[str, int]:
     """For every axis of which sums leave rows out, how many they run over; without a batch.
 
-    Parameters
-    ----------
-    kept : mapping of axis name to boolean array (..., rows)
-        From :func:`rows_kept`.
+    `kept` (mapping of axis name to boolean array (..., rows)): from :func:`rows_kept`.
     """
     return {axis: int(mask.sum()) for axis, mask in kept.items() if mask.ndim == 1 and not mask.all()}
 

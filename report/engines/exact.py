@@ -68,10 +68,7 @@ class ExactValues:
     def rounded(self, sheet: Sheet) -> Values:
         """Every cell as the double that is nearest to it, the same on every processor.
 
-        Parameters
-        ----------
-        sheet : Sheet
-            What was evaluated, or a part that rests on nothing else.
+        `sheet`: what was evaluated, or a part that rests on nothing else.
         """
         names = [column.name for column in sheet.order]
         return Values(
@@ -175,10 +172,7 @@ def evaluate(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[st
 def laid_out(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[str, Any]) -> dict[str, Layout]:
     """The rows of every axis.
 
-    Parameters
-    ----------
-    sheet, labels, data
-        As for :func:`evaluate`.
+    `sheet`, `labels` and `data`: as for :func:`evaluate`.
     """
     repeats = [axis.repeats for axis in sheet.axes if axis.repeats]
     numbers = {name: _datum(_rows(data[name])[0], sheet.bounds[name]) for name in repeats}
@@ -439,10 +433,7 @@ def _come_to(last: Any, before: Any) -> Any:
 class _Scope:
     """Functions of a row of a column (and of the unknown of a root), of texts.
 
-    Parameters
-    ----------
-    kept : mapping of axis name to list of int
-        The rows that sums over an axis run over.
+    `kept` (mapping of axis name to list of int): the rows that sums over an axis run over.
     """
 
     def __init__(self, engine: _Exact, column: Column, kept: Mapping[str, list[int]]) -> None:

@@ -432,12 +432,8 @@ class _Writing:
 def _stretches(steps: NDArray[np.intp], near: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
     """The first and the last row of stretches in which each address stays or moves with its row.
 
-    Parameters
-    ----------
-    steps : array of int, shape (addresses, rows - 1)
-        How far each goes from a row to the next.
-    near : array of bool, shape (addresses,)
-        Whether it may move.
+    `steps` (array of int, shape (addresses, rows - 1)): how far each goes from a row to the next. `near`
+    (array of bool, shape (addresses,)): whether it may move.
     """
     stays = (steps == 0) | (near[:, None] & (steps == 1))
     breaks = ~stays.all(axis=0)

@@ -82,13 +82,8 @@ class Unrolled:
 def unroll(plan: Plan, node: RootNode, certified: bool = True) -> Unrolled:
     """Lay the solver of a root out as cells.
 
-    Parameters
-    ----------
-    node : RootNode
-        Of the plan.
-    certified : bool
-        Whether the number of its roots follows from signs for all inputs. No formula could count them
-        otherwise: the workbook then keeps to the inputs for which they were counted.
+    `node`: of the plan. `certified`: whether the number of its roots follows from signs for all inputs. No
+    formula could count them otherwise: the workbook then keeps to the inputs for which they were counted.
     """
     return _Unrolling(plan, node, certified).run()
 

@@ -99,12 +99,8 @@ class Program:
     ) -> Program:
         """The program of printed functions.
 
-        Parameters
-        ----------
-        texts : mapping
-            From :func:`~loopsheet.report.engines.numpy_texts.program_texts`.
-        functions, known
-            As for :meth:`of`.
+        `texts`: from :func:`~loopsheet.report.engines.numpy_texts.program_texts`. `functions` and `known`: as
+        for :meth:`of`.
         """
         roots = {name: RootProgram.of(root, functions) for name, root in texts["roots"].items()}
         loops = {name: LoopProgram.of(loop, functions) for name, loop in texts["loops"].items()}

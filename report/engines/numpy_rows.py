@@ -117,10 +117,7 @@ class KeptBetween:
     def total(self, terms: Any) -> Intervals:
         """The sum of the kept rows (parts, 1): each term lies between what it is at both ends.
 
-        Parameters
-        ----------
-        terms : float array (points, rows)
-            Each with an error of at most 2^-31 of its size.
+        `terms` (float array (points, rows)): each with an error of at most 2^-31 of its size.
         """
         every = np.where(self.mask, terms, 0.0)
         thin, sizes = (each.sum(axis=-1, keepdims=True) for each in (every, np.abs(every)))

@@ -58,12 +58,7 @@ def hoist(expression: Expr, unknown: Symbol, constants: dict[Expr, Symbol]) -> E
 
     A power whose base is such becomes an exponential: the logarithm is then taken once.
 
-    Parameters
-    ----------
-    expression : Expr
-        In plain symbols.
-    constants : dict of Expr to Symbol
-        The constants so far; new ones are added.
+    `expression`: in plain symbols. `constants`: the constants so far; new ones are added.
     """
 
     def constant(part: Expr) -> Expr:

@@ -110,12 +110,8 @@ def number_by(author: str, e: float, n: float) -> float:
 def closed_form(K: float, n: float, c: float, mass: float, speed: float) -> Closed:
     """Restitution, greatest approach and greatest force of the family, by (L105) to (L108).
 
-    Parameters
-    ----------
-    K, n, c : float
-        Stiffness in N/m^n, exponent, damping number.
-    mass, speed : float
-        The reduced mass in kg, the impact speed in m/s.
+    `K`, `n` and `c`: stiffness in N/m^n, exponent, damping number. `mass` and `speed`: the reduced mass in
+    kg, the impact speed in m/s.
     """
     given = {"K": K, "n": n, "c": c, "m_red": mass, "v_0": speed}
     (residual,) = model.peak_speed.residuals

@@ -222,10 +222,7 @@ def of_every_row(
 ) -> Iterator[Limits]:
     """Limits of cells: those of a column are of each of its rows that has none of its own.
 
-    Parameters
-    ----------
-    cells : mapping of str to (str, collection of tuple of int)
-        As for :func:`check_limits`.
+    `cells`: as for :func:`check_limits`.
     """
     own = {each.cell for each in limits}
     for each in limits:
@@ -246,12 +243,7 @@ def check_limits(
 ) -> None:
     """Find limits of cells that there are not, twice of one, in a unit of another dimension, or below 0 K.
 
-    Parameters
-    ----------
-    cells : mapping of str to (str, collection of tuple of int)
-        As for :func:`~loopsheet.report.inputs.expected.check_expected`.
-    words
-        As there.
+    `cells`: as for :func:`~loopsheet.report.inputs.expected.check_expected`. `words`: as there.
     """
     check_expected(limits, (), cells, findings, words=words)
     for each in limits:

@@ -188,10 +188,7 @@ class StatedErrors:
     def of(self, printed: Printed, of: str = "") -> tuple[Error, ...]:
         """The errors of a number: what is a share of it follows its value.
 
-        Parameters
-        ----------
-        of : str
-            What else it is stated of, each by the same estimate; nothing for a number alone.
+        `of`: what else it is stated of, each by the same estimate; nothing for a number alone.
         """
         return tuple(part.of(printed, of and f"{of} {n}") for n, part in enumerate(self.parts))
 

@@ -90,10 +90,7 @@ class Taken:
 def alone(taken: Mapping[str, Taken], columns: Collection[str]) -> frozenset[Origin]:
     """The errors of what was taken that move numbers of one test alone, of those that take no part, too.
 
-    Parameters
-    ----------
-    columns : collection of str
-        Those with a row a test.
+    `columns`: those with a row a test.
     """
     rows: dict[Origin, set[str]] = {}
     for name, column in taken.items():

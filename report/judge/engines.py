@@ -174,12 +174,8 @@ def _addresses(values: Values, column: Column) -> list[str]:
 def compare(values: Values, labels: Mapping[str, Sequence[int]], exact_data: Mapping[str, Any]) -> Agreement:
     """Evaluate the sheet at 50 digits and compare NumPy's values.
 
-    Parameters
-    ----------
-    values : Values
-        What the engine found.
-    labels, exact_data
-        As for :func:`loopsheet.report.engines.exact.evaluate`.
+    `values`: what the engine found. `labels` and `exact_data`: as for
+    :func:`loopsheet.report.engines.exact.evaluate`.
     """
     return Judge.of(values.sheet, values.layouts, labels, exact_data).agreement(of_values(values))
 

@@ -98,10 +98,7 @@ class Reading:
 def of_values(values: Values, engine: str = "numpy") -> Reading:
     """What an engine of this package found.
 
-    Parameters
-    ----------
-    values : Values
-        Without a batch dimension.
+    `values`: without a batch dimension.
     """
     numbers, codes = {}, {}
     for name in values.sheet.by_name:

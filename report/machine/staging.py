@@ -28,10 +28,7 @@ _HEAD = 1000
 def put(path: Path, content: str | bytes) -> None:
     """Write a file, and the folders above it.
 
-    Parameters
-    ----------
-    content : str or bytes
-        Text is written as UTF-8.
+    `content`: text is written as UTF-8.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     try:

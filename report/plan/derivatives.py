@@ -80,10 +80,7 @@ class Derivatives:
 def derivatives(sheet: Sheet, roundings: bool = True) -> Derivatives:
     """Make the plan of a sheet's derivatives.
 
-    Parameters
-    ----------
-    roundings : bool
-        Whether what rounding does is asked for too.
+    `roundings`: whether what rounding does is asked for too.
     """
     plan = lowered(sheet)
     making = _Making(plan, roundings)
@@ -326,10 +323,7 @@ def _chosen(expression: Any) -> Any:
 def rounding(expression: Expr) -> Expr:
     """What the operations of an expression round, in units of eps: what it names is exact, results are not.
 
-    Parameters
-    ----------
-    expression : Expr
-        In plain symbols.
+    `expression`: in plain symbols.
     """
     if expression.is_Symbol:
         return Integer(0)

@@ -28,10 +28,7 @@ RESERVED = ("numpy", "run")
 def lowered(sheet: Sheet, known: Collection[str] = ()) -> Plan:
     """Lower a sheet.
 
-    Parameters
-    ----------
-    known : collection of str
-        Columns that are computed already: they have no node.
+    `known`: columns that are computed already: they have no node.
     """
     key = frozenset(known)
     if key not in sheet.plans:

@@ -62,12 +62,7 @@ class Leaf:
 class RowSum(Expr):
     """A sum over an axis' rows as a function of the array of its terms: linear, which is all algebra needs.
 
-    Parameters
-    ----------
-    terms : Expr
-        In plain symbols, each of which stands for an array.
-    axis : Symbol
-        The axis' name.
+    `terms`: in plain symbols, each of which stands for an array. `axis`: the axis' name.
     """
 
     def __new__(cls, terms: Expr, axis: Symbol) -> Expr:
@@ -97,12 +92,7 @@ class RowSum(Expr):
 class RowOrder(Expr):
     """What is taken by order of an axis' rows, as a function of the array of its terms.
 
-    Parameters
-    ----------
-    terms, axis
-        As for :class:`RowSum`.
-    word : Str
-        ``median``, ``max`` or ``min``.
+    `terms` and `axis`: as for :class:`RowSum`. `word`: ``median``, ``max`` or ``min``.
     """
 
     is_commutative = True
@@ -310,10 +300,7 @@ class Plan:
     def alone(self, name: str) -> Plan:
         """What the values of a column rest on, and nothing that only says whether there are any.
 
-        Parameters
-        ----------
-        name : str
-            Of a column of a plan without loops.
+        `name`: of a column of a plan without loops.
         """
         nodes, wanted = list[Node](), {name}
         for node in reversed(self.nodes):

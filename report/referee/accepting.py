@@ -62,12 +62,8 @@ def accepted(report: Report, reason: str = "") -> Accepted:
     A difference that nobody has announced becomes a known one only if there is a reason for it. One that is
     none any more is taken back, with all that was said of it.
 
-    Parameters
-    ----------
-    report : Report
-        Refereed: what is reachable is no difference. It has published values.
-    reason : str
-        Why they differ, for the rows that do not say it.
+    `report`: refereed: what is reachable is no difference. It has published values. `reason`: why they
+    differ, for the rows that do not say it.
     """
     place = report.every_comparison[0].published.places["value"]
     name = report.every_comparison[0].published.where.rsplit(":", 2)[0]

@@ -138,10 +138,7 @@ class Certificate:
         Whatever the weights w, whose sizes sum to W, the worst of the mismatches r_k is at least
         sum(w_k r_k) / W; the sum is bounded by its own mean-value form, so that what cancels in it cancels.
 
-        Parameters
-        ----------
-        weights : float array (published,)
-            Best those of the linear program that could not do better.
+        `weights` (float array (published,)): best those of the linear program that could not do better.
         """
         own = weights[self._plain]
         which = np.flatnonzero(np.abs(own) > 1e-9)

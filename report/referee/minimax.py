@@ -81,10 +81,7 @@ def best(
 def counted(problem: Problem, found: Best, box: Box | None = None) -> Best:
     """What a search found, with its roots counted: it may be told. If they refute it, what else there is.
 
-    Parameters
-    ----------
-    box : Box, optional
-        That it was sought in.
+    `box`: that it was sought in.
     """
     if problem.guessing is problem or not np.isfinite(found.mismatch):
         return found

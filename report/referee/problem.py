@@ -88,12 +88,8 @@ class Problem:
     ) -> Problem:
         """Ask for published values together.
 
-        Parameters
-        ----------
-        tied : sequence of str
-            Free columns that shall follow from the others all the same.
-        asked : sequence of str
-            Conventions of the workbook that are asked for too.
+        `tied`: free columns that shall follow from the others all the same. `asked`: conventions of the
+        workbook that are asked for too.
         """
         cut = tuple(name for name in campaign.free if name not in tied)
         program = campaign.program({value.cell for value in published}, cut)

@@ -78,12 +78,8 @@ class Search:
     def met(self, problem: Problem, box: Box | None = None, wide: bool = False) -> Best | None:
         """An input that yields all values of a changed problem; None, and counted, if there is none.
 
-        Parameters
-        ----------
-        box : Box, optional
-            That of the printed digits, if left out.
-        wide : bool
-            Whether the box is so wide that nothing is certain in it.
+        `box`: that of the printed digits, if left out. `wide`: whether the box is so wide that nothing is
+        certain in it.
         """
         found = best(problem, box)
         if found.mismatch > 1:

@@ -48,10 +48,7 @@ class Way:
 def from_printed(campaign: Campaign, cells: Sequence[str], printed: Mapping[str, Array]) -> Way:
     """Compute cells from columns as they are printed, the rest as the sheet says.
 
-    Parameters
-    ----------
-    printed : mapping of column name to float array (rows,)
-        In SI.
+    `printed` (mapping of column name to float array (rows,)): in SI.
     """
     cut = tuple(name for name in (*campaign.free, *printed) if name not in cells)
     program = campaign.program(cells, tuple(dict.fromkeys(cut)))
@@ -62,12 +59,8 @@ def from_printed(campaign: Campaign, cells: Sequence[str], printed: Mapping[str,
 def over_rows(column: Column, axis: Axis, every: Sequence[NDArray[np.intp]], sheet: Sheet) -> list[Way]:
     """Compute a sum or mean over other rows than all.
 
-    Parameters
-    ----------
-    column : Column
-        Its rule sums over the axis.
-    every : sequence of integer array
-        Rows, of which one may come twice: a way for each.
+    `column`: its rule sums over the axis. `every` (sequence of integer array): rows, of which one may come
+    twice: a way for each.
     """
     given = [
         Column(c.name, axis.alone if c.axis == axis else None, Given(), c.unit, positive=c.positive)

@@ -53,10 +53,7 @@ def beyond_each(z: Array, shape: Shape, dof: float, law: Law | None = None) -> A
 def conformity(budget: Budget, limits: Limits) -> Conformity:
     """A cell beside its limits.
 
-    Parameters
-    ----------
-    budget : Budget
-        Of the cell, with U at the level of the rule.
+    `budget`: of the cell, with U at the level of the rule.
     """
     (low, high), value = limits.ends, budget.value
 

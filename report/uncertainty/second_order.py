@@ -44,12 +44,7 @@ _FOURTH = {Shape.RECTANGULAR: 9 / 5, Shape.TRIANGULAR: 12 / 5, Shape.ARCSINE: 3 
 def root_of(number: int, pairs: Sequence[tuple[int, int, float]]) -> Array:
     """What makes correlated errors of independent ones (number, number): a root of their correlation matrix.
 
-    Parameters
-    ----------
-    number : int
-        Of sources.
-    pairs : sequence of (int, int, float)
-        The correlation coefficients of some; an error that is in none is itself.
+    `number`: of sources. `pairs`: the correlation coefficients of some; an error that is in none is itself.
     """
     matrix = np.eye(number)
     for a, b, r in pairs:

@@ -123,12 +123,7 @@ def answer(told: str, known: bool) -> int:
 def print_checks(checks: tuple[Check, ...], form: str, title: str, more: Mapping[str, Any]) -> None:
     """Print checks for a machine, in one of :data:`~loopsheet.report.views.checks.FORMATS`.
 
-    Parameters
-    ----------
-    title : str
-        What was checked, for formats with a heading.
-    more : mapping of str to anything JSON can hold
-        What JSON tells besides.
+    `title`: what was checked, for formats with a heading. `more`: what JSON tells besides.
     """
     from ..views.checks import FORMATS
 

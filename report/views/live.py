@@ -107,10 +107,7 @@ def script(program: str, runtime: str, drawings: bool = True) -> str:
 def data(report: Report, document: Material) -> str:
     """What the script must know of the report, as JSON that cannot end the element it stands in.
 
-    Parameters
-    ----------
-    document : Material
-        The same report, as its document sees it.
+    `document`: the same report, as its document sees it.
     """
     sheet = report.sheet
     known = {

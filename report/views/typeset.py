@@ -57,10 +57,7 @@ def relates(row: str) -> bool:
 def block(sides: Sequence[Terms]) -> Typeset:
     """Break an equation into lines, before a relation or between the terms of a sum.
 
-    Parameters
-    ----------
-    sides : sequence of terms
-        Of the equation, or one relation: from :meth:`~loopsheet.report.document.math.MathPrinter.sides`.
+    `sides`: of the equation, or one relation: from :meth:`~loopsheet.report.document.math.MathPrinter.sides`.
     """
     whole = " = ".join(join(side) for side in sides)
     if width(whole) <= TEXT_WIDTH or (len(sides) == 1 and len(sides[0]) == 1):
