@@ -31,7 +31,7 @@ __all__ = [
     "POINTS",
     "check_step",
     "prove",
-    "prove_equation",
+    "prove_entry",
 ]
 
 NOT_REDUCED = (
@@ -117,19 +117,11 @@ def _grounds(step: Step, reached: Grounds) -> tuple[Equation, ...]:
     return tuple(dict.fromkeys(ground for grounds in behind for ground in grounds))
 
 
-def prove_equation(
-    entry: Equation | Derivation, known: Grounds | None = None, ledger: Ledger | None = None
-) -> Proof:
-    """Decide one entry of a ledger, given the equations that stand before it.
+def prove_entry(entry: Equation | Derivation, known: Grounds, ledger: Ledger) -> tuple[Proof, Grounds]:
+    """A proof of one entry of a ledger by what stands before it, and the equations that stand after it.
 
-    `known`: what a step may rest on: the entries before this one that passed, each with what it finally rests
-    on. `ledger`: where it stands: the words of its symbols, and the claims that it might rest on in a circle.
+    `known`: the entries before this one that passed, each with what it finally rests on.
     """
-    return _prove_entry(entry, known or {}, ledger or Ledger(()))[0]
-
-
-def _prove_entry(entry: Equation | Derivation, known: Grounds, ledger: Ledger) -> tuple[Proof, Grounds]:
-    """A proof, and the equations that stand after it."""
     words = ledger.vocabulary
     if isinstance(entry, Equation):
         if entry.kind is Kind.CLAIM:
@@ -198,7 +190,7 @@ def prove(
             continue
         if begin is not None:
             begin(claim)
-        proof, known = _prove_entry(entry, known, ledger)
+        proof, known = prove_entry(entry, known, ledger)
         proofs.append(proof)
     if needed is None or not _holds_together(ledger, proofs):
         proofs = _refuse_conflicts(ledger, proofs, known)
