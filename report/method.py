@@ -589,9 +589,8 @@ def _drawn(column: Column, bounds: Bounds, is_sure: bool) -> Quantity:
         (end,) = (each for each in (low, high) if each is not None)
         far = max(abs(end), 1.0) * (1 if high is None else -1)
         low, high = sorted((end + far / 2, end + 2 * far))
-    latex = column.latex or spelt(column.name)
-    own = column.name, column.meaning, column.unit, latex, (low, high), bool(column.positive)
-    return Quantity(*own, "", *known)
+    own = column.name, column.meaning, column.unit, column.latex or spelt(column.name), (low, high)
+    return Quantity(*own, bool(column.positive), "", *known)
 
 
 def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Sequence[str]) -> Workbook:
