@@ -404,7 +404,7 @@ class _Writing:
                 if self.axis is None:
                     # Of a sum without any row left, the first row's code says nothing of that.
                     failed = f"IF({begun}={ended},{failed},{{}})"
-            elif each.name != self.column.name:
+            elif self.axis is not None:
                 # All rows rest on a single number, and on its error.
                 other = self.address(Leaf("cells", pass_name(each.name, 0)))
                 gone = f"IF(ISNUMBER({other}),{gone},{other})"
