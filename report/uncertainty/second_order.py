@@ -34,6 +34,9 @@ COUNTS = 0.05
 LARGEST = 1 << 23
 """Sheets times cells; beyond, the terms are not looked at."""
 
+NOISE = 2.0**-40
+"""Of a value: what changes by less may be its rounding."""
+
 CORNERS = frozenset({"Abs", "Max", "Min", "Piecewise", "sign"})
 """Functions with corners or jumps, as sympy calls them."""
 
@@ -181,11 +184,14 @@ class SecondOrder:
             bent, turned = bends.sum(axis=(1, 2)), turns.sum(axis=(1, 2))
             own = np.sum(first**2, axis=1)
             more = bent + turned
+            values = np.array([self._value[name][row] for name, row in cells])
+            rounding = own <= np.square(NOISE * values)
             # Of terms that alternate and fall so slowly the next ones count, too.
-            overdone = more < -own / 2
+            overdone = (more < -own / 2) & ~rounding
             self.overdone |= {name for (name, _), is_over in zip(cells, overdone, strict=True) if is_over}
+            more = np.where(own + more > 0, more, bent)  # a sum that would be negative is no variance
             little = np.maximum(bent, np.abs(more)) <= COUNTS * own
-            bending = little & (self._bent_far(cells, used, first) > COUNTS * own)
+            bending = little & ~rounding & (self._bent_far(cells, used, first) > COUNTS * own)
             self.bending |= {name for (name, _), is_bent in zip(cells, bending, strict=True) if is_bent}
             unknown = np.array([name in self.jumping or name in self.torn for name, _ in cells], dtype=bool)
             sharp = np.array([name in self.cornered for name, _ in cells], dtype=bool) & ~little
@@ -278,6 +284,7 @@ def _creeps(found: Array, value: Array) -> NDArray[np.bool_]:
     with np.errstate(all="ignore"):
         one, two, four = np.abs(np.broadcast_to(found, (3, value.size)) - value)
         faster: NDArray[np.bool_] = (one > 0) & (two >= 3 * one) & (four >= 3 * two)
+        faster &= four > NOISE * np.abs(value)
     return faster
 
 
