@@ -338,7 +338,7 @@ def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
         if isinstance(node, GivenNode) and node.allowed is not None:
             x = Symbol("x", real=True)
             parts.append(
-                f"allows: (x) => {JavaScriptPrinter().doprint(node.allowed.xreplace({node.datum: x}))}"
+                f"allows: x => {JavaScriptPrinter().doprint(node.allowed.xreplace({node.datum: x}))}"
             )
         kernels = _kernels(sheet, plan, nodes[column.name])
         if kernels:

@@ -98,9 +98,17 @@ def short_style(text: str) -> str:
 
     >>> short_style("/* all */ td, th { color: red; margin: 0 calc(1ch + 2px) ; }")
     'td,th{color:red;margin:0 calc(1ch + 2px)}'
+    >>> short_style('a > b::after { content: "one: two"; color: red !important; }')
+    'a>b::after{content:"one: two";color:red!important}'
     """
-    plain = re.sub(r"\s+", " ", re.sub(r"/\*[\s\S]*?\*/", "", text)).strip()
-    return re.sub(r";\s*}", "}", re.sub(r"\s*([{};,])\s*|(?<=[\w\])])(:) ", r"\1\2", plain))
+    parts = re.split(r'("[^"]*")', re.sub(r"/\*[\s\S]*?\*/", "", text).strip())
+    return "".join(part if n % 2 else _short_rules(part) for n, part in enumerate(parts))
+
+
+def _short_rules(text: str) -> str:
+    plain = re.sub(r"\s+", " ", text)
+    tight = re.sub(r"\s*([{};,>/])\s*| (!)|(?<=[\w\])])(:) ", r"\1\2\3", plain)
+    return re.sub(r";\s*}", "}", tight)
 
 
 # --- HTML ------------------------------------------------------------------------------------------------
@@ -124,9 +132,12 @@ def short_markup(page: str) -> str:
     "<ul><li>1<li>2</li></ul><script>'</li><li>'</script>"
     >>> short_markup('<td class="p0" title="a b">x="1" </td>')
     '<td class=p0 title="a b">x="1" </td>'
+    >>> short_markup('<a href="#i"><path d="m0 1" class="s1"/></a>')
+    '<a href=#i><path d="m0 1" class=s1 /></a>'
     """
     return _IMPLIED.sub(lambda found: found["kept"] or _unquoted(found["tag"] or ""), page)
 
 
 def _unquoted(tag: str) -> str:
-    return re.sub(r'="([\w.#-]+)"(?=[ >])', r"=\1", tag.replace('="" ', " "))
+    bare = re.sub(r"""="([^\s"'=<>`]+)"(?=[ >])""", r"=\1", tag.replace('="" ', " "))
+    return re.sub(r"""="([^\s"'=<>`]+)"/>$""", r"=\1 />", bare)

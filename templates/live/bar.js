@@ -51,7 +51,8 @@ function fillBar(look, name, row, index) {
 function fillSure(look, name, row) {
   const known = sureOf(look, name, row), { kept, unit, doubt } = LIVE.columns[name];
   if (!known) {
-    const told = LIVE.shared ? kept?.[look.trace.index(name, row)] && "its uncertainty is of second order, which an edit leaves to draws" : kept && "its uncertainty is as issued";
+    const lacking = LIVE.shared && row >= 0 && look.sure.lacking(name, row);
+    const told = lacking ? `its uncertainty is ${lacking}` : LIVE.shared ? kept?.[look.trace.index(name, row)] && "its uncertainty is of second order, which an edit leaves to draws" : kept && "its uncertainty is as issued";
     if (told && look.trace.isOk(name, row)) fillLine("bar-sure", make("span", { class: "says" }, told));
     return;
   }

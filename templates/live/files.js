@@ -22,8 +22,10 @@ function savedField(test, name) {
   if (name === "test") return String(label);
   if (name === "left out") return leftOut(test);
   if (cells[of] === "" && issuedCell(label, of)) return "";
-  if (!(name in cells)) return was ?? (of in cells ? uncertaintyOf(LIVE.columns[of], label, cells[of]) : wordOf(label, name));
-  const issued = issuedCell(label, name);
+  if (!(name in cells)) return was || (of in cells ? uncertaintyOf(LIVE.columns[of], label, cells[of]) : wordOf(label, name));
+  const issued = issuedCell(label, name), { given } = LIVE.columns[name];
+  // What was typed with its uncertainty: that stands in its own column.
+  if (given.u && !readInput(LIVE.columns[name], label, cells[name]).why) return cells[name].replace(CONCISE, "$1");
   return was && was !== issued ? (cells[name] === issued ? was : withStated(cells[name], CONCISE.exec(was))) : cells[name];
 }
 
@@ -58,10 +60,12 @@ function refusedInputs(state) {
   return [...measured, ...refused(state.parameters, "")];
 }
 
-// What stands for the uncertainty of a number where a column has it: what is stated of it, else half a unit of its
-// last digit, rectangular; in the unit of that column.
+// Numbers of a column of which the one beside it, which states uncertainties, says nothing.
+const unsure = (state) => savedTests(state).filter(({ used }) => used).flatMap(({ label, cells }) => Object.keys(cells).filter((name) => isUnknown(LIVE.columns[name], label, cells[name])).map((name) => `u(${name}) of ${ROW} ${label}`));
+
+// What stands for the uncertainty of a number where a column has it: what is stated of it, in the unit of that column.
 function uncertaintyOf(column, label, text) {
-  const sizes = errorsOf(column, label, text).map(({ u }) => u);
+  const sizes = isUnknown(column, label, text) ? [] : errorsOf(column, label, text).map(({ u }) => u);
   return sizes.length ? brief((Math.hypot(...sizes) / column.scale) * column.given.u) : "";
 }
 
@@ -96,8 +100,9 @@ function save() {
     return make("a", { href: url, download: name }, name);
   });
   const refused = refusedInputs(now), until = refused.length ? `. No build takes them before this is a number that is allowed: ${refused.join(", ")}.` : "";
+  const open = unsure(now), empty = open.length ? ` To be filled before a build: ${open.join(", ")}.` : "";
   const own = retyped(now), apart = own.length ? ` No longer taken from another report, nor are shared errors: ${own.join(", ")}.` : "";
-  note("Saved: ", ...links.flatMap((link, n) => (n ? [" ", link] : [link])), until, apart);
+  note("Saved: ", ...links.flatMap((link, n) => (n ? [" ", link] : [link])), until, empty, apart);
   // WebKit drops a download that has not begun when the next one is asked for.
   links.forEach((link, n) => setTimeout(() => link.click(), 500 * n));
   lasting.safe = now;

@@ -91,7 +91,7 @@ function cancel() {
 const STEPS = { ArrowUp: 1, ArrowDown: -1 };
 
 function step(event, element) {
-  event.preventDefault();
+  handled(event);
   commit();
   setCell(element.dataset.cell, element.dataset.index, stepped(element.value, STEPS[event.key]));
   if (isText(document.activeElement)) document.activeElement.select();
@@ -105,11 +105,11 @@ function onGridKey(event) {
   if (!element || event.altKey || element.matches("[data-reason]")) return;
   const { key, ctrlKey, metaKey, shiftKey } = event, control = ctrlKey || metaKey, here = placeOf(element);
   const go = (place) => {
-    event.preventDefault();
+    handled(event);
     commitAndEnter(() => stopAt({ ...here, ...place }));
   };
   if (ARROWS[key] && shiftKey && !inPlace) {
-    event.preventDefault();
+    handled(event);
     if (!editing) extend(element, ARROWS[key].map((step) => step * (control ? Infinity : 1) || 0));
   } else if (ARROWS[key] && !control) {
     const [down, right] = ARROWS[key];
@@ -125,18 +125,18 @@ function onGridKey(event) {
     go({ row: here.row + (shiftKey ? -1 : 1) });
   } else if ((key === "Tab" || event.code === "Tab") && text) { // WebKitGTK has no key for Tab with Shift
     const inputs = () => all("input[data-cell]", here.grid.tBodies[0]), index = inputs().indexOf(element) + (shiftKey ? -1 : 1);
-    if (inputs()[index]) event.preventDefault();
+    if (inputs()[index]) handled(event);
     commitAndEnter(() => inputs()[index]);
   } else if (key === "Escape") {
     if (editing) cancel();
     else pick();
-    event.preventDefault();
+    handled(event);
   } else if (key === "F2" && text) {
-    event.preventDefault();
+    handled(event);
     beginEditing(element, true);
     element.setSelectionRange(element.value.length, element.value.length);
   } else if (key === "Delete" && text && !editing) {
-    event.preventDefault();
+    handled(event);
     beginEditing(element, false);
     element.value = "";
     commit();
@@ -148,14 +148,14 @@ function onKey(event) {
   const { key, ctrlKey, metaKey, shiftKey } = event;
   // While a text is being typed, its own steps are what is taken back.
   if ((ctrlKey || metaKey) && !editing && /^[zy]$/i.test(key) && !event.target.matches("[data-reason]")) {
-    event.preventDefault();
+    handled(event);
     if (key.toLowerCase() === "y" || shiftKey) redo();
     else undo();
     return;
   }
   if (gridOf(event.target)) onGridKey(event);
   else if ((key === "Enter" || key === " ") && event.target.matches?.("span[data-cell]")) {
-    event.preventDefault();
+    handled(event);
     showCell(event.target.dataset.cell, event.target.dataset.index);
   }
 }
@@ -166,7 +166,7 @@ function onKey(event) {
 function onPress(event) {
   const { target, detail, shiftKey } = event, box = boxOf(target), from = picked.from ?? boxOf(document.activeElement);
   if (shiftKey && box && from?.closest("table") === box.closest("table")) {
-    event.preventDefault();
+    handled(event);
     pick(from, box);
     return;
   }
@@ -176,7 +176,7 @@ function onPress(event) {
     const active = target === document.activeElement;
     if (active && (editing || detail > 1)) beginEditing(target, true);
     else {
-      event.preventDefault();
+      handled(event);
       enter(target);
     }
     return;
@@ -184,7 +184,7 @@ function onPress(event) {
   const element = target.closest("main :is(td, span)[data-cell], td[data-published]");
   if (!element || target.closest("a")) return;
   if (!element.hasAttribute("tabindex")) element.setAttribute("tabindex", "-1");
-  event.preventDefault();
+  handled(event);
   enter(element);
 }
 
@@ -205,7 +205,7 @@ function onFocus(event) {
 function onPaste(event) {
   const element = event.target, text = event.clipboardData?.getData("text/plain") ?? "";
   if (!isText(element) || !/[\t\n\r]/.test(text.trim())) return;
-  event.preventDefault();
+  handled(event);
   if (editing) cancel();
   const block = text.replace(/[\r\n]+$/, "").split(/\r\n|\r|\n/).map((line) => line.split("\t"));
   const commas = block.flat().some((one) => !one.includes(".") && one.includes(",") && NUMBER.test(normalised(one)));

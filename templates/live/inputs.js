@@ -22,19 +22,20 @@ const isSane = ({ n, d }) => magnitude(n) <= LARGEST * d && magnitude(n) * LARGE
 const CONCISE = /^([^()]*)\(([0-9]+)\)$/;
 
 // A printed text as the value of an input in SI: { value }, with one unit of its last digit and what is stated of its
-// errors, or { why } there is none.
+// errors, or { why } there is none. Where a column states them and says nothing of this row, they are unknown.
 function readInput({ given, errors, unit }, index, text) {
   const concise = given.bounds.integer ? null : CONCISE.exec(text), digits = concise ? concise[1] : text;
   const own = Array.isArray(errors) ? errors : errors?.[index];
   const stated = concise && !errors?.length ? [{ digits: Number(concise[2]), shape: "normal" }] : own;
+  const unknown = given.u && !own ? UNKNOWN : undefined; // until it is typed
   const refused = (why, what = `“${text}” `) => ({ why: `${what}${why}; it must be ${given.allowed}` });
   if (text === "") return refused("the datum is missing", "");
-  const found = NUMBER.exec(digits), alone = given.bounds.integer || given.said || errors?.length ? "" : ", or as 46.7(5) with its u in units of the last digit";
+  const found = NUMBER.exec(digits), alone = given.bounds.integer || given.said && !unknown || errors?.length ? "" : ", or as 46.7(5) with its u in units of the last digit";
   const meant = EITHER.test(text) ? `: write ${text.replace(",", ".")} or ${text.replace(",", "")}, whichever is meant`
     : /^[-+.]?[0-9]/.test(text) ? `: write it alone${unit === "1" ? "" : `, in ${unit}`}${alone}` : "";
   if (!found) return refused(`is not a number${meant}`);
   if (text.length > 100 || Math.abs(Number(found[5] ?? 0)) > 300) return refused("is out of all range");
-  if (concise && given.said) return { why: `“${text}” says how sure it is, and so does ${given.said}: write ${digits}` };
+  if (concise && given.said && !unknown) return { why: `“${text}” says how sure it is, and so does ${given.said}: write ${digits}` };
   if (typeof stated === "string") return { why: `“${stated}” in ${given.said} is not a standard uncertainty of at least 0` };
   const exact = readExact(digits), [n, d, zero = 0n] = given.scale.map(BigInt);
   const value = { n: exact.n * n + zero * exact.d, d: exact.d * d };
@@ -48,12 +49,14 @@ function readInput({ given, errors, unit }, index, text) {
     high !== undefined && (isLess(readExact(high), value) || (high_open && !isLess(value, readExact(high)))),
   ];
   if (wrong.some(Boolean)) return refused("is not allowed");
-  return { value: toDouble(value), digit: toDouble(digit), stated };
+  return { value: toDouble(value), digit: toDouble(digit), stated: stated ?? unknown };
 }
 
 // The errors of a given number, with their standard uncertainties in SI: those that were stated of its column, or of
 // its row alone, else that of its digits. What is a share of the value or of its last digit follows what is typed.
 const OF_DIGITS = [{ digits: 1 / Math.sqrt(12), shape: "rectangular" }];
+const UNKNOWN = [{ ...OF_DIGITS[0], unknown: true }]; // so large it is only to see what it moves
+const isUnknown = (...input) => readInput(...input).stated === UNKNOWN;
 
 function errorsOf(column, index, text) {
   const { value, digit, stated = OF_DIGITS } = readInput(column, index, text);
@@ -137,8 +140,8 @@ function computeSheet(program, columns, state, groups) {
     const { of } = columns[name];
     if (of) {
       data[name] = tests.map(({ label, cells }) => {
-        const refused = readInput(columns[of], label, cells[of]).why;
-        return refused ? NaN : Math.hypot(...errorsOf(columns[of], label, cells[of]).map(({ u }) => u));
+        const input = [columns[of], label, cells[of]];
+        return readInput(...input).why || isUnknown(...input) ? NaN : Math.hypot(...errorsOf(...input).map(({ u }) => u));
       });
       continue;
     }

@@ -62,7 +62,7 @@ function unstored() {
   const stored = byId("live-issued"), main = byId("main");
   if (stored) {
     main.replaceChildren(stored.content.cloneNode(true));
-    document.documentElement.removeAttribute("data-edited");
+    ROOT.removeAttribute("data-edited");
     return;
   }
   const issued = make("template", { id: "live-issued" });
@@ -140,6 +140,6 @@ function shareLink() {
 function onLeave(event) {
   commit();
   if (sameState(page.history.now, page.history.issued) || page.history.now === lasting.safe) return;
-  event.preventDefault();
+  handled(event);
   event.returnValue = true; // what older browsers ask for
 }

@@ -34,7 +34,8 @@ function setCell(name, index, text) {
     else state.tests.find((test) => String(test.label) === index).cells[name] = text;
   });
   // At once, for the bar goes on to the next cell.
-  const { trace } = page.look, row = trace.row(name, index), why = trace.sheet.refused[name]?.[row];
+  const { trace } = page.look, row = trace.row(name, index);
+  const why = trace.sheet.refused[name]?.[row] ?? (isUnknown(LIVE.columns[name], index, text) && `its u is not known: write ${text}(5) for 5 in the last digit`);
   if (why) note(`${trace.address(name, row)}: ${why}.`);
 }
 
@@ -100,7 +101,7 @@ function show() {
   pick();
   page.look = lookAt(now, page.issued);
   const edited = !sameState(now, issued), wasEdited = isEdited();
-  document.documentElement.toggleAttribute("data-edited", edited);
+  ROOT.toggleAttribute("data-edited", edited);
   // As issued, the page holds the numbers of another engine: none of them is left between ours.
   if (edited) writePage(page.look, wasEdited ? before : null);
   else restore();
@@ -112,7 +113,7 @@ function show() {
   writeBar(page.look);
   if (focus && !focus.isConnected) refocus(focus);
   announce(before, page.look);
-  document.documentElement.dataset.milliseconds = (performance.now() - begin).toFixed(2);
+  ROOT.dataset.milliseconds = (performance.now() - begin).toFixed(2);
 }
 
 function writePage(look, last) {
@@ -201,14 +202,14 @@ function begin() {
     placePanel();
     if (wide !== (wide = byId("main").clientWidth)) letScroll();
   })).observe(byId("main"));
-  document.documentElement.dataset.live = "ready";
+  ROOT.dataset.live = "ready";
 }
 
 // What has the focus must not hide behind the bar, nor the end of the page.
 function makeRoom([entry]) {
   const height = `${Math.ceil(entry.borderBoxSize[0].blockSize) + 12}px`;
   document.body.style.paddingBottom = height;
-  document.documentElement.style.scrollPaddingBottom = height;
+  ROOT.style.scrollPaddingBottom = height;
 }
 
 // Equations and pictures that are wider than the page are scrolled with the keyboard, too.
@@ -252,7 +253,7 @@ function listen() {
   });
   // A button of the bar leaves the focus where it is: what is being typed is entered by the click, not before
   // it, or the bar would grow and take the button from under the pointer.
-  byId("live-dock").addEventListener("mousedown", (event) => event.target.closest("button") && event.preventDefault());
+  byId("live-dock").addEventListener("mousedown", (event) => event.target.closest("button") && handled(event));
   addEventListener("beforeunload", onLeave);
   addEventListener("storage", followOther);
   addEventListener("hashchange", () => followLink() && show());

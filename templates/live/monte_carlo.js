@@ -7,13 +7,13 @@ const WITHOUT = 0.025, NO_DEVIATION = 2.2; // as the report has them
 const TEXT = document.currentScript.textContent;
 const carlo = { worker: null, timer: 0, look: null, found: {}, refused: false };
 
-const draws = (look, name) => LIVE.shared && axisNamed(look.trace.declared[name].axis)?.kind !== "repeat" && !LIVE.columns[name].given;
+const draws = (look, name, row) => LIVE.shared && row >= 0 && look.trace.isOk(name, row) && !look.sure.lacking(name, row) && axisNamed(look.trace.declared[name].axis)?.kind !== "repeat" && !LIVE.columns[name].given;
 
 // Every cell that is to be drawn: after an edit the results, and the one in the bar.
 function cellsToDraw(look) {
   const results = isEdited() && page.panel ? LIVE.headline.slice(0, MOST_DRAWN).map(([name, index]) => [name, look.trace.row(name, index)]) : [];
   const own = bar.name === null ? [] : [[bar.name, look.trace.row(bar.name, bar.index)]];
-  return [...results, ...own].filter(([name, row]) => row >= 0 && draws(look, name) && look.trace.isOk(name, row));
+  return [...results, ...own].filter(([name, row]) => draws(look, name, row));
 }
 
 // Draws what was not drawn yet, soon; what was begun for another state ends.
@@ -83,7 +83,7 @@ function rangeOf(name, { u, ends }) {
 function fillDraws(look) {
   const { name, index } = bar, row = name === null ? -1 : look.trace.row(name, index);
   byId("bar-draws").hidden = true;
-  if (row < 0 || !draws(look, name) || !look.trace.isOk(name, row)) return;
+  if (!draws(look, name, row)) return;
   const found = carlo.found[[name, row]], { unit, scale } = LIVE.columns[name], says = make("span", { class: "says" }, `${DRAWS} draws`);
   const behind = () => (unit === "1" ? [] : ["\u00a0", ...part(name, "unit")]);
   if (carlo.refused) fillLine("bar-draws", says, "this browser lets no page draw in the background");
@@ -101,7 +101,7 @@ function fillDraws(look) {
 // The same of a result, for the panel.
 function shortDraws(name, row) {
   const found = carlo.found[[name, row]];
-  if (!found) return carlo.refused ? "–" : "…";
+  if (!found) return carlo.refused || !draws(page.look, name, row) ? "–" : "…";
   return found.ends ? rangeOf(name, found) : `${found.lost} of ${DRAWS} draws without a value`;
 }
 

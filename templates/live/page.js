@@ -27,7 +27,9 @@
 //   html[data-milliseconds]           how long the last recalculation and redrawing took
 
 const byId = (id) => document.getElementById(id);
-const isEdited = () => document.documentElement.hasAttribute("data-edited");
+const ROOT = document.documentElement;
+const handled = (event) => event.preventDefault();
+const isEdited = () => ROOT.hasAttribute("data-edited");
 const all = (selector, within = document) => Array.from(within.querySelectorAll(selector));
 const LIVE = JSON.parse(byId("live-data").textContent);
 LIVE.columns = wholeColumns(LIVE.columns);

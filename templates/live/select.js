@@ -100,5 +100,5 @@ function onCopy(event) {
   if (!what) return;
   event.clipboardData.setData("text/plain", what.plain);
   event.clipboardData.setData("text/html", what.html);
-  event.preventDefault();
+  handled(event);
 }

@@ -54,10 +54,16 @@ class Sure {
     return found;
   }
 
+  // Why nothing is known of the uncertainty of a cell, if it rests on a number without one.
+  lacking(name, row) {
+    const at = this.errors.some(({ unknown }) => unknown) ? this.parts(name, row).findIndex((part, n) => part && this.errors[n].unknown) : -1;
+    return at < 0 ? "" : `not known: nothing states u of ${this.errors[at].called}`;
+  }
+
   // The combined standard uncertainty of a cell; NaN where nothing is known of it.
   u(name, row) {
     const { axis } = this.trace.declared[name];
-    if (axis !== null && axisNamed(axis).kind === "repeat" || !this.trace.isOk(name, row)) return NaN;
+    if (axis !== null && axisNamed(axis).kind === "repeat" || !this.trace.isOk(name, row) || this.lacking(name, row)) return NaN;
     return ((this.known[name] ??= [])[row] ??= Math.sqrt(Math.max(0, sum(this.variances(this.parts(name, row))))));
   }
 
@@ -120,8 +126,9 @@ function writeUncertain(look) {
     const known = row >= 0 && sureOf(look, name, row), shown = row < 0 ? "–" : look.cell(name, row).text;
     const { texts, from } = known || { texts: [shown, "", "", ""], from: [] };
     texts.forEach((text, n) => setText(line.cells[n + 1], text));
+    const lacking = row >= 0 && !known && look.sure.lacking(name, row);
     const most = estimates(look, from).slice(0, 3).filter(({ share }) => share >= 0.05);
-    line.cells[6].replaceChildren(...most.flatMap(({ called, rows, share }, n) => [n ? ", " : "", make("code", {}, called), `${rows}\u00a0${percent(share)}`]));
+    line.cells[6].replaceChildren(...lacking ? [lacking] : most.flatMap(({ called, rows, share }, n) => [n ? ", " : "", make("code", {}, called), `${rows}\u00a0${percent(share)}`]));
   }
   for (const told of all(".headline .sure")) {
     const { cell: name, index } = told.parentElement.querySelector("[data-cell]").dataset, row = look.trace.row(name, index), known = LIVE.shared && row >= 0 && sureOf(look, name, row);
