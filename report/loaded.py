@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
 from numpy.typing import DTypeLike, NDArray
 
 from .cells.address import index_text
@@ -27,9 +28,11 @@ MOST = 50
 """Rows that a notebook shows."""
 
 
-@dataclass(frozen=True)
-class Estimates:
+@dataclass(frozen=True, eq=False)
+class Estimates(NDArrayOperatorsMixin):
     """Estimates of a column of the sheet.
+
+    Arithmetic, comparisons, ``len`` and ``bool`` are those of `value`, a plain array: none knows of `u`.
 
     Parameters
     ----------
@@ -67,9 +70,18 @@ class Estimates:
         """The values, for NumPy; of a scalar without an axis."""
         return np.array(self.value, dtype=dtype) if copy else np.asarray(self.value, dtype=dtype)
 
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **more: Any) -> Any:
+        """What a function of NumPy, or an operator, makes of the values."""
+        values = (each.value if isinstance(each, Estimates) else each for each in inputs)
+        return getattr(ufunc, method)(*values, **more)
+
+    def __bool__(self) -> bool:
+        """Whether the value of a scalar is not 0; of several NumPy says that it is ambiguous."""
+        return bool(self.value)
+
     def __len__(self) -> int:
-        """How many rows it has."""
-        return len(self.index)
+        """How many rows it has; a scalar has no length."""
+        return len(self.value)
 
     def __iter__(self) -> Iterator[float]:
         """The values, row by row; a scalar has none."""
