@@ -184,6 +184,15 @@ def test_nothing_is_written_among_the_files_of_somebody(
     assert [path.name for path in (tmp_path / "mine").iterdir()] == ["notes.txt"]
 
 
+def test_a_build_without_its_manifest_is_told_how_to_go_on(
+    gauge: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["build", str(gauge), "--to", "json"]) == 0
+    (gauge / "out" / "manifest.json").unlink()
+    assert main(["build", str(gauge), "--to", "json"]) == 2
+    assert "or delete it if a build lost its manifest.json" in capsys.readouterr().err
+
+
 def test_a_report_folder_may_hold_its_report(tmp_path: Path, gauge: Path) -> None:
     own = shutil.copytree(gauge, tmp_path / "own", ignore=lambda *_: ["out"])
     assert out_of(Namespace(out=str(own)), own) == own

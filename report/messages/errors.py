@@ -492,7 +492,7 @@ CATALOGUE: dict[str, Entry] = {
         "folder of something else",
         "'{text}' holds what no build has written: {known}",
         "a folder that is empty or does not exist yet, or one that an earlier build has written",
-        "nothing was written; choose another folder with --out",
+        "nothing was written; choose another with --out, or delete it if a build lost its manifest.json",
     ),
     "LS627": Entry(
         "row left out",
