@@ -23,6 +23,7 @@ def outdated(folder: Path, files: Iterable[str]) -> Iterator[Check]:
     yield from outdated_sources(folder, files)
     if folder != PAPER:
         yield from _older(folder, folder, "")
+        yield from _touched(folder)
 
 
 def outdated_sources(folder: Path, files: Iterable[str]) -> Iterator[Check]:
@@ -38,6 +39,17 @@ def _older(folder: Path, each: Path, so: str) -> Iterator[Check]:
         said = f"{output(each).as_posix()} is older than what it was built from, {after}{so}: build it again"
         at = Location((folder / "report.toml").as_posix())
         yield Check("outputs", each.as_posix(), True, said, at, note="warning")
+
+
+def _touched(folder: Path) -> Iterator[Check]:
+    """A warning if outputs are not as they were built."""
+    out = output(folder)
+    manifest = manifest_of(out)
+    if manifest and (names := sorted(changed(out, manifest.outputs))):
+        after = listing(names, last="and")
+        said = f"{out.as_posix()} is not as it was built, {after}: 'loopsheet verify' tells more"
+        at = Location((folder / "report.toml").as_posix())
+        yield Check("outputs", f"{folder.as_posix()} as built", True, said, at, note="warning")
 
 
 def _changed(folder: Path) -> list[str]:

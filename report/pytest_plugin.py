@@ -29,6 +29,7 @@ __all__ = [
     "pytest_addoption",
     "pytest_collect_file",
     "pytest_configure",
+    "pytest_terminal_summary",
 ]
 
 _LARGEST = 250_000
@@ -53,6 +54,13 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> ReportFile
     if file_path.name != "report.toml" or not _is_ours(file_path) or _is_copy(file_path):
         return None
     return ReportFile.from_parent(parent, path=file_path)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Tell why folders with code of their own were skipped, which else only ``-rs`` tells."""
+    for skip in terminalreporter.stats.get("skipped", ()):
+        if skip.nodeid.endswith("report.toml::workbook::own code"):
+            terminalreporter.write_line(f"{skip.nodeid.partition('::')[0]}: {skip.longrepr[2]}")
 
 
 def _is_ours(path: Path) -> bool:

@@ -276,6 +276,16 @@ def test_what_no_build_made_is_kept_as_well(gauge: Path, run: Run) -> None:
     assert (gauge / "out" / "report.edited.tex").read_text() == "mine"
 
 
+def test_what_somebody_did_to_an_output_is_a_warning(gauge: Path, run: Run) -> None:
+    assert run("build", "gauge", "--to", "json")[0] == 0
+    assert "as it was built" not in run("check", "gauge")[1]
+    (gauge / "out" / "values.json").write_text("mine")
+    said = "gauge/out is not as it was built, values.json: 'loopsheet verify' tells more"
+    assert said in run("check", "gauge")[1]
+    (gauge / "out" / "values.json").unlink()
+    assert said in run("check", "gauge")[1]
+
+
 def test_nothing_is_built_among_the_files_of_others(gauge: Path, run: Run) -> None:
     (gauge / "site").mkdir()
     for name in ("values.json", "manifest.json"):

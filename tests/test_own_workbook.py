@@ -239,7 +239,7 @@ def test_pytest_runs_it_if_it_is_told_to(folder: Path) -> None:
     own(folder, SOURCE + RAN)
     Path("pytest.ini").write_text("[pytest]\n")
     Path("test_other.py").write_text("def test_other():\n    pass\n")
-    done = run(Path.cwd(), "-rs")
+    done = run(Path.cwd())  # the reason is told even so
     assert done.returncode == 0, done.stdout
     assert "1 passed, 1 skipped" in done.stdout
     assert "is code that came with the folder" in done.stdout

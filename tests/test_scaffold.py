@@ -1,8 +1,10 @@
 """`new`: a folder that builds at once, or nothing at all."""
 
+import hashlib
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -160,6 +162,23 @@ def test_a_workflow_for_github_does_what_it_says(tmp_path: Path, require: Callab
     assert f"from {Path(folder) / 'report.toml'} into" in done.stdout
     manifest = json.loads((tmp_path / "report" / "manifest.json").read_text())
     assert manifest["sources"] == sources(there / "loopsheet") == sources()
+    # Of a build that is committed, a number that moves is told.
+    committed = shutil.copytree(tmp_path / "report", campaign / "out")
+    (guard,) = re.findall(r"run: (test .*)", text)
+    values, told = (tmp_path / "report" / name for name in ("values.json", "manifest.json"))
+    for moved in (False, True):
+        if moved:
+            was = values.read_bytes()
+            now = re.sub(rb'"value": *([0-9.]+)', rb'"value": 7\g<1>', was, count=1)
+            values.write_bytes(now)
+            sums = (hashlib.sha256(each).hexdigest() for each in (was, now))
+            told.write_text(told.read_text().replace(next(sums), next(sums)))
+        again = subprocess.run(
+            [require("bash"), "-c", guard], cwd=tmp_path, env={**os.environ, **known},
+            capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert again.returncode == moved, again.stdout + again.stderr
+    assert committed.is_dir()
 
 
 def test_what_a_service_reads_already_is_not_written_over(tmp_path: Path) -> None:

@@ -273,6 +273,9 @@ jobs:
       - run: loopsheet check "$FOLDER" --format github
       - if: ${{{{ !cancelled() }}}}
         run: loopsheet build "$FOLDER" --out "$RUNNER_TEMP"/report
+      # If a build is committed: does each of its numbers come out again?
+      - if: ${{{{ !cancelled() }}}}
+        run: test ! -e "$FOLDER"/out/values.json || loopsheet diff "$FOLDER"/out "$RUNNER_TEMP"/report
       - if: ${{{{ !cancelled() }}}}
         uses: actions/upload-artifact@v6
         with:
