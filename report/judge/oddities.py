@@ -54,6 +54,11 @@ REACH = 2
 """So many standard uncertainties, an interval of 95 %, lie above zero where nothing can lie below it."""
 
 
+def _taken(inputs: Inputs) -> list[str]:
+    """The columns that are taken from other reports, where either knows rows by words."""
+    return [name for name, taken in inputs.taken.items() if name in inputs.measured and taken.told]
+
+
 def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
     """The names of all checks of a campaign's data, by kind, without computing anything."""
     workbook = inputs.workbook
@@ -66,7 +71,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
             *(each.name for each in workbook.curves),
         ],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
-        WORDS: list(workbook.groups),
+        WORDS: [*workbook.groups, *_taken(inputs)],
         SCATTERS: [name for name, _ in _scattering(sheet, inputs)],
         CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
         CLAIM: [claim.label for claim in workbook.claims],
@@ -146,6 +151,7 @@ class _Oddities:
         yield from map(self.of_curve, self.report.workbook.curves)
         yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
         yield from map(self.of_words, self.inputs.workbook.groups)
+        yield from map(self.of_taken, _taken(self.inputs))
         yield from (self.of_scatter(*each) for each in _scattering(self.sheet, self.inputs))
         yield from (self.of_constants(*each) for each in _adjusted(self.sheet, self.inputs))
         yield from self.of_expectations()
@@ -410,6 +416,13 @@ class _Oddities:
                 said = f"{by_number} is {called} as it stands; in a sorted table it is another {column}'s"
                 return Check(WORDS, column, True, f"{said}: write {called}", each.at, note="warning")
         return Check(WORDS, column, True, f"{column}: no word is nearly another", self.inputs.place)
+
+    def of_taken(self, column: str) -> Check:
+        """Whether rows of another report are found by words: its order may have made their numbers."""
+        taken = self.inputs.taken[column]
+        hint = ": columns of the same words in both say which is which" * taken.doubtful
+        note = "warning" * taken.doubtful
+        return Check(WORDS, column, True, f"{column}: {taken.told}{hint}", self.inputs.place, note=note)
 
     def of_scatter(self, name: str, axis: MemberAxis) -> Check:
         """Whether readings that stand in groups scatter about one mean as about those of their groups."""
