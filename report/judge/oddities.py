@@ -72,7 +72,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
         ],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
         WORDS: [*workbook.groups, *_taken(inputs)],
-        SCATTERS: [name for name, _ in _scattering(sheet, inputs)],
+        SCATTERS: [*_unmoved(inputs), *(name for name, _ in _scattering(sheet, inputs))],
         CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
         CLAIM: [claim.label for claim in workbook.claims],
         EXPECTED: [expectation.address for expectation in inputs.expected],
@@ -105,12 +105,23 @@ def _adjusted(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, list[str]]]:
             yield name, sorted(own)
 
 
+def _unmoved(inputs: Inputs) -> list[str]:
+    """The columns of which scatter alone is stated, and whose readings are all the same."""
+    return [
+        name
+        for name, stated in inputs.uncertainty.columns.items()
+        if [part.said for part in stated.parts] == [SCATTER]
+        and len({number.value for number in inputs.numbers(name)}) == 1
+    ]
+
+
 def _scattering(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, MemberAxis]]:
     """The columns whose scatter is stated, with the groups of their rows, if these are of one kind."""
     for name, stated in inputs.uncertainty.columns.items():
         axis = sheet[name].axis if name in sheet else None
         found = [*axis.grouped(sheet.axes)] if axis else []
-        if len(found) == 1 and any(part.said == SCATTER for part in stated.parts):
+        scatters = name not in _unmoved(inputs) and any(part.said == SCATTER for part in stated.parts)
+        if len(found) == 1 and scatters:
             yield name, found[0]
 
 
@@ -152,6 +163,7 @@ class _Oddities:
         yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
         yield from map(self.of_words, self.inputs.workbook.groups)
         yield from map(self.of_taken, _taken(self.inputs))
+        yield from map(self.of_resolution, _unmoved(self.inputs))
         yield from (self.of_scatter(*each) for each in _scattering(self.sheet, self.inputs))
         yield from (self.of_constants(*each) for each in _adjusted(self.sheet, self.inputs))
         yield from self.of_expectations()
@@ -423,6 +435,13 @@ class _Oddities:
         hint = ": columns of the same words in both say which is which" * taken.doubtful
         note = "warning" * taken.doubtful
         return Check(WORDS, column, True, f"{column}: {taken.told}{hint}", self.inputs.place, note=note)
+
+    def of_resolution(self, name: str) -> Check:
+        """Readings that are all the same: their scatter tells nothing, the digits of the instrument do."""
+        numbers = self.inputs.numbers(name)
+        said = f"{name}: all {len(numbers)} readings are {numbers[0].text}: their scatter is 0, and their "
+        said += f"digits leave more; say '{SCATTER}; +-0.5 digits rect', or what they share"
+        return Check(SCATTERS, name, True, said, self.inputs.place, note="warning")
 
     def of_scatter(self, name: str, axis: MemberAxis) -> Check:
         """Whether readings that stand in groups scatter about one mean as about those of their groups."""
